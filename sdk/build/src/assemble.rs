@@ -1,4 +1,4 @@
-//! Puts the results of a build together: textures, library, report, catalogue.
+//! Assembles the results of a build: textures, library, report, catalogue.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -28,21 +28,21 @@ use crate::removed::built;
 use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, felt_shares};
 
 pub(crate) const REPORT_FILE: &str = "build-report.json";
-/// Most bytes of a report that is read: a few hundred thousand textures.
+/// Largest size of a report that is read, bytes: a few hundred thousand textures.
 pub(crate) const MOST_REPORT_BYTES: u64 = 1 << 30;
 
-/// The file of what is known of the library that was written last, in the folder of what is kept.
+/// File with facts about the library that was written last, in the folder of stored data.
 const KEPT_LIBRARY: &str = "library.json";
 
 /// A finished build.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Built {
-    /// Its report, as in `build-report.json`.
+    /// The report of the build, as in `build-report.json`.
     pub report: Report,
 }
 
-/// Writes everything; `made` returns what the job with a key made.
+/// Writes everything. `made` returns the result of the job with a key.
 pub(crate) fn assemble(
     plan: &Plan,
     jobs: &[(String, Job)],
@@ -95,10 +95,11 @@ pub(crate) fn assemble(
     let packed = match kept_library(kept, &path, &contents) {
         Some(packed) => packed,
         None => {
-            // Beside it, a kill would leave the writer's files.
+            // Written in the folder of parts, because in the results a killed build would leave the
+            // writer's files.
             let part = parts.join(&file);
             let mut writer = Writer::create(&dist.at(&part)?, &plan.library).at(&library)?;
-            // The recipe's gate has decided.
+            // The recipe's gate has already decided about licences.
             writer.allow_unlicensed();
             let planned = jobs.iter().zip(&plan.textures).zip(&textures);
             for (((key, job), texture), _) in planned.filter(|(_, r)| r.status == Status::Built) {
@@ -131,7 +132,8 @@ pub(crate) fn assemble(
     Ok(Built { report })
 }
 
-/// Adds licence and author of a texture to its sound; a change of metadata makes no new sound.
+/// Adds the licence and author of a texture to its sound. They are added here so that a change of
+/// metadata does not require a new sound.
 fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildError> {
     let asset = report.asset.as_ref();
     let license = asset.and_then(|asset| asset.license.as_deref());
@@ -141,7 +143,7 @@ fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildE
     Ok(wav.into_inner())
 }
 
-/// Reports a texture, with the gates that it misses.
+/// Reports a texture with the gates that it misses.
 fn judged(
     texture: &PlannedTexture,
     key: &str,
@@ -165,10 +167,10 @@ fn judged(
     Ok(report)
 }
 
-/// The library's file as it was written last.
+/// Facts about the library file that was written last.
 #[derive(Serialize, Deserialize)]
 struct KeptLibrary {
-    /// Hash of its name and its textures' names and hashes.
+    /// Hash of its name, and of the names and hashes of its textures.
     contents: String,
     stamp: Stamp,
     bytes: u64,
@@ -182,7 +184,7 @@ fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
     blake3::hash(parts.to_string().as_bytes()).to_hex().to_string()
 }
 
-/// Returns the library that is there, if it has these contents and nobody wrote to it since.
+/// Returns the existing library if it has these contents and nobody has written to it since.
 fn kept_library(kept: &Kept, path: &Path, contents: &str) -> Option<KeptLibrary> {
     let bytes = kept.get(KEPT_LIBRARY, MOST_REPORT_BYTES)?;
     let kept: KeptLibrary = serde_json::from_slice(&bytes).ok()?;
@@ -223,7 +225,7 @@ fn library_report(
     }
 }
 
-/// Copies the browser package beside the catalogue.
+/// Copies the browser package next to the catalogue.
 fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
     let entry = package.join("index.js");
     if !entry.is_file() {
@@ -246,13 +248,13 @@ pub(crate) fn put_report(dist: &Dist, report: &Report) -> Result<(), BuildError>
     dist.put(Path::new(REPORT_FILE), text.as_bytes())
 }
 
-/// The report of the build before, if there is one.
+/// Returns the report of the previous build, if there is one.
 pub(crate) fn previous(dist: &Dist) -> Option<Report> {
     let bytes = dist.get(Path::new(REPORT_FILE), MOST_REPORT_BYTES)?;
     serde_json::from_slice(&bytes).ok()
 }
 
-/// Removes files that an earlier build wrote and this one did not.
+/// Removes files that an earlier build wrote and this build did not.
 fn remove_stale(
     before: Option<Report>,
     now: &Report,

@@ -1,9 +1,9 @@
-//! The folder of what was made, by key. Entries are authenticated ([`Kept`]), so that one of
-//! somebody else, or one that a crash left incomplete, is made again; they are not flushed to disk
-//! one by one.
+//! The cache of job results, by key. Entries are authenticated ([`Kept`]): a result that comes from
+//! somebody else, or that a crash left incomplete, is not used and is made again. Entries are not
+//! flushed to disk one by one.
 //!
-//! An entry that no texture uses any more stays for [`UNUSED`]: a setting that is tried and taken
-//! back fits nothing again.
+//! An entry that no texture uses any more stays for [`UNUSED`], so that trying a setting and taking
+//! it back does not fit anything again.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,43 +16,43 @@ use crate::BuildError;
 use crate::kept::{Kept, inside};
 use crate::made::{Made, Outcome};
 
-/// The folder, in that of what is kept.
+/// Name of the cache's folder, in the folder of stored data.
 const MADE: &str = "made";
-/// Most bytes of an entry: an asset of 16 MiB, its sound, and what is known of it.
+/// Largest size of an entry, bytes: an asset of 16 MiB, its sound, and its record.
 const MOST_BYTES: u64 = 64 << 20;
-/// How long an entry stays that no build has used.
+/// How long an entry stays that no build uses.
 const UNUSED: Duration = Duration::from_secs(30 * 24 * 3600);
-/// An entry's time is renewed when it is used and older than this.
+/// When an entry is used, its time is renewed if it is older than this.
 const RENEWED: Duration = Duration::from_secs(24 * 3600);
 
-/// The folder of what was made.
+/// The cache of job results.
 #[derive(Debug)]
 pub(crate) struct Cache {
     kept: Arc<Kept>,
 }
 
 impl Cache {
-    /// Opens the folder, and creates it if there is none.
+    /// Opens the cache, and creates its folder if it is missing.
     pub(crate) fn open(kept: Arc<Kept>) -> Result<Self, BuildError> {
         let made = kept.own().make_folder(&inside(MADE));
         made.writing(kept.own().path().join(inside(MADE)))?;
         Ok(Self { kept })
     }
 
-    /// Returns what was made for a key; `None` if nothing was, or if it is damaged or somebody
-    /// else's.
+    /// Returns the result for a key; `None` if there is none, or if it is damaged or comes from
+    /// somebody else.
     pub(crate) fn get(&self, key: &str) -> Option<Made> {
         let bytes = self.kept.get(&name(key), MOST_BYTES)?;
         Made::from_bytes(key, &bytes).ok()
     }
 
-    /// Whether something was made for a key. One that is there and cannot be used is not.
+    /// Returns whether there is a file for a key, even if it cannot be used.
     pub(crate) fn has_file(&self, key: &str) -> bool {
         let path = self.kept.own().at(&inside(&name(key)));
         path.is_ok_and(|path| path.symlink_metadata().is_ok())
     }
 
-    /// Keeps what was made for a key. A refusal is not kept: what caused it may be gone the next
+    /// Stores the result for a key. A refusal is not stored, because its cause may be gone the next
     /// time.
     pub(crate) fn put(&self, key: &str, made: &Made) -> Result<(), BuildError> {
         if matches!(made.record.outcome, Outcome::Refused(_)) {
@@ -61,8 +61,8 @@ impl Cache {
         self.kept.put(&name(key), &made.to_bytes(key)?)
     }
 
-    /// Keeps the entries of these keys, and removes others: those that were not used for
-    /// [`UNUSED`], or all if `prune`. Files that are no entries stay.
+    /// Retains the entries with these keys. Removes other entries if they were not used for
+    /// [`UNUSED`], or all of them if `prune`. Files that are not entries stay.
     pub(crate) fn keep(&self, keys: &BTreeSet<&str>, prune: bool) -> Result<(), BuildError> {
         let (own, folder) = (self.kept.own(), inside(MADE));
         let shown = own.path().join(&folder);
@@ -90,14 +90,14 @@ fn name(key: &str) -> String {
     format!("{MADE}/{key}")
 }
 
-/// The key of an entry's file, or of its part that a killed build left.
+/// Returns the key of an entry's file, or of the partial file that a killed build left.
 fn key_of(file: &str) -> Option<&str> {
     let key = file.strip_suffix(".part").unwrap_or(file);
     let is_key = key.len() == 64 && key.bytes().all(|c| c.is_ascii_hexdigit());
     is_key.then_some(key)
 }
 
-/// Renews the time of an entry; without it, the entry goes earlier.
+/// Renews the time of an entry. If that fails, the entry is only removed earlier.
 #[allow(clippy::disallowed_methods, reason = "changes only a time")]
 fn renew(path: &Path, now: SystemTime) {
     let file = std::fs::File::options().write(true).open(path);

@@ -1,6 +1,6 @@
-//! The folder of a build's results. A file is written to a new one and renamed; one that is there
-//! with the same bytes is left alone, so that its time says when it changed. Links in the folder
-//! are not followed ([`OwnFolder`]).
+//! The folder of a build's results. A file is written under another name and then renamed. A file
+//! that already has the same bytes is left alone, so that its time says when its contents changed.
+//! Links in the folder are not followed ([`OwnFolder`]).
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -10,14 +10,14 @@ use htex_files::{AtFile, OwnFolder};
 use crate::BuildError;
 use crate::kept::inside;
 
-/// The folder of files that are being written, in that of what is kept.
+/// Name of the folder for files that are being written, in the folder of stored data.
 const PARTS: &str = "parts";
 
-/// The folder of a build's results. Its files are named by their paths in it.
+/// The folder of a build's results. Files in it are named by their relative paths.
 #[derive(Debug)]
 pub(crate) struct Dist {
     own: OwnFolder,
-    /// Files that were written.
+    /// Number of files written.
     written: AtomicU64,
 }
 
@@ -26,18 +26,18 @@ impl Dist {
         Self { own: OwnFolder::new(folder), written: AtomicU64::new(0) }
     }
 
-    /// Returns the file of a texture.
+    /// Returns the path of a texture's file.
     pub(crate) fn texture(name: &str) -> PathBuf {
         Path::new("textures").join(format!("{name}.htex"))
     }
 
-    /// Returns the file of a texture's sound.
+    /// Returns the path of a texture's sound.
     pub(crate) fn sound(name: &str) -> PathBuf {
         Path::new("sounds").join(format!("{name}.wav"))
     }
 
-    /// Returns the path of a file for what is not written by [`Self::put`]; nothing above it is a
-    /// link.
+    /// Returns the path of a file that is not written by [`Self::put`]. None of the folders above
+    /// it is a link.
     pub(crate) fn at(&self, file: &Path) -> Result<PathBuf, BuildError> {
         let at = self.own.at(file);
         Ok(at.writing(self.own.path().join(file))?)
@@ -48,7 +48,7 @@ impl Dist {
         self.own.read(file, most_bytes).ok()
     }
 
-    /// Writes a file, and the folders above it, unless it holds these bytes.
+    /// Writes a file and creates the folders above it, unless the file already has these bytes.
     pub(crate) fn put(&self, file: &Path, bytes: &[u8]) -> Result<(), BuildError> {
         let there = self.own.read(file, bytes.len() as u64);
         if there.is_ok_and(|there| there == bytes) {
@@ -60,19 +60,19 @@ impl Dist {
         Ok(written.writing(self.own.path().join(file))?)
     }
 
-    /// Puts a file that was written in the folder of parts in its place.
+    /// Moves a file that was written in the folder of parts to its place.
     pub(crate) fn rename(&self, part: &Path, file: &Path) -> Result<(), BuildError> {
         let renamed = self.own.rename(part, file);
         Ok(renamed.writing(self.own.path().join(file))?)
     }
 
-    /// Removes a file of an earlier build, and the folders that it leaves empty.
+    /// Removes a file of an earlier build, and the folders that become empty.
     pub(crate) fn remove(&self, file: &Path) -> Result<(), BuildError> {
         let removed = self.own.remove(file);
         Ok(removed.writing(self.own.path().join(file))?)
     }
 
-    /// Empties the folder of parts of what a killed build left, and returns it.
+    /// Removes what a killed build left in the folder of parts, and returns the folder.
     pub(crate) fn empty_parts(&self) -> Result<PathBuf, BuildError> {
         let parts = inside(PARTS);
         let emptied = self.own.remove_folder(&parts);

@@ -1,8 +1,8 @@
-//! Files by URI: paths of a recipe that name a file of a web server or an object store. They are
+//! Remote files: paths in a recipe that are URIs of a web server or an object store. They are
 //! listed, hashed, and copied for the job that reads them.
 //!
-//! A list request tells versions; the key is the hash of the contents, as for local files, and the
-//! copy is read by the job on whichever machine it runs.
+//! A list request reports the versions of the files. As with local files, the key uses the hash of
+//! the contents. The machine that runs the job reads the copy.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -17,26 +17,26 @@ use crate::BuildError;
 use crate::hashes::{Hashed, Stamp, hash_local};
 use crate::kept::inside;
 
-/// Most bytes of a file that is copied.
+/// Largest size of a file that is copied, bytes.
 const MOST_BYTES: u64 = 16 << 30;
-/// Most bytes of a recipe or a table.
+/// Largest size of a recipe or a table, bytes.
 const MOST_TEXT_BYTES: u64 = 64 << 20;
 
-/// The folder of copies of files elsewhere, in that of what is kept.
+/// Name of the folder for copies of remote files, in the folder of stored data.
 const COPIES: &str = "elsewhere";
 
-/// Files elsewhere, and their copies by content.
+/// Remote files and their copies, by content.
 #[derive(Debug)]
 pub(crate) struct Elsewhere {
-    /// Where the recipe is, whose server it may name.
+    /// Location of the recipe. The recipe may name files on the same server.
     origin: Option<Location>,
     storage: OnceLock<Storage>,
-    /// Stamps of files that were listed.
+    /// Stamps of the files that were listed.
     listed: Mutex<BTreeMap<PathBuf, Stamp>>,
     copies: Copies,
 }
 
-/// Where copies are kept.
+/// Where copies are stored.
 #[derive(Debug)]
 enum Copies {
     /// The folder of the results.
@@ -44,26 +44,26 @@ enum Copies {
     Temporary(OnceLock<TempDir>),
 }
 
-/// Returns the location of a path that is a URI.
+/// Returns the location of a path that is a remote URI; `None` for a local path.
 pub(crate) fn elsewhere(path: &Path) -> Result<Option<Location>, StorageError> {
     let location = Location::parse(path.as_os_str())?;
     Ok(location.local().is_none().then_some(location))
 }
 
-/// Whether a path is a URI.
+/// Returns whether a path is a remote URI.
 pub(crate) fn is_elsewhere(path: &Path) -> bool {
     !matches!(elsewhere(path), Ok(None))
 }
 
-/// Returns a path as a recipe in `folder` means it: a URI stays, another path is relative to the
-/// folder, which may be a URI.
+/// Resolves a path in a recipe that lies in `folder`. A URI stays unchanged. Any other path is
+/// relative to the folder, which may be a URI.
 pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
     match (is_elsewhere(path), is_elsewhere(folder), folder.to_str()) {
         (true, ..) => path.to_owned(),
         (false, true, Some(folder)) if path.is_relative() => {
             below(folder, &path.to_string_lossy()).into()
         }
-        // `file://` is a path of this machine, too.
+        // `file://` is also a local path.
         _ => match Location::parse(path.as_os_str()) {
             Ok(location) => folder.join(location.local().unwrap_or(path)),
             Err(_) => folder.join(path),
@@ -71,8 +71,8 @@ pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
     }
 }
 
-/// Returns the URI of a path in a folder elsewhere, in which `..` leads to the folder above, up to
-/// the bucket or host.
+/// Returns the URI of a path in a remote folder. In it, `..` leads to the folder above, but not
+/// above the bucket or host.
 fn below(folder: &str, path: &str) -> String {
     let mut folder = folder.trim_end_matches('/').to_owned();
     let mut path = path;
@@ -94,7 +94,7 @@ fn below(folder: &str, path: &str) -> String {
     }
 }
 
-/// Returns the folder of a path or of a URI, without its query.
+/// Returns the folder that contains a path or a URI, without the URI's query.
 pub(crate) fn folder_of(path: &Path) -> PathBuf {
     if let (Ok(Some(_)), Some(text)) = (elsewhere(path), path.to_str()) {
         let text = text.split('?').next().unwrap_or(text);
@@ -107,13 +107,13 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
 }
 
 impl Elsewhere {
-    /// With copies in the folder of the results, which [`Self::forget`] removes; `origin` is where
-    /// the recipe is.
+    /// Stores copies in the folder of the results until [`Self::forget`] removes them. `origin` is
+    /// the location of the recipe.
     pub(crate) fn with_copies(output: OwnFolder, origin: Option<Location>) -> Self {
         Self::new(Copies::Folder(output), origin)
     }
 
-    /// With copies that go with this value.
+    /// Stores copies until this value is dropped.
     pub(crate) fn temporary(origin: Option<Location>) -> Self {
         Self::new(Copies::Temporary(OnceLock::new()), origin)
     }
@@ -122,7 +122,8 @@ impl Elsewhere {
         Self { origin, storage: OnceLock::new(), listed: Mutex::default(), copies }
     }
 
-    /// Lists the files of a folder elsewhere by glob: their URIs, and their paths in the folder.
+    /// Lists the files of a remote folder that match a glob: their URIs, and their paths in the
+    /// folder.
     pub(crate) fn list(
         &self,
         folder: &Location,
@@ -141,7 +142,7 @@ impl Elsewhere {
         Ok(found.collect())
     }
 
-    /// Returns the stamp of a file: as it was listed, else by a request.
+    /// Returns the stamp of a file, from a listing if it was listed, else by a request.
     pub(crate) fn stamp(&self, path: &Path, location: &Location) -> Result<Stamp, StorageError> {
         if let Some(stamp) = self.listed().get(path) {
             return Ok(*stamp);
@@ -160,8 +161,8 @@ impl Elsewhere {
         Ok(Hashed { blake3, stamp })
     }
 
-    /// Returns a copy of the contents with a hash, under the file's own name. One that is there is
-    /// used if it has the hash.
+    /// Returns a copy of the contents with this hash, under the file's own name. An existing copy
+    /// is used if it has the hash.
     pub(crate) fn copy(&self, location: &Location, blake3: &str) -> Result<PathBuf, BuildError> {
         let name = named(location)?;
         let copies = self.copies()?;
@@ -179,13 +180,13 @@ impl Elsewhere {
         Ok(copy)
     }
 
-    /// Reads a text.
+    /// Reads a text file.
     pub(crate) fn text(&self, location: &Location) -> Result<String, BuildError> {
         let bytes = self.storage()?.read(location, MOST_TEXT_BYTES)?;
         String::from_utf8(bytes).map_err(|_| BuildError::at(location, "it is not UTF-8 text"))
     }
 
-    /// Removes the copies.
+    /// Removes all copies.
     pub(crate) fn forget(&self) -> Result<(), BuildError> {
         match &self.copies {
             Copies::Folder(own) => {
@@ -196,8 +197,8 @@ impl Elsewhere {
         }
     }
 
-    /// Downloads a file. Returns its hash and its copy. Others may not read it: the store may be
-    /// private.
+    /// Downloads a file. Returns its hash and its copy. Other users cannot read the copy, because
+    /// the store may be private.
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, named(location)?);
         let folder = copies.own.path().join(&copies.inside);
@@ -216,8 +217,9 @@ impl Elsewhere {
         Ok((blake3, copy))
     }
 
-    /// What a recipe names is read under the rule for files: no address of this machine or network
-    /// but that of the recipe's own server.
+    /// Returns the storage for files that a recipe names. They are read under the rules for
+    /// untrusted files: no address of this machine or its network is allowed, except that of the
+    /// recipe's own server.
     fn storage(&self) -> Result<&Storage, StorageError> {
         if let Some(storage) = self.storage.get() {
             return Ok(storage);
@@ -253,18 +255,19 @@ impl Elsewhere {
     }
 }
 
-/// The folder of copies: a folder in which nothing is followed, and the path in it.
+/// The folder of copies: a folder in which no link is followed, and the path inside it.
 struct CopiesIn {
     own: OwnFolder,
     inside: PathBuf,
 }
 
-/// Where a recipe is, if it is elsewhere.
+/// Returns the location of a recipe if it is remote.
 pub(crate) fn origin(recipe: &Path) -> Result<Option<Location>, StorageError> {
     elsewhere(recipe)
 }
 
-/// The file's name, which its copy has too: readers and provenance depend on it.
+/// Returns the name of the file. Its copy has the same name, because readers and provenance depend
+/// on it.
 fn named(location: &Location) -> Result<String, BuildError> {
     location
         .file_name()

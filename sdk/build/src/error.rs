@@ -3,15 +3,15 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
-/// An error that stops a build. Nothing that was there is lost, and what was fitted is kept for the
-/// next build.
+/// Error that stops a build. No existing file is lost, and what was fitted is stored for the next
+/// build.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// The recipe is not TOML, or not a recipe: what is wrong, and where.
+    /// The recipe is not TOML, or not a valid recipe. The text says what is wrong, and where.
     #[error("{0}")]
     Recipe(String),
-    /// The recipe cannot be carried out.
+    /// The recipe cannot be executed.
     #[error("{place}: {problem}")]
     At {
         /// The part of the recipe, the texture, or the file.
@@ -22,19 +22,19 @@ pub enum BuildError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] htex_files::FileError),
-    /// A file elsewhere cannot be read or written.
+    /// A remote file cannot be read or written.
     #[error(transparent)]
     Storage(#[from] htex_storage::StorageError),
     /// Another build uses the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked { folder: PathBuf },
-    /// The library would lose textures, and the build keeps all. Nothing was changed.
+    /// The library would lose textures, and the options forbid this. Nothing was changed.
     #[error(
         "the library would lose {} textures ({}); bring back their recordings, or allow removals",
         .textures.len(), crate::named_briefly(.textures)
     )]
     Removes { textures: Vec<String> },
-    /// The result of a job is damaged: what is wrong with it.
+    /// The result of a job is damaged. The text says how.
     #[error("the result of a job is damaged ({0}); make it again")]
     Damaged(String),
     /// The build was stopped.
@@ -43,7 +43,7 @@ pub enum BuildError {
 }
 
 impl BuildError {
-    /// Refuses to remove textures; none is no error.
+    /// Returns an error if there are textures to be removed.
     pub(crate) fn refuse_removals(textures: Vec<String>) -> Result<(), Self> {
         if textures.is_empty() { Ok(()) } else { Err(Self::Removes { textures }) }
     }
@@ -65,9 +65,9 @@ impl From<htex_files::toml::TomlError> for BuildError {
     }
 }
 
-/// Adds to an error where it is.
+/// Adds the place to an error.
 pub(crate) trait AtPlace<T> {
-    /// In this part of the recipe, texture or file.
+    /// Adds the part of the recipe, the texture or the file to the error.
     fn at(self, place: impl Display) -> Result<T, BuildError>;
 }
 

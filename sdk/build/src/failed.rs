@@ -1,6 +1,6 @@
-//! The report of a build that failed: the error, beside what an earlier build left in the folder.
-//! Who reads reports alone, such as a page of continuous integration, sees it, and the next build
-//! still knows which files are its own.
+//! The report of a failed build: the error, together with what an earlier build left in the folder.
+//! A program that only reads reports, such as a page of continuous integration, then sees the
+//! error. The next build still knows which files are its own.
 
 use std::path::Path;
 
@@ -11,10 +11,11 @@ use crate::kept::{KEPT, Kept};
 use crate::report::{LibraryReport, REPORT, Report};
 
 /// Writes an error, line by line, into the report of a folder in which a build has begun. Returns
-/// whether it was written: it is not where none has begun, or while another one uses the folder.
+/// whether it was written. It is not written if no build has begun there, or while another build
+/// uses the folder.
 ///
 /// # Errors
-/// When the report cannot be written.
+/// If the report cannot be written.
 pub fn report_failure(output: &Path, program: &str, error: &[String]) -> Result<bool, BuildError> {
     let dist = Dist::new(output);
     let is_folder = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_dir());
@@ -29,7 +30,7 @@ pub fn report_failure(output: &Path, program: &str, error: &[String]) -> Result<
     Ok(true)
 }
 
-/// The same, by who holds the folder's lock.
+/// Writes the report like [`report_failure`]. The caller must hold the folder's lock.
 pub(crate) fn put_failure(dist: &Dist, program: &str, error: &[String]) -> Result<(), BuildError> {
     let report = Report {
         report: REPORT.to_owned(),
@@ -40,7 +41,7 @@ pub(crate) fn put_failure(dist: &Dist, program: &str, error: &[String]) -> Resul
     put_report(dist, &report)
 }
 
-/// The report of a folder without a library.
+/// Returns the report of a folder without a library.
 fn of_nothing() -> Report {
     Report {
         report: String::new(),

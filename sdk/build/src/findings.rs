@@ -1,4 +1,4 @@
-//! Findings of recordings by code: of a texture, and of all textures of a build.
+//! Findings of recordings grouped by code, for one texture and for all textures of a build.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::report::{Status, TextureReport};
 
-/// Names of textures that a share lists.
+/// Number of texture names in a share.
 const NAMED: usize = 3;
-/// Codes that no recording of an asset has: the first two stop a fit, the last one stands for a
-/// reader's sentence.
+/// Codes that no recording of an asset can have. The first two stop a fit; the last one is used for
+/// a reader's sentence.
 const NOT_OF_ASSETS: [&str; 3] = ["RECORDING_UNREADABLE", "RECORDING_UNUSABLE", "RECORDING_NOTED"];
 
 /// The findings of one code in the recordings of a texture.
@@ -23,13 +23,14 @@ pub struct FindingReport {
     pub code: String,
     /// Severity.
     pub severity: Severity,
-    /// Recordings that have it.
+    /// Names of the recordings with this finding.
     pub recordings: Vec<String>,
-    /// What was found in the first of them.
+    /// Message for the first of these recordings.
     pub message: String,
 }
 
-/// Of the textures of a build that have an asset, those with a finding of one code.
+/// Counts the textures with a finding of one code, among the textures of a build that have an
+/// asset.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FindingShare {
     /// Severity.
@@ -38,11 +39,11 @@ pub struct FindingShare {
     pub textures: usize,
     /// Number of them that are in the library.
     pub in_library: usize,
-    /// Names of the first three of them.
+    /// Names of the first three of these textures.
     pub first: Vec<String>,
 }
 
-/// Gathers the findings of a texture by code, in the order of their first occurrence.
+/// Groups the findings of a texture by code, in the order of their first occurrence.
 pub(crate) fn by_code(findings: &[RecordingFinding]) -> Vec<FindingReport> {
     let mut reports: Vec<FindingReport> = Vec::new();
     for RecordingFinding { recording, finding } in findings {
@@ -60,7 +61,7 @@ pub(crate) fn by_code(findings: &[RecordingFinding]) -> Vec<FindingReport> {
     reports
 }
 
-/// Counts, by code, the textures that have a finding.
+/// Counts the textures with a finding, by code.
 pub(crate) fn shares(textures: &[TextureReport]) -> BTreeMap<String, FindingShare> {
     let mut shares: BTreeMap<String, FindingShare> = BTreeMap::new();
     for texture in textures {
@@ -82,7 +83,8 @@ pub(crate) fn shares(textures: &[TextureReport]) -> BTreeMap<String, FindingShar
     shares
 }
 
-/// Returns the problem of a code that the recordings of no asset can have, if it is one.
+/// Returns what is wrong with a code that no recording of an asset can have; `None` if the code is
+/// possible.
 pub(crate) fn unknown_code(code: &str) -> Option<String> {
     let all = RULES.iter().map(|rule| rule.code);
     let known: Vec<&str> = all.filter(|known| !NOT_OF_ASSETS.contains(known)).collect();

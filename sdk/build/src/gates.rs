@@ -1,6 +1,7 @@
-//! Gates: what an asset must hold to be in the library.
+//! Gates: the requirements that an asset must meet to be in the library.
 //!
-//! They are judged when the results are put together, so that changing one fits nothing again.
+//! They are judged when the results are assembled, so that changing a gate does not fit anything
+//! again.
 
 use crate::recipe::{Gates, ModelGate};
 use crate::report::{AssetReport, Missed};
@@ -41,7 +42,7 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
     missed
 }
 
-/// The findings of the recordings that the gate denies.
+/// Returns the findings of the recordings that the gate forbids.
 fn denied(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
     let codes = gates.deny.as_deref().unwrap_or_default();
     let found = asset.findings.iter().filter(|f| codes.contains(&f.code));
@@ -56,7 +57,7 @@ fn denied(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
     found.map(|f| Missed::new("deny", reason(f))).collect()
 }
 
-/// A repeatability that is above the gate, or not known.
+/// Returns the problem if the repeatability is above the gate or not known.
 fn repeatability(most: f64, asset: &AssetReport) -> Option<Missed> {
     let reason = match asset.repeatability_rms_db {
         None => {
@@ -72,7 +73,7 @@ fn repeatability(most: f64, asset: &AssetReport) -> Option<Missed> {
     Some(Missed::new("max_repeatability_db", reason))
 }
 
-/// The models whose error in nine bands is above the gate.
+/// Returns the models whose nine-band error is above the gate.
 fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
     let errors = asset.band_error_rms_db.iter();
     let errors: Vec<(&str, f64)> = errors.map(|(id, error)| (&id[..], *error)).collect();
@@ -85,7 +86,7 @@ fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
     by_model(gate, &errors, "max_band_error_db", &above)
 }
 
-/// The models of which more of the difference from the recording is felt than the gate allows.
+/// Returns the models whose difference from the recording is felt more than the gate allows.
 fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
     let felt = asset.felt.iter();
     let errors = felt.map(|(id, felt)| {
@@ -102,8 +103,9 @@ fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
     by_model(gate, &errors, "max_felt_error_db", &above)
 }
 
-/// The models whose error is above the gate, or that the gate names and the asset lacks. `above`
-/// says what is wrong with a model, its error and the largest one that is allowed.
+/// Returns the models whose error is above the gate, and the models that the gate names but the
+/// asset lacks. `above` describes the problem from a model, its error and the largest allowed
+/// error.
 fn by_model(
     gate: &ModelGate,
     errors: &[(&str, f64)],
@@ -131,7 +133,7 @@ fn by_model(
     }
 }
 
-/// Whether a model's id has this name: the whole id, or its last part.
+/// Returns whether a name refers to a model's id: the whole id, or its last part.
 fn is_named(id: &str, name: &str) -> bool {
     let short = id.rsplit('.').next().unwrap_or(id);
     id == name || short.eq_ignore_ascii_case(name)
@@ -157,7 +159,7 @@ pub(crate) fn check_gates(gates: &Gates, models: &[&str]) -> Result<(), String> 
     gates.max_repeatability_db.map_or(Ok(()), |most| check_number("max_repeatability_db", most))
 }
 
-/// The numbers of a gate, by model if it says so.
+/// Returns the numbers of a gate, each with the model to which it is limited, if any.
 fn by_name(gate: &ModelGate) -> Vec<(Option<&str>, f64)> {
     match gate {
         ModelGate::All(most) => vec![(None, *most)],

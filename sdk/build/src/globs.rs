@@ -1,8 +1,8 @@
-//! Files by glob: of this machine, and elsewhere.
+//! Finds files by glob, local and remote.
 //!
-//! A glob comes from a recipe, which may be anybody's: its length and its braces are bounded, since
-//! the library that compiles them recurses, and so is the number of entries of folders that are
-//! looked at.
+//! A glob comes from a recipe, which may come from anyone. So its length and its braces are
+//! limited, because the library that compiles globs is recursive. The number of folder entries that
+//! are examined is also limited.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -17,19 +17,19 @@ use crate::BuildError;
 use crate::elsewhere::joined;
 use crate::error::AtPlace;
 
-/// Characters of globs.
+/// Characters that make a text a glob.
 const GLOB: [char; 4] = ['*', '?', '[', '{'];
-/// Most bytes of a glob.
+/// Longest glob, bytes.
 const MOST_BYTES: usize = 4096;
-/// Most alternatives of a glob, and most within each other.
+/// Largest number of alternatives in a glob, and their largest nesting depth.
 const MOST_BRACES: usize = 64;
 const MOST_NESTED: usize = 8;
-/// Most globs of a list.
+/// Largest number of globs in a list.
 const MOST_GLOBS: usize = 1024;
-/// Most entries of folders that are looked at for one glob.
+/// Largest number of folder entries that are examined for one glob.
 const MOST_ENTRIES: usize = 2_000_000;
 
-/// Compiles globs; `*` does not cross folders, `**` does.
+/// Compiles globs. `*` does not match across folders, `**` does.
 pub(crate) fn glob_set<S: AsRef<str>>(globs: &[S], place: &str) -> Result<GlobSet, BuildError> {
     if globs.len() > MOST_GLOBS {
         let problem = format!("it has {} globs and the most is {MOST_GLOBS}", globs.len());
@@ -69,14 +69,15 @@ fn check(glob: &str) -> Result<(), String> {
     }
 }
 
-/// Whether a text is a glob. The `?` of a URL begins its query, and a host may be in brackets.
+/// Returns whether a text is a glob. The `?` of a URL starts its query, and a host may be in
+/// brackets, so both are ignored.
 pub(crate) fn is_glob(text: &str) -> bool {
     let path = path_of(text);
     text[path].contains(GLOB)
 }
 
-/// The part of a text that is a path: of a URI without its scheme and host, of a URL without its
-/// query.
+/// Returns the range of a text that is a path: for a URI without scheme and host, for a URL also
+/// without the query.
 fn path_of(text: &str) -> Range<usize> {
     let Some(host) = text.find("://").map(|at| at + 3) else {
         return 0..text.len();
@@ -90,8 +91,8 @@ fn path_of(text: &str) -> Range<usize> {
     start..end
 }
 
-/// Splits a path or a URI before the first part that is a glob, else before the file's name: a
-/// folder, and a glob in it.
+/// Splits a path or a URI into a folder and a glob in that folder. It is split before the first
+/// part with a glob, or else before the file's name.
 pub(crate) fn split(text: &str) -> (&str, &str) {
     let path = path_of(text);
     let first = text[path.clone()].find(GLOB).map_or(path.end, |at| path.start + at);
@@ -102,15 +103,15 @@ pub(crate) fn split(text: &str) -> (&str, &str) {
     }
 }
 
-/// Returns the files of this machine that match a glob of a recipe in `folder`: relative to the
-/// folder as the glob is, else absolute. Files in `output` are none of them.
+/// Returns the local files that match a glob of a recipe in `folder`. They are relative to the
+/// folder if the glob is, else absolute. Files in `output` are left out.
 pub(crate) fn files(
     glob: &str,
     place: &str,
     folder: &Path,
     output: &Path,
 ) -> Result<Vec<PathBuf>, BuildError> {
-    // `file://` is a path of this machine, too, and its escapes are resolved.
+    // `file://` is also a local path, whose escapes must be resolved.
     let location = Location::parse(glob.as_ref())?;
     let path = location.local().map(Path::to_string_lossy).unwrap_or(glob.into());
     let (base, pattern) = split(&path);
@@ -139,7 +140,7 @@ pub(crate) fn files(
             return Err(BuildError::at(place, problem));
         }
         let entry = match entry {
-            // A link that leads nowhere, or to a folder above it, has no recordings.
+            // A link that leads nowhere, or to a folder above it, contains no recordings.
             Err(error) if error.path().is_some_and(Path::is_symlink) => continue,
             Err(error) => {
                 let file = error.path().unwrap_or(folder).to_owned();
@@ -155,7 +156,7 @@ pub(crate) fn files(
     Ok(found)
 }
 
-/// A path without `.`, and without what `..` takes back.
+/// Returns a path without `.`, and without the parts that `..` takes back.
 fn normalised(path: &Path) -> PathBuf {
     let mut parts: Vec<Component<'_>> = Vec::new();
     for part in path.components() {
@@ -169,7 +170,7 @@ fn normalised(path: &Path) -> PathBuf {
     parts.iter().collect()
 }
 
-/// Of the paths in a folder elsewhere, those that match a glob.
+/// Returns those paths in a remote folder that match a glob.
 pub(crate) fn matching(
     paths: Vec<(PathBuf, PathBuf)>,
     pattern: &str,

@@ -1,4 +1,5 @@
-//! Hashes of files, kept from build to build as long as size and times of a file stay.
+//! Hashes of files. A hash is stored from build to build as long as the file's size and times stay
+//! the same.
 
 use std::collections::BTreeMap;
 use std::fs::Metadata;
@@ -14,31 +15,31 @@ use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere};
 use crate::kept::Kept;
 
-/// A file that changed this shortly before it was hashed may change again without a change of its
-/// time, since file systems keep times in steps of up to 2 s (FAT).
+/// A file that changed this shortly before it was hashed may change again without a new time,
+/// because file systems store times in steps of up to 2 s (FAT).
 const RACY: Duration = Duration::from_secs(2);
 
-/// Most bytes of the hashes of a build: a few million files.
+/// Largest size of a build's stored hashes, bytes: a few million files.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// Most bytes of a file that a recipe names: those of the largest recording that is read.
+/// Largest size of a file that a recipe names, bytes: the largest recording that is read.
 const MOST_FILE_BYTES: u64 = 4 << 30;
 
-/// Size and times of a file, by which a change is noticed without reading it.
+/// Size and times of a file, by which a change is noticed without reading the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     pub bytes: u64,
-    /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere that
+    /// Time of the last change of the contents, nanoseconds since 1970; 0 for a remote file that
     /// has a version.
     modified_ns: u64,
-    /// Number of the file on its file system; 0 where there is none. The version of a file
-    /// elsewhere.
+    /// Number of the file on its file system, or 0 if it has none. For a remote file, its version.
     number: u64,
 }
 
 impl Stamp {
-    /// Returns the stamp of a file elsewhere, whose version is its entity tag, else the time of its
-    /// last change. Without both, any other time is another version.
+    /// Returns the stamp of a remote file. Its version is its entity tag, or else the time of its
+    /// last change. Without both, the time lies in the far future, so that the file's hash is never
+    /// stored for the next build.
     pub(crate) fn elsewhere(bytes: u64, etag: Option<&str>, modified: Option<SystemTime>) -> Self {
         let version = |etag: &str| {
             let hash = blake3::hash(etag.as_bytes());
@@ -58,10 +59,10 @@ impl Stamp {
         }
     }
 
-    /// Returns the stamp of a file of this machine.
+    /// Returns the stamp of a local file.
     ///
     /// # Errors
-    /// Those of the system; a file without a time of change.
+    /// Errors of the system, and a file without a time of change.
     pub fn of(file: &Path) -> io::Result<Self> {
         Self::of_metadata(&file.metadata()?)
     }
@@ -76,7 +77,7 @@ impl Stamp {
     }
 }
 
-/// Until the year 2554.
+/// Returns nanoseconds as `u64`, which suffices until the year 2554.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
@@ -91,12 +92,12 @@ fn number(_: &Metadata) -> u64 {
     0
 }
 
-/// A file's content hash, and its stamp when it was hashed.
+/// Hash of a file's contents, and the file's stamp when it was hashed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hashed {
     /// BLAKE3 of the contents, hexadecimal.
     pub blake3: String,
-    /// Size and times.
+    /// Size and times of the file.
     pub stamp: Stamp,
 }
 
@@ -105,42 +106,42 @@ pub struct Hashed {
 pub(crate) struct Hashes {
     known: BTreeMap<PathBuf, Hashed>,
     elsewhere: Arc<Elsewhere>,
-    /// Hashes of this build's files.
+    /// Hashes of the files in this build.
     used: Mutex<BTreeMap<PathBuf, Hashed>>,
 }
 
 impl Hashes {
-    /// Reads the hashes that an earlier build kept; a file that is absent or damaged holds none.
+    /// Reads the hashes that an earlier build stored. A missing or damaged file holds none.
     pub(crate) fn open(kept: &Kept, name: &str, elsewhere: Arc<Elsewhere>) -> Self {
         let known =
             kept.get(name, MOST_BYTES).and_then(|bytes| serde_json::from_slice(&bytes).ok());
         Self { known: known.unwrap_or_default(), elsewhere, used: Mutex::default() }
     }
 
-    /// Without hashes of an earlier build.
+    /// Starts without hashes of an earlier build.
     pub(crate) fn new(elsewhere: Arc<Elsewhere>) -> Self {
         Self { known: BTreeMap::new(), elsewhere, used: Mutex::default() }
     }
 
-    /// Checks that a file is there, and a regular one, without reading it.
+    /// Checks that a file exists and is a regular file, without reading it.
     pub(crate) fn check(&self, path: &Path) -> Result<(), BuildError> {
         self.stamp(path).map(drop)
     }
 
-    /// Whether the hash of a file is known without reading it.
+    /// Returns whether the hash of a file is known without reading it.
     pub(crate) fn is_known(&self, path: &Path) -> bool {
         let known = self.known.get(path).map(|hashed| hashed.stamp);
         known.is_some() && known == self.stamp(path).ok()
     }
 
-    /// Adds hashes of files, which hold as long as their stamps do.
+    /// Adds hashes of files. They are valid as long as the stamps of the files stay the same.
     pub(crate) fn add(&self, hashed: impl IntoIterator<Item = (PathBuf, Hashed)>) {
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         used.extend(self.known.clone());
         used.extend(hashed);
     }
 
-    /// Returns the hash of a file; reads it only if it changed since it was hashed last.
+    /// Returns the hash of a file. Reads the file only if it has changed since it was last hashed.
     pub(crate) fn of(&self, path: &Path) -> Result<Hashed, BuildError> {
         let used = |hashes: &Mutex<BTreeMap<PathBuf, Hashed>>| {
             let used = hashes.lock().unwrap_or_else(PoisonError::into_inner);
@@ -163,7 +164,7 @@ impl Hashes {
         match elsewhere(path)? {
             Some(location) => Ok(self.elsewhere.stamp(path, &location)?),
             None => {
-                // What a recipe names may be a pipe or a device.
+                // A recipe may name a pipe or a device, which must not be read.
                 check_regular_at(path).reading(path)?;
                 let stamp = Stamp::of(path).reading(path)?;
                 if stamp.bytes > MOST_FILE_BYTES {
@@ -174,8 +175,8 @@ impl Hashes {
         }
     }
 
-    /// Returns the hashes to keep for the next build as JSON: those of files that have not just
-    /// changed. A URL with a query, which may hold a signature, is not kept.
+    /// Returns the hashes to store for the next build, as JSON. Files that have changed just now
+    /// are left out. URLs with a query are left out because the query may contain a signature.
     pub(crate) fn to_keep(&self) -> Vec<u8> {
         let used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -189,7 +190,7 @@ impl Hashes {
     }
 }
 
-/// Hashes a file of this machine or elsewhere.
+/// Hashes a local or remote file.
 pub(crate) fn hash(path: &Path, copies: &Elsewhere) -> Result<Hashed, BuildError> {
     match elsewhere(path)? {
         Some(location) => copies.hash(path, &location),
@@ -197,7 +198,7 @@ pub(crate) fn hash(path: &Path, copies: &Elsewhere) -> Result<Hashed, BuildError
     }
 }
 
-/// Hashes a file that does not change meanwhile.
+/// Hashes a file. It must not change in the meantime.
 pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
     let mut file = open_regular(path)?;
     let before = Stamp::of_metadata(&file.metadata()?)?;

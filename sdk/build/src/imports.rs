@@ -1,6 +1,6 @@
-//! Files of other haptic formats in a recipe, by their extension: signals, which are fitted as
-//! recordings are once full scale, speed and force are given, and files that state a texture, which
-//! become assets as they are. They take the settings of `htex import`, under the keys of recipes.
+//! Files of other haptic formats in a recipe, recognised by their extension. Signals are fitted
+//! like recordings once full scale, speed and force are given. Files that state a texture become
+//! assets unchanged. Both take the settings of `htex import`, under the keys of recipes.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::job::shown_path;
 use crate::plan::{PlannedRecording, PlannedTexture};
 use crate::recipe::Gates;
 
-/// What the files of a texture are.
+/// What kind of files a texture is made from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FileKind {
@@ -30,8 +30,8 @@ pub enum FileKind {
     Asset,
 }
 
-/// Keys of recipes, and the settings of imports that they are. A key that is not here is a setting
-/// of no import.
+/// Keys of recipes, and the import settings that they stand for. A key that is not listed here is
+/// not a setting of any import.
 const KEYS: [(&str, &str); 11] = [
     ("full_scale", "full_scale"),
     ("pitch_mm", "pitch"),
@@ -45,10 +45,10 @@ const KEYS: [(&str, &str); 11] = [
     ("keep_reference", "keep_reference"),
     ("grid", "grid"),
 ];
-/// Gates of every texture; the others judge recordings and fits.
+/// Gates that apply to every texture. All other gates judge recordings and fits.
 const GATES_OF_ALL: [&str; 2] = ["license", "max_bytes"];
 
-/// The format of a file that is imported; `None` for a recording.
+/// Returns the format of a file that is imported; `None` for a recording.
 pub(crate) fn format_of(file: &Path) -> Option<&'static Format> {
     Format::of_file(&slashed(&shown_path(file))).ok()
 }
@@ -71,9 +71,9 @@ impl FileKind {
     }
 }
 
-/// Sets what the files of a texture are, checks that they go together and that its settings are
-/// theirs. A licence is asked for unless the recipe says that none has to be stated: files of
-/// others have one, which seldom stands in them.
+/// Determines the kind of a texture's files, and checks that they go together and that the settings
+/// apply to them. A licence is required unless the recipe says that none must be stated:
+/// third-party files have a licence, but seldom state it.
 pub(crate) fn check_files(texture: &mut PlannedTexture) -> Result<(), BuildError> {
     texture.kind = kind(texture).at(&texture.name)?;
     check_settings(texture).at(&texture.name)?;
@@ -118,7 +118,7 @@ fn check_settings(texture: &PlannedTexture) -> Result<(), String> {
     Ok(())
 }
 
-/// Refuses settings of signals of what is none.
+/// Refuses settings of signals for a file that is not a signal.
 fn check_recording(signal: &SignalSettings, recording: &PlannedRecording) -> Result<(), String> {
     match keys(signal, "").first() {
         None => Ok(()),
@@ -130,7 +130,7 @@ fn check_recording(signal: &SignalSettings, recording: &PlannedRecording) -> Res
     }
 }
 
-/// Refuses settings that the import of a file does not take, and asks for those that it needs.
+/// Refuses settings that the import of a file does not take, and requires those that it needs.
 fn check_import(
     texture: &PlannedTexture,
     recording: &PlannedRecording,
@@ -162,7 +162,7 @@ fn check_import(
     physical.check(format).map_err(|error| of_file(by_keys(&error)))
 }
 
-/// Whether the import of a format takes a key of recipes.
+/// Returns whether the import of a format takes a key of recipes.
 fn takes(format: &Format, key: &str) -> bool {
     let is_fitted = FileKind::of(Some(format)) == FileKind::Signal;
     if let Some(gate) = key.strip_prefix("gates.") {
@@ -175,10 +175,10 @@ fn takes(format: &Format, key: &str) -> bool {
     setting.is_some_and(|(_, setting)| format.check_import([*setting]).is_ok())
 }
 
-/// The keys of a recipe that are given for a file, but for metadata.
+/// Returns the keys of a recipe that are given for a file, except those for metadata.
 fn given(texture: &PlannedTexture, recording: &PlannedRecording) -> Vec<String> {
     let (settings, gates) = (&texture.settings, &texture.gates);
-    // A gate that its `fit` has, too.
+    // `strict` is both a gate and a fit setting. It is listed among the gates.
     let fit = htex_author::settings::FitSettings { strict: None, ..settings.fit.clone() };
     let mut given = [
         keys(&settings.reading, ""),
@@ -199,7 +199,7 @@ fn given(texture: &PlannedTexture, recording: &PlannedRecording) -> Vec<String> 
     given
 }
 
-/// The keys of settings that are there.
+/// Returns the keys of the settings that are present.
 fn keys<T: Serialize>(settings: &T, before: &str) -> Vec<String> {
     let Ok(Value::Object(entries)) = serde_json::to_value(settings) else {
         return Vec::new();
@@ -208,7 +208,7 @@ fn keys<T: Serialize>(settings: &T, before: &str) -> Vec<String> {
     there.map(|(key, _)| format!("{before}{key}")).collect()
 }
 
-/// An import that is refused, with the keys of recipes.
+/// Returns the error of a refused import, in terms of the keys of recipes.
 pub(crate) fn refused(error: ImportError) -> Box<dyn std::error::Error> {
     match error {
         ImportError::Exchange(error @ ExchangeError::Missing { .. }) => by_keys(&error).into(),
@@ -216,7 +216,7 @@ pub(crate) fn refused(error: ImportError) -> Box<dyn std::error::Error> {
     }
 }
 
-/// An error of an import, with the keys of recipes.
+/// Returns the error of an import as text, in terms of the keys of recipes.
 fn by_keys(error: &ExchangeError) -> String {
     let key = |setting: &str| {
         let known = KEYS.iter().find(|(_, own)| *own == setting);
@@ -244,7 +244,7 @@ fn by_keys(error: &ExchangeError) -> String {
 mod tests {
     use super::*;
 
-    /// Every setting that an import takes has a key, under which a recipe gives it.
+    /// Every setting that an import takes has a key with which a recipe can give it.
     #[test]
     fn each_setting_of_imports_has_a_key() {
         let formats = htex_exchange::FORMATS.iter();
@@ -265,7 +265,7 @@ mod tests {
         assert_eq!(kind("a/Models_Felt.xml"), FileKind::Asset);
         assert_eq!(kind("a.b/hum.HAPTIC"), FileKind::Signal);
         assert_eq!(kind("https://example.org/hum.hjif?key=a.xml"), FileKind::Signal);
-        // Formats that go out alone, and names without an extension.
+        // Formats that can only be exported, and names without an extension.
         for file in ["hum.wav", "hum.json", "a.xml/hum", "hum"] {
             assert_eq!(kind(file), FileKind::Recording, "{file}");
         }

@@ -1,4 +1,4 @@
-//! The recordings of a rule, each with the fields that templates may name.
+//! Finds the recordings of a rule, each with the fields that templates may use.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
@@ -14,35 +14,35 @@ use crate::globs;
 use crate::recipe::Textures;
 use crate::template::Fields;
 
-/// Most recordings of a recipe. A texture takes about 4.7 kB of memory until it is put together,
-/// and more with long names: these take less than 512 MiB.
+/// Largest number of recordings in a recipe. A texture takes about 4.7 kB of memory until it is
+/// assembled, or more with long names; this number of textures takes less than 512 MiB.
 pub(crate) const MOST_RECORDINGS: usize = 50_000;
-/// Most bytes of a table.
+/// Largest size of a table, bytes.
 const MOST_TABLE_BYTES: u64 = 64 << 20;
 
-/// A recording, as a rule finds it.
+/// A recording found by a rule.
 #[derive(Debug)]
 pub(crate) struct Input {
-    /// The file, relative to the recipe's folder where it lies inside it, or its URI.
+    /// The file, relative to the recipe's folder if it lies inside it, or its URI.
     pub(crate) file: PathBuf,
-    /// The path that fields and patterns see, with `/` between its parts: of a URI, the part in the
-    /// listed folder.
+    /// The path for fields and patterns, with `/` between its parts. For a URI, it is the part
+    /// inside the listed folder.
     path: String,
     /// Fields of templates.
     pub(crate) fields: Fields,
 }
 
-/// What becomes of a row of a table whose file is not there.
+/// What to do with a table row whose file does not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Missing {
-    /// It is an error.
+    /// Report an error.
     Error,
-    /// It is planned as any other, and its texture is left out when the file cannot be read.
+    /// Plan it like any other. Its texture is left out when the file cannot be read.
     LeftOut,
 }
 
-/// Returns the recordings of a rule, in the order of their paths; those of a table in the order of
-/// its rows.
+/// Returns the recordings of a rule in the order of their paths, or in the order of the rows for a
+/// table.
 pub(crate) fn inputs(
     rule: &Textures,
     place: &str,
@@ -69,7 +69,7 @@ pub(crate) fn inputs(
     inputs.map(|input| named_groups(input, pattern.as_ref(), place)).collect()
 }
 
-/// Returns the files that match globs, here and elsewhere, sorted by path.
+/// Returns the local and remote files that match globs, sorted by path.
 fn recordings(
     globs: &[String],
     place: &str,
@@ -109,8 +109,8 @@ pub(crate) fn too_many(place: &str) -> BuildError {
     BuildError::at(place, problem)
 }
 
-/// Returns the files elsewhere that match a glob: a URI, or a path relative to the folder of a
-/// recipe that lies elsewhere.
+/// Returns the remote files that match a glob. The glob is a URI, or a path relative to the folder
+/// of a remote recipe.
 fn globbed_elsewhere(
     glob: &str,
     place: &str,
@@ -191,12 +191,12 @@ fn tabulated(
     Ok(inputs)
 }
 
-/// A recording with the fields of its path.
+/// Returns a recording with the fields of its path.
 fn input(file: PathBuf) -> Input {
     Input { fields: fields(&file), path: slashed(&file), file }
 }
 
-/// A recording elsewhere, with the fields of its path in the listed folder.
+/// Returns a remote recording with the fields of its path in the listed folder.
 fn input_elsewhere(uri: PathBuf, inside: &Path) -> Input {
     let inside = match Location::parse(inside.as_os_str()) {
         Ok(location) if location.local().is_none() => location.file_name().map(PathBuf::from),
@@ -219,7 +219,7 @@ fn fields(file: &Path) -> Fields {
     fields.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
-/// Adds the named groups of a pattern.
+/// Adds the named groups of a pattern as fields.
 fn named_groups(
     mut input: Input,
     pattern: Option<&Regex>,

@@ -1,8 +1,9 @@
-//! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
+//! A job: the fit of one texture as data. Equal jobs give equal bytes on any machine.
 //!
-//! Models that are installed on a machine are not used, and no path or time is part of a key.
-//! Neither are a texture's name and its metadata but those that decide how it plays (`contact`,
-//! `law`): they are laid over what was fitted when it is put together ([`Job::named`]).
+//! Models that are installed on a machine are not used, and a key contains no paths or times. A key
+//! also does not contain the texture's name and metadata, except for the metadata that decides how
+//! the texture plays (`contact`, `law`). Name and metadata are applied to the fitted asset when the
+//! library is assembled ([`Job::named`]).
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -29,15 +30,15 @@ use crate::made::{Made, Outcome};
 use crate::plan::PlannedTexture;
 use crate::recipe::Gates;
 
-/// The meaning of jobs and of what is made of them. Another one makes everything again.
+/// Version of the meaning of jobs and their results. Changing it makes everything again.
 const JOB: &str = "htex-job/5";
 
-/// The plugins that a person and a recipe name, and where the recipe is.
+/// The plugins named by the user and by the recipe, and the location of the recipe.
 #[derive(Debug)]
 pub(crate) struct Named {
-    /// By a person: absolute paths.
+    /// Named by the user: absolute paths.
     by_person: Vec<PathBuf>,
-    /// By the recipe, and by no person.
+    /// Named by the recipe and not by the user.
     pub(crate) of_recipe: Vec<PathBuf>,
     /// The recipe's folder.
     pub(crate) folder: PathBuf,
@@ -46,7 +47,7 @@ pub(crate) struct Named {
 
 impl Named {
     /// # Errors
-    /// When a person names a URI, or a file that cannot be found.
+    /// If the user names a URI, or a file that cannot be found.
     pub(crate) fn new(
         by_person: &[PathBuf],
         of_recipe: Vec<PathBuf>,
@@ -71,55 +72,55 @@ impl Named {
     }
 }
 
-/// What makes one texture: a fit, or an import.
+/// What makes one texture: a fit or an import.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
     /// Kind and version of the job, and the program that fits.
     pub program: String,
     pub texture: String,
     pub recordings: Vec<JobRecording>,
-    /// What these files are.
+    /// What kind of files the recordings are.
     #[serde(default)]
     pub kind: FileKind,
-    /// What signals do not say.
+    /// Facts that signals do not state.
     #[serde(default)]
     pub signal: SignalSettings,
-    /// How they are read; files are in `files`.
+    /// How the recordings are read. The paths of files are in `files`.
     pub reading: ReadingSettings,
     pub fit: FitSettings,
     pub metadata: Metadata,
-    /// The setup's response.
+    /// The frequency response of the setup.
     pub response: Option<JobFile>,
     pub plugins: Vec<JobFile>,
-    /// How many of them, the first ones, a person named. They may be native libraries; the others
-    /// are WASM modules.
+    /// Number of plugins, counted from the first, that the user named. They may be native
+    /// libraries. All others are WASM modules.
     #[serde(default)]
     pub named: usize,
-    /// How many of them, the last ones, travel in the asset.
+    /// Number of plugins, counted from the last, that are embedded in the asset.
     pub embedded: usize,
-    /// Where the recipe is, if it is elsewhere: the one server of this machine or network that it
-    /// may name.
+    /// Location of the recipe, if it is remote. Of all servers on this machine or network, the
+    /// recipe may only name its own.
     #[serde(default)]
     pub origin: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// Its name in reports and messages: that of the file, with the folders that tell it from
-    /// another recording of the texture.
+    /// Its name in reports and messages: the file's name, with enough folders to tell it from the
+    /// other recordings of the texture.
     pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,
-    /// Speed, mm/s, if it is given.
+    /// Speed, mm/s, if given.
     pub speed_mm_s: Option<f64>,
-    /// Normal force, newtons, if it is given.
+    /// Normal force, newtons, if given.
     pub force_n: Option<f64>,
 }
 
 /// A file that a job reads.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobFile {
-    /// Where it is: a path, or a URI.
+    /// Where the file is: a path or a URI.
     pub path: PathBuf,
     #[serde(flatten)]
     pub hashed: Hashed,
@@ -135,7 +136,7 @@ impl JobFile {
         }
     }
 
-    /// Returns the path or URI as texts name it.
+    /// Returns the path or URI as it is shown in texts.
     fn shown(&self) -> String {
         match elsewhere(&self.path) {
             Ok(Some(location)) => location.to_string(),
@@ -143,7 +144,7 @@ impl JobFile {
         }
     }
 
-    /// Puts a copy in place of a file elsewhere.
+    /// Replaces a remote file by a local copy.
     fn copy_here(&mut self, copies: &Elsewhere) -> Result<(), BuildError> {
         let Some(location) = elsewhere(&self.path)? else {
             return Ok(());
@@ -156,7 +157,7 @@ impl JobFile {
 }
 
 impl Job {
-    /// Returns the job of a texture; hashes its files.
+    /// Returns the job of a texture. This hashes its files.
     pub(crate) fn new(
         texture: &PlannedTexture,
         named: &Named,
@@ -203,12 +204,12 @@ impl Job {
         })
     }
 
-    /// Returns the job, and its key, of a texture of which a recording or a tracker cannot be read.
-    /// It makes nothing, and no job that can be done has its key.
+    /// Returns the job, and its key, of a texture with a recording or a tracker that cannot be
+    /// read. This job makes nothing, and no executable job has its key.
     ///
     /// # Errors
-    /// When another of its files cannot be read: a response or a plugin, which other textures need
-    /// as well.
+    /// If another of its files cannot be read: a response or a plugin, which other textures also
+    /// need.
     pub(crate) fn absent(
         texture: &PlannedTexture,
         named: &Named,
@@ -221,14 +222,14 @@ impl Job {
         Ok((key, job))
     }
 
-    /// Returns the key of what this job makes: a hash of everything that its bytes depend on.
-    /// Folders and times of files are no part of it, their names and contents are.
+    /// Returns the key of this job's result: a hash of everything that its bytes depend on. The
+    /// names and contents of files are part of it, but their folders and times are not.
     pub fn key(&self) -> String {
         let parts = serde_json::json!([JOB, self.parts()]);
         hash_of(&parts)
     }
 
-    /// Returns hashes of what the fit depends on, by name.
+    /// Returns hashes of everything the fit depends on, by name.
     pub(crate) fn parts(&self) -> [(&'static str, String); 5] {
         let named = |file: &JobFile| (file.name(), file.hashed.blake3.clone());
         let recordings = self.recordings.iter().map(|r| {
@@ -253,19 +254,19 @@ impl Job {
         .map(|(name, part)| (name, hash_of(&part)))
     }
 
-    /// What [`Self::check`] depends on.
+    /// Returns everything that [`Self::check`] depends on, as a text.
     pub(crate) fn checked_by(&self, gates: &Gates) -> String {
         serde_json::json!([self.kind, self.reading, self.fit, self.plugins, gates]).to_string()
     }
 
-    /// Checks plugins, settings and gates as far as that is possible without a fit.
+    /// Checks plugins, settings and gates as far as this is possible without a fit.
     pub(crate) fn check(&self, gates: &Gates, workbench: &mut Workbench) -> Result<(), BuildError> {
         let without = Self { recordings: Vec::new(), response: None, ..self.clone() };
         let here = without.copied(&workbench.elsewhere)?;
         let job = here.as_ref().unwrap_or(&without);
         let registry = workbench.registry(job).at("plugins")?;
         if self.kind == FileKind::Asset {
-            // It is not fitted, and the plan has refused settings and gates of fits.
+            // It is not fitted, and the plan has already refused settings and gates of fits.
             return Ok(());
         }
         let reading = ReadingSettings { response: None, ..self.reading.clone() };
@@ -275,30 +276,31 @@ impl Job {
         check_gates(gates, &models).at(&self.texture)
     }
 
-    /// Returns an asset that this job made under the texture's own name and with its metadata.
+    /// Applies the texture's own name and metadata to an asset that this job made.
     ///
     /// # Errors
-    /// When the bytes are not those of an asset.
+    /// If the bytes are not an asset.
     pub(crate) fn named(&self, bytes: &[u8]) -> Result<Vec<u8>, BuildError> {
         let damaged = |problem: String| BuildError::Damaged(format!("{}: {problem}", self.texture));
         let mut asset = Asset::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
         asset.manifest.name.clone_from(&self.texture);
-        // Another name may have made it, with the same bytes but for what is laid over now.
+        // The asset may have been made for a texture with another name. The fit is the same; only
+        // the metadata differs.
         let metadata = Metadata { contact: None, law: None, ..self.metadata.clone() };
         metadata.apply(&mut asset.manifest);
         asset.to_bytes().map_err(|error| damaged(error.to_string()))
     }
 
-    /// Returns the size of the recordings, bytes.
+    /// Returns the total size of the recordings, bytes.
     pub fn recording_bytes(&self) -> u64 {
         self.recordings.iter().map(|r| r.file.hashed.stamp.bytes).sum()
     }
 
     /// Reads the recordings, fits the models, and returns the asset. A recording that cannot be
-    /// used, or a model that fails, is a result too: [`Outcome::Refused`].
+    /// used, or a model that fails, is also a result: [`Outcome::Refused`].
     ///
     /// # Errors
-    /// When a file cannot be read, or is not the one that was hashed.
+    /// If a file cannot be read, or differs from the file that was hashed.
     pub fn run(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
         let Some(copied) = self.copied(&workbench.elsewhere)? else {
             return self.run_here(workbench);
@@ -313,7 +315,7 @@ impl Job {
         Ok(made)
     }
 
-    /// Returns this job with copies in place of files elsewhere; `None` if it has none of them.
+    /// Returns this job with copies in place of remote files; `None` if it has no remote files.
     fn copied(&self, elsewhere: &Elsewhere) -> Result<Option<Self>, BuildError> {
         if !self.files().any(|file| is_elsewhere(&file.path)) {
             return Ok(None);
@@ -328,7 +330,8 @@ impl Job {
         self.check_files()?;
         let registry = workbench.registry(self);
         let made = registry.and_then(|registry| self.made(registry));
-        // What was read is what was hashed, or the key is wrong.
+        // The files that were read must be the ones that were hashed, because otherwise the key is
+        // wrong.
         self.check_files()?;
         match made {
             Err(error) => Ok(Made::refused(outcome(error)?)),
@@ -349,8 +352,8 @@ impl Job {
         recordings.chain(&mut self.response).chain(&mut self.plugins)
     }
 
-    /// Refuses a file that is not the one that was hashed: by size and time, or where these differ,
-    /// by its contents.
+    /// Refuses a file that is not the one that was hashed. Compares size and times first, and the
+    /// contents if these differ.
     fn check_files(&self) -> Result<(), BuildError> {
         for file in self.files() {
             if Stamp::of(&file.path).reading(&file.path)? == file.hashed.stamp {
@@ -364,8 +367,8 @@ impl Job {
     }
 }
 
-/// Returns the result that the error of a fit is. A [`BuildError`] is none: a file that cannot be
-/// read now may be read later.
+/// Converts the error of a fit to a result. A [`BuildError`] is not a result, because a file that
+/// cannot be read now may be readable later.
 fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
     let error = match error.downcast::<BuildError>() {
         Ok(error) => return Err(*error),
@@ -377,13 +380,13 @@ fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
     })
 }
 
-/// The models that a thread fits with, loaded once for each set of plugins.
+/// The models with which a thread fits, loaded once for each set of plugins.
 #[derive(Debug)]
 pub struct Workbench {
     limits: WasmLimits,
-    /// Files by URI, and their copies.
+    /// Remote files and their copies.
     pub(crate) elsewhere: Arc<Elsewhere>,
-    /// The plugins, how many of them a person named, and the models.
+    /// The plugins, the number of them that the user named, and the models.
     loaded: Option<(Vec<PathBuf>, usize, Registry)>,
 }
 
@@ -396,7 +399,7 @@ impl Workbench {
     /// Returns a workbench for a job of another process, whose recipe may name its own server.
     ///
     /// # Errors
-    /// When the job's origin is no location.
+    /// If the job's origin is not a location.
     pub fn of_job(limits: WasmLimits, job: &Job) -> Result<Self, BuildError> {
         let origin = job.origin.as_ref().map(|origin| Location::parse(origin.as_ref()));
         Ok(Self {
@@ -405,8 +408,8 @@ impl Workbench {
         })
     }
 
-    /// Returns the built-in models and the plugins of a job. Those that are installed on a machine
-    /// are not used: a build is the same on all.
+    /// Returns the built-in models and the plugins of a job. Models that are installed on a machine
+    /// are not used, so that a build gives the same results everywhere.
     fn registry(&mut self, job: &Job) -> Result<&Registry, Box<dyn Error>> {
         let files: Vec<PathBuf> = job.plugins.iter().map(|file| file.path.clone()).collect();
         let is_loaded = |(loaded, named, _): &(Vec<PathBuf>, usize, Registry)| {
@@ -431,8 +434,8 @@ fn hash_of(value: &serde_json::Value) -> String {
     blake3::hash(value.to_string().as_bytes()).to_hex().to_string()
 }
 
-/// Returns the names of a texture's recordings: those of the files, with as many folders before
-/// each as tell all apart.
+/// Returns the names of a texture's recordings: the file names, each with as many folders before it
+/// as are needed to tell all of them apart.
 fn told_apart(texture: &PlannedTexture) -> Vec<String> {
     let paths = texture.recordings.iter().map(|r| slashed(&shown_path(&r.file)));
     let paths: Vec<String> = paths.collect();
@@ -447,7 +450,7 @@ fn told_apart(texture: &PlannedTexture) -> Vec<String> {
     paths
 }
 
-/// The path of a recording, or of a URI without its query.
+/// Returns the path of a recording, or its URI without the query.
 pub(crate) fn shown_path(file: &Path) -> PathBuf {
     match elsewhere(file) {
         Ok(Some(location)) => {

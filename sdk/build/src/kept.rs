@@ -1,10 +1,10 @@
-//! What a build keeps for the next one: `.htex-build` in the folder of the results.
+//! What a build stores for the next one: the folder `.htex-build` in the folder of the results.
 //!
-//! The folder of the results may come from somebody else, with a `.htex-build` that says what a
-//! recording's fit is, which files are known, or what was published. Each file in it begins with a
-//! keyed hash of its name and content, by a key of this user ([`htex_files::Key`]): what this user
-//! has not made is not used, and made again. A user without a folder for a key has one that ends
-//! with the build.
+//! The results may come from somebody else, with a `.htex-build` that makes claims about the fit of
+//! a recording, known files, or what was published. So each file in it begins with a keyed hash of
+//! its name and content, with a key of this user ([`htex_files::Key`]). Files that this user has
+//! not made are not used, and are made again. If there is no folder for a user's key, a temporary
+//! key is used that ends with the build.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use htex_files::{AtFile, FileError, Key, OwnFolder};
 
 use crate::BuildError;
 
-/// The folder, in that of the results.
+/// Name of the folder, in the folder of the results.
 pub(crate) const KEPT: &str = ".htex-build";
-/// Name of the key's file, in the user's folder of settings.
+/// File name of the key, in the user's folder of settings.
 const KEY: &str = "build.key";
-/// Bytes of a tag.
+/// Length of a tag, bytes.
 const TAG: usize = 32;
 
-/// The folder of what is kept.
+/// The folder of stored data.
 #[derive(Debug)]
 pub(crate) struct Kept {
     own: OwnFolder,
@@ -29,7 +29,7 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    /// The folder in that of the results.
+    /// Returns the folder of stored data in the folder of the results.
     pub(crate) fn new(output: &Path) -> Result<Self, BuildError> {
         let folder = htex_native::folders::config();
         let key = folder.and_then(|folder| Key::of(&folder, KEY).ok());
@@ -40,7 +40,7 @@ impl Kept {
         Ok(Self { own: OwnFolder::new(output), key })
     }
 
-    /// Makes the folder, and locks it for this build.
+    /// Creates the folder, and locks it for this build.
     pub(crate) fn claim(&self) -> Result<File, BuildError> {
         let folder = Path::new(KEPT);
         let kept = self.own.path().join(KEPT);
@@ -59,8 +59,8 @@ impl Kept {
         }
     }
 
-    /// Returns what this user kept under a name; `None` if there is nothing, or if it is somebody
-    /// else's or damaged.
+    /// Returns what this user stored under a name; `None` if there is nothing, or if it is damaged
+    /// or comes from somebody else.
     pub(crate) fn get(&self, name: &str, most_bytes: u64) -> Option<Vec<u8>> {
         let most = most_bytes.saturating_add(TAG as u64);
         let mut bytes = self.own.read(&inside(name), most).ok()?;
@@ -69,25 +69,25 @@ impl Kept {
         (self.key.tag(name, &bytes) == tag).then_some(bytes)
     }
 
-    /// Keeps bytes under a name.
+    /// Stores bytes under a name.
     pub(crate) fn put(&self, name: &str, bytes: &[u8]) -> Result<(), BuildError> {
         let tagged = [&self.key.tag(name, bytes)[..], bytes].concat();
         let written = self.own.write(&inside(name), &tagged);
         Ok(written.writing(self.own.path().join(inside(name)))?)
     }
 
-    /// The folder of the results, in which nothing is followed.
+    /// Returns the folder of the results, in which no link is followed.
     pub(crate) fn own(&self) -> &OwnFolder {
         &self.own
     }
 }
 
-/// The path of a file that is kept, in the folder of the results.
+/// Returns the path of a stored file, in the folder of the results.
 pub(crate) fn inside(name: &str) -> PathBuf {
     Path::new(KEPT).join(name)
 }
 
-/// One key for all builds of this process.
+/// Returns a temporary key that all builds of this process share.
 fn passing() -> std::io::Result<Key> {
     static PASSING: OnceLock<Option<Key>> = OnceLock::new();
     let passing = PASSING.get_or_init(|| Key::passing().ok());

@@ -1,15 +1,15 @@
-//! Keys that a recipe has and its schema has not: a misspelt one would change nothing, in silence.
+//! Finds keys in a recipe that its schema does not have. Without this check, a misspelt key would
+//! silently have no effect.
 
 use htex_files::toml::lines_of_keys;
 use serde_json::Value;
 
 use crate::{BuildError, recipe_schema};
 
-/// Most keys that one message names.
+/// Largest number of keys in one message.
 const MOST_NAMED: usize = 20;
 
-/// Refuses keys that recipes do not have, each with its line and the known key that is most like
-/// it.
+/// Refuses unknown keys in a recipe. Reports each with its line and the most similar known key.
 pub(crate) fn check_keys(text: &str, recipe: &Value) -> Result<(), BuildError> {
     let unknown = htex_schema::unknown_keys(&recipe_schema(), recipe);
     let named = &unknown[..unknown.len().min(MOST_NAMED)];
@@ -30,7 +30,7 @@ pub(crate) fn check_keys(text: &str, recipe: &Value) -> Result<(), BuildError> {
 mod tests {
     use crate::Recipe;
 
-    /// A misspelt key in each table of a recipe has its line and the key that was meant.
+    /// A misspelt key in any table of a recipe is reported with its line and the intended key.
     #[test]
     fn unknown_keys_are_refused() {
         let texts = [

@@ -1,22 +1,23 @@
-//! Recipes: recordings in, a checked library of textures out.
+//! Builds a checked library of textures from recordings, as described by a recipe.
 //!
 //! A recording may also be a file of another haptic format: a signal, which is fitted, or a file
-//! that states its texture, which is taken as it is (`imports`).
+//! that states its texture, which is used unchanged (`imports`).
 //!
-//! A recipe is data, a build is a function of it. The key of a texture is the hash of everything
+//! A recipe is data, and it determines the build. The key of a texture is the hash of everything
 //! its bytes depend on: the contents of its recordings, its settings, the program and the plugins.
-//! What has been made for a key is kept, so that going on after a kill, building only what changed
-//! and building on many machines ([`Build::pending`], [`Job::run`], [`Build::store`]) are one
-//! mechanism.
+//! What has been made for a key is stored. So the same mechanism continues after a kill, builds
+//! only what changed, and builds on many machines ([`Build::pending`], [`Job::run`],
+//! [`Build::store`]).
 //!
 //! From recordings to a library:
 //!
-//! 1. `recipe`, `plan`: a recipe becomes textures, each with its recordings and settings, which are
-//!    those of the command and of Python.
-//! 2. `hashes`, `job`: a texture becomes a job, data with a key.
-//! 3. `cache`: what was made for a key is there, or the job is pending. Threads, or a cluster
-//!    (`htex.dask`), do the pending jobs.
-//! 4. `assemble`: gates, textures, the library, report and catalogue, from what was made alone.
+//! 1. `recipe`, `plan`: a recipe becomes textures, each with its recordings and settings. The
+//!    settings are the same as in the command and in Python.
+//! 2. `hashes`, `job`: a texture becomes a job, which is data with a key.
+//! 3. `cache`: either the result for a key is stored, or the job is pending. Threads or a cluster
+//!    (`htex.dask`) do the pending jobs.
+//! 4. `assemble`: only from the stored results, applies the gates and writes textures, library,
+//!    report and catalogue.
 //!
 //! ```no_run
 //! use htex_build::{Build, BuildOptions};

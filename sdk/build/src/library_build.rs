@@ -1,4 +1,4 @@
-//! A build: plan, fit what is not there, put together.
+//! A build: plans, fits what is missing, and assembles the library.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -29,38 +29,39 @@ use crate::reasons::{Reasons, Why};
 use crate::recipe::Recipe;
 use crate::removed::textures_before;
 
-/// The file of hashes, in the folder of what is kept.
+/// File of hashes, in the folder of stored data.
 const HASHES: &str = "files.json";
 
+/// Options of a build.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct BuildOptions {
-    /// Textures that are fitted at the same time; 0 is one for each processor.
+    /// Number of textures that are fitted at the same time; 0 means one for each processor.
     pub jobs: usize,
-    /// Whether to go on after a texture that cannot be made, and to leave it out.
+    /// Whether to leave out a texture that cannot be made, and continue.
     pub keep_going: bool,
     pub limits: WasmLimits,
-    /// Program and version, for the assets' provenance. A texture that another one fitted is fitted
-    /// again.
+    /// Program and version, for the assets' provenance. Textures that were fitted by another
+    /// program or version are fitted again.
     pub program: String,
-    /// Folder of the browser package, with which the catalogue plays textures; without it, the
+    /// Folder of the browser package with which the catalogue plays textures. Without it, the
     /// catalogue has short sounds.
     pub browser_package: Option<PathBuf>,
-    /// Plugins that a person names: WASM modules, or native libraries, which run with all rights of
-    /// this program. A recipe names modules alone.
+    /// Plugins that the user names: WASM modules, or native libraries, which run with all rights of
+    /// this program. A recipe can only name WASM modules.
     pub plugins: Vec<PathBuf>,
-    /// Whether to refuse to remove textures that the library of the build before has.
+    /// Whether to refuse to remove textures of the previous library.
     pub no_removals: bool,
-    /// The URI that the results are copied to, whose library is the one before where this machine
-    /// has none.
+    /// The URI to which the results are copied. If there is no previous library on this machine,
+    /// the one at this URI is used for comparison.
     pub published: Option<Location>,
-    /// Whether to remove at once what was fitted and no texture uses any more; otherwise it stays
+    /// Whether to remove stored results at once that no texture uses any more. Otherwise they stay
     /// for 30 days.
     pub prune: bool,
 }
 
 impl BuildOptions {
-    /// The options of a program: its name and version.
+    /// Creates options for a program, given by its name and version.
     pub fn new(program: impl Into<String>) -> Self {
         Self {
             jobs: 0,
@@ -75,14 +76,14 @@ impl BuildOptions {
         }
     }
 
-    /// Sets how many textures are fitted at the same time; 0 is one for each processor.
+    /// Sets how many textures are fitted at the same time; 0 means one for each processor.
     #[must_use]
     pub fn with_jobs(mut self, jobs: usize) -> Self {
         self.jobs = jobs;
         self
     }
 
-    /// Sets whether to go on after a texture that cannot be made.
+    /// Sets whether to leave out a texture that cannot be made, and continue.
     #[must_use]
     pub fn with_keep_going(mut self, keep_going: bool) -> Self {
         self.keep_going = keep_going;
@@ -99,28 +100,28 @@ impl BuildOptions {
         self
     }
 
-    /// Sets the plugins that a person names.
+    /// Sets the plugins that the user names.
     #[must_use]
     pub fn with_plugins(mut self, plugins: Vec<PathBuf>) -> Self {
         self.plugins = plugins;
         self
     }
 
-    /// Sets whether to refuse to remove textures that the library of the build before has.
+    /// Sets whether to refuse to remove textures of the previous library.
     #[must_use]
     pub fn with_no_removals(mut self, no_removals: bool) -> Self {
         self.no_removals = no_removals;
         self
     }
 
-    /// Sets the URI that the results are copied to ([`crate::Destination::remote`]).
+    /// Sets the URI to which the results are copied ([`crate::Destination::remote`]).
     #[must_use]
     pub fn with_published(mut self, location: Option<&Location>) -> Self {
         self.published = location.cloned();
         self
     }
 
-    /// Sets whether to remove at once what no texture uses any more.
+    /// Sets whether to remove stored results at once that no texture uses any more.
     #[must_use]
     pub fn with_prune(mut self, prune: bool) -> Self {
         self.prune = prune;
@@ -135,39 +136,40 @@ impl BuildOptions {
     }
 }
 
-/// A build that is planned, with everything hashed: what is there is known.
+/// A planned build. All files are hashed, so it is known which results exist.
 #[derive(Debug)]
 pub struct Build {
     options: BuildOptions,
     plan: Plan,
-    /// A job for each texture, with its key.
+    /// The job of each texture with its key.
     jobs: Vec<(String, Job)>,
     cache: Cache,
     dist: Dist,
     kept: Arc<Kept>,
-    /// Textures of the library before this build.
+    /// Names of the textures in the library before this build.
     before: BTreeSet<String>,
-    /// Indices of jobs that an earlier build has not done.
+    /// Indices of the jobs that no earlier build has done.
     pending: Vec<usize>,
-    /// Keys of textures of which a file cannot be read.
+    /// Keys of the textures with a file that cannot be read.
     unreadable: BTreeSet<String>,
-    /// What was made and is not kept for the next build.
+    /// Results that are not stored for the next build.
     unkept: BTreeMap<String, Made>,
     elsewhere: Arc<Elsewhere>,
     pool: ThreadPool,
-    /// Held as long as the build.
+    /// Held as long as the build exists.
     _lock: File,
 }
 
 impl Build {
-    /// Reads a recipe, finds and hashes its recordings, and compares them with what is in the
-    /// folder `output`, which is made if it is not there.
+    /// Reads a recipe, finds and hashes its recordings, and compares them with the stored results
+    /// in the folder `output`. The folder is created if it is missing.
     ///
     /// # Errors
-    /// See [`Recipe::open`]; when a glob matches nothing, a template or a pattern fails, a name
-    /// cannot be one, two recordings of a texture have different settings; when the library would
-    /// lose textures and the options forbid it; when a file cannot be read, the folder cannot be
-    /// written, or another build uses it.
+    /// - The errors of [`Recipe::open`].
+    /// - A glob matches nothing, a template or a pattern fails, a name is not valid, or two
+    ///   recordings of a texture have different settings.
+    /// - The library would lose textures and the options forbid it.
+    /// - A file cannot be read, the folder cannot be written, or another build uses it.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
         let Prepared { named, plan, hashes, elsewhere, kept, lock } =
             Prepared::new(recipe, output, &options.plugins, options.missing())?;
@@ -199,7 +201,7 @@ impl Build {
             |i: &usize| !unkept.contains_key(&jobs[*i].0) && cache.get(&jobs[*i].0).is_none();
         let mut pending: Vec<usize> =
             pool.install(|| (0..jobs.len()).into_par_iter().filter(is_pending).collect());
-        // Textures of the same recordings and settings are one fit.
+        // Textures with the same recordings and settings need only one fit.
         let mut keys = BTreeSet::new();
         pending.retain(|i| keys.insert(&jobs[*i].0));
         Ok(Self {
@@ -219,8 +221,8 @@ impl Build {
         })
     }
 
-    /// Checks what is known before a fit: that the plugins can be loaded, the settings are those of
-    /// models that there are, and gates name models that are fitted.
+    /// Checks everything that can be known before a fit: that the plugins can be loaded, that the
+    /// settings belong to existing models, and that gates name models that are fitted.
     ///
     /// # Errors
     /// What is wrong, with its place.
@@ -235,7 +237,7 @@ impl Build {
         Ok(())
     }
 
-    /// Returns why each of the pending jobs is to be done, by its texture.
+    /// Returns the reason for each pending job, by its texture.
     pub fn reasons(&self) -> Vec<(&str, Why)> {
         let before = Reasons::open(&self.kept);
         let pending = self.pending.iter().map(|i| &self.jobs[*i]);
@@ -249,38 +251,38 @@ impl Build {
         workbench
     }
 
-    /// Returns the names of textures that the library before this build has and the recipe no
-    /// longer asks for.
+    /// Returns the names of textures that are in the library before this build but no longer in the
+    /// recipe.
     pub fn removed(&self) -> Vec<String> {
         self.plan.removed(&self.before)
     }
 
-    /// Returns the textures that the recipe asks for.
+    /// Returns the planned textures.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// Returns how many textures are left out because a recording or a tracker of theirs cannot be
+    /// Returns how many textures are left out because one of their recordings or trackers cannot be
     /// read.
     pub fn unreadable(&self) -> usize {
         let keys = self.jobs.iter().map(|(key, _)| key);
         keys.filter(|key| self.unreadable.contains(*key)).count()
     }
 
-    /// Returns the jobs that are to be done, by key.
+    /// Returns the pending jobs, by key.
     pub fn pending(&self) -> impl ExactSizeIterator<Item = (&str, &Job)> {
         let jobs = self.pending.iter().map(|i| &self.jobs[*i]);
         jobs.map(|(key, job)| (&key[..], job))
     }
 
-    /// Keeps what a job made elsewhere ([`Made::to_bytes`]).
+    /// Stores the result of a job that was done elsewhere ([`Made::to_bytes`]).
     ///
     /// # Errors
-    /// When the bytes are not those of a job with this key, or cannot be written; when the texture
-    /// cannot be made, unless the build keeps going.
+    /// If the bytes are not the result of a job with this key or cannot be written, or if the
+    /// texture cannot be made, unless the build keeps going.
     pub fn store(&mut self, key: &str, bytes: &[u8]) -> Result<(), BuildError> {
         let Some(at) = self.pending.iter().position(|i| self.jobs[*i].0 == key) else {
-            // Somebody else did the job, too.
+            // Somebody else has already done the job.
             return Ok(());
         };
         let made = Made::from_bytes(key, bytes)?;
@@ -290,11 +292,11 @@ impl Build {
         Ok(())
     }
 
-    /// Does the pending jobs, several at a time; calls `done` after each, from any thread.
+    /// Does the pending jobs, several at a time. Calls `done` after each, from any thread.
     ///
     /// # Errors
-    /// When a texture cannot be made, unless the build keeps going; when a file cannot be read or
-    /// written. What was made by then is kept.
+    /// If a texture cannot be made, unless the build keeps going, or if a file cannot be read or
+    /// written. Results up to then are stored.
     pub fn run(&mut self, done: &(dyn Fn(&Job) + Sync)) -> Result<(), BuildError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
@@ -330,7 +332,7 @@ impl Build {
         Ok(())
     }
 
-    /// Does a job and keeps what it makes; returns what is not kept.
+    /// Does a job and stores its result. Returns a result that is not stored.
     fn make(
         &self,
         key: &str,
@@ -346,7 +348,7 @@ impl Build {
         self.keep(key, job, made)
     }
 
-    /// Keeps what a job made; returns what is not kept.
+    /// Stores the result of a job. Returns a result that is not stored.
     fn keep(&self, key: &str, job: &Job, made: Made) -> Result<Option<Made>, BuildError> {
         let Outcome::Refused(problem) = &made.record.outcome else {
             self.cache.put(key, &made)?;
@@ -358,11 +360,11 @@ impl Build {
         Err(BuildError::at(&job.texture, problem))
     }
 
-    /// Writes an error, line by line, into the report of this build's folder, beside what an
+    /// Writes an error, line by line, into the report of this build's folder, together with what an
     /// earlier build left there.
     ///
     /// # Errors
-    /// When the report cannot be written.
+    /// If the report cannot be written.
     pub fn report_failure(&self, error: &[String]) -> Result<(), BuildError> {
         put_failure(&self.dist, &self.options.program, error)
     }
@@ -370,8 +372,8 @@ impl Build {
     /// Writes the library, the textures, the report and the catalogue.
     ///
     /// # Errors
-    /// When jobs are still pending, or a file cannot be written; when a texture of the library
-    /// before is left out and the options forbid removals, in which case nothing was written.
+    /// If jobs are still pending, or a file cannot be written. If a texture of the previous library
+    /// is left out and the options forbid removals; nothing was written then.
     pub fn finish(self) -> Result<Built, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
@@ -392,7 +394,7 @@ impl Build {
     }
 }
 
-/// Whether a file that is read is at fault: it cannot be read, or is not there.
+/// Returns whether an input file caused the error because it is missing or cannot be read.
 fn is_of_input(error: &BuildError) -> bool {
     match error {
         BuildError::File(FileError { is_output, .. }) => !is_output,
@@ -401,13 +403,13 @@ fn is_of_input(error: &BuildError) -> bool {
     }
 }
 
-/// Returns the files of a recipe whose contents a build would have to read to know their hashes, so
-/// that others can read them: [`hash_file`] and [`remember`].
+/// Returns the files of a recipe that a build would have to read to know their hashes. Other
+/// processes can then read them with [`hash_file`] and [`remember`].
 ///
 /// # Errors
-/// As [`Build::open`].
+/// The errors of [`Build::open`].
 pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError> {
-    // The build that follows says what is missing.
+    // Missing files are not an error here, because the following build reports them.
     let prepared = Prepared::new(recipe, output, &[], Missing::LeftOut)?;
     let textures = prepared.plan.textures.iter();
     let files = textures.flat_map(PlannedTexture::files).chain(&prepared.named.of_recipe);
@@ -420,8 +422,8 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     Ok(unknown.collect())
 }
 
-/// Checks a recipe without a build: its keys, that its recordings are there, that its plugins can
-/// be loaded, and its options and gates. Nothing is written. Returns the textures that it asks for.
+/// Checks a recipe without a build: its keys, whether its recordings exist, whether its plugins can
+/// be loaded, and its options and gates. Writes nothing. Returns the planned textures.
 ///
 /// # Errors
 /// What is wrong, and where.
@@ -430,7 +432,7 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
     let folder = folder_of(recipe);
     let origin = origin(recipe)?;
     let elsewhere = Arc::new(Elsewhere::temporary(origin.clone()));
-    // No folder is that of its results.
+    // There is no folder of results.
     let plan = Plan::new(&parsed, &folder, Path::new(""), &elsewhere, Missing::Error)?;
     let named = Named::new(&options.plugins, parsed.library.plugins, folder, origin)?;
     let hashes = Hashes::new(elsewhere.clone());
@@ -451,20 +453,20 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
     Ok(plan)
 }
 
-/// Hashes a file of a recipe, of this machine or by URI.
+/// Hashes a local or remote file of a recipe.
 ///
 /// # Errors
-/// When it cannot be read, or changes meanwhile; when it has an address that the recipe may not
-/// name.
+/// If the file cannot be read or changes while it is read, or if the recipe may not name its
+/// address.
 pub fn hash_file(recipe: &Path, file: &Path) -> Result<Hashed, BuildError> {
     hash(file, &Elsewhere::temporary(origin(recipe)?))
 }
 
-/// Keeps hashes of files for the next build. A file whose size or times are others there is read
-/// again.
+/// Stores hashes of files for the next build. The next build reads a file again if its size or
+/// times differ there.
 ///
 /// # Errors
-/// When another build uses the folder, or it cannot be written.
+/// If another build uses the folder, or it cannot be written.
 pub fn remember(
     output: &Path,
     hashed: impl IntoIterator<Item = (PathBuf, Hashed)>,
@@ -476,7 +478,7 @@ pub fn remember(
     kept.put(HASHES, &hashes.to_keep())
 }
 
-/// A recipe with its plan and the hashes that are known.
+/// A recipe with its plan and the known hashes.
 struct Prepared {
     named: Named,
     plan: Plan,

@@ -1,4 +1,4 @@
-//! What a job makes, and its bytes: a line of JSON with lengths and a hash, then the parts.
+//! The result of a job and its encoding: a line of JSON with lengths and a hash, then the parts.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +12,10 @@ use crate::thumbnail::Thumbnail;
 /// Longest first line, bytes.
 const MOST_HEADER: usize = 1 << 20;
 
-/// What a job makes.
+/// The result of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Made {
-    /// What the asset does not hold.
+    /// Facts that the asset does not contain.
     pub record: Record,
     /// The asset; empty if there is none.
     pub asset: Vec<u8>,
@@ -23,17 +23,17 @@ pub struct Made {
     pub sound: Vec<u8>,
 }
 
-/// What is known of a fit and not in its asset.
+/// Facts about a fit that are not in its asset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     pub outcome: Outcome,
-    /// Segments of each condition.
+    /// Number of segments of each condition.
     pub segments: Vec<usize>,
-    /// What is felt of the difference from the recordings, at its worst condition, by model.
+    /// How much of the difference from the recordings is felt, by model, at the worst condition.
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of the recordings, by code.
     pub findings: Vec<FindingReport>,
-    /// The recorded spectrum of the first condition; for a texture that a file states, the spectrum
+    /// The recorded spectrum of the first condition. For a texture that a file states, the spectrum
     /// of its default condition.
     pub thumbnail: Thumbnail,
 }
@@ -44,7 +44,7 @@ pub struct Record {
 pub enum Outcome {
     /// There is an asset.
     Fitted,
-    /// The gate `strict`: recordings have findings.
+    /// The gate `strict` refused it: recordings have findings.
     NotStrict(String),
     /// A recording, a setting or a model cannot be used.
     Refused(String),
@@ -85,10 +85,10 @@ impl Made {
         }
     }
 
-    /// Returns the bytes, for the job with this key.
+    /// Encodes the result for the job with this key.
     ///
     /// # Errors
-    /// When the record cannot be written as JSON.
+    /// If the record cannot be written as JSON.
     pub fn to_bytes(&self, key: &str) -> Result<Vec<u8>, BuildError> {
         let mut header = Header {
             key: key.to_owned(),
@@ -105,10 +105,10 @@ impl Made {
         Ok(bytes)
     }
 
-    /// Reads the bytes of the job with this key.
+    /// Decodes the result of the job with this key.
     ///
     /// # Errors
-    /// When they are not those of this job, or a bit of them changed.
+    /// If the bytes do not belong to this job, or any bit has changed.
     pub fn from_bytes(key: &str, bytes: &[u8]) -> Result<Self, BuildError> {
         let damaged = |problem: &str| BuildError::Damaged(problem.to_owned());
         let line = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n');

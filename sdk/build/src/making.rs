@@ -1,5 +1,5 @@
-//! What a job makes: a fit to recordings or signals, or the texture that a file of another format
-//! states.
+//! Makes the result of a job: a fit to recordings or signals, or the texture that a file of another
+//! format states.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -23,7 +23,7 @@ use crate::made::{Made, Outcome, Record};
 use crate::sound::sound;
 use crate::thumbnail::{Thumbnail, of_magnitudes, thumbnail};
 
-/// The name of a texture until it is put together.
+/// The name of a texture until it is assembled.
 const UNNAMED: &str = "texture";
 
 impl Job {
@@ -48,7 +48,7 @@ impl Job {
         Ok(Made { record, asset: bytes, sound })
     }
 
-    /// Takes the texture that a file of another format states.
+    /// Imports the texture that a file of another format states.
     fn imported(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
         let [recording] = &self.recordings[..] else {
             return Err("a texture that is stated has one file".into());
@@ -83,8 +83,8 @@ impl Job {
         for source in &mut fitted.asset.manifest.provenance.recordings {
             let mut recordings = self.recordings.iter();
             if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
-                // A folder has no meaning on other machines; the hash tells recordings of one name
-                // apart.
+                // A folder has no meaning on other machines, so only the name is stored. The hash
+                // tells apart recordings of the same name.
                 source.file = recording.file.name();
                 source.blake3 = Some(recording.file.hashed.blake3.clone());
             }
@@ -99,7 +99,7 @@ impl Job {
         Ok((fitted.asset, record))
     }
 
-    /// Returns the request of the fit.
+    /// Returns the request for the fit.
     fn request(&self, registry: &Registry) -> Result<AssetRequest, SettingsError> {
         if self.kind == FileKind::Signal {
             let reading = ReadingSettings::default();
@@ -135,7 +135,7 @@ impl Job {
         }
     }
 
-    /// What a file of another format does not say.
+    /// Returns what a file of another format does not state.
     fn physical(&self, recording: &JobRecording) -> Physical {
         Physical {
             full_scale: self.signal.full_scale,
@@ -171,10 +171,10 @@ impl JobRecording {
     }
 }
 
-/// An asset without plugins, and what is known of it.
+/// An asset without plugins, with its record.
 type Unfinished = (Asset, Record);
 
-/// The spectrum that an asset plays at its default condition.
+/// Returns the spectrum that an asset plays at its default condition.
 fn played(asset: &Asset, registry: &Registry) -> Result<Thumbnail, htex_play::Error> {
     let frequency_hz = asset.manifest.band.grid_hz();
     let asset = htex_play::Asset::with_registry(asset.clone(), registry.clone());
@@ -182,8 +182,8 @@ fn played(asset: &Asset, registry: &Registry) -> Result<Thumbnail, htex_play::Er
     Ok(of_magnitudes(&frequency_hz, &magnitude))
 }
 
-/// What is felt of the difference from the recordings, of each model at its worst recorded
-/// condition.
+/// Returns how much of the difference from the recordings is felt, for each model at its worst
+/// recorded condition.
 fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
     let models = fitted.asset.manifest.representations.iter();
     let worst = models.zip(&fitted.felt).filter_map(|(representation, felt)| {

@@ -1,4 +1,4 @@
-//! The plan: the textures that a recipe asks for, each with its recordings and settings.
+//! Plans the textures of a recipe, each with its recordings and settings.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
@@ -30,13 +30,13 @@ pub struct PlannedTexture {
     pub name: String,
     /// Its recordings, sorted by file.
     pub recordings: Vec<PlannedRecording>,
-    /// What these files are.
+    /// What kind of files the recordings are.
     pub kind: FileKind,
-    /// Its settings, with files relative to the recipe.
+    /// Its settings. Paths in them are relative to the recipe.
     pub settings: Settings,
     /// Its metadata, with templates filled.
     pub metadata: Metadata,
-    /// What its asset must hold.
+    /// The requirements that its asset must meet.
     pub gates: Gates,
 }
 
@@ -54,8 +54,8 @@ pub struct PlannedRecording {
 }
 
 impl PlannedTexture {
-    /// Returns the files that its job reads, relative to the recipe, but the plugins of the whole
-    /// library.
+    /// Returns the files that its job reads, relative to the recipe. Plugins of the whole library
+    /// are not included.
     pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let recordings =
             self.recordings.iter().flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
@@ -65,7 +65,7 @@ impl PlannedTexture {
 }
 
 impl Plan {
-    /// Returns the names that no texture has.
+    /// Returns those names that no planned texture has.
     pub(crate) fn removed(&self, names: &BTreeSet<String>) -> Vec<String> {
         let own: BTreeSet<&String> = self.textures.iter().map(|texture| &texture.name).collect();
         let removed = names.iter().filter(|name| !own.contains(name));
@@ -73,10 +73,10 @@ impl Plan {
     }
 
     /// Finds the recordings of a recipe that lies in `folder`. Files in the build's own `output`
-    /// folder are no recordings.
+    /// folder do not count as recordings.
     ///
     /// # Errors
-    /// When a glob matches nothing, a template or a pattern fails, a name cannot be one, or two
+    /// If a glob matches nothing, a template or a pattern fails, a name is not valid, or two
     /// recordings of a texture have different settings.
     pub(crate) fn new(
         recipe: &Recipe,
@@ -135,7 +135,7 @@ impl<'a> Overrides<'a> {
         own.fold(settings, |under, (_, own)| (*own).clone().over(under))
     }
 
-    /// An override of nothing is a misspelt name.
+    /// Refuses an override that matches no texture, because its name is misspelt.
     fn check_used(&self, textures: &BTreeMap<String, PlannedTexture>) -> Result<(), BuildError> {
         for (i, (set, _)) in self.0.iter().enumerate() {
             if !textures.keys().any(|name| set.is_match(name)) {
@@ -190,7 +190,7 @@ fn planned(
     })
 }
 
-/// Takes the file of a recording's tracker out of the settings.
+/// Takes the tracker's file of a recording out of the settings.
 fn tracker(settings: &mut Settings, fields: &Fields) -> Result<Option<PathBuf>, String> {
     match &settings.reading.tracker.take().unwrap_or_default()[..] {
         [] => Ok(None),
@@ -199,7 +199,7 @@ fn tracker(settings: &mut Settings, fields: &Fields) -> Result<Option<PathBuf>, 
     }
 }
 
-/// Returns a speed or a force: the given one, else that of the table's column.
+/// Returns a speed or a force: the given number, or else the number in the table's column.
 fn number(
     key: &str,
     given: Option<NumberOrTemplate>,
@@ -218,7 +218,7 @@ fn number(
     Ok(Some(number))
 }
 
-/// Fills the templates of metadata; `of` is the place of a key.
+/// Fills the templates of metadata. `of` gives the place of a key for messages.
 fn filled(
     mut metadata: Metadata,
     fields: &Fields,
@@ -245,7 +245,7 @@ fn filled(
     Ok(metadata)
 }
 
-/// Refuses a recording that the texture has already; `known` are hashes of textures with their
+/// Refuses a recording that the texture already has. `known` holds hashes of textures with their
 /// recordings.
 fn check_once(
     known: &mut HashSet<[u8; 32]>,
@@ -272,7 +272,7 @@ fn check_once(
     Ok(())
 }
 
-/// Adds a recording's texture to those of the plan.
+/// Adds the texture of a recording to the plan's textures.
 fn gather(
     textures: &mut BTreeMap<String, PlannedTexture>,
     planned: PlannedTexture,
@@ -304,7 +304,7 @@ fn check_name(place: &str, name: &str) -> Result<(), BuildError> {
     htex_library::check_name(name).at(place)
 }
 
-/// Refuses a texture whose file would be the folder of another's.
+/// Refuses a texture whose file would have the same path as a folder of another texture.
 fn check_folders(textures: &[PlannedTexture]) -> Result<(), BuildError> {
     for pair in textures.windows(2) {
         let (folder, inside) = (format!("{}.htex/", pair[0].name), &pair[1].name);

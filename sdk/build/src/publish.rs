@@ -1,6 +1,6 @@
-//! Results by URI: a build writes them in a folder of this machine, from which they are copied.
+//! Publishes results to a URI. A build writes them to a local folder, from which they are copied.
 //!
-//! They are copied when all are complete, so that a half-built library is never visible.
+//! They are copied only when all are complete, so that a half-built library is never visible.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
@@ -18,15 +18,15 @@ use crate::error::AtPlace;
 use crate::hashes::{Stamp, hash_local};
 use crate::kept::Kept;
 
-/// The file of what was copied, in the folder of what is kept.
+/// File that lists what was copied, in the folder of stored data.
 const PUBLISHED: &str = "published.json";
-/// Most bytes of that file: a few million files.
+/// Largest size of that file, bytes: a few million files.
 const MOST_BYTES: u64 = 1 << 30;
-/// The file by which the URI is tried.
+/// Name of the file that tests the URI.
 const TRIED: &str = ".htex-build-tries";
-/// What is copied last, in this order, so that it names only what is there.
+/// Files that are copied last, in this order, so that they only name files that already exist.
 const LAST: [&str; 2] = ["build-report.json", "index.html"];
-/// Copies at the same time; they wait for the network.
+/// Number of copies at the same time. Most of the time they wait for the network.
 const AT_ONCE: usize = 8;
 
 /// Where the results of a build go.
@@ -44,7 +44,7 @@ pub struct Destination {
     remote: Option<Location>,
 }
 
-/// What was copied, by path in the folder of the results.
+/// What was copied, by its path in the folder of the results.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Published {
     /// The URI of the folder.
@@ -59,13 +59,12 @@ struct Copied {
 }
 
 impl Destination {
-    /// Reads an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a
-    /// URI are made in the folder `work`, by default one of the user's cache, which also keeps what
-    /// the next build needs.
+    /// Parses an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a
+    /// URI are made in the folder `work`, which also holds what the next build needs. By default it
+    /// is a folder in the user's cache.
     ///
     /// # Errors
-    /// A URI that is malformed or read-only; a URI without `work` where the environment names no
-    /// cache.
+    /// The URI is malformed or read-only, or there is no `work` and the environment names no cache.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
         let Some(location) = elsewhere(Path::new(argument))? else {
             let location = Location::parse(argument)?;
@@ -80,27 +79,27 @@ impl Destination {
         Ok(Self { folder, remote: Some(location) })
     }
 
-    /// Returns the folder of this machine in which the results are made.
+    /// Returns the local folder in which the results are made.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Returns where the results are in the end: the folder, or the URI.
+    /// Returns where the results finally are: the folder or the URI.
     pub fn results(&self) -> Location {
         let folder = || Location::from(self.folder.clone());
         self.remote.clone().unwrap_or_else(folder)
     }
 
-    /// Returns the URI that the results are copied to.
+    /// Returns the URI to which the results are copied.
     pub fn remote(&self) -> Option<&Location> {
         self.remote.as_ref()
     }
 
-    /// Tries whether the URI, if there is one, can be listed, written and removed from, before
-    /// hours of fitting: by a file that is removed again.
+    /// Tests whether files at the URI, if there is one, can be listed, written and removed. It
+    /// writes a file and removes it again. This finds errors before hours of fitting.
     ///
     /// # Errors
-    /// When it cannot.
+    /// If one of these operations fails.
     pub fn try_out(&self) -> Result<(), BuildError> {
         let Some(to) = &self.remote else {
             return Ok(());
@@ -110,13 +109,13 @@ impl Destination {
         Ok(storage.remove(&file)?)
     }
 
-    /// Copies the results to the URI, if there is one: files that are not there as they are here,
-    /// textures first, report and catalogue last. Files that an earlier build copied and this one
-    /// has not made are removed. Returns the number of files that were copied.
+    /// Copies the results to the URI, if there is one. Only files that differ from the files there
+    /// are copied: textures first, report and catalogue last. Files that an earlier build copied
+    /// and this build has not made are removed. Returns the number of copied files.
     ///
     /// # Errors
-    /// When a file cannot be read or written. The next call copies again what is not known to be
-    /// there.
+    /// If a file cannot be read or written. The next call copies every file again that is not known
+    /// to be there.
     pub fn publish(&self) -> Result<usize, BuildError> {
         match &self.remote {
             Some(to) => Publishing::new(&self.folder, to)?.run(),
@@ -126,9 +125,9 @@ impl Destination {
 }
 
 /// Returns the folder in which results for a URI are made: `htex/builds/HASH` in the user's cache,
-/// by the URI's hash.
+/// where HASH is the hash of the URI.
 fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
-    // A relative path is ignored, as the XDG base directory specification has it.
+    // The XDG base directory specification says to ignore relative paths.
     let variable = |name| {
         let path = PathBuf::from(std::env::var_os(name)?);
         path.is_absolute().then_some(path)
@@ -146,7 +145,7 @@ fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
     Ok(cache.join("htex").join("builds").join(&hash[..16]))
 }
 
-/// A copy of results that is being made.
+/// A running copy of results.
 struct Publishing<'a> {
     folder: &'a Path,
     to: &'a Location,
@@ -195,7 +194,7 @@ impl<'a> Publishing<'a> {
         Ok(copied)
     }
 
-    /// The files that are there, with their versions.
+    /// Returns the files at the URI with their versions.
     fn there(&self) -> Result<BTreeMap<String, Stamp>, StorageError> {
         let prefix = format!("{}/", self.to.to_string().trim_end_matches('/'));
         let entries = self.storage.list(self.to, "**/*")?;
@@ -207,7 +206,7 @@ impl<'a> Publishing<'a> {
         Ok(named.collect())
     }
 
-    /// The results here, with their hashes.
+    /// Returns the local results with their hashes.
     fn here(&self) -> Result<BTreeMap<String, String>, BuildError> {
         let kept =
             |entry: &walkdir::DirEntry| entry.depth() == 1 && entry.file_name() == ".htex-build";
@@ -230,7 +229,7 @@ impl<'a> Publishing<'a> {
         Ok(self.storage.write_file(&self.to.inside(name), &self.folder.join(name))?)
     }
 
-    /// Removes what an earlier build copied and this one has not made.
+    /// Removes files that an earlier build copied and this build has not made.
     fn remove_stale(
         &self,
         here: &BTreeMap<String, String>,
@@ -244,7 +243,7 @@ impl<'a> Publishing<'a> {
         Ok(())
     }
 
-    /// Keeps what is there now for the next build.
+    /// Stores what is now at the URI for the next build.
     fn keep(&self, here: BTreeMap<String, String>) -> Result<(), BuildError> {
         let there = self.there()?;
         let files = here.into_iter().filter_map(|(name, blake3)| {

@@ -1,5 +1,5 @@
-//! Why a texture is to be fitted: what its fit depends on, compared with what the last finished
-//! build had.
+//! Explains why a texture has to be fitted, by comparing what its fit depends on with the last
+//! finished build.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,23 +11,23 @@ use crate::cache::Cache;
 use crate::job::Job;
 use crate::kept::Kept;
 
-/// The file of what the fits of the last build depended on, in the folder of what is kept.
+/// File that lists what the fits of the last build depended on, in the folder of stored data.
 const FILE: &str = "fits.json";
-/// Most bytes of that file: a few million textures.
+/// Largest size of that file, bytes: a few million textures.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// Why a texture is to be fitted.
+/// Why a texture has to be fitted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Why {
-    /// No build of this user has fitted it in this folder.
+    /// No build of this user has fitted it in this folder yet.
     New,
-    /// These are not what they were: `recordings`, `reading`, `options`, `plugins`, `program`, in
-    /// this order.
+    /// These parts have changed: `recordings`, `reading`, `options`, `plugins`, `program`, in this
+    /// order.
     Changed(Vec<&'static str>),
-    /// What was made is there and is damaged, or of another user.
+    /// The stored result is damaged, or belongs to another user.
     Unusable,
-    /// What was made is gone.
+    /// The stored result is gone.
     Gone,
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for Why {
     }
 }
 
-/// What the fits of a build depend on, by texture: a hash of each part.
+/// What the fits of a build depend on, by texture: a hash for each part.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Reasons(BTreeMap<String, Vec<String>>);
 
@@ -52,7 +52,7 @@ impl Reasons {
         Self(jobs.map(|job| (job.texture.clone(), hashes(job))).collect())
     }
 
-    /// Reads those of the last finished build.
+    /// Reads the dependencies of the last finished build.
     pub(crate) fn open(kept: &Kept) -> Self {
         let bytes = kept.get(FILE, MOST_BYTES);
         let read = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -63,7 +63,7 @@ impl Reasons {
         kept.put(FILE, &serde_json::to_vec(self)?)
     }
 
-    /// Why a job with this key is to be done.
+    /// Returns why a job with this key has to be done.
     pub(crate) fn why(&self, job: &Job, key: &str, cache: &Cache) -> Why {
         if cache.has_file(key) {
             return Why::Unusable;

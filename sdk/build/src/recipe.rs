@@ -1,4 +1,4 @@
-//! The recipe, as it is written: `library.toml`.
+//! The recipe as written in `library.toml`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,10 @@ use crate::elsewhere::{Elsewhere, elsewhere, joined};
 use crate::findings::unknown_code;
 use crate::keys::check_keys;
 
-/// Most bytes of a recipe.
+/// Largest size of a recipe, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// A recipe: recordings, and how a library is made of them.
+/// A recipe: recordings, and how to make a library from them.
 ///
 /// ```
 /// let recipe = htex_build::Recipe::parse(r#"
@@ -38,13 +38,13 @@ const MOST_BYTES: u64 = 1 << 20;
 pub struct Recipe {
     /// The library.
     pub library: LibraryPart,
-    /// Settings of all textures.
+    /// Settings for all textures.
     #[serde(default)]
     pub defaults: Settings,
     /// Recordings, and settings of their textures.
     #[schemars(length(min = 1))]
     pub textures: Vec<Textures>,
-    /// Settings of single textures, laid over the others in their order.
+    /// Settings for individual textures. Later overrides take precedence over earlier ones.
     #[serde(default)]
     pub overrides: Vec<Override>,
 }
@@ -55,9 +55,9 @@ pub struct Recipe {
 pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
-    /// Plugins of models to fit with: WASM modules, which run in a sandbox. Relative to the recipe.
-    /// A native library, which runs with all rights, is named by a person alone:
-    /// `htex build --plugin`.
+    /// Plugins with models for the fit: WASM modules, which run in a sandbox. Paths are relative to
+    /// the recipe. A native library runs with all rights, so only the user can name it: `htex build
+    /// --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
 }
@@ -66,23 +66,23 @@ pub struct LibraryPart {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Textures {
-    /// Files by glob, relative to the recipe: `rec/**/*.csv`. Recordings, and what `htex import`
-    /// takes: models of HaTT (`.xml`), `.haptic`, `.ahap`, `.hjif`.
+    /// Files by glob, relative to the recipe: `rec/**/*.csv`. They can be recordings, or files that
+    /// `htex import` takes: models of HaTT (`.xml`), `.haptic`, `.ahap`, `.hjif`.
     #[serde(default, deserialize_with = "one_or_more")]
     #[schemars(with = "OneOrMore", extend("default" = []))]
     pub recordings: Vec<String>,
-    /// A CSV with a row for each recording: the column `recording` is its file, relative to the
-    /// table; other columns are fields of templates. `name`, `speed_mm_s` and `force_n` are used
-    /// where the recipe says nothing else.
+    /// A CSV with a row for each recording. The column `recording` holds its file, relative to the
+    /// table. Other columns are fields for templates. The columns `name`, `speed_mm_s` and
+    /// `force_n` are used unless the recipe states these values itself.
     #[serde(default)]
     pub table: Option<PathBuf>,
-    /// A regular expression with named groups, which become fields of templates. It is matched
-    /// against each file's path relative to the recipe, with `/` between folders; a file that it
+    /// A regular expression with named groups, which become fields for templates. It is matched
+    /// against each file's path relative to the recipe, with `/` between folders. A file that it
     /// does not match is an error.
     #[serde(default)]
     pub pattern: Option<String>,
-    /// Name of the texture, a template; `{stem}` when absent. Recordings with the same name are one
-    /// texture.
+    /// Name of the texture, a template; `{stem}` by default. Recordings with the same name become
+    /// one texture.
     #[serde(default)]
     pub name: Option<String>,
     /// Settings of these textures.
@@ -90,7 +90,7 @@ pub struct Textures {
     pub settings: Settings,
 }
 
-/// Settings of single textures.
+/// Settings for individual textures.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Override {
@@ -103,33 +103,32 @@ pub struct Override {
     pub settings: Settings,
 }
 
-/// Settings of textures; texts of metadata are templates.
+/// Settings of textures. Texts in the metadata are templates.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(deny_unknown_fields)]
 pub struct Settings {
-    /// How recordings are read; files are relative to the recipe, that of the tracker is a
-    /// template.
+    /// How recordings are read. Files are relative to the recipe. The tracker's file is a template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
-    /// What haptic signals of other formats do not say.
+    /// Facts that haptic signals of other formats do not state.
     #[serde(flatten)]
     pub signal: SignalSettings,
     /// How models are fitted.
     #[serde(flatten)]
     pub fit: FitSettings,
-    /// Who made the texture, and of what.
+    /// Who made the texture, and from what.
     #[serde(flatten)]
     pub metadata: Metadata,
-    /// WASM modules to fit with and to bring along in the asset. Relative to the recipe.
+    /// WASM modules that are used for the fit and embedded in the asset. Relative to the recipe.
     pub embed_plugins: Option<Vec<PathBuf>>,
     /// Speed and normal force of the recordings.
     pub at: At,
-    /// What an asset must hold to be in the library.
+    /// The requirements that an asset must meet to be in the library.
     pub gates: Gates,
 }
 
-/// Speed and normal force: numbers, or templates that stand for numbers.
+/// Speed and normal force: numbers, or templates that give numbers.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct At {
@@ -149,12 +148,12 @@ fn force(_: &mut SchemaGenerator) -> Schema {
     number_or_template(Exploration::MOST_FORCE_N)
 }
 
-/// Returns the schema of a number from 0 to a largest one, or a template.
+/// Returns the schema for a number from 0 to `most`, or a template.
 fn number_or_template(most: f64) -> Schema {
     json_schema!({ "anyOf": [{ "type": "number", "minimum": 0, "maximum": most }, { "type": "string" }] })
 }
 
-/// A number, or a template that stands for one.
+/// A number, or a template that gives one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum NumberOrTemplate {
@@ -164,49 +163,49 @@ pub enum NumberOrTemplate {
     Template(String),
 }
 
-/// What an asset must hold to be in the library; an absent gate asks for nothing.
+/// The requirements that an asset must meet to be in the library. An absent gate requires nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Gates {
-    /// Largest nine-band RMS error of every representation at every condition, decibels; or by
-    /// model.
+    /// Largest nine-band RMS error of every representation at every condition, decibels. Can be
+    /// given by model.
     pub max_band_error_db: Option<ModelGate>,
-    /// Largest difference from the recording that is felt of every representation at every
-    /// condition, of a third-octave band or of all together above the detection threshold,
-    /// decibels; or by model. The difference threshold is 1.584 dB.
+    /// Largest difference from the recording that is felt, of every representation at every
+    /// condition, decibels. It applies to each third-octave band and to all bands together above
+    /// the detection threshold. Can be given by model. The difference threshold is 1.584 dB.
     pub max_felt_error_db: Option<ModelGate>,
-    /// Largest repeatability of a condition: the RMS over nine bands of the difference between odd
-    /// and even blocks of time, over √2, decibels.
+    /// Largest repeatability value of a condition, decibels: the RMS over nine bands of the
+    /// difference between odd and even blocks of time, over √2.
     pub max_repeatability_db: Option<f64>,
     /// Codes of findings that recordings may not have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,
-    /// Fewest segments of 0.2 s at every condition.
+    /// Smallest number of 0.2 s segments at every condition.
     pub min_segments: Option<usize>,
-    /// Whether recordings may have no findings that are errors or warnings: a steady motion on
+    /// Whether findings of recordings that are errors or warnings are forbidden: a steady motion on
     /// target, no clipping, …
     pub strict: Option<bool>,
-    /// Whether a licence must be stated; of files of other haptic formats it must unless this is
-    /// false.
+    /// Whether a licence must be stated. For files of other haptic formats, it is required unless
+    /// this is false.
     pub license: Option<bool>,
     /// Largest size of the asset, bytes.
     pub max_bytes: Option<u64>,
 }
 
-/// A gate of errors of models, decibels.
+/// A gate for the errors of models, decibels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ModelGate {
-    /// Of all models.
+    /// For all models.
     All(f64),
-    /// Of single models, by short name or id.
+    /// For individual models, by short name or id.
     ByModel(BTreeMap<String, f64>),
 }
 
 impl Recipe {
-    /// Reads a recipe's text.
+    /// Parses the text of a recipe.
     ///
     /// # Errors
-    /// When it is not TOML, or has other keys or values than a recipe, or a gate by a code that no
+    /// If it is not TOML, has other keys or values than a recipe, or has a gate for a code that no
     /// finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         check_keys(text, &htex_files::toml::from_str(text)?)?;
@@ -215,7 +214,7 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// Refuses gates by codes that no finding has.
+    /// Refuses gates for codes that no finding has.
     fn check_codes(&self) -> Result<(), BuildError> {
         let textures = self.textures.iter().map(|textures| &textures.settings);
         let overrides = self.overrides.iter().map(|over| &over.settings);
@@ -227,10 +226,10 @@ impl Recipe {
         }
     }
 
-    /// Reads a recipe's file, a path or URI.
+    /// Reads a recipe from a file, given by path or URI.
     ///
     /// # Errors
-    /// As [`Self::parse`], and when the file cannot be read.
+    /// The errors of [`Self::parse`], and an error if the file cannot be read.
     pub fn open(file: &Path) -> Result<Self, BuildError> {
         let text = match elsewhere(file)? {
             Some(location) => Elsewhere::temporary(Some(location.clone())).text(&location)?,
@@ -241,8 +240,8 @@ impl Recipe {
 }
 
 impl Settings {
-    /// Returns these settings, and where they are absent those of `under`; options and gates are
-    /// laid over each other one by one.
+    /// Returns these settings, completed by `under` where they are absent. Options and gates are
+    /// merged one by one.
     pub(crate) fn over(self, under: Self) -> Self {
         Self {
             reading: self.reading.over(under.reading),
@@ -258,7 +257,7 @@ impl Settings {
         }
     }
 
-    /// Returns how recordings are read, but for the tracker's, which is a file of each of them.
+    /// Returns how recordings are read, without the tracker, whose file differs between recordings.
     pub(crate) fn reading(&self, recipe_folder: &Path) -> ReadingSettings {
         let response = self.reading.response.as_ref();
         ReadingSettings {

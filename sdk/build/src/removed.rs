@@ -1,7 +1,7 @@
-//! Textures that the library before this build had and the library after it lacks.
+//! Textures that the library had before this build and lacks after it.
 //!
-//! A glob that matches fewer files than before is not wrong, so a folder that was moved removes its
-//! textures. That is said, and refused where the build keeps all.
+//! A glob that matches fewer files than before is not an error, so moving a folder removes its
+//! textures. This is reported, and refused if the options forbid removals.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,12 +13,12 @@ use crate::assemble::{MOST_REPORT_BYTES, REPORT_FILE, previous};
 use crate::dist::Dist;
 use crate::report::{Report, Status};
 
-/// Most places in a message.
+/// Largest number of names in a message.
 const NAMED: usize = 3;
 
-/// Names of the textures in the library that the last build wrote: by its report, and by the
-/// library's own index. A folder of this machine without either may be a new one for results
-/// elsewhere, whose report is read.
+/// Returns the names of the textures in the library that the last build wrote, from its report and
+/// from the library's own index. A local folder without either may be a new one for remote results;
+/// then the remote report is read.
 pub(crate) fn textures_before(
     dist: &Dist,
     library: &str,
@@ -36,13 +36,14 @@ pub(crate) fn textures_before(
     names
 }
 
-/// Names of the textures that a report has built.
+/// Returns the names of the textures that were built according to a report.
 pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
     let built = report.textures.iter().filter(|t| t.status == Status::Built);
     built.map(|texture| texture.name.clone())
 }
 
-/// Names in a library's file; none where it is not there or damaged, which its next writing mends.
+/// Returns the names in a library's file; none if it is missing or damaged. Writing it again
+/// repairs it.
 fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
     let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());
     let path = dist.at(file).ok().filter(|path| is_file(path));
@@ -51,14 +52,14 @@ fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
     entries.map_while(Result::ok).map(|entry| entry.name).collect()
 }
 
-/// The report at a URI.
+/// Reads the report at a URI.
 fn report_at(location: &Location) -> Option<Report> {
     let storage = Storage::from_environment().ok()?;
     let bytes = storage.read(&location.inside(REPORT_FILE), MOST_REPORT_BYTES).ok()?;
     serde_json::from_slice(&bytes).ok()
 }
 
-/// Names textures in a few words: those in one folder by the folder, `hatt/…`.
+/// Lists texture names briefly: names in the same folder are replaced by the folder, `hatt/…`.
 ///
 /// ```
 /// let names = ["hatt/cork", "hatt/felt", "oak"].map(str::to_owned);

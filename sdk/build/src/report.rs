@@ -1,5 +1,5 @@
-//! The report of a build: `build-report.json`. It has no times and no folders: equal builds have
-//! equal reports, except for what the build before had and this one removed.
+//! The report of a build: `build-report.json`. It contains no times and no folders, so equal builds
+//! have equal reports, except for the textures that this build removed.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::made::{Made, Outcome};
 use crate::recipe::Recipe;
 use crate::thumbnail::Thumbnail;
 
-/// Name and version of the report's form.
+/// Name and version of the report's format.
 pub const REPORT: &str = "htex-build-report/1";
 
 /// The report of a build.
@@ -24,19 +24,20 @@ pub struct Report {
     pub report: String,
     /// Program and version that built.
     pub program: String,
-    /// The error that ended the build, line by line. All else is then what an earlier build left,
-    /// if there was one.
+    /// The error that ended the build, line by line. All other fields then describe what an earlier
+    /// build left, if there was one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
     /// The library.
     pub library: LibraryReport,
-    /// Names of textures that the library before this build had and the recipe no longer asks for.
+    /// Names of textures that are in the library before this build but no longer in the recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// Of the textures of the library, by the id of a model, how many it keeps at all their
-    /// conditions below the difference threshold, and how many within what their recordings vary.
+    /// By model id, how many textures of the library differ from their recordings by less than the
+    /// difference threshold at all their conditions, and how many by less than their recordings
+    /// vary.
     pub felt_shares: BTreeMap<String, FeltShare>,
-    /// By code of a finding of recordings, the textures that have it.
+    /// By code of a finding of recordings: the textures with this finding.
     pub findings: BTreeMap<String, FindingShare>,
     /// All textures of the recipe, by name.
     pub textures: Vec<TextureReport>,
@@ -47,13 +48,13 @@ pub struct Report {
 pub struct LibraryReport {
     /// Its name.
     pub name: String,
-    /// Its file, in the folder of the report.
+    /// Its file, relative to the folder of the report.
     pub file: String,
     /// Its size, bytes.
     pub bytes: u64,
-    /// BLAKE3 of its index, which holds the hashes of all textures, hexadecimal.
+    /// BLAKE3 of its index, hexadecimal. The index contains the hashes of all textures.
     pub blake3: String,
-    /// Number of its textures.
+    /// Number of textures in it.
     pub textures: usize,
     /// Number of textures that were left out.
     pub left_out: usize,
@@ -70,10 +71,10 @@ pub struct TextureReport {
     pub key: String,
     /// Its recordings.
     pub recordings: Vec<RecordingReport>,
-    /// Why it is left out.
+    /// Why it was left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missed: Vec<Missed>,
-    /// Its asset, also of one that is left out for its gates.
+    /// Its asset, even if it was left out because of a gate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub asset: Option<AssetReport>,
 }
@@ -82,7 +83,7 @@ pub struct TextureReport {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It is.
+    /// It is in the library.
     Built,
     /// It misses a gate, or could not be fitted.
     LeftOut,
@@ -102,9 +103,9 @@ pub struct RecordingReport {
 /// A gate that a texture misses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Missed {
-    /// The gate by its key in the recipe; `fit` if there is no asset.
+    /// The key of the gate in the recipe, or `fit` if there is no asset.
     pub gate: String,
-    /// What is wrong, in a sentence.
+    /// What is wrong, as a sentence.
     pub reason: String,
 }
 
@@ -129,39 +130,40 @@ pub struct AssetReport {
     pub simulated: bool,
     /// Number of conditions.
     pub conditions: usize,
-    /// Speeds of the conditions, least and largest, mm/s.
+    /// Smallest and largest speed of the conditions, mm/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_mm_s: Option<[f64; 2]>,
-    /// Normal forces of the conditions, least and largest, newtons.
+    /// Smallest and largest normal force of the conditions, newtons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<[f64; 2]>,
-    /// Fewest segments of a condition; 0 of a texture that a file of another format states.
+    /// Smallest number of segments of a condition; 0 for a texture that a file of another format
+    /// states.
     pub segments: usize,
-    /// Largest repeatability of a condition, which an error is compared with: the RMS over nine
-    /// bands of the difference between odd and even blocks of time, over √2, decibels.
+    /// Largest repeatability value of a condition, to compare errors with, decibels: the RMS over
+    /// nine bands of the difference between odd and even blocks of time, over √2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
-    /// Largest nine-band RMS error over the conditions of each model, decibels, by id.
+    /// Largest nine-band RMS error of each model over its conditions, decibels, by model id.
     pub band_error_rms_db: BTreeMap<String, f64>,
-    /// What is felt of the difference from the recordings, of each model at its worst condition, by
-    /// id.
+    /// How much of the difference from the recordings is felt, for each model at its worst
+    /// condition, by model id.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of its recordings, by code.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<FindingReport>,
-    /// Warnings of the fit, those of the findings among them.
+    /// Warnings of the fit, including those from findings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// The recorded spectrum of the first condition; of a texture that a file states, that of its
-    /// default condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0
-    /// is 40 dB below or less.
+    /// The recorded spectrum of the first condition, or, for a texture that a file states, the
+    /// spectrum of its default condition. It has 48 points evenly spaced in log frequency. 63 is
+    /// the largest magnitude, 0 is 40 dB below it or less.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,
 }
 
 impl TextureReport {
-    /// Reports a texture; `asset` is its asset if it has one.
+    /// Reports a texture with its asset, if it has one.
     pub(crate) fn new(job: &Job, key: &str, made: &Made, asset: Option<&Asset>) -> Self {
         let recordings = job.recordings.iter().map(|recording| RecordingReport {
             file: recording.name.clone(),
@@ -193,7 +195,7 @@ impl AssetReport {
     fn new(made: &Made, asset: &Asset) -> Self {
         let manifest = &asset.manifest;
         let conditions = || manifest.conditions.iter();
-        // A representation that a file of another format states has none.
+        // A representation that a file of another format states has no error.
         let errors = manifest.representations.iter().filter_map(|representation| {
             let qualities = representation.at.iter().filter_map(|at| at.quality.as_ref());
             let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
@@ -224,15 +226,15 @@ impl AssetReport {
 }
 
 impl AssetReport {
-    /// Whether it has a warning that is no finding of a recording.
+    /// Returns whether it has a warning that does not come from a finding of a recording.
     pub fn has_other_warnings(&self) -> bool {
         let is_finding = |warning: &String| self.findings.iter().any(|f| warning.contains(&f.code));
         self.warnings.iter().any(|warning| !is_finding(warning))
     }
 }
 
-/// Counts, by model, the textures whose difference is below the difference threshold, and those
-/// within what their recording varies.
+/// Counts, by model, the textures whose difference is below the difference threshold, and the
+/// textures whose difference is within the variation of their recordings.
 pub(crate) fn felt_shares(textures: &[TextureReport]) -> BTreeMap<String, FeltShare> {
     let mut shares: BTreeMap<String, FeltShare> = BTreeMap::new();
     let built = textures.iter().filter(|t| t.status == Status::Built);

@@ -1,4 +1,4 @@
-//! A second of a texture as sound, for catalogues.
+//! Renders a second of a texture as sound, for catalogues.
 
 use std::error::Error;
 use std::io::Cursor;
@@ -6,18 +6,18 @@ use std::io::Cursor;
 use htex_host::Registry;
 use htex_play::{Asset, VoiceOptions};
 
-/// Rate of the sound, hertz: twice the band's upper edge and a little, so that browsers play it and
-/// files are small.
+/// Sample rate of the sound, hertz: a little more than twice the band's upper edge, so that
+/// browsers play it and files are small.
 const RATE_HZ: u32 = 8_000;
 /// Its length, samples.
 const SAMPLES: usize = RATE_HZ as usize;
-/// Its RMS, of full scale.
+/// RMS, relative to full scale.
 const RMS: f32 = 0.1;
 /// Length of the fade at both ends, samples.
 const FADE: usize = 200;
 
-/// Returns a second of the asset's best representation at its default condition, as a WAV of 16
-/// bits, at the same loudness for all textures.
+/// Renders a second of the asset's best representation at its default condition as a 16-bit WAV.
+/// All textures get the same loudness.
 pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, Box<dyn Error>> {
     let data = htex_format::Asset::from_bytes(asset)?;
     let asset = Asset::with_registry(data, registry.clone());

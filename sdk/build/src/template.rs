@@ -1,14 +1,14 @@
-//! Texts with placeholders: `{stem}`, `{material} at {speed} mm/s`.
+//! Texts with placeholders, such as `{stem}` or `{material} at {speed} mm/s`.
 
 use std::collections::BTreeMap;
 
-/// What placeholders stand for, by name.
+/// The values of placeholders, by name.
 pub(crate) type Fields = BTreeMap<String, String>;
 
-/// Most bytes of a filled text before its last placeholder.
+/// Longest filled text before its last placeholder, bytes.
 const MOST_BYTES: usize = 65_536;
 
-/// Fills the placeholders of a text; `{{` and `}}` stand for braces.
+/// Fills the placeholders of a text. `{{` and `}}` stand for literal braces.
 pub(crate) fn fill(text: &str, fields: &Fields) -> Result<String, String> {
     let (mut filled, mut rest) = (String::new(), text);
     while let Some(at) = rest.find(['{', '}']) {

@@ -1,16 +1,16 @@
-//! Spectra small enough for a page of thousands.
+//! Spectra that are small enough for a page with thousands of textures.
 
 use htex_author::TextureSpectrum;
 use serde::{Deserialize, Serialize};
 
-/// Points of a thumbnail, spaced evenly in log frequency over the band.
+/// Number of points in a thumbnail, evenly spaced in log frequency over the band.
 const POINTS: usize = 48;
 /// Range of a thumbnail below its largest magnitude, decibels.
 const RANGE_DB: f64 = 40.0;
-/// Steps of that range.
+/// Number of steps in that range.
 const STEPS: f64 = 63.0;
 
-/// A spectrum of 48 points, evenly spaced in log frequency over its band: 63 is its largest
+/// A spectrum with 48 points, evenly spaced in log frequency over its band. 63 is its largest
 /// magnitude, 0 is 40 dB below it or less.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -21,7 +21,7 @@ pub(crate) fn thumbnail(spectrum: &TextureSpectrum) -> Thumbnail {
     of_magnitudes(&spectrum.frequency_hz, &spectrum.magnitude)
 }
 
-/// Returns the thumbnail of magnitudes on ascending frequencies.
+/// Returns the thumbnail of magnitudes at ascending frequencies.
 pub(crate) fn of_magnitudes(frequency_hz: &[f64], magnitude: &[f64]) -> Thumbnail {
     let (Some(low), Some(high)) = (frequency_hz.first(), frequency_hz.last()) else {
         return Thumbnail::default();
@@ -34,7 +34,8 @@ pub(crate) fn of_magnitudes(frequency_hz: &[f64], magnitude: &[f64]) -> Thumbnai
         edge = to;
         let within = frequency_hz.iter().zip(magnitude).filter(|(f, _)| (from..=to).contains(*f));
         let peak = within.map(|(_, m)| *m).fold(0.0, f64::max);
-        // Below 50 Hz the grid of 5 Hz is coarser than the points.
+        // Below 50 Hz the 5 Hz grid is coarser than the points, so some points contain no grid
+        // frequency.
         let peak = if peak > 0.0 { peak } else { nearest(frequency_hz, magnitude, from) };
         level(peak, largest)
     });

@@ -1,4 +1,4 @@
-//! The recipes of `examples/data-sets`, on data of the shape of each set that is made here.
+//! Builds the recipes of `examples/data-sets` with generated data in the form of each data set.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::fs;
@@ -42,7 +42,7 @@ impl Set {
         Ok(build.finish()?.report)
     }
 
-    /// Builds: every texture is made.
+    /// Builds and checks that every texture is made.
     fn built(&self) -> Report {
         let report = self.build().unwrap();
         let missed: Vec<_> = report.textures.iter().map(|t| &t.missed).collect();
@@ -50,7 +50,7 @@ impl Set {
         report
     }
 
-    /// Builds a recipe without a licence, which leaves everything out, and then with one.
+    /// Builds a recipe without a licence, which leaves everything out, and then with a licence.
     fn built_with_a_licence(&self) -> Report {
         let report = self.build().unwrap();
         assert_eq!(report.library.textures, 0);
@@ -76,7 +76,7 @@ fn names(report: &Report) -> Vec<&str> {
     report.textures.iter().map(|t| &t.name[..]).collect()
 }
 
-/// Noise within ±1 with most of its power below a fifth of the rate.
+/// Returns noise within ±1 with most of its power below a fifth of the sample rate.
 fn noise(seed: u64, samples: usize) -> Vec<f64> {
     let (mut state, mut low) = (seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1, 0.0);
     let next = |_| {
@@ -122,8 +122,8 @@ fn models_of_the_penn_toolkit() {
     assert!(manifest.description.unwrap().starts_with("Leather 1 Back, of"));
 }
 
-/// Times whose steps differ by half, as those of the set, and accelerations in g with the weight on
-/// Z.
+/// Returns times whose steps differ by half, as in the data set, and accelerations in g with
+/// gravity on Z.
 fn cluster(seed: u64, gain: f64) -> String {
     let [x, y, z] = [0, 1, 2].map(|axis| noise(3 * seed + axis, 18_000));
     let mut text = "time,X,Y,Z\n".to_owned();
@@ -157,7 +157,7 @@ fn accelerations_of_the_cluster_set() {
     let manifest = set.asset("117").manifest;
     assert_eq!((manifest.contact, manifest.quantity), (Contact::Finger, Quantity::Acceleration));
     assert_eq!(manifest.license.as_deref(), Some("CC-BY-4.0"));
-    // 0.1 g of noise are about 1 m/s², of which the band has a part.
+    // 0.1 g of noise is about 1 m/s², of which a part lies in the band.
     let level = manifest.representations[0].at.iter().map(|at| at.level_rms).fold(0.0, f64::max);
     assert!((0.05..1.0).contains(&level), "{level}");
 }
@@ -211,7 +211,7 @@ fn strokes_of_textsense() {
         let (name, stated) = texture.name.split_once('/').unwrap();
         assert!(name.starts_with("text") && stated == speed.to_string());
     }
-    // With a force, a texture has all of its speeds.
+    // With a force, each texture gets all of its speeds.
     let recipe = fs::read_to_string(set.path("library.toml")).unwrap();
     let at = "name = \"{texture}\"\nat = { force_n = 0.5 }";
     let recipe = recipe.replace("name = \"{texture}/{speed_mm_s}\"", at);
@@ -222,8 +222,8 @@ fn strokes_of_textsense() {
     assert_eq!((asset.conditions, asset.speed_mm_s), (5, Some([20.0, 60.0])));
 }
 
-/// The form of SENS3 is filled in with columns of forces and places; a column that is not there is
-/// named, with those that are.
+/// The template for SENS3 is completed with columns of forces and positions. An error for a missing
+/// column names the existing ones.
 #[test]
 fn the_form_of_sens3() {
     let set = Set::new("sens3");
@@ -246,8 +246,8 @@ fn the_form_of_sens3() {
     assert!(error.contains("force_x_n") && error.contains("Fx"), "{error}");
 }
 
-/// Every recipe of the folder is read, has a section in the page, and names a licence or asks for
-/// one.
+/// Every recipe of the folder can be read, has a section in the page, and names a licence or
+/// requires one.
 #[test]
 fn each_recipe_is_described_and_asks_for_a_licence() {
     let page = fs::read_to_string(examples().join("README.md")).unwrap();

@@ -1,4 +1,4 @@
-//! Recipes of files of other haptic formats.
+//! Recipes for files of other haptic formats.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;
@@ -13,12 +13,11 @@ use htex_host::Registry;
 
 const PROGRAM: &str = "htex-build tests";
 
-/// Half a second of a hum that grows.
+/// Half a second of a hum that grows stronger.
 const HAPTIC: &str = r#"{"version": {"major": 1, "minor": 0, "patch": 0}, "metadata": {}, "signals": {"continuous": {"envelopes": {
     "amplitude": [{"time": 0, "amplitude": 0.4}, {"time": 0.5, "amplitude": 0.6}], "frequency": [{"time": 0, "frequency": 0.5}]}}}}"#;
 
-/// A model file of the Penn Haptic Texture Toolkit with four nodes, of which the first two are
-/// silent.
+/// A model file of the Penn Haptic Texture Toolkit with four nodes. The first two are silent.
 fn hatt(material: &str) -> String {
     let node = |number: usize, speed: f64, force: f64, variance: f64| {
         format!(
@@ -58,7 +57,7 @@ license = "CC-BY-4.0"
 struct Place(tempfile::TempDir);
 
 impl Place {
-    /// A folder with a signal and a model file.
+    /// Creates a folder with a signal and a model file.
     fn new() -> Self {
         let place = Self(tempfile::tempdir().unwrap());
         place.write("hum.haptic", HAPTIC);
@@ -70,7 +69,7 @@ impl Place {
         fs::write(self.0.path().join(name), text).unwrap();
     }
 
-    /// Opens the build of a recipe without its first table.
+    /// Opens the build of a recipe. `textures` is its text without the first table.
     fn open(&self, textures: &str) -> Result<Build, BuildError> {
         self.write("library.toml", &format!("library.name = 'others'\n{textures}"));
         let (recipe, output) = (self.0.path().join("library.toml"), self.0.path().join("out"));
@@ -93,7 +92,7 @@ impl Place {
         Asset::from_bytes(&fs::read(file).unwrap()).unwrap()
     }
 
-    /// The keys of the textures' jobs.
+    /// Returns the keys of the textures' jobs.
     fn keys(&self, textures: &str) -> BTreeMap<String, String> {
         let build = self.open(textures).unwrap();
         let jobs = build.pending();
@@ -113,8 +112,8 @@ fn files_of_other_formats_become_textures() {
     let report = place.build(&[SIGNAL, MODEL_FILE].concat()).unwrap();
     assert_eq!(report.library.textures, 2);
 
-    // A model file as it is: its conditions, its quantity, a spectrum and a sound of its strongest
-    // node.
+    // A model file is used unchanged: its conditions, its quantity, and a spectrum and a sound of
+    // its strongest node.
     let felt = place.asset("felt");
     assert_eq!(
         (&felt.manifest.name[..], felt.manifest.license.as_deref()),
@@ -134,7 +133,7 @@ fn files_of_other_formats_become_textures() {
     let sound = fs::read(place.0.path().join("out/sounds/felt.wav")).unwrap();
     assert!(sound[44..].iter().any(|byte| *byte != 0));
 
-    // A signal as `htex import` fits it.
+    // The signal is fitted as `htex import` fits it.
     let hum = place.asset("hum");
     let how = Import {
         name: "hum",
@@ -157,7 +156,7 @@ fn files_of_other_formats_become_textures() {
     assert!(fitted.felt.contains_key("org.htex.bands"));
 }
 
-/// Files of two more formats, made of a texture, are conditions of one texture.
+/// Files of two more formats, made from a texture, become conditions of one texture.
 #[test]
 fn signals_of_one_name_are_conditions_of_a_texture() {
     let place = Place::new();
@@ -266,7 +265,7 @@ fn settings_of_other_files_are_refused_and_missing_ones_asked_for() {
     place.write("wool.xml", &hatt("Wool"));
     let error = place.refused("[[textures]]\nrecordings = '*.xml'\nname = 'one'");
     assert!(error.contains("one: felt.xml and wool.xml state a texture each"), "{error}");
-    // Both are found without a build, too.
+    // Both errors are also found without a build.
     let recipe = place.0.path().join("library.toml");
     let error = check(&recipe, &BuildOptions::new(PROGRAM)).unwrap_err();
     assert!(error.to_string().contains("state a texture each"), "{error}");
@@ -316,8 +315,8 @@ fn a_job_of_an_import_is_data() {
     }
 }
 
-/// A friction map is a texture as it is, once full scale, speed and force are given, and the
-/// distance of pixels where the file states none.
+/// A friction map becomes a texture unchanged once full scale, speed and force are given, and also
+/// the distance between pixels if the file does not state it.
 #[test]
 fn a_map_becomes_a_texture() {
     const MAP: &str = "[[textures]]\nrecordings = 'row.png'\nlicense = 'CC0-1.0'\nfull_scale = 0.3\nat = { speed_mm_s = 80, force_n = 0.4 }\n";
@@ -332,7 +331,7 @@ fn a_map_becomes_a_texture() {
     assert_eq!(pitch(&place.asset("row")), 0.5);
     assert_ne!(stated, 0.5);
 
-    // Without the chunk: its length, name, 9 bytes and checksum.
+    // Remove the chunk: its length, name, 9 bytes and checksum.
     let name = image.windows(4).position(|part| part == b"pHYs").unwrap();
     image.drain(name - 4..name + 17);
     fs::write(place.0.path().join("row.png"), &image).unwrap();

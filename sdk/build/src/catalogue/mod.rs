@@ -1,4 +1,4 @@
-//! The catalogue: a page to search, sort and listen through a library.
+//! The catalogue: a web page to search, sort and listen to a library.
 
 use serde_json::{Value, json};
 
@@ -10,8 +10,8 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// Returns the page. Textures are played by the browser package if it lies beside the page, in
-/// `browser`, else from `sounds`.
+/// Returns the page. Textures are played by the browser package if it is next to the page, in
+/// `browser`; otherwise from `sounds`.
 pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
     let textures: Vec<Value> = report.textures.iter().map(texture).collect();
     let data = json!({
@@ -21,7 +21,7 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
         "removed": removed(report),
         "browserPackage": browser_package,
     });
-    // Inside a script, only `<` could end it.
+    // Inside a script element, only `<` could end the data.
     let data = data.to_string().replace('<', "\\u003c");
     PAGE.replace("@STYLE@", STYLE)
         .replace("@SCRIPT@", SCRIPT)
@@ -29,7 +29,7 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
         .replace("@DATA@", &data)
 }
 
-/// How many textures were removed and which, in words; empty if none.
+/// Says how many textures were removed and which; empty if none.
 fn removed(report: &Report) -> String {
     match report.removed.len() {
         0 => String::new(),
@@ -37,7 +37,8 @@ fn removed(report: &Report) -> String {
     }
 }
 
-/// Findings by code, the gravest first: code, severity, number of textures, first names.
+/// Returns findings by code, the most severe first: code, severity, number of textures, first
+/// names.
 fn findings(report: &Report) -> Vec<Value> {
     let mut all: Vec<_> = report.findings.iter().collect();
     all.sort_by_key(|(code, share)| (share.severity, *code));

@@ -1,9 +1,9 @@
-//! Many files at once: each is whole or not there, as one that is written alone, and the disk is
-//! waited for once for all of a group.
+//! Writes many files at once. As with a single file, each one is written completely or not at all.
+//! The disk is waited for only once per group of files.
 //!
-//! A flush takes the disk some milliseconds: two for each file are minutes for 100,000. Files are
-//! written beside their targets, then the file system is flushed (on Linux; elsewhere each file),
-//! then all are renamed.
+//! A flush takes the disk some milliseconds, so two flushes for each file would take minutes for
+//! 100,000 files. Instead, files are written next to their targets, then the file system is flushed
+//! (on Linux; on other systems each file), and then all files are renamed.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -13,11 +13,11 @@ use tempfile::TempPath;
 
 use crate::{Readers, Target, folder, sync_folder, unfinished};
 
-/// Files of a group.
+/// Number of files in a group.
 const GROUP: usize = 32_768;
 
-/// Files that are being written. Dropping it before [`Self::finish`] removes those that are not in
-/// their places yet.
+/// A batch of files that are being written. If it is dropped before [`Self::finish`], the files
+/// that are not yet in their places are removed.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -36,15 +36,16 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Writes a file, which is in its place after [`Self::finish`], or earlier.
+    /// Writes a file. It is in its place after [`Self::finish`], or earlier.
     ///
     /// # Errors
-    /// As [`crate::write_file`]; those of the files before it, whose group it ends.
+    /// The errors of [`crate::write_file`], and the errors of earlier files if this file completes
+    /// their group.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_to(Target::of(path, Readers::All)?, bytes)
     }
 
-    /// As [`Self::write`], in the place of `path`, in which a link is replaced and not followed.
+    /// Like [`Self::write`], but a link at `path` is replaced and not followed.
     pub(crate) fn write_in_place_of(
         &mut self,
         path: PathBuf,
@@ -60,7 +61,7 @@ impl Batch {
             Target::Beside(mut beside, path) => {
                 let written = beside.write_all(bytes);
                 self.folders.insert(folder(&path).to_owned());
-                // Closed: a process has few open files.
+                // The file is closed, because a process may only have a few open files.
                 self.written.push((beside.into_temp_path(), path));
                 written.inspect_err(|_| self.forget_last())?;
             }
@@ -68,10 +69,10 @@ impl Batch {
         if self.written.len() < GROUP { Ok(()) } else { self.keep() }
     }
 
-    /// Puts the files in their places, and flushes that to disk.
+    /// Moves the files to their places, and flushes this to disk.
     ///
     /// # Errors
-    /// Those of the system; each file is then the old one, or whole.
+    /// Errors of the system. Each file is then either the old one or complete.
     pub fn finish(mut self) -> io::Result<()> {
         self.keep()
     }
@@ -85,8 +86,8 @@ impl Batch {
     fn keep(&mut self) -> io::Result<()> {
         flush(&self.written, &self.folders)?;
         for (mut beside, path) in self.written.drain(..) {
-            // Renamed while the set is locked: whoever ends the process has removed the file
-            // before, or finds it complete.
+            // Renamed while the set is locked. A signal handler that ends the process has then
+            // either removed the file before, or finds it complete.
             unfinished(|all| {
                 std::fs::rename(&beside, &path)?;
                 all.remove(&*beside);

@@ -1,10 +1,10 @@
-//! Errors of files, with the names of the files.
+//! File errors that include the name of the file.
 
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A file that could not be read or written.
+/// Error for a file that could not be read or written.
 ///
 /// ```
 /// use htex_files::{AtFile, FileError};
@@ -19,18 +19,18 @@ use std::path::{Path, PathBuf};
 pub struct FileError {
     /// The file or folder.
     pub file: PathBuf,
-    /// Whether it was to be written.
+    /// Whether the file was being written, not read.
     pub is_output: bool,
     pub error: io::Error,
 }
 
 impl FileError {
-    /// A file that could not be read.
+    /// Creates the error for a file that could not be read.
     pub fn reading(file: impl AsRef<Path>, error: impl Into<io::Error>) -> Self {
         Self::new(file.as_ref(), false, error.into())
     }
 
-    /// A file that could not be written.
+    /// Creates the error for a file that could not be written.
     pub fn writing(file: impl AsRef<Path>, error: impl Into<io::Error>) -> Self {
         Self::new(file.as_ref(), true, error.into())
     }
@@ -54,7 +54,7 @@ impl std::error::Error for FileError {
     }
 }
 
-/// A file whose content cannot be used.
+/// Error for a file whose content cannot be used.
 ///
 /// ```
 /// use htex_files::InFile;
@@ -66,12 +66,12 @@ impl std::error::Error for FileError {
 pub struct ContentError {
     /// The file or folder.
     pub file: PathBuf,
-    /// What is wrong, and what to do.
+    /// What is wrong and what to do.
     pub problem: String,
 }
 
 impl ContentError {
-    /// A file with this problem.
+    /// Creates the error for a file with this problem.
     pub fn new(file: impl AsRef<Path>, problem: impl fmt::Display) -> Self {
         Self { file: file.as_ref().to_owned(), problem: problem.to_string() }
     }
@@ -85,12 +85,12 @@ impl fmt::Display for ContentError {
 
 impl std::error::Error for ContentError {}
 
-/// Adds the name of the file to an error of its content.
+/// Adds the name of the file to an error about its content.
 pub trait InFile<T> {
-    /// The error is in this file.
+    /// Says that the error is in this file.
     ///
     /// # Errors
-    /// Those of the result.
+    /// The error of the result.
     fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError>;
 }
 
@@ -102,16 +102,16 @@ impl<T, E: fmt::Display> InFile<T> for Result<T, E> {
 
 /// Adds the name of the file to an error of the system.
 pub trait AtFile<T> {
-    /// The file was read.
+    /// Says that the file was being read.
     ///
     /// # Errors
-    /// Those of the result.
+    /// The error of the result.
     fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 
-    /// The file was written.
+    /// Says that the file was being written.
     ///
     /// # Errors
-    /// Those of the result.
+    /// The error of the result.
     fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 }
 

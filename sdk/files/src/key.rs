@@ -1,4 +1,4 @@
-//! The keys that authenticate what this user's programs have kept: compiled modules, fits.
+//! Keys that authenticate stored data of this user's programs: compiled modules and fits.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -8,8 +8,8 @@ use crate::private;
 
 /// A secret key of this user.
 ///
-/// What is kept in a folder that others may have filled begins with a keyed hash of its name and
-/// content: what this user has not made is not used.
+/// Data that is stored in a folder which others may have filled begins with a keyed hash of its
+/// name and content. Data that this user has not made is not used.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -23,11 +23,11 @@ use crate::private;
 pub struct Key([u8; blake3::KEY_LEN]);
 
 impl Key {
-    /// Reads the key of this name in a folder; creates a random one if there is none.
+    /// Reads the key with this name in a folder. Creates a random key if there is none.
     ///
     /// # Errors
-    /// When the folder is another user's or writable by others, or the file is another user's or
-    /// not private; those of the system.
+    /// If the folder belongs to another user or is writable by others, or the file belongs to
+    /// another user or is not private; and errors of the system.
     pub fn of(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);
@@ -39,10 +39,10 @@ impl Key {
         Ok(Self(key))
     }
 
-    /// A key that ends with this value, for a user without a folder for one.
+    /// Creates a temporary key that ends with this value, for a user without a folder for keys.
     ///
     /// # Errors
-    /// When the system gives no random numbers.
+    /// If the system provides no random numbers.
     pub fn passing() -> io::Result<Self> {
         Ok(Self(random()?))
     }
@@ -58,7 +58,7 @@ impl Key {
 }
 
 /// Writes a new key to a temporary file and links it to its path, unless another process has
-/// created one.
+/// already created one.
 fn make(folder: &Path, path: &Path) -> io::Result<()> {
     let key = random()?;
     let mut beside = path.as_os_str().to_owned();

@@ -1,9 +1,9 @@
-//! Unfinished files of processes that were killed, which could not remove them.
+//! Removes unfinished files of killed processes, which could not remove them themselves.
 //!
-//! The name of an unfinished file tells its process: `.htex-MACHINE-PID-RANDOM.part`. `MACHINE` is
-//! a hash of what tells this system's process numbers from the numbers of other systems: a folder
-//! may be shared with other machines and containers, whose processes cannot be seen from here.
-//! Their files are removed when they are old.
+//! The name of an unfinished file identifies its process: `.htex-MACHINE-PID-RANDOM.part`.
+//! `MACHINE` is a hash that distinguishes the process numbers of this system from those of other
+//! systems. A folder may be shared with other machines and containers, whose processes cannot be
+//! seen from here. Their files are removed when they are old.
 
 use std::collections::BTreeSet;
 use std::fs::Metadata;
@@ -11,17 +11,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Beginning and ending of the name of an unfinished file.
+/// Start and end of the name of an unfinished file.
 pub(crate) const BEGINNING: &str = ".htex-";
 pub(crate) const ENDING: &str = ".part";
-/// After this long without a change, a file is no process's any more: the longest commands write at
-/// least once an hour.
+/// A file that has not changed for this long no longer belongs to a running process: even the
+/// longest commands write at least once an hour.
 const OLD: Duration = Duration::from_secs(2 * 24 * 3600);
 
-/// Folders that this process has looked through.
+/// Folders that this process has already searched.
 static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// The beginning of the names of this process's unfinished files.
+/// Start of the names of this process's unfinished files.
 pub(crate) static OWN: LazyLock<String> =
     LazyLock::new(|| format!("{BEGINNING}{}-{}-", *MACHINE, std::process::id()));
 
@@ -29,16 +29,16 @@ static MACHINE: LazyLock<String> = LazyLock::new(|| {
     let boot = std::fs::read("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     let space = std::fs::read_link("/proc/self/ns/pid").unwrap_or_default();
     let bytes = boot.iter().chain(space.as_os_str().as_encoded_bytes());
-    // FNV-1a; nobody gains by a collision.
+    // FNV-1a. A simple hash suffices, because nobody gains anything from a collision.
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
     format!("{hash:016x}")
 });
 
-/// Removes the unfinished files in a folder whose process has ended, or that are old; `own` is a
-/// file of this process there, whose owner they have. The first call for each folder does so. A
-/// file that cannot be removed is no error.
+/// Removes unfinished files in a folder if their process has ended or they are old. Only files with
+/// the same owner as `own`, a file of this process in that folder, are removed. Only the first call
+/// for each folder has an effect. A file that cannot be removed is not an error.
 pub(crate) fn remove_from(folder: &Path, own: &Metadata) {
     let mut done = DONE.lock().unwrap_or_else(PoisonError::into_inner);
     if !done.insert(folder.to_owned()) {
@@ -51,7 +51,7 @@ pub(crate) fn remove_from(folder: &Path, own: &Metadata) {
         let Some(name) = name.to_str().and_then(inner_name) else {
             continue;
         };
-        // Of the entry itself: a link is not followed.
+        // Metadata of the entry itself: a link is not followed.
         let Ok(is) = entry.metadata() else { continue };
         if is.is_file() && is_of_one_owner(&is, own) && (is_of_dead(name) || is_old(&is)) {
             let _ = std::fs::remove_file(entry.path());
@@ -59,12 +59,12 @@ pub(crate) fn remove_from(folder: &Path, own: &Metadata) {
     }
 }
 
-/// The part of the name of an unfinished file between its beginning and its ending.
+/// Returns the part of an unfinished file's name between its start and its end.
 fn inner_name(name: &str) -> Option<&str> {
     name.strip_prefix(BEGINNING)?.strip_suffix(ENDING)
 }
 
-/// Whether the process that the name tells is one of this system, and has ended.
+/// Returns whether the process in the name belongs to this system and has ended.
 fn is_of_dead(name: &str) -> bool {
     let mut parts = name.split('-');
     let (machine, process) = (parts.next(), parts.next());
@@ -72,7 +72,7 @@ fn is_of_dead(name: &str) -> bool {
     let (true, Some(process)) = (machine == Some(&MACHINE[..]), process) else {
         return false;
     };
-    // Without this file system no process can be seen.
+    // Without `/proc`, processes cannot be seen, so none is taken for ended.
     let processes = Path::new("/proc");
     processes.join("self").exists() && !processes.join(process.to_string()).exists()
 }
@@ -98,8 +98,8 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// What a killed process left goes with the next write to its folder; files in use, of other
-    /// systems and of other kinds stay.
+    /// The next write to a folder removes what a killed process left there. Files in use, files of
+    /// other systems and other kinds of files stay.
     #[test]
     fn unfinished_files_of_ended_processes_are_removed() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;

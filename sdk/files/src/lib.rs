@@ -1,15 +1,17 @@
-//! Files of others and of one's own: what is read of a file that somebody else names is regular and
-//! bounded ([`read_regular`]), a folder that somebody else may have filled is written without
-//! following links ([`OwnFolder`]), what is kept in one is authenticated (`Key`), and files are
-//! written whole.
+//! Reads and writes files safely, including files and folders that may come from somebody else.
 //!
-//! Atomic writing: a file is written beside its target and renamed into place, so that readers see
-//! it complete or not at all.
+//! - A file that somebody else names is only read if it is a regular file, and only up to a size
+//!   limit ([`read_regular`]).
+//! - A folder that somebody else may have filled is written without following links
+//!   ([`OwnFolder`]).
+//! - Data stored in such a folder is authenticated (`Key`).
+//! - Files are written atomically: a file is written next to its target and then renamed into
+//!   place, so that readers see it either complete or not at all.
 //!
-//! A symbolic link is followed, and its target is replaced with the permissions that it had. A
-//! device or a pipe is written to directly. A process that is asked to end removes its unfinished
-//! files with [`remove_unfinished`]. Files of a process that was killed are removed by the next
-//! process that writes to their folder.
+//! When a file is written, a symbolic link is followed, and its target is replaced and keeps its
+//! permissions. A device or a pipe is written to directly. A process that is asked to end removes
+//! its unfinished files with [`remove_unfinished`]. Files of a killed process are removed by the
+//! next process that writes to their folder.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;
@@ -51,8 +53,8 @@ pub use regular::{check_regular_at, open_regular, read_regular, read_regular_tex
 /// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Removes the files that this process is writing; a signal handler calls it before the process
-/// ends. Afterwards no unfinished file can be completed.
+/// Removes the files that this process is writing. A signal handler calls it before the process
+/// ends. After that, no unfinished file can be completed.
 pub fn remove_unfinished() {
     let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     for path in unfinished.iter() {
@@ -65,14 +67,14 @@ fn unfinished<T>(run: impl FnOnce(&mut BTreeSet<PathBuf>) -> T) -> T {
     run(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// A file that is being written. Dropping it before [`Self::keep`] removes it; data written to a
-/// pipe or device cannot be removed.
+/// A file that is being written. If it is dropped before [`Self::keep`], it is removed. Data that
+/// was written to a pipe or a device cannot be removed.
 #[derive(Debug)]
 pub struct Unfinished(Target);
 
 #[derive(Debug)]
 enum Target {
-    /// A temporary file beside the target, and the target.
+    /// A temporary file next to the target, and the path of the target.
     Beside(NamedTempFile, PathBuf),
     /// An open pipe or device.
     Direct(File),
@@ -99,7 +101,7 @@ impl Target {
         Self::beside(path, there, readable_by)
     }
 
-    /// A new file for the place of `path`, whatever is there: a link is replaced, not followed.
+    /// Creates a new file for `path`, whatever is there. A link is replaced and not followed.
     fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
         let there = path.symlink_metadata().ok();
         if there.as_ref().is_some_and(std::fs::Metadata::is_dir) {
@@ -109,7 +111,7 @@ impl Target {
         Self::beside(path, there, readable_by)
     }
 
-    /// A temporary file beside `path`, with the permissions of the file that is there.
+    /// Creates a temporary file next to `path`, with the permissions of an existing file.
     fn beside(
         path: PathBuf,
         there: Option<std::fs::Metadata>,
@@ -129,23 +131,22 @@ impl Unfinished {
     /// Creates the temporary file for the target `path`.
     ///
     /// # Errors
-    /// When `path` is a folder or a dangling link, its folder does not exist, or the system reports
+    /// If `path` is a folder or a dangling link, its folder does not exist, or the system reports
     /// an error.
     pub fn create(path: &Path) -> io::Result<Self> {
         Target::of(path, Readers::All).map(Self)
     }
 
-    /// As [`Self::create`], for a file that only this user may read. One that is there keeps its
+    /// Like [`Self::create`], but only this user may read the file. An existing file keeps its
     /// permissions.
     ///
     /// # Errors
-    /// As [`Self::create`].
+    /// The errors of [`Self::create`].
     pub fn create_private(path: &Path) -> io::Result<Self> {
         Target::of(path, Readers::User).map(Self)
     }
 
-    /// Creates the temporary file for the place of `path`, in which a link is replaced and not
-    /// followed.
+    /// Creates the temporary file for `path`. A link at that path is replaced and not followed.
     fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
         Target::in_place_of(path, readable_by).map(Self)
     }
@@ -158,19 +159,19 @@ impl Unfinished {
         }
     }
 
-    /// Flushes the file to disk and renames it to its target: a reader sees the old file or the new
-    /// one, never a part, also after a crash.
+    /// Flushes the file to disk and renames it to its target. A reader sees the old file or the new
+    /// one, never a part, even after a crash.
     ///
     /// # Errors
-    /// Those of the system; the target is then unchanged.
+    /// Errors of the system. The target is then unchanged.
     pub fn keep(mut self) -> io::Result<()> {
         self.file().flush()?;
         let Target::Beside(beside, path) = &mut self.0 else {
             return Ok(());
         };
         beside.as_file().sync_all()?;
-        // Renamed while the set is locked: whoever ends the process has removed the file before, or
-        // finds it complete.
+        // Renamed while the set is locked. A signal handler that ends the process has then either
+        // removed the file before, or finds it complete.
         unfinished(|all| {
             std::fs::rename(beside.path(), &*path)?;
             all.remove(beside.path());
@@ -189,16 +190,17 @@ impl Drop for Unfinished {
     }
 }
 
-/// A file for what does not fit into memory while another is written. Dropping it removes it.
+/// A temporary file for data that does not fit into memory while another file is written. It is
+/// removed when it is dropped.
 #[derive(Debug)]
 pub struct Scratch(NamedTempFile);
 
 impl Scratch {
-    /// Creates a file beside `path`, where there is as much space as for the result; in the
-    /// system's folder of temporary files when `path` is a pipe or a device.
+    /// Creates a file next to `path`, where there is as much space as for the result. If `path` is
+    /// a pipe or a device, the file is created in the system's folder for temporary files.
     ///
     /// # Errors
-    /// When the folder does not exist, or the system reports an error.
+    /// If the folder does not exist, or the system reports an error.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let path = followed(path)?;
         let is_special = path.metadata().is_ok_and(|is| !is.is_file());
@@ -223,10 +225,10 @@ impl Drop for Scratch {
     }
 }
 
-/// Writes a file beside `path` and renames it to `path` when `write` succeeds.
+/// Writes a file atomically: next to `path`, then renamed to `path` if `write` succeeds.
 ///
 /// # Errors
-/// Those of `write` and of the system; `path` is then unchanged.
+/// Errors of `write` and of the system. `path` is then unchanged.
 pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
@@ -236,18 +238,18 @@ pub fn replace_file(
     unfinished.keep()
 }
 
-/// Writes bytes to a file as [`replace_file`] does.
+/// Writes bytes to a file atomically, like [`replace_file`].
 ///
 /// # Errors
-/// As [`replace_file`].
+/// The errors of [`replace_file`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_file(path, |file| file.write_all(bytes))
 }
 
-/// Writes a file as [`replace_file`] does, which only this user may read.
+/// Writes a file like [`replace_file`], but only this user may read it.
 ///
 /// # Errors
-/// As [`replace_file`].
+/// The errors of [`replace_file`].
 pub fn replace_private_file(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
@@ -264,7 +266,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Returns the target of a symbolic link; any other path unchanged.
+/// Returns the target of a symbolic link. Returns any other path unchanged.
 fn followed(path: &Path) -> io::Result<PathBuf> {
     match path.symlink_metadata() {
         Ok(is) if is.is_symlink() => path.canonicalize().map_err(|error| {
@@ -278,14 +280,15 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
 /// Who may read a new file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Readers {
-    /// All, less the process' mask.
+    /// Everyone, except where the process's umask forbids it.
     All,
-    /// This user.
+    /// Only this user.
     User,
 }
 
-/// Returns a builder of temporary files with the permissions of an ordinary file, readable and
-/// writable by all, less the process' mask; or with those of the library, for this user alone.
+/// Returns a builder of temporary files. For all readers, they get the permissions of an ordinary
+/// file: readable and writable by all, limited by the process's umask. Otherwise they get the
+/// permissions that the library sets, which only include this user.
 fn builder(readable_by: Readers) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(&killed::OWN[..]).suffix(killed::ENDING);
@@ -386,7 +389,8 @@ mod tests {
         Ok(())
     }
 
-    /// A link is followed, permissions are kept, and pipes and devices are written to directly.
+    /// A link is followed, permissions stay the same, and pipes and devices are written to
+    /// directly.
     #[cfg(unix)]
     #[test]
     fn what_is_there_stays_what_it_is() -> Outcome {

@@ -1,10 +1,10 @@
-//! Lines of a pipe, a port or a file, of a bounded length: what has no line break is no line, and
-//! would fill the memory.
+//! Reads lines of bounded length from a pipe, a port or a file. Without the bound, an input without
+//! line breaks would fill the memory.
 
 use std::io::{self, BufRead, Read};
 
-/// Returns the lines of an input, without their breaks. The first one of more than `most_bytes`, or
-/// that is not UTF-8, is an error, after which there are no more.
+/// Returns the lines of an input without their line breaks. A line of more than `most_bytes`, or
+/// one that is not UTF-8, is an error and ends the iteration.
 ///
 /// ```
 /// let lines: Vec<_> = htex_files::bounded_lines(&b"1 2\r\n3 4\n12345678"[..], 5).collect();
@@ -40,7 +40,7 @@ impl<R: BufRead> Iterator for Lines<R> {
 impl<R: BufRead> Lines<R> {
     fn line(&mut self) -> Option<io::Result<String>> {
         let mut bytes = Vec::new();
-        // With its break, of up to two bytes.
+        // The limit includes the line break, which has up to two bytes.
         let most = self.most_bytes as u64 + 2;
         match self.input.by_ref().take(most).read_until(b'\n', &mut bytes) {
             Ok(0) => return None,

@@ -1,11 +1,13 @@
-//! A folder that a program fills and that may come from somebody else: the results of an earlier
-//! build, unpacked from an archive.
+//! A folder that a program fills but that may come from somebody else, such as the results of an
+//! earlier build that were unpacked from an archive.
 //!
-//! Whoever made it may have put links where the program writes and removes. Nothing in it is
-//! followed: below the folder itself, which a person names, a link is an error, a file is written
-//! to a new one and renamed, and what is removed is an entry, never what it leads to. The checks
-//! are made before each access. They hold against what is in the folder, not against a process that
-//! changes it at the same time.
+//! Whoever made it may have put links where the program writes and removes. So no link below the
+//! folder itself is followed; only the folder itself, which the user names, may be a link. Inside,
+//! a link is an error, and a file is written under a new name and renamed. Removing applies to an
+//! entry, never to the target of a link.
+//!
+//! The checks are made before each access. They protect against what is in the folder, but not
+//! against a process that changes it at the same time.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
@@ -13,7 +15,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::{Batch, Readers, Unfinished, private, read_regular};
 
-/// A folder in which nothing is followed.
+/// A folder in which no link is followed.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -29,38 +31,38 @@ pub struct OwnFolder {
 }
 
 impl OwnFolder {
-    /// The folder at this path, which may itself be a link: a person named it.
+    /// Uses the folder at this path. It may itself be a link, because the user named it.
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::All }
     }
 
-    /// As [`Self::new`]; only this user may read the folders and files that are made in it, and the
-    /// folder itself if it is made.
+    /// Like [`Self::new`], but only this user may read the folders and files that are created in
+    /// it, and the folder itself if it is created.
     pub fn private(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::User }
     }
 
-    /// The folder of a file that the user named, for the files that a command writes beside that
-    /// one; and the file's name in it.
+    /// Returns the folder of a file that the user named, and the file's name in it. Commands use it
+    /// for files that they write next to the named file.
     ///
     /// # Errors
-    /// When the path ends in no name.
+    /// If the path does not end in a name.
     pub fn of_file(path: &Path) -> io::Result<(Self, PathBuf)> {
         let no_name = || io::Error::new(ErrorKind::InvalidInput, "the path ends in no file name");
         let name = path.file_name().ok_or_else(no_name)?;
         Ok((Self::new(crate::folder(path)), PathBuf::from(name)))
     }
 
-    /// The path of the folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.folder
     }
 
-    /// Returns the path of an entry, or the folder itself for an empty path, after a check that
-    /// nothing above it is a link.
+    /// Checks that nothing above an entry is a link, and returns the entry's path. An empty path
+    /// stands for the folder itself.
     ///
     /// # Errors
-    /// When a part above it is a link or no folder, or the path leads out of the folder.
+    /// If a part above the entry is a link or not a folder, or the path leads out of the folder.
     pub fn at(&self, inside: &Path) -> io::Result<PathBuf> {
         let mut path = self.folder.clone();
         let mut parts = inside.components().peekable();
@@ -77,10 +79,11 @@ impl OwnFolder {
         Ok(path)
     }
 
-    /// Makes a folder and those above it; one that is there stays.
+    /// Creates a folder and the folders above it. An existing folder is left as it is.
     ///
     /// # Errors
-    /// As [`Self::at`], when it is a link or no folder, and those of the system.
+    /// The errors of [`Self::at`], errors for a link or something that is not a folder, and errors
+    /// of the system.
     pub fn make_folder(&self, inside: &Path) -> io::Result<PathBuf> {
         self.make_itself()?;
         let mut folders: Vec<&Path> = inside.ancestors().collect();
@@ -95,43 +98,44 @@ impl OwnFolder {
         Ok(self.folder.join(inside))
     }
 
-    /// Opens a regular file to read it.
+    /// Opens a regular file for reading.
     ///
     /// # Errors
-    /// As [`Self::at`]; when it is a link or no regular file; errors of the system.
+    /// The errors of [`Self::at`], errors for a link or something that is not a regular file, and
+    /// errors of the system.
     pub fn open(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true))
     }
 
-    /// Opens a regular file to read it and to write behind its end.
+    /// Opens a regular file for reading and appending.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn open_to_append(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true).append(true))
     }
 
-    /// Creates a file that must not be there, to write to it at once; most files are written by
-    /// [`Self::replace`]. The folders above it are made.
+    /// Creates a file for writing in place. It must not exist yet. The folders above it are
+    /// created. Most files should be written with [`Self::replace`] instead.
     ///
     /// # Errors
-    /// As [`Self::make_folder`], and when there is something in its place.
+    /// The errors of [`Self::make_folder`], and an error if something is already in its place.
     pub fn create(&self, inside: &Path) -> io::Result<File> {
         let path = self.entry(inside)?;
         let mut options = OpenOptions::new();
         if self.readable_by == Readers::User {
             private::only_user(&mut options);
         }
-        // The system follows no link where a file must be new.
+        // With `create_new`, the system does not follow a link.
         options.write(true).create_new(true).open(path)
     }
 
-    /// Writes a file whole: a new one beside it, which is flushed to disk and renamed into place. A
-    /// link in its place is replaced. The folders above it are made.
+    /// Writes a file atomically: a new file next to it is flushed to disk and renamed into place. A
+    /// link in its place is replaced. The folders above it are created.
     ///
     /// # Errors
-    /// Errors of `write` and of the system, as [`Self::make_folder`], and when a folder is in its
-    /// place. The previous file then stays.
+    /// Errors of `write` and of the system, the errors of [`Self::make_folder`], and an error if a
+    /// folder is in its place. The previous file then stays.
     pub fn replace(
         &self,
         inside: &Path,
@@ -143,20 +147,21 @@ impl OwnFolder {
         unfinished.keep()
     }
 
-    /// Writes a file as [`Self::replace`] does, with others: it is in its place after
+    /// Writes a file like [`Self::replace`], together with other files. It is in its place after
     /// [`Batch::finish`].
     ///
     /// # Errors
-    /// As [`Self::replace`], and as [`Batch::write`].
+    /// The errors of [`Self::replace`] and of [`Batch::write`].
     pub fn write_with(&self, batch: &mut Batch, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         batch.write_in_place_of(self.entry(inside)?, self.readable_by, bytes)
     }
 
-    /// The path of a file for a writer that knows only paths, such as a device. The folders above
-    /// it are made.
+    /// Returns the path of a file for a writer that can only use paths, such as a device. The
+    /// folders above it are created.
     ///
     /// # Errors
-    /// As [`Self::make_folder`], and when a link, or anything but a regular file, is in its place.
+    /// The errors of [`Self::make_folder`], and an error if a link, or anything but a regular file,
+    /// is in its place.
     pub fn path_to_write(&self, inside: &Path) -> io::Result<PathBuf> {
         let path = self.entry(inside)?;
         refuse_link(&path)?;
@@ -169,23 +174,24 @@ impl OwnFolder {
     /// Reads a regular file of at most `most_bytes`.
     ///
     /// # Errors
-    /// As [`Self::at`] and [`read_regular`], and when it is a link.
+    /// The errors of [`Self::at`] and [`read_regular`], and an error for a link.
     pub fn read(&self, inside: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         let path = self.at(inside)?;
         refuse_link(&path)?;
         read_regular(&path, most_bytes)
     }
 
-    /// Opens a file for writing, for a lock: one that is there keeps its contents.
+    /// Opens a file for writing in order to lock it. An existing file keeps its contents.
     ///
     /// # Errors
-    /// As [`Self::at`]; when it is a link or no regular file; errors of the system.
+    /// The errors of [`Self::at`], errors for a link or something that is not a regular file, and
+    /// errors of the system.
     pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
         let mut options = OpenOptions::new();
         self.open_with(inside, options.write(true).create(true).truncate(false))
     }
 
-    /// Opens a regular file, not through a link, and without waiting for the other end of a pipe.
+    /// Opens a regular file. Does not follow a link, and does not wait for the other end of a pipe.
     fn open_with(&self, inside: &Path, options: &mut OpenOptions) -> io::Result<File> {
         let path = self.at(inside)?;
         refuse_link(&path)?;
@@ -196,21 +202,23 @@ impl OwnFolder {
         options.open(&path)
     }
 
-    /// Writes a file: a new one in the same folder, which is renamed into place. The folders above
-    /// it are made. It is not flushed to disk.
+    /// Writes a new file in the same folder and renames it into place. The folders above it are
+    /// created. It is not flushed to disk.
     ///
     /// # Errors
-    /// As [`Self::make_folder`], when a folder is in its place, and those of the system.
+    /// The errors of [`Self::make_folder`], an error if a folder is in its place, and errors of the
+    /// system.
     pub fn write(&self, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         let mut part = inside.as_os_str().to_owned();
         part.push(PART);
         self.write_by(Path::new(&part), inside, bytes)
     }
 
-    /// As [`Self::write`], by a new file of this name elsewhere in the folder.
+    /// Like [`Self::write`], but the new file is first written to `part`, which may be anywhere in
+    /// this folder.
     ///
     /// # Errors
-    /// As [`Self::write`].
+    /// The errors of [`Self::write`].
     pub fn write_by(&self, part: &Path, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         let (part, path) = (self.entry(part)?, self.entry(inside)?);
         let mut file = self.create_new(&part)?;
@@ -223,20 +231,20 @@ impl OwnFolder {
         written
     }
 
-    /// Renames a file of this folder to an entry. The folders above it are made.
+    /// Renames a file inside this folder. The folders above the new path are created.
     ///
     /// # Errors
-    /// As [`Self::write`].
+    /// The errors of [`Self::write`].
     pub fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         let from = self.at(from)?;
         fs::rename(from, self.entry(to)?)
     }
 
-    /// Removes a file or a link, and then the folders above it that are empty; it is no error when
-    /// there is none.
+    /// Removes a file or a link, and then the folders above it that are empty. A missing file is
+    /// not an error.
     ///
     /// # Errors
-    /// As [`Self::at`], when it is a folder, and those of the system.
+    /// The errors of [`Self::at`], an error for a folder, and errors of the system.
     pub fn remove(&self, inside: &Path) -> io::Result<()> {
         let path = match self.at(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -248,7 +256,7 @@ impl OwnFolder {
         }
         let above = path.ancestors().skip(1);
         for folder in above.take_while(|folder| *folder != self.folder) {
-            // A folder with files in it stays.
+            // A folder that still has files in it stays.
             if fs::remove_dir(folder).is_err() {
                 break;
             }
@@ -256,10 +264,11 @@ impl OwnFolder {
         Ok(())
     }
 
-    /// Returns the names of the regular files of a folder, by name; none when it is not there.
+    /// Returns the names of the regular files in a folder, sorted by name; none if the folder is
+    /// missing.
     ///
     /// # Errors
-    /// As [`Self::at`], when it is a link, and those of the system.
+    /// The errors of [`Self::at`], an error for a link, and errors of the system.
     pub fn files(&self, inside: &Path) -> io::Result<Vec<String>> {
         let path = self.at(inside)?;
         match check_folder(&path) {
@@ -279,11 +288,12 @@ impl OwnFolder {
         Ok(names)
     }
 
-    /// Removes a folder with everything in it; links in it are removed and not followed. It is no
-    /// error when there is none.
+    /// Removes a folder with everything in it. Links in it are removed and not followed. A missing
+    /// folder is not an error.
     ///
     /// # Errors
-    /// As [`Self::at`], when it is a link or no folder, and those of the system.
+    /// The errors of [`Self::at`], errors for a link or something that is not a folder, and errors
+    /// of the system.
     pub fn remove_folder(&self, inside: &Path) -> io::Result<()> {
         let path = match self.at(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -296,7 +306,8 @@ impl OwnFolder {
         }
     }
 
-    /// Makes the folder itself, and those above it, through links: the user named it.
+    /// Creates the folder itself and the folders above it. Links are followed here, because the
+    /// user named this path.
     fn make_itself(&self) -> io::Result<()> {
         match self.readable_by {
             Readers::All => fs::create_dir_all(&self.folder),
@@ -311,13 +322,13 @@ impl OwnFolder {
         }
     }
 
-    /// The path of a file to write, whose folders are made.
+    /// Returns the path of a file to write, and creates the folders above it.
     fn entry(&self, inside: &Path) -> io::Result<PathBuf> {
         self.make_folder(inside.parent().unwrap_or(Path::new("")))?;
         self.at(inside)
     }
 
-    /// Creates a file for writing. What a killed process left under its name is removed before.
+    /// Creates a file for writing. First removes what a killed process left under its name.
     fn create_new(&self, path: &Path) -> io::Result<File> {
         let create = || OpenOptions::new().write(true).create_new(true).open(path);
         match create() {
@@ -330,10 +341,10 @@ impl OwnFolder {
     }
 }
 
-/// Ending of a file that is being written.
+/// End of the name of a file that is being written.
 const PART: &str = ".part";
 
-/// Refuses a link, and what is no folder.
+/// Refuses a link and anything that is not a folder.
 fn check_folder(path: &Path) -> io::Result<()> {
     let is = path.symlink_metadata()?;
     if is.is_dir() {
@@ -382,7 +393,8 @@ mod tests {
     use super::*;
     use std::os::unix::fs::symlink;
 
-    /// Links of every kind at every place: nothing outside is read, written or removed.
+    /// Links of every kind at every place do not lead to anything outside being read, written or
+    /// removed.
     #[test]
     fn nothing_is_followed() -> Result<(), Box<dyn std::error::Error>> {
         let (outside, inside) = (tempfile::tempdir()?, tempfile::tempdir()?);
@@ -410,7 +422,7 @@ mod tests {
         assert!(own.read(file, 100).is_err() && own.open_lock(file).is_err());
         assert!(own.open(file).is_err() && own.open_to_append(file).is_err());
         assert!(own.create(file).is_err() && own.path_to_write(file).is_err());
-        // A link in the place of a result, or of its part, is replaced.
+        // A link in the place of a result, or of its partial file, is replaced.
         own.write("new".as_ref(), b"x")?;
         own.write(file, b"x")?;
         assert!(inside.path().join("file").symlink_metadata()?.is_file());
@@ -428,7 +440,7 @@ mod tests {
         own.remove(file)?;
         assert_eq!(fs::read(&victim)?, b"precious");
         assert_eq!(fs::read_dir(outside.path())?.count(), 1);
-        // The folder itself is the person's word.
+        // The user names the folder itself, so it may be a link.
         let named = outside.path().join("named");
         symlink(inside.path(), &named)?;
         OwnFolder::new(&named).write("a/b".as_ref(), b"x")?;

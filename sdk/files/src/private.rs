@@ -1,23 +1,24 @@
-//! Folders and files that only this user can write to or read.
+//! Private folders and files, which only this user can write to or read.
 
 use std::fs::{DirBuilder, File, Metadata};
 use std::io;
 use std::path::Path;
 
-/// Creates a folder for this user alone, or checks that an existing one is this user's and not
-/// writable by others.
+/// Creates a folder for this user only, or checks that an existing folder belongs to this user and
+/// is not writable by others.
 ///
 /// # Errors
-/// When the folder cannot be created, belongs to another user, or is writable by others.
+/// If the folder cannot be created, belongs to another user, or is writable by others.
 pub fn folder(path: &Path) -> io::Result<()> {
     make_folder(path)?;
     check(&File::open(path)?.metadata()?, 0o022)
 }
 
-/// Creates a folder for this user alone, and those above it; one that is there stays as it is.
+/// Creates a folder for this user only, and the folders above it. An existing folder is left as it
+/// is.
 ///
 /// # Errors
-/// Those of the system.
+/// Errors of the system.
 pub fn make_folder(path: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     builder.recursive(true);
@@ -26,10 +27,10 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
-/// Creates a folder for this user alone.
+/// Creates a folder for this user only.
 ///
 /// # Errors
-/// Those of the system, also when there is something in its place.
+/// Errors of the system, including an error if something is already in its place.
 pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
     #[cfg_attr(not(unix), allow(unused_mut))] // Only Unix has modes.
     let mut builder = DirBuilder::new();
@@ -38,17 +39,17 @@ pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
-/// Takes from others what they may do with a folder of this user.
+/// Removes all permissions that others have for a folder of this user.
 ///
 /// # Errors
-/// Those of the system.
+/// Errors of the system.
 #[cfg(unix)]
 pub fn close(folder: &Path) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o700))
 }
 
-/// Elsewhere, folders in the user's home inherit its permissions.
+/// Does nothing: on other systems than Unix, folders in the user's home inherit its permissions.
 ///
 /// # Errors
 /// None.
@@ -57,24 +58,24 @@ pub fn close(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes that only this user may read and write what is created.
+/// Makes created files readable and writable only by this user.
 pub fn only_user(options: &mut std::fs::OpenOptions) -> &mut std::fs::OpenOptions {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(options, 0o600);
     options
 }
 
-/// Opens a file that others may neither read nor write.
+/// Opens a private file, which others may neither read nor write.
 ///
 /// # Errors
-/// When the file cannot be opened, belongs to another user, or is readable or writable by others.
+/// If the file cannot be opened, belongs to another user, or is readable or writable by others.
 pub fn file(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     check(&file.metadata()?, 0o077)?;
     Ok(file)
 }
 
-/// Refuses a file of another user, and one with any of the permissions `others`.
+/// Refuses a file that belongs to another user or that has any of the permissions `others`.
 #[cfg(unix)]
 fn check(opened: &Metadata, others: u32) -> io::Result<()> {
     use std::os::unix::fs::MetadataExt;
@@ -86,7 +87,7 @@ fn check(opened: &Metadata, others: u32) -> io::Result<()> {
     }
 }
 
-/// Elsewhere, folders in the user's home inherit its permissions.
+/// Does nothing: on other systems than Unix, folders in the user's home inherit its permissions.
 #[cfg(not(unix))]
 fn check(_: &Metadata, _: u32) -> io::Result<()> {
     Ok(())

@@ -1,19 +1,19 @@
-//! Reading of files that somebody else names: a recipe, a table, a scene, the JSON beside a
-//! recording.
+//! Reads files that somebody else names, for example in a recipe, a table, a scene, or the JSON
+//! next to a recording.
 //!
 //! Such a name may lead to a pipe that never ends, to a device, or to a file that fills the memory.
-//! This is the one reader of them: regular files alone, up to a length. A file that a person names
-//! as an argument may be a pipe, and is opened by its own reader.
+//! All such files are read here: only regular files, and only up to a size limit. A file that the
+//! user names as an argument may be a pipe, and is opened by its own reader.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Opens a regular file, through links, without waiting for the writer of a pipe.
+/// Opens a regular file. Follows links, and does not wait for the writer of a pipe.
 ///
 /// # Errors
-/// When there is no such file, it is a folder, a pipe, a socket or a device, or the system reports
-/// an error.
+/// If there is no such file, if it is a folder, a pipe, a socket or a device, or if the system
+/// reports an error.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -23,10 +23,10 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Whether a path leads to a regular file.
+/// Checks that a path leads to a regular file.
 ///
 /// # Errors
-/// As [`open_regular`], as far as that is known without opening it.
+/// The errors of [`open_regular`], as far as they are known without opening the file.
 pub fn check_regular_at(path: &Path) -> io::Result<()> {
     check_regular(&path.metadata()?)
 }
@@ -34,7 +34,7 @@ pub fn check_regular_at(path: &Path) -> io::Result<()> {
 /// Reads a regular file of at most `most_bytes`.
 ///
 /// # Errors
-/// As [`open_regular`], and when it has more bytes, which are then not read.
+/// The errors of [`open_regular`], and an error if the file is larger; the rest is then not read.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -58,10 +58,10 @@ pub fn read_regular(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > most_bytes { Err(too_long()) } else { Ok(bytes) }
 }
 
-/// Reads a regular file of UTF-8 text, as [`read_regular`] does.
+/// Reads a regular file of UTF-8 text, like [`read_regular`].
 ///
 /// # Errors
-/// As [`read_regular`], and when it is not UTF-8.
+/// The errors of [`read_regular`], and an error if the file is not UTF-8.
 pub fn read_regular_text(path: &Path, most_bytes: u64) -> io::Result<String> {
     String::from_utf8(read_regular(path, most_bytes)?)
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))
@@ -104,7 +104,7 @@ mod tests {
             assert!(read_regular(path, 10).is_err(), "{}", path.display());
             assert!(open_regular(path).is_err() && check_regular_at(path).is_err());
         }
-        // A file of the kernel says that it is regular and has no length, and has no end.
+        // A kernel file claims to be regular and empty, but never ends.
         assert!(read_regular("/proc/self/environ".as_ref(), 1).is_err());
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));
         std::fs::write(&file, "abc")?;

@@ -1,9 +1,9 @@
-//! Text in a cell of a table that a person opens.
+//! Text in a table cell that may be opened in a spreadsheet.
 
 use std::borrow::Cow;
 
-/// Returns text for a cell. What a spreadsheet would take for a formula, which may open an address
-/// or run a program, gets an apostrophe in front, which marks text.
+/// Returns text for a table cell. If a spreadsheet would treat it as a formula, which may open an
+/// address or run a program, it gets an apostrophe in front, which marks it as text.
 ///
 /// ```
 /// assert_eq!(htex_finding::as_text("=HYPERLINK(1)"), "'=HYPERLINK(1)");

@@ -27,7 +27,7 @@ pub enum Severity {
     Info,
 }
 
-/// A finding of validation.
+/// A problem or note that validation found.
 ///
 /// ```
 /// use htex_finding::{FINDINGS_TRUNCATED, Finding};
@@ -36,28 +36,28 @@ pub enum Severity {
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
-    /// Stable code of the rule.
+    /// Stable code of the broken rule.
     #[schemars(regex(pattern = "^[A-Z][A-Z0-9_]*$"))]
     pub code: String,
     /// Severity.
     pub severity: Severity,
-    /// JSON pointer into the manifest; empty for the file as a whole.
+    /// JSON pointer into the manifest; empty for the whole file.
     #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
     pub pointer: String,
     /// What is wrong, where, and what to do.
     pub message: String,
-    /// The keyword of a JSON Schema that the document breaks: the schema's file, `#` and a JSON
-    /// pointer into it. Only validators that check documents against schemas set it.
+    /// The JSON Schema keyword that the document breaks: the schema's file, `#`, and a JSON pointer
+    /// into it. Only validators that check documents against schemas set it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,
-    /// The settings that help; a finding that is read has none.
+    /// The settings that would help. A finding that is read from JSON has none.
     #[serde(skip)]
     pub hint: Hint,
 }
 
 impl Finding {
-    /// A finding of a rule; control characters in the message are escaped.
+    /// Creates a finding for a rule. Control characters in the message are escaped.
     pub fn new(rule: &Rule, pointer: impl Into<String>, message: &str) -> Self {
         Self {
             code: rule.code.to_owned(),
@@ -92,10 +92,10 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Number of findings in the text of an error.
+/// Number of findings shown in the text of an error.
 const SHOWN: usize = 3;
 
-/// Formats the first errors of a list as one line.
+/// Formats the first errors in a list as one line.
 pub fn summary(findings: &[Finding]) -> String {
     let errors = || findings.iter().filter(|f| f.severity == Severity::Error);
     let mut text: Vec<String> = errors().take(SHOWN).map(ToString::to_string).collect();
@@ -106,7 +106,7 @@ pub fn summary(findings: &[Finding]) -> String {
     text.join("; ")
 }
 
-/// Formats findings for the end of a message, each in a line of its own.
+/// Formats findings for the end of a message, one per line.
 pub fn listed(findings: &[Finding]) -> String {
     let line = |f: &Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
     findings.iter().map(line).collect()

@@ -1,37 +1,38 @@
-//! Settings that help against a problem, and sentences with them.
+//! Settings that would fix a problem, attached to its message.
 
 use std::fmt;
 use std::ops::Deref;
 
 use serde::{Serialize, Serializer};
 
-/// The settings that help against a problem, by the names that flags, recipes and keywords share:
-/// `map`, `most_numbers`, or one with a value, `segments windows`. Messages describe a setting in
-/// words, so that each program can name its own.
+/// The settings that would fix a problem. They are named as in flags, recipes and keywords: `map`,
+/// `most_numbers`, or with a value, `segments windows`. Messages describe a setting in words, so
+/// that each program can add its own name for it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hint(&'static [&'static str]);
 
 impl Hint {
-    /// No setting helps.
+    /// No setting would help.
     pub const NONE: Self = Self(&[]);
 
     pub const fn new(settings: &'static [&'static str]) -> Self {
         Self(settings)
     }
 
-    /// The settings, the most helpful first.
+    /// Returns the settings, the most helpful first.
     pub fn settings(self) -> &'static [&'static str] {
         self.0
     }
 
-    /// This hint, or another if no setting helps.
+    /// Returns this hint, or `other` if no setting helps here.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         if self.0.is_empty() { other } else { self }
     }
 }
 
-/// A warning or a note: a sentence, which is all that is stored of it, and the settings that help.
+/// A warning or a note: a sentence, and the settings that would help. Only the sentence is
+/// serialized.
 ///
 /// ```
 /// use htex_finding::{Hint, Notice};
@@ -49,7 +50,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// A sentence with a hint.
+    /// Creates a notice from a sentence and a hint.
     pub fn new(text: impl Into<String>, hint: Hint) -> Self {
         let text = text.into();
         Self { text, hint }

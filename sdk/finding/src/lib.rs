@@ -1,5 +1,5 @@
-//! What validation finds: rules with stable codes, findings, reports and hints. Every kind of file
-//! has a table of rules in its crate; this one knows no file.
+//! Results of validation: rules with stable codes, findings, reports and hints. Each kind of file
+//! has a table of rules in its own crate; this crate does not know any kind of file.
 //!
 //! ```
 //! use htex_finding::{Findings, Severity};

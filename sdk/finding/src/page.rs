@@ -1,4 +1,4 @@
-//! Pages of rules.
+//! Generates pages that list rules.
 
 use std::fmt::{Arguments, Write};
 

@@ -1,9 +1,9 @@
-//! Escaping of untrusted text in messages.
+//! Escapes untrusted text in messages.
 
 use std::borrow::Cow;
 
 /// Escapes control characters and invisible formatting characters (direction marks, zero-width
-/// characters, tags, other line ends) as `\u{1b}`: a message that quotes a file must neither
+/// characters, tags, other line ends) as `\u{1b}`. A message that quotes a file must neither
 /// control the terminal nor show text that is not in the file.
 ///
 /// ```
@@ -20,10 +20,10 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-/// Whether [`plain`] escapes a character: a control character, or an invisible one that changes the
-/// text around it.
+/// Returns whether [`plain`] escapes a character: a control character, or an invisible one that
+/// changes the text around it.
 pub fn steers(c: char) -> bool {
-    // All of Unicode's format characters (Cf) except the visible ones, and the plane of tags and
+    // All of Unicode's format characters (Cf) except the visible ones, and the plane with tags and
     // selectors.
     let is_mark = matches!(c, '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{feff}')
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')

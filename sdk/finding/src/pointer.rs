@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-/// A place in a document, as a chain up to its root. It is formatted only when needed.
+/// A place in a document, stored as a chain up to its root. It is only formatted as a pointer when
+/// needed.
 ///
 /// ```
 /// use htex_finding::Place;

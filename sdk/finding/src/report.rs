@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{FINDINGS_TRUNCATED, Finding, Notice, Rule, Severity};
 
-/// Maximum number of findings in a report; a hostile file could cause millions.
+/// Largest number of findings in a report. A hostile file could cause millions.
 const KEPT: usize = 100;
 
 /// The result of validation.
@@ -19,8 +19,8 @@ pub struct Report {
     pub findings: Vec<Finding>,
 }
 
-/// The result of validating a file, as the command and the conformance reports write it in JSON;
-/// its schema is `spec/schemas/report-1.json`.
+/// The result of validating a file, in the form that the command and the conformance reports write
+/// as JSON. Its schema is `spec/schemas/report-1.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FileReport {
     /// The file.
@@ -35,7 +35,7 @@ pub struct FileReport {
 }
 
 impl Report {
-    /// A report of these findings; it is valid when none is an error.
+    /// Creates a report from findings. It is valid if none of them is an error.
     pub fn new(findings: Vec<Finding>) -> Self {
         let is_error = |finding: &Finding| finding.severity == Severity::Error;
         Self { valid: !findings.iter().any(is_error), findings }
@@ -52,7 +52,7 @@ impl Report {
     }
 }
 
-/// A collector of findings that keeps the first hundred.
+/// Collects findings and keeps the first hundred.
 ///
 /// ```
 /// use htex_finding::{FINDINGS_TRUNCATED, Findings};
@@ -83,7 +83,8 @@ impl Findings {
         }
     }
 
-    /// Adds the finding unless `holds`. The pointer and the message are written only then.
+    /// Adds the finding unless `holds`. The pointer and the message are only formatted in that
+    /// case.
     pub fn require(
         &mut self,
         holds: bool,
@@ -100,7 +101,7 @@ impl Findings {
         self.errors
     }
 
-    /// Returns the findings; a last one states how many were dropped.
+    /// Returns the findings. If some were dropped, a last finding states how many.
     pub fn into_list(mut self) -> Vec<Finding> {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);

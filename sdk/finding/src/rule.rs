@@ -1,18 +1,18 @@
-//! Rules, and the macro of their tables.
+//! Rules of validation, and the macro that defines tables of rules.
 
 use crate::{Hint, Severity};
 
-/// A rule that validation applies.
+/// A rule of validation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rule {
     /// Stable code; its meaning never changes.
     pub code: &'static str,
-    /// Severity of a finding of this rule.
+    /// Severity of a finding for this rule.
     pub severity: Severity,
-    /// The stages of reading in which it is applied, where the reading of a file has stages.
+    /// The stages of reading in which it is applied, if reading the file has stages.
     pub stages: &'static [Stage],
     pub hint: Hint,
-    /// The setting without which the rule is not applied.
+    /// The setting that turns the rule on; without it, the rule is not applied.
     pub checked_by: Hint,
     /// What was found, in one line.
     pub summary: &'static str,
@@ -31,11 +31,11 @@ pub struct Stage {
     pub ends: bool,
 }
 
-/// The stage of counting what is beyond the first hundred findings.
+/// The stage that counts the findings after the first hundred.
 pub const COUNT: Stage =
     Stage { of: "the count of findings beyond the first hundred", ends: false };
 
-/// The rule that every report of more than a hundred findings ends with.
+/// The rule that ends every report with more than a hundred findings.
 pub const FINDINGS_TRUNCATED: &Rule = &Rule {
     code: "FINDINGS_TRUNCATED",
     severity: Severity::Info,
@@ -47,9 +47,9 @@ pub const FINDINGS_TRUNCATED: &Rule = &Rule {
     fix: "Correct those and validate again.",
 };
 
-/// Defines a table of rules: a constant for each, and `RULES` with all of them in order. After the
-/// severity stand, where there are any, the stages in `[]`, the settings that help in `()`, and the
-/// setting that turns the rule on after `by`. A last line `+ RULE;` adds a rule that is defined
+/// Defines a table of rules: a constant for each rule, and `RULES` with all of them in order. Three
+/// optional parts can follow the severity: the stages in `[]`, the settings that help in `()`, and
+/// after `by` the setting that turns the rule on. A last line `+ RULE;` adds a rule that is defined
 /// elsewhere.
 ///
 /// ```

@@ -1,14 +1,14 @@
-//! What can go wrong with a file elsewhere.
+//! Errors of remote and local files.
 
 use std::fmt::Display;
 use std::io;
 
-/// The error of reading or writing a file. No message holds a credential, a query of a URL, or the
+/// Error of reading or writing a file. No message contains a credential, the query of a URL, or the
 /// text of a server's response.
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {problem}")]
 pub struct StorageError {
-    /// The URI without secrets, a path, or the variable that is set wrongly.
+    /// The URI without secrets, a path, or the variable with a wrong value.
     pub place: String,
     pub problem: StorageProblem,
 }
@@ -20,36 +20,36 @@ pub enum StorageProblem {
     /// The URI is malformed.
     #[error("{problem}")]
     Uri { problem: String },
-    /// This build reads local files only.
+    /// This build can only read local files.
     #[error("this build reads files of this machine only; build it with the feature `cloud`")]
     NoCloud,
-    /// A local file, or a local copy.
+    /// Error with a local file, or with a local copy.
     #[error("{error}")]
     Io { error: io::Error },
     /// There is no such file.
     #[error("there is no such file; check the bucket and the key")]
     Missing,
-    /// The server has refused the credentials, or asks for some.
+    /// The server refused the credentials, or requires some.
     #[error("the server refuses access ({what}); {advice}")]
     Denied {
-        /// The status, and the server's code.
+        /// The status and the server's code.
         what: String,
-        /// What to do, by the names of variables.
+        /// What to do, with the names of variables.
         advice: String,
     },
-    /// The environment's settings do not suffice.
+    /// The environment's settings are not sufficient.
     #[error("{problem}")]
     Settings {
-        /// What is missing, by the names of variables.
+        /// What is missing, with the names of variables.
         problem: String,
     },
     /// The file was replaced while it was read.
     #[error("the file was replaced while it was read; read it again")]
     Changed,
-    /// The file has more bytes than may be read.
+    /// The file is larger than the limit.
     #[error("it has more than {most_bytes} bytes")]
     TooLarge { most_bytes: u64 },
-    /// A range beyond the end of the file.
+    /// The range ends beyond the end of the file.
     #[error("bytes {offset} to {end} were asked for, and it has {len}")]
     Range {
         offset: u64,
@@ -58,23 +58,23 @@ pub enum StorageProblem {
         /// The size of the file.
         len: u64,
     },
-    /// The server sends no parts of files.
+    /// The server cannot send parts of files.
     #[error("the server sends whole files only; download it and name the copy")]
     NoRanges,
-    /// Files by HTTP are only read.
+    /// Files by HTTP cannot be written.
     #[error("files by HTTP are only read; write to s3://, gs://, az:// or a local file")]
     ReadOnly,
-    /// The store has no list of its files.
+    /// The store cannot list its files.
     #[error("a web server has no list of files; name each file")]
     NoList,
-    /// The server failed, or cannot be reached, in spite of retries.
+    /// The server failed or cannot be reached, even after retries.
     #[error("{what}, after {requests} requests in {seconds:.1} s; try again later")]
     Unavailable {
         /// The last failure.
         what: String,
-        /// Requests that were sent.
+        /// Number of requests that were sent.
         requests: u64,
-        /// Time since the first.
+        /// Time since the first request, seconds.
         seconds: f64,
     },
     /// The whole operation took too long.
@@ -84,16 +84,16 @@ pub enum StorageProblem {
         /// How far it came, or the last failure.
         what: String,
     },
-    /// Any other refusal, of the server or of what it leads to.
+    /// Any other refusal, by the server or by a server to which it redirects.
     #[error("refused: {what}")]
     Refused {
-        /// The status, and the server's code.
+        /// The status and the server's code.
         what: String,
     },
 }
 
 impl StorageProblem {
-    /// The error of this problem at a URI or a path.
+    /// Creates the error for this problem at a URI or a path.
     pub fn at(self, place: impl Display) -> StorageError {
         StorageError { place: place.to_string(), problem: self }
     }

@@ -1,17 +1,17 @@
-//! Files by URI: local paths, `https://`, `s3://`, `gs://` and `az://`, read and written in
-//! blocking calls.
+//! Reads and writes files by URI, in blocking calls: local paths, `https://`, `s3://`, `gs://` and
+//! `az://`.
 //!
-//! - A write is whole or not there: one request, or parts that become a file by the last request.
-//!   Local files are renamed into place.
-//! - Failures that pass (503, 429, a stalled or cut connection) are retried with growing pauses,
-//!   within a total time ([`Settings`]); a body that was cut is resumed at the same version of the
-//!   file.
-//! - Credentials come from the variables of the environment alone, and no message holds one
+//! - A file is written completely or not at all: with one request, or in parts that only become a
+//!   file with the last request. Local files are renamed into place.
+//! - Temporary failures (503, 429, a stalled or cut connection) are retried with growing pauses,
+//!   within a total time ([`Settings`]). A response that was cut off is resumed at the same version
+//!   of the file.
+//! - Credentials only come from environment variables, and no message contains one
 //!   ([`StorageError`]).
 //! - [`Remote`] reads ranges of one version of a file, and counts its requests and bytes.
 //!
-//! Local files need nothing else; the rest is the feature `cloud`, by the crates `object_store`,
-//! `reqwest` and `rustls`.
+//! Local files need no feature. Everything else needs the feature `cloud`, which uses the crates
+//! `object_store`, `reqwest` and `rustls`.
 //!
 //! ```
 //! use htex_storage::{Location, Storage};
@@ -60,9 +60,9 @@ use location::LocalOrRemote;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stat {
     pub bytes: u64,
-    /// Its entity tag, where the store has one. It changes with the content.
+    /// Its entity tag, if the store has one. It changes with the content.
     pub etag: Option<String>,
-    /// When its content changed last, where the store says so.
+    /// When its content last changed, if the store states it.
     pub modified: Option<SystemTime>,
 }
 
@@ -75,35 +75,36 @@ pub struct Storage {
     named: Named,
 }
 
-/// Who names the files.
+/// Who names the files that are accessed.
 #[derive(Debug, Clone, Default)]
 enum Named {
-    /// A person, who may name any server.
+    /// The user, who may name any server.
     #[default]
     ByPerson,
-    /// A file, which may name servers of the world and the one that it is on itself.
+    /// A file. It may name public servers, and the server on which it is stored itself.
     InFileAt(Option<Location>),
 }
 
 impl Storage {
-    /// With these limits and variables.
+    /// Creates access with these limits and variables.
     pub fn new(settings: Settings, variables: Variables) -> Self {
         Self { settings, variables, clients: Arc::default(), named: Named::ByPerson }
     }
 
-    /// For locations that a file names, such as a recipe, which is at `origin` if it is elsewhere:
-    /// of web servers those of the world alone, and the one of `origin`. Stores are those of the
-    /// variables, which a person sets.
+    /// Restricts access to locations that a file such as a recipe may name. `origin` is the
+    /// location of that file if it is remote. Of all web servers, only public ones and the server
+    /// of `origin` are allowed. Stores are those in the variables, which the user sets.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
         self.named = Named::InFileAt(origin.cloned());
         self
     }
 
-    /// With the variables of the process: `AWS_*`, `GOOGLE_*`, `AZURE_*`, `HTEX_STORAGE_TIMEOUT_S`.
+    /// Uses the environment variables of the process: `AWS_*`, `GOOGLE_*`, `AZURE_*`,
+    /// `HTEX_STORAGE_TIMEOUT_S`.
     ///
     /// # Errors
-    /// As [`Settings::from_variables`].
+    /// The errors of [`Settings::from_variables`].
     pub fn from_environment() -> Result<Self, StorageError> {
         let variables = Variables::of_process();
         Ok(Self::new(Settings::from_variables(&variables)?, variables))
@@ -112,7 +113,7 @@ impl Storage {
     /// Reads a whole file of at most `most_bytes`.
     ///
     /// # Errors
-    /// When there is no such file, it is larger, or it cannot be read.
+    /// If the file is missing, larger, or cannot be read.
     pub fn read(&self, location: &Location, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::read(path, most_bytes),
@@ -120,11 +121,11 @@ impl Storage {
         }
     }
 
-    /// Copies a whole file of at most `most_bytes` into an open local one, which is empty. After an
-    /// error that holds a part.
+    /// Downloads a whole file of at most `most_bytes` into an open, empty local file. After an
+    /// error, the local file may hold a part.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// The errors of [`Self::read`].
     pub fn download(
         &self,
         location: &Location,
@@ -139,10 +140,10 @@ impl Storage {
         }
     }
 
-    /// Size and version of a file; `None` when there is no such file.
+    /// Returns the size and version of a file; `None` if it does not exist.
     ///
     /// # Errors
-    /// When that cannot be found out.
+    /// If this cannot be determined.
     pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::stat(path),
@@ -150,27 +151,27 @@ impl Storage {
         }
     }
 
-    /// Whether there is such a file.
+    /// Returns whether a file exists.
     ///
     /// # Errors
-    /// As [`Self::stat`].
+    /// The errors of [`Self::stat`].
     pub fn exists(&self, location: &Location) -> Result<bool, StorageError> {
         Ok(self.stat(location)?.is_some())
     }
 
-    /// The size of a file.
+    /// Returns the size of a file, bytes.
     ///
     /// # Errors
-    /// As [`Self::stat`], and when there is no such file.
+    /// The errors of [`Self::stat`], and an error if the file does not exist.
     pub fn size(&self, location: &Location) -> Result<u64, StorageError> {
         let stat = self.stat(location)?;
         stat.map(|stat| stat.bytes).ok_or_else(|| StorageProblem::Missing.at(location))
     }
 
-    /// Reads a range of bytes. To read several of one file, [`Self::open`] it.
+    /// Reads a range of bytes. To read several ranges of one file, use [`Self::open`].
     ///
     /// # Errors
-    /// As [`Self::read`], and when the range ends after the file.
+    /// The errors of [`Self::read`], and an error if the range ends after the end of the file.
     pub fn read_range(
         &self,
         location: &Location,
@@ -187,11 +188,11 @@ impl Storage {
         Ok(remote.into_head())
     }
 
-    /// Opens one version of a file for reads of ranges. The one request for the first `head_bytes`
-    /// gives the size too; reads within these bytes cost no further request.
+    /// Opens one version of a file for reading ranges. A single request for the first `head_bytes`
+    /// also gives the size. Reads within these bytes need no further request.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// The errors of [`Self::read`].
     pub fn open(&self, location: &Location, head_bytes: u32) -> Result<Remote, StorageError> {
         self.open_at(location, 0..u64::from(head_bytes.max(1)))
     }
@@ -205,11 +206,12 @@ impl Storage {
         }
     }
 
-    /// Lists the files below a folder whose names relative to it match a pattern, by name: `*.csv`,
-    /// `**/*.htex`. At most 1,000,000.
+    /// Lists the files below a folder, sorted by name, whose relative names match a pattern:
+    /// `*.csv`, `**/*.htex`. At most 1,000,000 files.
     ///
     /// # Errors
-    /// As [`Self::read`]; when the pattern is malformed; of a web server.
+    /// The errors of [`Self::read`], an error for a malformed pattern, and an error for a web
+    /// server.
     pub fn list(&self, folder: &Location, pattern: &str) -> Result<Vec<Entry>, StorageError> {
         let pattern = listing::pattern(folder, pattern)?;
         let mut found = match folder.place() {
@@ -226,10 +228,10 @@ impl Storage {
         Ok(found)
     }
 
-    /// Writes a file, or replaces it; it is whole or not there.
+    /// Writes or replaces a file, completely or not at all.
     ///
     /// # Errors
-    /// When it cannot be written; what was there before is then unchanged.
+    /// If the file cannot be written. An existing file is then unchanged.
     pub fn write(&self, location: &Location, bytes: &[u8]) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::write(path, bytes),
@@ -237,11 +239,11 @@ impl Storage {
         }
     }
 
-    /// Writes a copy of a local file, as [`Self::write`] does: above 16 MiB in parts of 8 MiB,
-    /// which are taken back after a failure.
+    /// Uploads a local file, completely or not at all. Files above 16 MiB are sent in parts of 8
+    /// MiB, which are removed after a failure.
     ///
     /// # Errors
-    /// As [`Self::write`], and when the local file cannot be read.
+    /// The errors of [`Self::write`], and an error if the local file cannot be read.
     pub fn write_file(&self, location: &Location, file: &Path) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::write_copy(path, file),
@@ -249,10 +251,10 @@ impl Storage {
         }
     }
 
-    /// Removes a file; it is no error when there is none.
+    /// Removes a file. A missing file is not an error.
     ///
     /// # Errors
-    /// When it cannot be removed; of a web server.
+    /// If the file cannot be removed; always for a web server.
     pub fn remove(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::remove(path),
@@ -260,11 +262,11 @@ impl Storage {
         }
     }
 
-    /// Checks whether a file there could be written, as far as that is known without a request: its
-    /// scheme, and the settings of its store.
+    /// Checks whether a file at this location could be written, as far as this is known without a
+    /// request: from its scheme and the settings of its store.
     ///
     /// # Errors
-    /// When it could not.
+    /// If it could not be written.
     pub fn check_writable(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(_) => Ok(()),

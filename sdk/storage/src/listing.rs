@@ -1,4 +1,4 @@
-//! Lists of files by a pattern.
+//! Lists files that match a pattern.
 
 use std::path::Path;
 use std::time::SystemTime;
@@ -8,25 +8,25 @@ use glob::{MatchOptions, Pattern};
 use crate::error::AtPlace;
 use crate::{Location, StorageError, StorageProblem};
 
-/// Most files of a list.
+/// Largest number of files in a list.
 pub(crate) const MOST_ENTRIES: usize = 1_000_000;
-/// Most files that are looked at for a list, whether they match or not.
+/// Largest number of files that are examined for a list, whether they match or not.
 pub(crate) const MOST_LISTED: usize = 10 * MOST_ENTRIES;
-/// Most folders within each other.
+/// Largest nesting depth of folders.
 const MOST_DEPTH: usize = 64;
 
-/// A file of a list.
+/// A file in a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
     pub location: Location,
     pub bytes: u64,
-    /// Its entity tag, where the store has one.
+    /// Its entity tag, if the store has one.
     pub etag: Option<String>,
-    /// When its content changed last, where the store says so.
+    /// When its content last changed, if the store states it.
     pub modified: Option<SystemTime>,
 }
 
-/// Parses a pattern: `*` and `?` stay within one folder, `**` goes through all.
+/// Parses a pattern. `*` and `?` match within one folder, `**` matches across folders.
 pub(crate) fn pattern(location: &Location, text: &str) -> Result<Pattern, StorageError> {
     Pattern::new(text).map_err(|error| {
         let problem = format!("the pattern {text}: {error}");
@@ -46,7 +46,7 @@ pub(crate) fn too_many(location: &Location) -> StorageError {
     StorageProblem::Uri { problem }.at(location)
 }
 
-/// The files below a local folder whose names relative to it match. Links to folders are not
+/// Returns the files below a local folder whose relative names match. Links to folders are not
 /// followed.
 pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, StorageError> {
     let mut found = Vec::new();

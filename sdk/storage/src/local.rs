@@ -1,4 +1,4 @@
-//! Files of this machine.
+//! Local files.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};

@@ -1,4 +1,4 @@
-//! Where a file is: a local path, or a URI.
+//! The location of a file: a local path or a URI.
 
 use std::ffi::OsStr;
 use std::fmt;
@@ -11,9 +11,9 @@ use crate::{StorageError, StorageProblem};
 /// The known schemes, for messages.
 const KNOWN: &str = "s3://, gs://, az://, https://, http:// and file://";
 
-/// A local path, or a file elsewhere.
+/// The location of a local or remote file.
 ///
-/// It is displayed without the query of a URL, which may carry a signature.
+/// It is displayed without the query of a URL, because the query may contain a signature.
 ///
 /// ```
 /// use htex_storage::Location;
@@ -33,20 +33,20 @@ pub(crate) enum LocalOrRemote {
     Remote(Uri),
 }
 
-/// A file elsewhere.
+/// The location of a remote file.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Uri {
     pub(crate) scheme: Scheme,
     /// The bucket, the container, or the host with its port.
     pub(crate) authority: String,
-    /// The key as it is written, or the path of a URL with its escapes, without the slash before
-    /// it.
+    /// The key as it is written, or the path of a URL with its escapes. Does not include the slash
+    /// before it.
     pub(crate) path: String,
-    /// Of a URL alone; never displayed.
+    /// Query of a URL; `None` for other URIs. It is never displayed.
     pub(crate) query: Option<String>,
 }
 
-/// The kind of a store.
+/// The kind of store.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Scheme {
     S3,
@@ -57,15 +57,15 @@ pub(crate) enum Scheme {
 }
 
 impl Location {
-    /// Reads an argument.
+    /// Parses an argument.
     ///
-    /// `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY` take the key as it is written;
-    /// `https://…` and `http://…` are URLs; `file:///PATH` has escapes (`%20`). Everything else is
-    /// a path of this machine and stays as it is, whether it is Unicode or not.
+    /// `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY` take the key exactly as
+    /// written. `https://…` and `http://…` are URLs. `file:///PATH` may have escapes (`%20`).
+    /// Everything else is a local path, which is used unchanged whether or not it is Unicode.
     ///
     /// # Errors
-    /// A URI of another scheme, one with a user name or password, one that is not complete, or one
-    /// that is not Unicode.
+    /// A URI with another scheme, with a user name or password, that is incomplete, or that is not
+    /// Unicode.
     pub fn parse(argument: &OsStr) -> Result<Self, StorageError> {
         let lossy = argument.to_string_lossy();
         let Some((scheme, rest)) = split_scheme(&lossy) else {
@@ -96,7 +96,7 @@ impl Location {
         Ok(Self(LocalOrRemote::Remote(uri)))
     }
 
-    /// The path, for a file of this machine.
+    /// Returns the path of a local file; `None` for a remote file.
     pub fn local(&self) -> Option<&Path> {
         match &self.0 {
             LocalOrRemote::Local(path) => Some(path),
@@ -104,7 +104,8 @@ impl Location {
         }
     }
 
-    /// The last part of the path, which a local copy is named by: for a URL without its escapes.
+    /// Returns the last part of the path, which is the name for a local copy. The escapes of a URL
+    /// are resolved.
     pub fn file_name(&self) -> Option<String> {
         match &self.0 {
             LocalOrRemote::Local(path) => Some(path.file_name()?.to_string_lossy().into_owned()),
@@ -112,7 +113,8 @@ impl Location {
         }
     }
 
-    /// A file in this folder, by its path there with `/` between the parts.
+    /// Returns the location of a file in this folder. `path` is relative to the folder, with `/`
+    /// between the parts.
     #[must_use]
     pub fn inside(&self, path: &str) -> Self {
         match &self.0 {
@@ -124,7 +126,7 @@ impl Location {
         }
     }
 
-    /// The same store with another key.
+    /// Returns the same store with another key.
     pub(crate) fn with_key(&self, key: &str) -> Self {
         match &self.0 {
             LocalOrRemote::Local(path) => Self(LocalOrRemote::Local(path.join(key))),
@@ -134,7 +136,7 @@ impl Location {
         }
     }
 
-    /// Whether a URI is of the same server.
+    /// Returns whether a URI is on the same server.
     pub(crate) fn is_same_server(&self, uri: &Uri) -> bool {
         match &self.0 {
             LocalOrRemote::Local(_) => false,
@@ -158,7 +160,7 @@ impl From<PathBuf> for Location {
 impl Uri {
     fn new(scheme: Scheme, rest: &str) -> Result<Self, &'static str> {
         let is_url = matches!(scheme, Scheme::Http | Scheme::Https);
-        // A fragment is never sent; in a key `#` and `?` are characters like any other.
+        // The fragment of a URL is never sent. In a key, `#` and `?` are ordinary characters.
         let (rest, query) = match is_url.then(|| rest.split('#').next().unwrap_or(rest)) {
             Some(rest) => match rest.split_once('?') {
                 Some((before, query)) => (before, Some(query.to_owned())),
@@ -187,7 +189,7 @@ impl Uri {
         Ok(Self { scheme, authority: authority.to_owned(), path: path.to_owned(), query })
     }
 
-    /// The key of a folder.
+    /// Returns the key of a folder, without a slash at its end.
     pub(crate) fn without_last_slash(&self) -> Self {
         Self { path: self.path.trim_end_matches('/').to_owned(), ..self.clone() }
     }
@@ -200,7 +202,7 @@ impl Uri {
             }
             _ => last.to_owned(),
         };
-        // What the escapes hide may not lead elsewhere.
+        // Resolved escapes must not lead to another folder.
         let is_safe = |c: char| !matches!(c, '/' | '\\' | ':' | '\0');
         let is_name = name.chars().all(is_safe) && name != "." && name != "..";
         is_name.then_some(name)
@@ -252,7 +254,7 @@ impl fmt::Debug for Uri {
     }
 }
 
-/// Splits `scheme://rest`. A single letter is a drive of Windows.
+/// Splits `scheme://rest`. A single letter before it is not a scheme but a Windows drive.
 fn split_scheme(text: &str) -> Option<(&str, &str)> {
     let (scheme, rest) = text.split_once("://")?;
     let is_scheme = scheme.len() > 1
@@ -261,7 +263,7 @@ fn split_scheme(text: &str) -> Option<(&str, &str)> {
     is_scheme.then_some((scheme, rest))
 }
 
-/// The path of `file://…`: that of this machine, with its escapes resolved.
+/// Returns the local path of `file://…`, with its escapes resolved.
 fn file_path(rest: &str) -> Result<PathBuf, &'static str> {
     let (host, _) = rest.split_once('/').unwrap_or((rest, ""));
     if !host.is_empty() && host != "localhost" {
@@ -288,7 +290,7 @@ fn os_path(bytes: Vec<u8>) -> Result<PathBuf, &'static str> {
     Ok(if has_drive { &text[1..] } else { &text[..] }.into())
 }
 
-/// A URI for a message about its form: without what stands before an `@`, and without its query.
+/// Returns a URI for a message about its form, without what is before an `@` and without its query.
 fn without_secrets(text: &str) -> String {
     let Some((scheme, rest)) = split_scheme(text) else {
         return text.to_owned();

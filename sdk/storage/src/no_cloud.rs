@@ -1,4 +1,4 @@
-//! In place of the stores where the feature `cloud` is off: every URI of one is an error.
+//! Replaces the stores if the feature `cloud` is off: every remote URI is an error.
 
 use std::convert::Infallible;
 use std::fs::File;
@@ -11,7 +11,7 @@ use crate::{Entry, Location, Settings, Stat, StorageError, StorageProblem, Varia
 #[derive(Debug, Default)]
 pub(crate) struct Clients;
 
-/// No store.
+/// A store that cannot exist.
 pub(crate) struct Store(Infallible);
 
 #[derive(Debug, Clone, PartialEq, Eq)]

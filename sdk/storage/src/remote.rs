@@ -1,4 +1,4 @@
-//! One version of a file, read by ranges.
+//! Reads ranges of one version of a file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -12,17 +12,17 @@ use crate::cloud::{Store, Version};
 use crate::error::AtPlace;
 use crate::{Location, StorageError, StorageProblem, local};
 
-/// What reading has cost so far.
+/// Cost of reading so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Usage {
-    /// Requests that were sent, retries among them; reads of a local file.
+    /// Number of requests that were sent, including retries; for a local file, the number of reads.
     pub requests: u64,
-    /// Bytes that were received.
+    /// Number of bytes received.
     pub bytes: u64,
 }
 
-/// One version of a file, read by ranges. When the file is replaced, reads fail with
-/// [`StorageProblem::Changed`] instead of mixing two versions.
+/// One version of a file, from which ranges can be read. If the file is replaced, reads fail with
+/// [`StorageProblem::Changed`] and never mix two versions.
 ///
 /// ```
 /// use htex_storage::{Location, Storage};
@@ -42,7 +42,7 @@ pub struct Remote {
     of: Of,
     len: u64,
     etag: Option<String>,
-    /// What the first request brought, and where that begins.
+    /// The bytes that the first request returned, and the offset of the first of them.
     head: Vec<u8>,
     head_start: u64,
 }
@@ -96,7 +96,7 @@ impl Remote {
         Ok(remote)
     }
 
-    /// The size of the file, bytes.
+    /// Returns the size of the file, bytes.
     pub fn len(&self) -> u64 {
         self.len
     }
@@ -105,12 +105,12 @@ impl Remote {
         self.len == 0
     }
 
-    /// The entity tag of the version that is read, where the store has one.
+    /// Returns the entity tag of the version that is read, if the store has one.
     pub fn etag(&self) -> Option<&str> {
         self.etag.as_deref()
     }
 
-    /// Requests and bytes so far, those of opening among them.
+    /// Returns the requests and bytes so far, including those for opening.
     pub fn usage(&self) -> Usage {
         let (requests, bytes) = match &self.of {
             Of::Store { store, .. } => store.usage(),
@@ -121,11 +121,11 @@ impl Remote {
         Usage { requests, bytes }
     }
 
-    /// Fills the buffer with the bytes from `offset` on: by one request, or by none where opening
-    /// has brought them.
+    /// Fills the buffer with the bytes from `offset` on. Sends one request, or none if the bytes
+    /// were received when the file was opened.
     ///
     /// # Errors
-    /// When the range ends after the file, the file was replaced, or it cannot be read.
+    /// If the range ends after the end of the file, the file was replaced, or it cannot be read.
     pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), StorageError> {
         let end = offset.saturating_add(buffer.len() as u64);
         if end > self.len {
@@ -146,7 +146,7 @@ impl Remote {
         self.head.get(from..)?.get(..len)
     }
 
-    /// The bytes of a range within the file, exactly.
+    /// Returns exactly the bytes of a range within the file.
     fn fetch(&self, range: Range<u64>) -> Result<Vec<u8>, StorageError> {
         let wanted = range.end - range.start;
         let found = match &self.of {

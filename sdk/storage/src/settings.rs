@@ -1,7 +1,7 @@
-//! Time limits and retries, and the variables that credentials are read from.
+//! Time limits, retries, and the variables that hold credentials.
 //!
-//! Requests are sent again for as long as a server takes to restart: 20 pauses of at most 2 s are
-//! 33 s on average, 37 s at most, and in 999 of 1,000 cases 22 s and more (100,000 random
+//! The retries last as long as a server takes to restart. 20 pauses of at most 2 s add up to 33 s
+//! on average and at most 37 s; in 999 of 1,000 cases they last at least 22 s (100,000 random
 //! sequences).
 
 use std::fmt;
@@ -9,21 +9,23 @@ use std::time::Duration;
 
 use crate::{StorageError, StorageProblem};
 
-/// Name of the variable for [`Settings::total`], seconds.
+/// Name of the variable for [`Settings::total`], in seconds.
 const TIMEOUT: &str = "HTEX_STORAGE_TIMEOUT_S";
 
 /// Time limits and retries of one operation.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Most time of an operation with all of its retries: 600 s, or the variable
+    /// Longest time for an operation with all its retries: 600 s, or the value of the variable
     /// `HTEX_STORAGE_TIMEOUT_S`.
     pub total: Duration,
-    /// Most time without a byte: 30 s; for a connection 10 s of it. The request is then sent again.
+    /// Longest time without receiving a byte: 30 s, of which at most 10 s for the connection. After
+    /// it, the request is sent again.
     pub stall: Duration,
-    /// Most times that a request is sent again: 20.
+    /// Largest number of times that a request is sent again: 20.
     pub retries: usize,
-    /// Pause before the first retry: 0.2 s. Later ones are random, up to six times the one before.
+    /// Pause before the first retry: 0.2 s. Later pauses are random, up to six times the pause
+    /// before.
     pub first_pause: Duration,
     /// Longest pause: 2 s.
     pub longest_pause: Duration,
@@ -42,10 +44,10 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The defaults with the total time of the environment.
+    /// Returns the defaults with the total time from the environment.
     ///
     /// # Errors
-    /// When `HTEX_STORAGE_TIMEOUT_S` is not a number of seconds from 0.1 to 86,400.
+    /// If `HTEX_STORAGE_TIMEOUT_S` is not a number of seconds from 0.1 to 86,400.
     pub fn from_variables(variables: &Variables) -> Result<Self, StorageError> {
         let mut settings = Self::default();
         if let Some(text) = variables.get(TIMEOUT) {
@@ -60,13 +62,13 @@ impl Settings {
     }
 }
 
-/// Variables by name, which credentials and endpoints are read from. Their values are not
-/// displayed.
+/// Environment variables by name, from which credentials and endpoints are read. Their values are
+/// never displayed.
 #[derive(Clone, Default)]
 pub struct Variables(Vec<(String, String)>);
 
 impl Variables {
-    /// Those of the process. Names and values that are not Unicode are left out.
+    /// Reads the variables of the process. Names and values that are not Unicode are left out.
     pub fn of_process() -> Self {
         let text = |(name, value): (std::ffi::OsString, std::ffi::OsString)| {
             Some((name.into_string().ok()?, value.into_string().ok()?))
@@ -79,14 +81,14 @@ impl Variables {
         all.find_map(|(of, value)| (of == name).then_some(&value[..]))
     }
 
-    /// Refuses a value with a control character, which no header, host or key has, among the
-    /// variables whose names begin with this.
+    /// Refuses a control character in the value of a variable whose name starts with `prefix`. No
+    /// header, host or key contains one.
     ///
     /// # Errors
     /// A sentence with the variable's name.
     #[cfg(feature = "cloud")]
     pub(crate) fn check(&self, prefix: &str) -> Result<(), String> {
-        // A key as JSON has lines.
+        // A key in JSON form has line breaks, so it is not checked.
         let is_text = |value: &str| !value.trim_start().starts_with('{');
         let wrong =
             |(_, value): &(&str, &str)| is_text(value) && value.chars().any(char::is_control);
@@ -98,7 +100,7 @@ impl Variables {
         }
     }
 
-    /// Set variables whose names begin with this.
+    /// Returns the variables that are set and whose names start with `prefix`.
     #[cfg(feature = "cloud")]
     pub(crate) fn with_prefix<'a>(
         &'a self,

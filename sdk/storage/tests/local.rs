@@ -1,4 +1,4 @@
-//! Files of this machine, which need no feature.
+//! Local files, which need no feature.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Reading from a store of S3, with faults that pass, faults that stay, and credentials that do not
+//! Reads from an S3 store with temporary faults, permanent faults, and credentials that do not
 //! work.
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
@@ -83,7 +83,7 @@ fn a_list_is_by_name_and_by_pattern() {
     assert!(said(storage(&server).list(&at("s3://surfaces/set"), "[")).contains("the pattern ["));
 }
 
-/// Each with the number of requests that it takes.
+/// Temporary faults, each with the number of requests that it takes.
 #[test]
 fn faults_that_pass_are_retried() {
     let (server, bytes) = server();
@@ -141,7 +141,7 @@ fn faults_that_stay_are_one_error() {
     assert!(said(gone.read(&at(URI), MOST)).contains("refused"));
 }
 
-/// The limit holds for all requests together, whatever each of them does.
+/// The limit applies to all requests together, whatever each of them does.
 #[test]
 fn the_total_time_is_bounded() {
     let (server, _) = server();
@@ -162,7 +162,7 @@ fn the_total_time_is_bounded() {
     }
 }
 
-/// None is retried, and each names the variable.
+/// These failures are not retried, and each message names the variable.
 #[test]
 fn credentials_that_do_not_work_are_said_so() {
     let (server, _) = server();
@@ -170,7 +170,8 @@ fn credentials_that_do_not_work_are_said_so() {
     let cases = [
         (&[("AWS_SECRET_ACCESS_KEY", "another-S3CR3T")][..], "check AWS_SECRET_ACCESS_KEY"),
         (&[("AWS_ACCESS_KEY_ID", "AKID-S3CR3T")], "AWS_ACCESS_KEY_ID"),
-        // No other place is asked for credentials, that of the machine in a cloud least of all.
+        // Credentials are not looked for elsewhere, in particular not in the metadata service of a
+        // cloud machine.
         (&none, "no credentials are set; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY"),
     ];
     for (over, words) in cases {
@@ -192,7 +193,7 @@ fn credentials_that_do_not_work_are_said_so() {
     }
 }
 
-/// Refusals that quote the request's signature in their document.
+/// Refusals whose document quotes the request's signature.
 #[test]
 fn refusals_are_said_by_their_code_alone() {
     let (server, _) = server();

@@ -1,4 +1,4 @@
-//! Ranges of one version of a file, and what they cost.
+//! Ranges of one version of a file, and their cost.
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -22,7 +22,7 @@ fn read(remote: &Remote, offset: u64, len: usize) -> Result<Vec<u8>, StorageErro
     remote.read_at(offset, &mut buffer).map(|()| buffer)
 }
 
-/// The size comes with the first range: no request asks for it alone.
+/// The size comes with the first range, without a separate request.
 #[test]
 fn opening_and_two_reads_are_three_requests() {
     let (server, bytes) = server();
@@ -74,12 +74,12 @@ fn a_local_file_is_read_alike() {
 #[test]
 fn a_replaced_file_is_an_error_and_never_a_mixture() {
     let (server, _) = server();
-    // Of the same size, with a tag and without.
+    // With the same size, with a tag and without.
     for fault in [Fault::None, Fault::WithoutTag] {
         server.put(NAME, bytes(1_000_000));
         server.fail(move |_, _| fault.clone());
         let remote = storage(&server).open(&at(URI), 16).unwrap();
-        // The times of versions without a tag are whole seconds.
+        // The times of versions without a tag are in whole seconds.
         std::thread::sleep(std::time::Duration::from_millis(1_100));
         server.put(NAME, vec![7; 1_000_000]);
         let error = read(&remote, 500_000, 10);
@@ -91,7 +91,7 @@ fn a_replaced_file_is_an_error_and_never_a_mixture() {
     }
 }
 
-/// The connection is cut, and what it is resumed at is another version.
+/// The connection is cut, and when it is resumed the file has another version.
 #[test]
 fn a_file_that_is_replaced_in_the_middle_is_an_error() {
     let (server, _) = server();

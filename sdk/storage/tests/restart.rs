@@ -1,4 +1,4 @@
-//! Transfers while a server restarts, with the retries that programs have.
+//! Transfers while a server restarts, with the default retries of programs.
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -11,8 +11,8 @@ use common::{MOST, at, bytes};
 use htex_object_server::{Fault, Server};
 use htex_storage::{Settings, Storage};
 
-/// How long connections are refused, and then requests. The pauses of the former 6 retries were 11
-/// s at most.
+/// How long connections are refused, and then requests. The earlier default of 6 retries paused for
+/// 11 s at most.
 const REFUSED: Duration = Duration::from_secs(7);
 const BUSY: Duration = Duration::from_secs(5);
 

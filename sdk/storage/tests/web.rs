@@ -1,4 +1,4 @@
-//! Reading from a web server: links with signatures, redirects, addresses.
+//! Reads from a web server: links with signatures, redirects, addresses.
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -32,7 +32,7 @@ fn a_file_is_read_without_credentials() {
     assert_eq!(server.get("web/a b.csv").unwrap(), bytes);
 }
 
-/// The query goes to the server and into no message.
+/// The query is sent to the server and does not appear in any message.
 #[test]
 fn a_signed_link_stays_secret() {
     let (server, _) = server();
@@ -49,7 +49,7 @@ fn a_signed_link_stays_secret() {
     }
 }
 
-/// Without a tag the versions cannot be told apart: the file is read anew.
+/// Without a tag, versions cannot be distinguished, so the file is read from the start.
 #[test]
 fn a_cut_without_a_tag_is_read_from_the_start() {
     let (server, bytes) = server();
@@ -96,8 +96,8 @@ fn a_redirect_leads_to_no_inner_address() {
     assert_eq!(server.requests().len(), 6);
 }
 
-/// What a file names is of the world, or of the server that it is on itself; what a person names
-/// may be anywhere.
+/// A file may only name public addresses and the server on which it is stored. The user may name
+/// any address.
 #[test]
 fn a_file_names_no_inner_address() {
     let (server, bytes) = server();

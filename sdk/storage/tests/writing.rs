@@ -1,4 +1,4 @@
-//! Writes are whole or not there.
+//! Files are written completely or not at all.
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 const NAME: &str = "surfaces/cloth.htex";
 const URI: &str = "s3://surfaces/cloth.htex";
-/// Three parts.
+/// Size of a file that is sent in three parts, bytes.
 const LARGE: usize = 20 << 20;
 
 fn local(folder: &TempDir, bytes: &[u8]) -> PathBuf {
@@ -63,7 +63,7 @@ fn a_large_file_is_one_of_parts() {
     assert_eq!(methods, ["POST", "PUT", "PUT", "PUT", "PUT", "POST", "GET"]);
 }
 
-/// The old file stays as it is; where there was none, there is none.
+/// The old file stays unchanged. If there was none, there is none afterwards.
 #[test]
 fn a_write_that_fails_leaves_nothing() {
     let (server, folder) = (Server::start(), TempDir::new().unwrap());
@@ -104,7 +104,7 @@ fn a_write_that_fails_leaves_nothing() {
     }
 }
 
-/// The parts are taken back after the time is over too.
+/// The parts are also removed after the time is over.
 #[test]
 fn a_write_that_takes_too_long_leaves_nothing() {
     let (server, folder) = (Server::start(), TempDir::new().unwrap());
@@ -120,7 +120,7 @@ fn a_write_that_takes_too_long_leaves_nothing() {
     assert_eq!(server.requests().last().unwrap().method, "DELETE");
 }
 
-/// A browser opens what it gets by its media type, and compares a copy that it kept.
+/// A browser uses the media type to open a file, and compares its stored copy before it uses it.
 #[test]
 fn a_file_has_its_media_type_in_a_store() {
     let server = Server::start();

@@ -1,12 +1,13 @@
-//! The reader of every TOML file: recipes, studies, calibrations and the profiles of actuators.
+//! Reads every TOML file: recipes, studies, calibrations and the profiles of actuators.
 //!
-//! The parser of the crate `toml` recurses. Its own bound (80 levels) counts wrongly after an
-//! error: a closing bracket without an opening one lowers its count, so 7,200 lines of
-//! `motion = { const']` overflowed a stack of 8 MiB. It counts the dots of each dotted key alone,
-//! so that 80 tables in each other with 80 names each are 6,400 levels. Therefore the brackets and
-//! dots of the text are counted before it is parsed (`nesting.rs`), and a text beyond
-//! [`MOST_LEVELS`] is an error. No other module may call the crate (`clippy.toml`; no other crate
-//! depends on it).
+//! The parser of the crate `toml` is recursive. Its own limit (80 levels) has two gaps. After an
+//! error it counts wrongly: a closing bracket without an opening one lowers its count, so that
+//! 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. And it counts the dots of each
+//! dotted key separately, so that 80 nested tables with 80 names each make 6,400 levels.
+//!
+//! Therefore the brackets and dots of the text are counted before it is parsed (`nesting.rs`), and
+//! a text with more than [`MOST_LEVELS`] levels is an error. No other module may call the crate
+//! (`clippy.toml`; no other crate depends on it).
 #![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
 
 mod nesting;
@@ -20,14 +21,14 @@ use toml::{Spanned, de};
 pub use nesting::MOST_LEVELS;
 use nesting::check_nesting;
 
-/// What is wrong with a TOML text, and where. Displays as `line 3, column 5: …`.
+/// What is wrong with a TOML text and where. It is displayed as `line 3, column 5: …`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlError {
-    /// The line, from 1.
+    /// The line, counted from 1.
     pub line: usize,
-    /// The column, in characters from 1.
+    /// The column in characters, counted from 1.
     pub column: usize,
-    /// What is wrong, on one line.
+    /// What is wrong, in one line.
     pub message: String,
 }
 
@@ -41,7 +42,7 @@ impl fmt::Display for TomlError {
 impl std::error::Error for TomlError {}
 
 impl TomlError {
-    /// An error at a byte of the text.
+    /// Creates an error at a byte of the text.
     fn at(text: &str, byte: usize, message: String) -> Self {
         let (line, column) = place(text, byte);
         Self { line, column, message }
@@ -53,7 +54,7 @@ impl TomlError {
     }
 }
 
-/// Reads a TOML text into a value. Takes less than 256 KiB of stack, whatever the text is.
+/// Reads a TOML text into a value. Needs less than 256 KiB of stack, whatever the text is.
 ///
 /// ```
 /// # use std::collections::BTreeMap;
@@ -64,14 +65,14 @@ impl TomlError {
 /// ```
 ///
 /// # Errors
-/// When the text is not TOML, holds another value, or is nested deeper than [`MOST_LEVELS`].
+/// If the text is not TOML, holds another type of value, or is nested deeper than [`MOST_LEVELS`].
 pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
     check_nesting(text)?;
     toml::from_str(text).map_err(|error| TomlError::of(text, &error))
 }
 
-/// Returns the line of each key, from 1, or `None` where the text has no such key. A path has the
-/// names of the tables that the key stands in, and the indices of arrays.
+/// Returns the line of each key, counted from 1, or `None` if the text has no such key. A path
+/// consists of the names of the tables that contain the key, the indices of arrays, and the key.
 pub fn lines_of_keys<'p>(
     text: &str,
     paths: impl IntoIterator<Item = &'p [String]>,
@@ -104,7 +105,7 @@ fn place_of_key(table: &DeTable<'_>, path: &[String]) -> Option<usize> {
     Some(key.span().start)
 }
 
-/// Line and column of a byte, from 1.
+/// Returns the line and column of a byte, counted from 1.
 fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.matches('\n').count() + 1;

@@ -1,43 +1,43 @@
-//! The bound of what the parser recurses on, counted on tokens before it runs.
+//! Limits how deep the parser can recurse, by counting tokens before it runs.
 
 use toml_parser::Source;
 use toml_parser::lexer::{Token, TokenKind};
 
 use super::{TomlError, place};
 
-/// Deepest nesting of a TOML text: tables and arrays in each other, by brackets and by the dots of
-/// keys together. Recipes and studies have at most 8.
+/// Largest nesting depth of a TOML text: nested tables and arrays, through brackets and through the
+/// dots of keys together. Recipes and studies have at most 8 levels.
 pub const MOST_LEVELS: usize = 24;
 
 /// An open bracket.
 struct Open {
     kind: TokenKind,
     start: usize,
-    /// Most dots in one key since it was opened.
+    /// Largest number of dots in one key since the bracket was opened.
     dots: usize,
 }
 
-/// Counts levels in a text that may have any errors.
+/// Counts the levels of a text, which may contain any errors.
 ///
 /// The parser recurses at an opening bracket, and returns at the closing bracket of the same kind
-/// or at the end. In a text whose brackets match, each of its calls thus has an open bracket here.
-/// It puts a value below the last key that it read, which after an error may be any key since the
-/// bracket was opened: the longest one counts.
+/// or at the end. So in a text whose brackets match, each of the parser's calls has an open bracket
+/// here. The parser puts a value below the last key that it read. After an error, this may be any
+/// key since the bracket was opened, so the longest one counts.
 #[derive(Default)]
 struct Nesting {
     open: Vec<Open>,
-    /// Levels of all open brackets, with the dots of their keys.
+    /// Levels of all open brackets together, including the dots of their keys.
     inside: usize,
-    /// Most dots in one key outside all brackets, or in the name of a table.
+    /// Largest number of dots in one key outside all brackets, or in the name of a table.
     outside: usize,
-    /// Dots of the key that is being read.
+    /// Number of dots in the key that is being read.
     run: usize,
-    /// Whether the last token, but for blanks, is a dot.
+    /// Whether the last token, not counting blanks, is a dot.
     after_dot: bool,
 }
 
-/// Refuses a text that is nested deeper than [`MOST_LEVELS`], or in which a bracket is closed by
-/// another kind of bracket.
+/// Refuses a text that is nested deeper than [`MOST_LEVELS`], or in which a bracket is closed by a
+/// bracket of another kind.
 pub(super) fn check_nesting(text: &str) -> Result<(), TomlError> {
     let mut nesting = Nesting::default();
     let source = Source::new(text);
@@ -91,7 +91,7 @@ impl Nesting {
     fn leave(&mut self, kind: TokenKind, text: &str) -> Result<(), String> {
         self.run = 0;
         let Some(open) = self.open.pop() else {
-            // The parser names it, and does not recurse there.
+            // The parser reports this error itself, and does not recurse there.
             return Ok(());
         };
         let (opened, closing) = match open.kind {
@@ -106,14 +106,15 @@ impl Nesting {
             ));
         }
         self.inside -= 1 + open.dots;
-        // The name of a table stands in brackets, and is above all keys that follow.
+        // The name of a table is written in brackets, and applies to all keys that follow.
         if self.open.is_empty() {
             self.outside = self.outside.max(open.dots);
         }
         Ok(())
     }
 
-    /// Levels at this token: a table's name and a key outside brackets may each have the most dots.
+    /// Returns the number of levels at this token. A table's name and a key outside brackets may
+    /// each have the most dots, so they count twice.
     fn levels(&self) -> usize {
         2 * self.outside + self.inside
     }

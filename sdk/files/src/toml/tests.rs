@@ -1,13 +1,13 @@
-//! Texts that recurse, each on a small stack.
+//! Tests texts that make the parser recurse, each on a small stack.
 
 use serde_json::Value;
 
 use super::*;
 
-/// Stack of a thread, bytes: an eighth of what a thread usually has.
+/// Stack size of a thread, bytes: an eighth of what a thread usually has.
 const STACK: usize = 256 << 10;
 
-/// Reads a text with a small stack, as a table of any values.
+/// Reads a text as a table of any values, on a small stack.
 fn read(text: &str) -> Result<Value, TomlError> {
     let text = text.to_owned();
     let thread = std::thread::Builder::new().stack_size(STACK).spawn(move || {
@@ -17,8 +17,8 @@ fn read(text: &str) -> Result<Value, TomlError> {
     thread.unwrap().join().unwrap()
 }
 
-/// All lines of up to three of these pieces, repeated: brackets, keys, values, quotes, comments,
-/// and errors of each.
+/// Tests all lines of up to three of these pieces, repeated: brackets, keys, values, quotes,
+/// comments, and errors of each.
 #[test]
 fn no_text_overflows_a_small_stack() {
     let pieces = [

@@ -1,11 +1,11 @@
-//! Which addresses a request may go to: the one rule for arguments, for what files name, and for
-//! redirects.
+//! Decides to which addresses a request may go. The same rule applies to arguments, to names in
+//! files, and to redirects.
 //!
-//! A person may name any address in an argument or in a variable of the environment. What a file
-//! names, such as a recipe, and what a server redirects to may be an address of the world alone, or
-//! the server that the person named: else anybody's file would make requests in the person's
-//! network, to the machine itself, and to the metadata service of its cloud. The rule is about the
-//! address that a name resolves to, which is the one that is connected to, not about the name.
+//! In an argument or in an environment variable, the user may name any address. A file such as a
+//! recipe may only name public addresses, or the server that the user named, and a server may only
+//! redirect to these. Otherwise anyone's file could send requests inside the user's network, to the
+//! machine itself, and to the metadata service of its cloud. The rule does not apply to the name,
+//! but to the address to which it resolves, because that is the address of the connection.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
@@ -24,12 +24,12 @@ pub(super) enum NamedBy {
 #[error("{0}")]
 pub(super) struct NotFollowed(pub(super) &'static str);
 
-/// Why a file's word or a redirect does not lead there.
+/// The message for a file or a redirect that leads to an address that is not public.
 pub(super) const INNER: &str = "it leads to an address of this machine or network, which only a person names: give that URL as an argument \
                                 if you mean it";
 
-/// Whether an address is none of the world: of this machine, of its network, of a provider's, of
-/// several machines, or of none.
+/// Returns whether an address is not public: it belongs to this machine, its network or a provider,
+/// stands for several machines, or is unassigned.
 pub(super) fn is_inner(address: IpAddr) -> bool {
     match address.to_canonical() {
         IpAddr::V4(v4) => is_inner_v4(v4),
@@ -37,7 +37,7 @@ pub(super) fn is_inner(address: IpAddr) -> bool {
     }
 }
 
-/// By the registries of IANA for special-purpose IPv4 addresses (RFC 6890).
+/// Applies IANA's registries of special-purpose IPv4 addresses (RFC 6890).
 fn is_inner_v4(v4: Ipv4Addr) -> bool {
     let [a, b, c, _] = v4.octets();
     v4.is_private()
@@ -46,17 +46,17 @@ fn is_inner_v4(v4: Ipv4Addr) -> bool {
         || v4.is_multicast()
         || v4.is_broadcast()
         || v4.is_documentation()
-        // This network (RFC 791), and the end of the space, which is reserved (RFC 1112).
+        // This network (RFC 791), and the reserved end of the address space (RFC 1112).
         || a == 0
         || a >= 240
-        // Shared by the customers of a provider (RFC 6598).
+        // Shared between the customers of a provider (RFC 6598).
         || (a == 100 && b & 0xC0 == 64)
-        // Assignments of protocols (RFC 6890), and benchmarks (RFC 2544).
+        // Protocol assignments (RFC 6890), and benchmarks (RFC 2544).
         || (a == 192 && b == 0 && c == 0)
         || (a == 198 && b & 0xFE == 18)
 }
 
-/// The same for IPv6, and for addresses that stand for one of IPv4.
+/// Does the same for IPv6, including addresses that stand for an IPv4 address.
 fn is_inner_v6(v6: Ipv6Addr) -> bool {
     let [a, b, c, d, e, f, g, h] = v6.segments();
     let v4 = |high: u16, low: u16| Ipv4Addr::from_bits(u32::from(high) << 16 | u32::from(low));
@@ -79,17 +79,19 @@ fn is_inner_v6(v6: Ipv6Addr) -> bool {
         || (a, b) == (0x2001, 0)
 }
 
-/// Whether a host is written as an address, which is then not resolved, and is none of the world.
+/// Returns whether a host is written as an address, which is not resolved, and this address is not
+/// public.
 pub(super) fn is_inner_number(host: &str) -> bool {
     let number = host.trim_start_matches('[').trim_end_matches(']');
     number.parse().is_ok_and(is_inner)
 }
 
-/// The system's resolver with the addresses that may be connected to.
+/// The system's resolver, limited to addresses to which a connection is allowed.
 pub(super) struct Resolver(pub(super) NamedBy);
 
 impl Resolver {
-    /// To link-local addresses, where a cloud's machine keeps its credentials, no name leads.
+    /// Returns whether a connection to an address is allowed. No name may lead to a link-local
+    /// address, where a machine in a cloud gets its credentials.
     fn may_connect(&self, address: IpAddr) -> bool {
         let is_link_local = match address.to_canonical() {
             IpAddr::V4(v4) => v4.is_link_local(),

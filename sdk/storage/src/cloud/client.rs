@@ -1,5 +1,5 @@
-//! The HTTP clients: TLS by rustls, time limits, and the addresses that are connected to. They
-//! follow no redirect: [`super::redirects`] does, by another client.
+//! The HTTP clients: TLS with rustls, time limits, and a check of the addresses. They do not follow
+//! redirects; [`super::redirects`] does, with another client.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -12,23 +12,25 @@ use rustls_platform_verifier::BuilderVerifierExt;
 use super::addresses::{NamedBy, Resolver};
 use crate::Settings;
 
-/// Most time for a connection; a server that does not answer so soon is tried again.
+/// Longest time for a connection. If the server has not answered by then, the request is tried
+/// again.
 const LONGEST_CONNECT: Duration = Duration::from_secs(10);
 
-/// The clients, made when they are first needed and then shared with their connections.
+/// The clients. Each is created when it is first needed and then shared together with its
+/// connections.
 #[derive(Debug, Default)]
 pub(crate) struct Clients {
-    /// For addresses that a person named.
+    /// For addresses that the user named.
     by_person: Mutex<Option<reqwest::Client>>,
-    /// For addresses of the world alone.
+    /// Only for public addresses.
     world: Mutex<Option<reqwest::Client>>,
 }
 
 impl Clients {
-    /// The client for addresses that were named like this.
+    /// Returns the client for addresses that were named in this way.
     ///
     /// # Errors
-    /// A sentence, when no certificate of the system can be read.
+    /// A sentence if no certificate of the system can be read.
     pub(super) fn of(&self, by: NamedBy, settings: &Settings) -> Result<reqwest::Client, String> {
         let kept = match by {
             NamedBy::Person => &self.by_person,

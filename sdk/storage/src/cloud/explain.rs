@@ -1,6 +1,6 @@
-//! From a failed request to one error that says what to do.
+//! Turns a failed request into an error that says what to do.
 //!
-//! Messages are made from a status and a code alone: responses and the library's own errors quote
+//! Messages only use a status and a code, because responses and the library's own errors quote
 //! signatures and keys.
 
 use std::io;
@@ -11,17 +11,17 @@ use super::log::Last;
 use crate::location::{LocalOrRemote, Scheme};
 use crate::{StorageError, StorageProblem};
 
-/// The failure of an operation.
+/// Why an operation failed.
 pub(super) enum Fail {
     /// A request failed before its body.
     Request(Box<object_store::Error>),
-    /// A body broke off and could not be resumed.
+    /// A response body was cut off and could not be resumed.
     Body,
     /// The total time is over.
     Slow,
     /// The task ended without a result.
     Ended,
-    /// The local file that is read or written.
+    /// Error with the local file that is read or written.
     Local(io::Error),
     Own(StorageError),
 }
@@ -39,8 +39,8 @@ impl From<object_store::Error> for Fail {
 }
 
 impl Store {
-    /// The error of a failure. Texts of the library and of the server are not quoted: they may hold
-    /// signatures and keys.
+    /// Returns the error for a failure. Texts of the library and of the server are not quoted,
+    /// because they may contain signatures and keys.
     pub(super) fn explain(&self, fail: Fail, begun: Instant) -> StorageError {
         use object_store::Error;
         let seconds = begun.elapsed().as_secs_f64();
@@ -62,7 +62,8 @@ impl Store {
             Fail::Request(error) if matches!(*error, Error::NotSupported { .. }) => {
                 StorageProblem::NoRanges
             }
-            // After a body that broke off, a good response is one of another version of the file.
+            // After a body that was cut off, a successful response belongs to another version of
+            // the file.
             Fail::Body if matches!(last, Last::Status { status: 200..=299, .. }) => {
                 StorageProblem::Changed
             }
@@ -141,7 +142,7 @@ impl Store {
     }
 }
 
-/// Codes of S3 for credentials, which come with the status 400.
+/// Returns whether an S3 code is about credentials. S3 sends these codes with the status 400.
 fn is_of_credentials(code: &str) -> bool {
     matches!(
         code,

@@ -1,7 +1,7 @@
-//! The requests of one file, counted and remembered for its errors.
+//! Counts the requests for a file, and remembers the last one for error messages.
 //!
-//! This is the layer below the library, which remembers how the last request ended: the library
-//! retries, and its errors do not say so.
+//! This layer lies below the library and remembers how the last request ended, because the library
+//! retries and its errors do not say that.
 
 use std::error::Error;
 use std::pin::Pin;
@@ -22,7 +22,7 @@ use object_store::client::{
 use super::addresses::NotFollowed;
 use super::redirects::Following;
 
-/// Most bytes that are read of a refusal, for its code.
+/// Largest part of a refusal's body that is read to find its code, bytes.
 const MOST_REFUSAL_BYTES: usize = 65_536;
 
 /// What was sent and received.
@@ -40,12 +40,12 @@ pub(crate) enum Last {
     Nothing,
     Status {
         status: u16,
-        /// The server's word for it, such as `NoSuchKey`.
+        /// The server's code for it, such as `NoSuchKey`.
         code: Option<String>,
     },
-    /// No response, or a part of one.
+    /// No response, or only a part of one.
     Cut(String),
-    /// This side does not follow.
+    /// The client refused to follow a redirect, or to connect.
     NotFollowed(&'static str),
 }
 
@@ -54,7 +54,7 @@ impl Log {
         self.requests.load(Ordering::Relaxed)
     }
 
-    /// Bytes of bodies that were received.
+    /// Returns the number of bytes received in response bodies.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes.load(Ordering::Relaxed)
     }
@@ -72,7 +72,7 @@ impl Log {
     }
 }
 
-/// The deepest cause, which names neither a URL nor a header.
+/// Returns the deepest cause, which contains neither a URL nor a header.
 fn cause(error: &HttpError) -> Last {
     let mut cause: &(dyn Error + 'static) = error;
     while let Some(source) = cause.source() {
@@ -89,14 +89,14 @@ fn cause(error: &HttpError) -> Last {
     })
 }
 
-/// Most bytes of one answer to a list request; a page of 1,000 keys of 1,024 bytes has 3 MB at most
-/// with its escapes.
+/// Largest response to a list request, bytes. A page with 1,000 keys of 1,024 bytes has at most 3
+/// MB including its escapes.
 const MOST_LIST_BYTES: usize = 16 << 20;
 
-/// How requests are sent.
+/// The client with which requests are sent.
 #[derive(Debug, Clone)]
 pub(crate) enum Client {
-    /// With credentials, to a store of the environment; redirects are not followed.
+    /// With credentials, to a store in the environment. Redirects are not followed.
     Store(reqwest::Client),
     Web(Following),
 }
@@ -108,7 +108,7 @@ impl Client {
             Self::Web(following) => following.call(request).await,
         }
         .map_err(|error| match cause(&error) {
-            // No retry leads elsewhere.
+            // A retry would not lead anywhere else.
             Last::NotFollowed(reason) => {
                 HttpError::new(HttpErrorKind::Unknown, NotFollowed(reason))
             }
@@ -117,7 +117,7 @@ impl Client {
     }
 }
 
-/// Connects a store to a client whose requests are logged.
+/// Connects a store with a client whose requests are logged.
 #[derive(Debug)]
 pub(crate) struct Connector {
     pub(crate) client: Client,
@@ -137,8 +137,8 @@ struct Logged {
 }
 
 impl Logged {
-    /// Whether a request is for a list of a store, whose answer is read into memory: S3 and Google
-    /// by `list-type`, Azure by `comp`.
+    /// Returns whether a request lists a store, so that its response is read into memory. S3 and
+    /// Google use `list-type`, Azure uses `comp`.
     fn is_list(&self, request: &HttpRequest) -> bool {
         let query = request.uri().query().unwrap_or_default();
         let is = |part: &str| part.starts_with("list-type=") || part == "comp=list";
@@ -146,7 +146,7 @@ impl Logged {
     }
 }
 
-/// A body that ends with an error after as many bytes as a list has.
+/// Returns a body that ends with an error if it is larger than a list can be.
 fn bounded(body: HttpResponseBody) -> HttpResponseBody {
     let limited = Limited::new(body, MOST_LIST_BYTES);
     let too_long = |_| HttpError::new(HttpErrorKind::Decode, NotFollowed(LONG_LIST));
@@ -171,7 +171,7 @@ impl HttpService for Logged {
             let body = HttpResponseBody::new(Counted { body, log });
             return Ok(HttpResponse::from_parts(parts, body));
         }
-        // A refusal without its end is one without a code.
+        // If the body of a refusal cannot be read to its end, the refusal has no code.
         let text = Limited::new(body, MOST_REFUSAL_BYTES).collect().await;
         let text = text.map(|text| text.to_bytes()).unwrap_or_default();
         let named = parts
@@ -184,20 +184,20 @@ impl HttpService for Logged {
     }
 }
 
-/// The `<Code>` of an error document of S3 and of stores like it.
+/// Returns the `<Code>` in an error document of S3 and similar stores.
 fn code_in(document: &[u8]) -> Option<String> {
     let text = std::str::from_utf8(document).ok()?;
     let (_, rest) = text.split_once("<Code>")?;
     Some(rest.split_once("</Code>")?.0.to_owned())
 }
 
-/// Whether a word can be shown: the rest of the document may quote the request, its signature
-/// included.
+/// Returns whether a word may be shown. The rest of the document may not, because it may quote the
+/// request including its signature.
 fn is_code(word: &str) -> bool {
     (1..=48).contains(&word.len()) && word.chars().all(|c| c.is_ascii_alphabetic())
 }
 
-/// A body whose bytes and failures are logged.
+/// A body that logs its bytes and failures.
 struct Counted {
     body: HttpResponseBody,
     log: Arc<Log>,

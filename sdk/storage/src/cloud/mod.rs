@@ -1,4 +1,4 @@
-//! Files elsewhere: object stores and web servers.
+//! Remote files in object stores and on web servers.
 
 mod addresses;
 mod client;
@@ -29,7 +29,7 @@ use log::{Client, Connector, Log};
 use redirects::Following;
 use stores::Parts;
 
-/// Threads that wait for the network, for all files of the process.
+/// Number of threads that wait for the network, for all files of the process.
 const THREADS: usize = 2;
 
 /// A file in its store.
@@ -44,7 +44,7 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// Prepares the store of a location; nothing is sent yet.
+    /// Prepares the store for a location. No request is sent yet.
     pub(crate) fn open(
         location: &Location,
         uri: &Uri,
@@ -54,7 +54,7 @@ impl Store {
         let problem = |problem| StorageProblem::Settings { problem }.at(location);
         let of = |by| clients.of(by, settings).map_err(problem);
         let by = if is_of_person { NamedBy::Person } else { NamedBy::Other };
-        // The server of a store is named in the environment.
+        // The server of a store is named in the environment, so by the user.
         let client = if uri.scheme.is_read_only() {
             Client::Web(Following { first: of(by)?, world: of(NamedBy::Other)?, by })
         } else {
@@ -74,12 +74,12 @@ impl Store {
         })
     }
 
-    /// Requests that were sent, and bytes of bodies that were received.
+    /// Returns the number of requests sent and the number of bytes received in bodies.
     pub(crate) fn usage(&self) -> (u64, u64) {
         (self.log.requests(), self.log.bytes())
     }
 
-    /// Size and version; `None` when there is no such file.
+    /// Returns size and version; `None` if there is no such file.
     pub(crate) fn stat(&self) -> Result<Option<Stat>, StorageError> {
         use object_store::ObjectStoreExt;
         let here = self.clone();
@@ -104,7 +104,7 @@ impl Store {
         }
     }
 
-    /// The files below a key whose names relative to it match a pattern.
+    /// Returns the files below a key whose relative names match a pattern.
     pub(crate) fn list(&self, pattern: glob::Pattern) -> Result<Vec<Entry>, StorageError> {
         let here = self.clone();
         self.run(async move {
@@ -137,7 +137,7 @@ impl Store {
         })
     }
 
-    /// Runs requests on the runtime and waits for them, at most the total time.
+    /// Runs requests on the runtime and waits for them, at most for the total time.
     fn run<T: Send + 'static>(
         &self,
         work: impl Future<Output = Result<T, Fail>> + Send + 'static,
@@ -152,7 +152,7 @@ impl Store {
     ) -> Result<T, StorageError> {
         let begun = Instant::now();
         let (send, receive) = mpsc::sync_channel(1);
-        // The caller may itself be a task, where blocking on the runtime would panic: the thread
+        // The caller may itself be a task, where blocking on the runtime would panic. So the thread
         // waits for a channel.
         runtime(&self.location)?.spawn(async move {
             let done = tokio::time::timeout(limit, work).await;
@@ -163,7 +163,7 @@ impl Store {
     }
 }
 
-/// The runtime of all files of the process.
+/// Returns the runtime that all files of the process share.
 fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
     static RUNTIME: OnceLock<Result<Runtime, String>> = OnceLock::new();
     let runtime = RUNTIME.get_or_init(|| {
@@ -177,7 +177,7 @@ fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
     })
 }
 
-/// When a file changed; a store that does not say so gives 1970.
+/// Returns when a file changed. A store that does not state it gives 1970.
 fn modified(meta: &object_store::ObjectMeta) -> Option<std::time::SystemTime> {
     let milliseconds = u64::try_from(meta.last_modified.timestamp_millis()).ok();
     let since = Duration::from_millis(milliseconds.filter(|ms| *ms > 0)?);

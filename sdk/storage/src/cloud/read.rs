@@ -1,4 +1,4 @@
-//! Reading whole files, and ranges of one version of a file.
+//! Reads whole files, and ranges of one version of a file.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};
@@ -12,12 +12,13 @@ use super::explain::Fail;
 use super::log::Last;
 use crate::{StorageError, StorageProblem};
 
-/// One version of a file, as far as the server tells versions apart.
+/// One version of a file, as far as the server distinguishes versions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Version {
     pub(crate) bytes: u64,
     pub(crate) etag: Option<String>,
-    /// Where there is no tag: when it was written, and else the same time for all.
+    /// If there is no tag, when the file was written; if that is also unknown, the same time for
+    /// all versions.
     modified: i64,
 }
 
@@ -30,21 +31,21 @@ impl Version {
         Self { bytes: meta.size, etag: meta.e_tag.clone(), modified }
     }
 
-    /// The tag for `If-Match`, which compares strong ones only.
+    /// Returns the tag for `If-Match`, which only compares strong tags.
     fn strong_etag(&self) -> Option<String> {
         self.etag.clone().filter(|etag| !etag.starts_with("W/"))
     }
 }
 
-/// Bytes of a range, and the version that they are of.
+/// The bytes of a range, and the version to which they belong.
 pub(crate) struct ReadPart {
     pub(crate) bytes: Vec<u8>,
     pub(crate) version: Version,
 }
 
-/// What takes the bytes of a file.
+/// Receives the bytes of a file.
 trait Sink: Send + 'static {
-    /// Drops what was taken.
+    /// Drops all bytes received so far.
     fn start_over(&mut self) -> io::Result<()>;
     fn take(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
@@ -73,19 +74,20 @@ impl Sink for File {
 }
 
 impl Store {
-    /// The whole file.
+    /// Reads the whole file.
     pub(crate) fn read(&self, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
         let here = self.clone();
         self.run(async move { here.whole(Vec::new(), most_bytes).await })
     }
 
-    /// The whole file, into a local one.
+    /// Downloads the whole file into a local file.
     pub(crate) fn download(&self, file: File, most_bytes: u64) -> Result<File, StorageError> {
         let here = self.clone();
         self.run(async move { here.whole(file, most_bytes).await })
     }
 
-    /// A range, cut off at the end of the file; of this version, if one is given.
+    /// Reads a range, which is cut off at the end of the file. Reads only the given version, if
+    /// there is one.
     pub(crate) fn part(
         &self,
         range: Range<u64>,
@@ -102,7 +104,8 @@ impl Store {
             self.check_size(version.bytes, most_bytes)?;
             sink.start_over()?;
             match Self::take_all(found, version.bytes, &mut sink).await {
-                // The library resumes at the same version, which only a tag tells.
+                // The library resumes only at the same version, which it recognises by the tag.
+                // Without a tag, read from the start again.
                 Err(Fail::Body) if version.etag.is_none() && attempt < self.settings.retries => {
                     tokio::time::sleep(self.settings.first_pause).await;
                 }
@@ -146,8 +149,8 @@ impl Store {
         Ok(ReadPart { bytes, version: is })
     }
 
-    /// Whether the last range began after the end of the file: the first byte of an empty file
-    /// does.
+    /// Returns whether the last range began after the end of the file. This includes the first byte
+    /// of an empty file.
     fn is_beyond_end(&self) -> bool {
         matches!(self.log.last(), Last::Status { status: 416, .. })
     }

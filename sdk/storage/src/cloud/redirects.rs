@@ -1,4 +1,4 @@
-//! Redirects of web servers: where they lead, and by which client they are followed.
+//! Redirects of web servers: where they may lead, and which client follows them.
 
 use http::{HeaderMap, Method, Response, StatusCode, header};
 use object_store::client::{HttpError, HttpErrorKind, HttpRequest, HttpResponse, HttpService};
@@ -6,24 +6,24 @@ use reqwest::Url;
 
 use super::addresses::{INNER, NamedBy, NotFollowed, is_inner_number};
 
-/// Most redirects of one request.
+/// Largest number of redirects for one request.
 const MOST_REDIRECTS: usize = 5;
 
-/// The clients of requests to a web server.
+/// The clients for requests to a web server.
 #[derive(Debug, Clone)]
 pub(super) struct Following {
-    /// For the server itself.
+    /// For the named server itself.
     pub(super) first: reqwest::Client,
-    /// For what it redirects to.
+    /// For the servers to which it redirects.
     pub(super) world: reqwest::Client,
     /// Who named the server.
     pub(super) by: NamedBy,
 }
 
 impl Following {
-    /// Sends a request, and follows what it is redirected to: neither from HTTPS to HTTP nor to an
-    /// address of this machine or network, but those of the same server. No request says where it
-    /// comes from, whose query may be a signature.
+    /// Sends a request and follows its redirects. Does not follow a redirect from HTTPS to HTTP, or
+    /// to an address of this machine or network, except on the same server. A request does not
+    /// state its referrer, whose query may be a signature.
     pub(super) async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         let (method, headers) = (request.method().clone(), request.headers().clone());
         let first = url(&request.uri().to_string())?;
@@ -51,7 +51,7 @@ impl Following {
     }
 }
 
-/// Where a response redirects to.
+/// Returns where a response redirects to.
 fn target(
     method: &Method,
     at: &Url,
@@ -80,7 +80,7 @@ fn target(
     }
 }
 
-/// The request to where it is redirected.
+/// Creates the request to the address of the redirect.
 fn again(method: &Method, to: &Url, headers: &HeaderMap) -> Result<HttpRequest, HttpError> {
     let mut request = http::Request::builder().method(method).uri(to.as_str());
     for (name, value) in headers.iter().filter(|(name, _)| is_kept(name)) {
@@ -90,7 +90,8 @@ fn again(method: &Method, to: &Url, headers: &HeaderMap) -> Result<HttpRequest, 
     request.body(body).map_err(|_| refused("it redirects to what is no URL"))
 }
 
-/// Headers about the file, which go along; others are of one server.
+/// Returns whether a header is sent again after a redirect. Only headers about the file are; all
+/// others are meant for one server.
 fn is_kept(name: &header::HeaderName) -> bool {
     [
         header::RANGE,
@@ -112,7 +113,7 @@ fn url(text: &str) -> Result<Url, HttpError> {
     text.parse().map_err(|_| refused("it is no URL"))
 }
 
-/// A refusal of this side, which no retry helps against.
+/// Creates the error for a refusal by this client. A retry would not help.
 fn refused(reason: &'static str) -> HttpError {
     HttpError::new(HttpErrorKind::Unknown, NotFollowed(reason))
 }

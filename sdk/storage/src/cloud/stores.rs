@@ -1,4 +1,4 @@
-//! The stores, from the variables of the environment.
+//! Creates the stores from environment variables.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::log::Connector;
 use crate::location::{Scheme, Uri};
 use crate::{Settings, Variables};
 
-/// Most that a pause has of the one before.
+/// Largest ratio of a pause to the pause before.
 const PAUSE_GROWTH: f64 = 6.0;
 
 /// A store, the key in it, and whether requests are signed.
@@ -24,7 +24,7 @@ pub(crate) struct Opened {
     pub(crate) is_signed: bool,
 }
 
-/// What a store is made of.
+/// What a store is created from.
 pub(crate) struct Parts<'a> {
     pub(crate) uri: &'a Uri,
     pub(crate) settings: &'a Settings,
@@ -33,10 +33,10 @@ pub(crate) struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Makes the store of a URI. Nothing is sent yet.
+    /// Creates the store of a URI. No request is sent yet.
     ///
     /// # Errors
-    /// A sentence by the names of variables, never with their values.
+    /// A sentence that contains the names of variables but never their values.
     pub(crate) fn open(self) -> Result<Opened, String> {
         match self.uri.scheme {
             Scheme::S3 => self.s3(),
@@ -84,7 +84,7 @@ impl Parts<'_> {
         {
             return Err("AWS_ENDPOINT_URL is not https://; for a server without TLS set AWS_ALLOW_HTTP=true".to_owned());
         }
-        // Without any of these the library would ask the machine's metadata service.
+        // Without any of these, the library would ask the metadata service of the machine.
         let is_signed = [
             S3Key::AccessKeyId,
             S3Key::WebIdentityTokenFile,
@@ -130,7 +130,7 @@ impl Parts<'_> {
             .with_retry(retry)
             .with_http_connector(self.connector);
         if !is_signed {
-            // A credential of its own keeps the library from looking for others.
+            // An explicit empty credential keeps the library from looking for others.
             let none = GcpCredential { bearer: String::new() };
             builder = builder
                 .with_credentials(Arc::new(StaticCredentialProvider::new(none)))
@@ -181,7 +181,8 @@ impl Parts<'_> {
         Ok(Opened { store: Arc::new(store), key, is_signed })
     }
 
-    /// The whole URL is the store's, and its key is empty: escapes and query stay as they are.
+    /// Creates a store for a web server. The store's address is the whole URL and its key is empty,
+    /// so that escapes and query stay unchanged.
     fn web(self) -> Result<Opened, String> {
         let Uri { authority, path, .. } = self.uri;
         let query = self.uri.query.as_ref().map(|query| format!("?{query}"));

@@ -1,5 +1,5 @@
-//! Writing files that are whole or not there: one request, or parts that become a file by the last
-//! request.
+//! Writes files completely or not at all: with one request, or in parts that only become a file
+//! with the last request.
 
 use std::fs::File;
 use std::io::Read;
@@ -16,15 +16,16 @@ use super::explain::Fail;
 use crate::error::AtPlace;
 use crate::{StorageError, StorageProblem};
 
-/// Files up to this size are one request.
+/// Files up to this size are sent with one request.
 const MOST_SINGLE_BYTES: u64 = 16 << 20;
-/// Size of a part; the last one may be smaller. S3 takes 10,000 parts of 5 MiB and more.
+/// Size of a part, bytes. The last part may be smaller. S3 accepts up to 10,000 parts of at least 5
+/// MiB.
 const PART_BYTES: u64 = 8 << 20;
-/// Most bytes of a file: that many parts.
+/// Largest size of a file, bytes: the largest number of parts.
 const MOST_BYTES: u64 = 10_000 * PART_BYTES;
-/// Parts that are sent at the same time.
+/// Number of parts that are sent at the same time.
 const MOST_AT_ONCE: usize = 4;
-/// Time for taking parts back after a failure.
+/// Longest time for removing the parts after a failure.
 const ABORT: Duration = Duration::from_secs(10);
 
 impl Store {
@@ -39,7 +40,7 @@ impl Store {
         })
     }
 
-    /// Writes a local file.
+    /// Uploads a local file.
     pub(crate) fn upload(&self, path: &Path) -> Result<(), StorageError> {
         let mut file = File::open(path).at(path.display())?;
         let len = file.metadata().at(path.display())?.len();
@@ -56,8 +57,8 @@ impl Store {
         self.run_within(limit, self.clone().in_parts(file))
     }
 
-    /// What the store says of the file to who reads it: its media type, and that a copy is compared
-    /// before it is used, since a file is replaced under its name.
+    /// Returns what the store tells readers about the file: its media type, and that a stored copy
+    /// must be compared before it is used, because a file can be replaced under its name.
     fn attributes(&self) -> Attributes {
         let name = self.location.file_name().unwrap_or_default();
         let media_type = media_type(&name);
@@ -66,7 +67,7 @@ impl Store {
             .collect()
     }
 
-    /// Sends the parts and then completes the file, or takes the parts back.
+    /// Sends the parts and then completes the file. After a failure, removes the parts.
     async fn in_parts(self, file: File) -> Result<(), Fail> {
         let begun = Instant::now();
         let options = PutMultipartOptions::from(self.attributes());
@@ -79,7 +80,7 @@ impl Store {
         let done = tokio::time::timeout(self.settings.total, work).await;
         let fail = match done.unwrap_or(Err(Fail::Slow)) {
             Ok(()) => return Ok(()),
-            // Explained before the next request is the last one.
+            // Explained now, before the request that removes the parts becomes the last request.
             Err(fail) => Fail::Own(self.explain(fail, begun)),
         };
         let _ = tokio::time::timeout(ABORT, upload.abort()).await;
@@ -87,8 +88,8 @@ impl Store {
     }
 }
 
-/// The media type of a file, by the end of its name: of the formats' specifications, and what
-/// browsers open.
+/// Returns the media type of a file by the end of its name: the types in the formats'
+/// specifications, and types that browsers open.
 fn media_type(name: &str) -> &'static str {
     let end = name.rsplit_once('.').map_or("", |(_, end)| end);
     match &*end.to_ascii_lowercase() {
@@ -110,14 +111,15 @@ async fn send(file: File, upload: &mut dyn MultipartUpload) -> Result<(), Fail> 
     let mut parts = JoinSet::new();
     let sent = send_parts(file, upload, &mut parts).await;
     if sent.is_err() {
-        // A part that arrives after the others were taken back would stay.
+        // A part that arrives after the others were removed would stay, so wait for the parts that
+        // are still being sent.
         let rest = async { while parts.join_next().await.is_some() {} };
         let _ = tokio::time::timeout(ABORT, rest).await;
     }
     sent
 }
 
-/// Their order is that of the calls of `put_part`.
+/// Sends the parts. Their order is the order of the calls of `put_part`.
 async fn send_parts(
     mut file: File,
     upload: &mut dyn MultipartUpload,

@@ -1,4 +1,4 @@
-//! A server, and access to it with short pauses.
+//! A test server, and access to it with short pauses.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use std::time::Duration;
@@ -6,11 +6,11 @@ use std::time::Duration;
 use htex_object_server::{ACCESS_KEY, SECRET_KEY, Server};
 use htex_storage::{Location, Settings, Storage, StorageError, Variables};
 
-/// Most bytes of a read.
+/// Largest size of a read, bytes.
 pub const MOST: u64 = 64 << 20;
 
-/// The defaults with six retries and pauses of milliseconds, so that a test of seven requests takes
-/// no seconds.
+/// The defaults with six retries and pauses of milliseconds, so that a test with seven requests
+/// does not take seconds.
 pub fn settings() -> Settings {
     let mut settings = Settings::default();
     settings.total = Duration::from_secs(60);
@@ -25,7 +25,8 @@ pub fn storage(server: &Server) -> Storage {
     Storage::new(settings(), server.variables().into_iter().collect())
 }
 
-/// With other variables over those of the server; an empty value is none.
+/// Access with other variables in addition to those of the server. An empty value removes a
+/// variable.
 pub fn storage_with(server: &Server, over: &[(&str, &str)]) -> Storage {
     let mut all = server.variables();
     all.retain(|(name, _)| over.iter().all(|(other, _)| other != name));
@@ -38,12 +39,12 @@ pub fn at(uri: &str) -> Location {
     Location::parse(uri.as_ref()).unwrap()
 }
 
-/// Bytes of which no two stretches are equal.
+/// Bytes in which no two stretches are equal.
 pub fn bytes(len: usize) -> Vec<u8> {
     (0..len as u32).flat_map(|i| (i.wrapping_mul(2_654_435_761)).to_le_bytes()).take(len).collect()
 }
 
-/// The message of an error, in which no secret is.
+/// Returns the message of an error, and checks that it contains no secret.
 pub fn said<T: std::fmt::Debug>(result: Result<T, StorageError>) -> String {
     let error = result.unwrap_err();
     let (text, debug) = (error.to_string(), format!("{error:?}"));

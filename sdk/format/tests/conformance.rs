@@ -1,4 +1,4 @@
-//! The conformance files, their reports, the page of findings and the schemas of `spec/`.
+//! The conformance files, their reports, the page of findings and the schemas in `spec/`.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
 mod common;
@@ -12,7 +12,7 @@ use htex_format::{
 };
 use xtask::generated::{file, file_with, folder};
 
-/// Codes that only `htex validate` reports, with JSON Schemas and by loading models.
+/// Codes that only `htex validate` reports, because it uses JSON Schemas and loads models.
 const WITHOUT_FILE: [&str; 4] =
     ["PLUGIN_UNUSABLE", "SCHEMA_BROKEN", "EXTENSION_SCHEMA_BROKEN", "DESCRIPTOR_INVALID"];
 
@@ -72,7 +72,8 @@ fn a_newer_minor_version_is_noted_and_kept() {
     assert_eq!(Asset::from_bytes(&asset.to_bytes().unwrap()).unwrap(), asset);
 }
 
-/// Stages of the findings' codes: each at or after that of the finding before it.
+/// Returns the stages of the findings' codes. Each stage is the same as that of the finding before
+/// it, or later.
 fn stages_of(findings: &[Finding]) -> Vec<usize> {
     let mut at = 0;
     let mut places = Vec::new();

@@ -6,7 +6,7 @@ mod common;
 use common::{asset, five};
 use htex_format::{Limits, validate};
 
-/// Codes of findings with a limit at what the asset takes, and one below.
+/// Returns the codes of findings with a limit exactly at what the asset needs, and one below it.
 fn around(limit: impl Fn(usize) -> Limits, takes: usize) -> [Vec<String>; 2] {
     let bytes = asset(1, five(1)).to_bytes().unwrap();
     let codes = |limits| validate(&bytes, &limits).findings.into_iter().map(|f| f.code).collect();

@@ -1,5 +1,5 @@
-//! What comes from the table of measures outside this crate: tables of the documents, and a module
-//! of the Python package.
+//! Checks what is generated from the table of measures outside this crate: tables in the documents,
+//! and a module of the Python package.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::fmt::Write;
@@ -15,7 +15,7 @@ fn generated_tables_are_fresh() {
     file("sdk/python/python/htex/_measures.py", python().as_bytes());
 }
 
-/// The definition as a cell of a table.
+/// Returns the definition as a table cell.
 fn cell(definition: &str) -> &str {
     definition.trim_end_matches('.')
 }

@@ -31,7 +31,7 @@ fn store() -> impl Strategy<Value = StoredAs> {
     ]
 }
 
-/// A representation with values over the range of its stores.
+/// A representation with values over the whole range of its stores.
 fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> {
     let field = (store(), 0usize..300, 0.0..1.0f64);
     prop::collection::vec(field, 0..4).prop_map(move |fields| {
@@ -130,7 +130,7 @@ proptest! {
     }
 }
 
-/// Both bounds of a field, and all between, stay in its range in every store.
+/// Both limits of a field, and all values between them, stay in the field's range in every store.
 #[test]
 fn a_value_in_its_range_is_stored_in_it() {
     let stores = [
@@ -156,12 +156,12 @@ fn a_value_in_its_range_is_stored_in_it() {
                 let own = *rounded.last().unwrap();
                 assert!(min <= own && own <= max, "{stored_as:?}: {value} became {own}");
                 assert!((own - value).abs() <= 0.011, "{stored_as:?}: {value} became {own}");
-                // A file is read as it was rounded.
+                // A file reads back exactly the rounded values.
                 assert_eq!(round_parameters(&fields, &rounded).unwrap(), rounded);
             }
         }
     }
-    // Nothing of the store lies in the range.
+    // The store has no value in the range.
     let mut model = model();
     (model.fields[0].min, model.fields[0].max) = (0.2, 0.2);
     let fields = [StoredField {
@@ -172,7 +172,7 @@ fn a_value_in_its_range_is_stored_in_it() {
     }];
     let refused = round_within(&fields, &model, &[0.2]);
     assert!(matches!(refused, Err(WriteError::OutOfRange { .. })));
-    // A value that was outside stays there, and is refused where it is read.
+    // A value outside the range stays outside, and is refused when it is read.
     model.fields[0].min = 0.0;
     let outside = round_within(&fields, &model, &[0.3]).unwrap();
     assert!(outside[0] > 0.2);
@@ -185,7 +185,7 @@ fn model() -> Descriptor {
     Descriptor::from(&model.fields(FIELDS))
 }
 
-/// Steps of 0.01 that begin below all ranges, between two hundredths.
+/// Steps of 0.01 that begin below all ranges, halfway between two hundredths.
 fn stores(
     store: fn(f64, f64, bool) -> Store,
     stored_as: fn(Steps) -> StoredAs,

@@ -9,7 +9,7 @@ use htex_format::{Asset, Limits, Steps, StoredAs, validate};
 
 const TEXT: &str = include_str!("../../../spec/htex-1.md");
 
-/// Bytes of the code block that starts with `hex`.
+/// Returns the bytes of the code block that starts with `hex`.
 fn example() -> Vec<u8> {
     let (_, rest) = TEXT.split_once("```hex\n").unwrap();
     let (block, _) = rest.split_once("```").unwrap();
@@ -52,7 +52,7 @@ fn the_text_names_every_limit_and_its_default() {
     }
 }
 
-/// What the text says of licences.
+/// Checks what the specification says about licences.
 #[test]
 fn licences_have_the_grammar_of_the_text() {
     let code = |license: &str| htex_format::check_license(license).err().map(|e| e.rule().code);
@@ -76,7 +76,7 @@ fn licences_have_the_grammar_of_the_text() {
     }
 }
 
-/// 2^53 and one above it, of digits alone and with a point.
+/// 2^53 and the number above it, written with digits only and with a point.
 #[test]
 fn whole_numbers_are_compared_as_the_text_says() {
     let codes = |number: &str| {

@@ -22,20 +22,20 @@ pub struct Case {
 }
 
 impl Case {
-    /// The report of a reader that has the models of the specification.
+    /// Returns the report of a reader that has the models of the specification.
     pub fn report(&self) -> Report {
         let models = Registry::builtin();
         let known = |r: &Representation| models.find(&r.model).ok().map(|m| m.descriptor());
         validate_with(&self.bytes, &self.limits, &known)
     }
 
-    /// The expected report, as pretty JSON.
+    /// Returns the expected report as pretty JSON.
     pub fn golden(&self) -> String {
         let report = FileReport {
             limits: overrides(&self.limits),
             ..self.report().of_file(&format!("{}.htex", self.name))
         };
-        // Through a value, which sorts its keys.
+        // Converted to a value first, because that sorts the keys.
         serde_json::to_string_pretty(&json!(report)).unwrap() + "\n"
     }
 }
@@ -79,7 +79,7 @@ fn case(name: &str, bytes: Vec<u8>) -> Case {
     Case { name: name.to_owned(), bytes, limits: Limits::default() }
 }
 
-/// Valid files, with limits below what they take.
+/// Valid files, with limits too low for them.
 fn limited() -> Vec<Case> {
     let sound = asset(1, vec![sbeta(1)]).to_bytes().unwrap();
     let default = Limits::default();

@@ -7,7 +7,7 @@ use super::parts::{block, manifest, parts, with_manifest};
 use super::raw_zip::{Entry, archive};
 use super::valid_cases::with_store_key;
 
-/// Assets with such manifests.
+/// Assets with these manifests.
 pub(super) fn manifests() -> Vec<Named> {
     type Change = fn(&mut Value);
     let changes: Vec<(&'static str, Change)> = vec![
@@ -140,7 +140,7 @@ pub(super) fn manifests() -> Vec<Named> {
     files
 }
 
-/// An asset whose fields are not the model's, with a block that matches the fields.
+/// An asset whose fields differ from the model's, with a block that matches the fields.
 fn with_fields(fields: Value, block: &[u8]) -> Vec<u8> {
     let mut manifest = manifest();
     manifest["representations"][0]["fields"] = fields;

@@ -1,4 +1,4 @@
-//! The entries of a small asset, and archives of them with a change.
+//! The entries of a small asset, and archives made from them with one change.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Assets that store triangles, most of them none to interpolate in.
+//! Assets that store triangles. Most of them cannot be interpolated in.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use super::{asset, sbeta};
 pub(super) const RECTANGLE: [[f64; 2]; 5] =
     [[40.0, 0.4], [160.0, 0.4], [160.0, 1.2], [40.0, 1.2], [100.0, 0.4]];
 
-/// Triangles that are not Delaunay's, in both senses of turning.
+/// Triangles that are not a Delaunay triangulation, with both orientations.
 pub(super) const FLIPPED: [[usize; 3]; 3] = [[0, 3, 4], [4, 1, 3], [1, 2, 3]];
 
 /// Five corners of a star around the last.
@@ -21,7 +21,7 @@ const STAR: [[f64; 2]; 6] =
 /// The corners of a rectangle, and one inside.
 const PEAK: [[f64; 2]; 5] = [[40.0, 0.4], [160.0, 0.4], [160.0, 1.2], [40.0, 1.2], [100.0, 0.7]];
 
-/// Assets whose triangles break a rule each.
+/// Assets whose triangles each break one rule.
 pub(super) fn triangles() -> Vec<Named> {
     let of =
         |conditions: &[[f64; 2]], triangles: &[[usize; 3]]| with_triangles(conditions, triangles);

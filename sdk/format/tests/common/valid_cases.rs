@@ -98,7 +98,7 @@ pub(super) fn valid() -> Vec<Named> {
     ]
 }
 
-/// An asset of another quantity.
+/// An asset with another quantity.
 fn of(quantity: Quantity) -> Vec<u8> {
     let mut asset = asset(1, vec![sbeta(1)]);
     asset.manifest.quantity = quantity;

@@ -56,8 +56,8 @@ pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
     /// Plugins with models for the fit: WASM modules, which run in a sandbox. Paths are relative to
-    /// the recipe. A native library runs with all rights, so only the user can name it: `htex build
-    /// --plugin`.
+    /// the recipe. A native library runs with all rights, so only the user can name it:
+    /// `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
 }

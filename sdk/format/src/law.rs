@@ -1,8 +1,8 @@
 //! The motion law of a texture: how its frequencies and level change at a speed or force that was
 //! not recorded.
 //!
-//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by `(v
-//! / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. An exponent that is neither measured nor
+//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by
+//! `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. An exponent that is neither measured nor
 //! given is assumed from what slid over the surface and from the quantity of the samples
 //! ([`Law::assumed`]).
 
@@ -273,8 +273,8 @@ impl Law {
     }
 }
 
-/// Writes the law as readable text: `frequency over speed ^1.00 (assumed), level over speed ^0.43
-/// (measured, 0.40 ± 0.10), ...`.
+/// Writes the law as readable text:
+/// `frequency over speed ^1.00 (assumed), level over speed ^0.43 (measured, 0.40 ± 0.10), ...`.
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (key, exponent)) in self.exponents().into_iter().enumerate() {

@@ -9,8 +9,8 @@ use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
 /// An estimator of a frequency response. It uses the auto spectra `Gxx` and `Gyy` and the cross
-/// spectrum `Gxy` of input and output. All three estimators have the phase of `Gxy`, and `|H1| <=
-/// |Hv| <= |H2|`. Without noise they are equal.
+/// spectrum `Gxy` of input and output. All three estimators have the phase of `Gxy`, and
+/// `|H1| <= |Hv| <= |H2|`. Without noise they are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -60,8 +60,8 @@ impl Bin {
         if magnitude.is_finite() { magnitude } else { 0.0 }
     }
 
-    /// Returns the slope of the principal axis of the scaled spectral matrix: `(b - a + sqrt((b -
-    /// a)² + 4 c²)) / 2c`.
+    /// Returns the slope of the principal axis of the scaled spectral matrix:
+    /// `(b - a + sqrt((b - a)² + 4 c²)) / 2c`.
     fn total_least_squares(&self, cross: f64) -> f64 {
         let (x, y) = (self.input_power, self.output_power);
         let unit = (y / x).sqrt();

@@ -36,8 +36,9 @@ pub struct MeasuredResponse {
     pub phase_rad: Vec<f64>,
     /// Coherence, 0 to 1.
     pub coherence: Vec<f64>,
-    /// Relative standard deviation of the magnitude, at most 1: `sqrt(1 - coherence) / sqrt(2
-    /// coherence averages)` (Bendat & Piersol, chapter 9). It only covers random errors.
+    /// Relative standard deviation of the magnitude, at most 1:
+    /// `sqrt(1 - coherence) / sqrt(2 coherence averages)` (Bendat & Piersol, chapter 9). It only
+    /// covers random errors.
     pub relative_error: Vec<f64>,
     /// The largest magnitude; `None` if it is at an edge of the band.
     pub peak: Option<Peak>,

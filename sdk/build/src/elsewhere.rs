@@ -210,6 +210,7 @@ impl Elsewhere {
         let written = File::open(part.path()).writing(&folder)?;
         hasher.update_reader(written).writing(&folder)?;
         let blake3 = hasher.finalize().to_hex().to_string();
+        // The folder is named by the hash, which is known only once the file is complete.
         let inside = copies.inside.join(&blake3);
         let own = copies.own.make_folder(&inside).writing(&folder)?;
         let copy = own.join(name);

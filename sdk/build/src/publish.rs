@@ -164,6 +164,7 @@ impl<'a> Publishing<'a> {
             folder,
             to,
             storage: Storage::from_environment()?,
+            // What was copied to another URI says nothing about this one.
             before: before.filter(|before| before.to == to.to_string()).unwrap_or_default(),
             kept,
         })
@@ -174,6 +175,8 @@ impl<'a> Publishing<'a> {
         let here = self.here()?;
         let is_there = |name: &str, blake3: &str| {
             let copied = self.before.files.get(name);
+            // The version there must also be the one that was copied: somebody may have replaced
+            // the file.
             copied.is_some_and(|copied| {
                 copied.blake3 == blake3 && there.get(name) == Some(&copied.there)
             })

@@ -47,9 +47,13 @@ impl<'a> Archive<'a> {
         }
         let end = end_record(bytes, limits, findings)?;
         let packed = directory(bytes, &end, limits, findings)?;
+        // Nothing is unpacked unless all records are valid, because they state the sizes that are
+        // limited.
         if findings.has_errors() {
             return None;
         }
+        // All entries are unpacked before the first failure counts, so that each damaged one gets a
+        // finding.
         let unpacked = packed.into_iter().map(|packed| packed.unpack(findings));
         let entries: Vec<Option<Entry<'_>>> = unpacked.collect();
         let entries = entries.into_iter().collect::<Option<_>>()?;

@@ -168,6 +168,7 @@ pub fn round_within(
                         high: value_of(nearest, field.store),
                     })?
                 }
+                // A value outside its field's range stays outside. It is refused when it is read.
                 _ => value_of(nearest, field.store),
             };
             rounded.push(stored);
@@ -369,9 +370,11 @@ impl Reader<'_> {
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
         let length = self.take::<u64>().ok_or_else(|| truncated(field, condition))?;
+        // A longer code for the same length is refused, so that each block has only one encoding.
         if before - self.bytes.len() != shortest(length) {
             return Err(BlockError::Length { field: field.name.clone(), condition });
         }
+        // The file may state any length, so it is limited before values are read.
         let most = match field.store {
             StoredAs::Packed(_) => most_steps(self.bytes.len()),
             store => self.bytes.len() / store.bytes(),

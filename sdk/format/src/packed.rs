@@ -52,6 +52,7 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
         let mut quotient = 0;
         while reader.take(1)? == 1 {
             quotient += 1;
+            // No valid difference is larger. The check also keeps the shift below from overflowing.
             if quotient > MOST {
                 return None;
             }
@@ -60,6 +61,7 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
         last = u8::try_from(i32::from(last) + unfold(z)).ok()?;
         steps.push(last);
     }
+    // Only the code that `pack` writes is valid: the best parameter, then zeros in the last byte.
     let used = reader.at.div_ceil(8);
     (parameter(&steps) == k && reader.rest_is_zero()).then_some((steps, used))
 }

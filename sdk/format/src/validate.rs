@@ -74,6 +74,7 @@ fn read(
     check_fields(&manifest, known, findings);
     let mut payload = Payload {
         archive,
+        // The manifest must not use the container's own entries for anything else.
         claimed: BTreeSet::from([MIMETYPE.to_owned(), MANIFEST.to_owned()]),
         values_left: limits.values,
         findings,
@@ -157,6 +158,7 @@ impl<'a> Payload<'a, '_> {
             self.findings.add(rule::PARAMETERS_ENTRY_INVALID, pointer.to_string(), message);
             return None;
         }
+        // Taken without a copy. `claimed` ensures that no entry is taken twice.
         Some(std::mem::take(&mut self.archive.entries[index].bytes))
     }
 

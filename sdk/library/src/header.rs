@@ -55,6 +55,8 @@ impl Header {
             let message = format!("the file has {length} of the header's 128 bytes; get it again");
             return Err(Fault::new(rule::LIBRARY_TRUNCATED, "", message));
         };
+        // Before the checks below, as the specification demands: another major version may differ
+        // in everything else.
         check_version(bytes)?;
         check_sum(bytes)?;
         let header = Self::fields(bytes)?;
@@ -65,6 +67,7 @@ impl Header {
 
     fn fields(bytes: &[u8; HEADER_BYTES]) -> Result<Self, Fault> {
         let minor = u16_at(bytes, 10);
+        // A newer minor version may give the reserved bytes a meaning.
         if u32_at(bytes, 12) != 0 && minor == MINOR {
             return Err(invalid("the reserved bytes 12 to 15 are not 0"));
         }

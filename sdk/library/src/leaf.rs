@@ -89,6 +89,7 @@ impl LeafReader<'_> {
             places: places(cursor, count)?,
             hashes: column(cursor, count, Cursor::array)?,
         };
+        // A newer minor version may append values, which are ignored.
         if self.header.minor == MINOR && cursor.rest() > 0 {
             return Err(cursor.malformed("bytes follow the last value"));
         }

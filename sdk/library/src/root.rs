@@ -95,6 +95,7 @@ fn offsets(
     let mut at = header.leaves.start;
     for leaf in 0..count {
         let length = cursor.varint().map_err(|m| Fault::page(PLACE, m))?;
+        // Checked here for all leaves, so that reading one later needs no check of its size.
         page::check_packed_size(length, leaf_bytes, &leaf_place(leaf))?;
         at = at.saturating_add(length);
         offsets.push(at);

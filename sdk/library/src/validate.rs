@@ -118,6 +118,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         for (i, entry) in entries.iter().enumerate() {
             let place = entry_place(leaf, i);
             self.entries += 1;
+            // Counted before the texture is read, which limits how much is read in all.
             if let Err(fault) = self.ratio.count(entry, &place) {
                 fault.add_to(&mut self.findings);
                 return Ok(false);
@@ -167,6 +168,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             if self.objects.get(&start) == Some(&end) {
                 continue;
             }
+            // Known objects do not overlap, so only the last one that begins before `end` can
+            // overlap this one.
             let before = self.objects.range(..end).next_back();
             if before.is_some_and(|(_, other)| *other > start) {
                 let message = format!(

@@ -63,6 +63,7 @@ impl<'a> Cursor<'a> {
             }
             value |= bits << (7 * i);
             if byte & 0x80 == 0 {
+                // A zero at the end adds nothing to the value, so the integer has a shorter form.
                 let is_shortest = byte != 0 || i == 0;
                 return if is_shortest {
                     Ok(value)

@@ -160,6 +160,8 @@ impl Remote {
                 read
             }
         };
+        // The range was inside the file when it was opened, so a shorter answer means that it was
+        // replaced.
         if found.len() as u64 == wanted {
             Ok(found)
         } else {

@@ -84,6 +84,7 @@ pub fn judge(data: &TakeData) -> Verdict {
         Err(error) => {
             let problem = error.to_string();
             verdict.findings.push(problem.clone());
+            // Without a target, a take from which no texture can be read is still kept.
             if header.target_speed_mm_s.is_some() || header.target_force_n.is_some() {
                 verdict.reasons.push(problem);
             }

@@ -120,6 +120,7 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.in_file(path)?;
+    // A `PartFile` holds the lock as long as it is written to.
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         let file = path.to_owned();
         return Err(RecordError::Busy { file });

@@ -32,6 +32,7 @@ pub fn measure(
     let (spectra, outlasting) = average(records, &cuts, len, options);
     let resolution_hz = rate_hz / len as f64;
     let bins = band(options, resolution_hz, spectra.gxx.len())?;
+    // `average` has divided both channels by their scales. This factor undoes it.
     let scale = scale_of(records, Channel::Output) / scale_of(records, Channel::Input);
     let in_band = in_band(&spectra, &bins);
     let mut measured = MeasuredResponse {

@@ -101,6 +101,8 @@ fn williams(count: usize) -> Vec<Vec<usize>> {
         .collect();
     let row = |add: usize| first.iter().map(|at| (at + add) % count).collect();
     let mut rows: Vec<Vec<usize>> = (0..count).map(row).collect();
+    // For an odd number, the rows alone do not balance which symbol follows which; their mirror
+    // images do.
     if count % 2 == 1 {
         let mirrored: Vec<Vec<usize>> =
             rows.iter().map(|row| row.iter().rev().copied().collect()).collect();

@@ -101,6 +101,8 @@ impl Progress {
         }
         let trials_done = self.answers / study.attributes.len().max(1);
         let is_between = self.answers.is_multiple_of(study.attributes.len().max(1));
+        // A rest comes only between two trials: not between two questions about one, and not after
+        // the last.
         let left = plan.trials.len() - trials_done.min(plan.trials.len());
         if let Some(rests) = study.rests.as_ref().filter(|_| is_between && left > 0) {
             let due = trials_done as u32 / rests.every.max(1);

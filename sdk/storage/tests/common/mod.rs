@@ -25,8 +25,8 @@ pub fn storage(server: &Server) -> Storage {
     Storage::new(settings(), server.variables().into_iter().collect())
 }
 
-/// Access with the server's variables, in which `over` replaces or adds some. An empty value removes
-/// a variable.
+/// Access with the server's variables, in which `over` replaces or adds some. An empty value
+/// removes a variable.
 pub fn storage_with(server: &Server, over: &[(&str, &str)]) -> Storage {
     let mut all = server.variables();
     all.retain(|(name, _)| over.iter().all(|(other, _)| other != name));

@@ -5,37 +5,38 @@ use serde::{Deserialize, Serialize};
 use crate::DeviceError;
 use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 
-/// Lowest rate of a display, as a multiple of its carrier: at a lower one the carrier is a slow or
-/// direct voltage.
+/// Lowest sample rate of a display, as a multiple of its carrier frequency. At a lower rate, the
+/// carrier would become a slow or direct voltage.
 pub const RATE_PER_CARRIER: f64 = 2.5;
 
-/// Capabilities of a device; they cross the ABI as JSON.
+/// Capabilities of a device. They cross the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Capabilities {
-    /// Quantity of its samples.
+    /// The quantity of its samples.
     pub quantity: Quantity,
-    /// Rates it runs at.
+    /// The sample rates it supports.
     pub rates: Rates,
-    /// Default rate, hertz.
+    /// Default sample rate, hertz.
     #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
     pub default_rate_hz: f64,
-    /// Largest magnitude it takes, in the quantity's unit; absent: no limit. A voltage always has
-    /// one.
+    /// Largest magnitude that it accepts, in the quantity's unit; absent: no limit. A voltage
+    /// always has a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub limit: Option<f64>,
-    /// Distance of two neighbouring values it can put out, in the quantity's unit; absent: floats.
+    /// Difference between two neighbouring output values, in the quantity's unit; absent: floats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
-    /// Frequency of the carrier that an electrovibration display wants, hertz.
+    /// Frequency of the carrier that an electrovibration display needs, hertz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub carrier_hz: Option<f64>,
-    /// Whether a clock takes the samples; else they are taken as fast as they are made (a file).
+    /// Whether a clock takes the samples. Otherwise (e.g. a file) they are taken as fast as they
+    /// are generated.
     pub paced: bool,
-    /// Preferred frames in a block.
+    /// Preferred block size, frames.
     #[cfg_attr(feature = "schemars", schemars(range(min = 1, max = MAX_BLOCK_FRAMES)))]
     pub block_frames: u32,
 }
@@ -88,17 +89,17 @@ impl Capabilities {
         Ok(())
     }
 
-    /// The lowest rate at which the carrier is one, hertz; 0 without a carrier.
+    /// Returns the lowest rate that can represent the carrier, hertz; 0 without a carrier.
     pub fn lowest_with_carrier_hz(&self) -> f64 {
         self.carrier_hz.map_or(0.0, |hz| RATE_PER_CARRIER * hz)
     }
 
-    /// Whether the device runs at a rate, and its carrier is one there.
+    /// Whether the device supports a rate, and the rate can represent the carrier.
     pub fn has_rate(&self, rate_hz: f64) -> bool {
         self.rates.has(rate_hz) && rate_hz >= self.lowest_with_carrier_hz()
     }
 
-    /// Its rates as text, with what the carrier asks for.
+    /// Formats the rates as text, including the lowest rate that the carrier allows.
     pub fn rates_text(&self) -> String {
         match self.carrier_hz {
             Some(hz) => format!(
@@ -109,15 +110,15 @@ impl Capabilities {
         }
     }
 
-    /// The error of the first sample that is over the limit or not a number; `first_frame` is the
-    /// index of the first of `samples`. The limit is compared as the `f32` nearest to it.
+    /// Checks that each sample is a number within the limit. The limit is compared as the nearest
+    /// `f32`. `first_frame` is the index of the first of `samples` since the device was opened.
     ///
     /// # Errors
-    /// [`DeviceError::OverLimit`].
+    /// [`DeviceError::OverLimit`] for the first sample that is over the limit or not a number.
     pub fn check_samples(&self, samples: &[f32], first_frame: u64) -> Result<(), DeviceError> {
         let limit = self.limit.map_or(f32::MAX, |limit| limit as f32);
         let over = |sample: &f32| !(0.0..=limit).contains(&sample.abs());
-        // Without an early exit, so that the loop can be vectorized.
+        // No early exit, so that the compiler can vectorize the loop.
         if !samples.iter().fold(false, |any, sample| any | over(sample)) {
             return Ok(());
         }
@@ -131,7 +132,7 @@ impl Capabilities {
     }
 }
 
-/// Quantity of a device's samples.
+/// The quantity of a device's samples, which determines their unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -146,9 +147,10 @@ pub enum Quantity {
     Velocity,
     /// Displacement of the finger or tool, metres.
     Displacement,
-    /// Voltage at an electrovibration display, volts: the friction it adds goes with its square.
+    /// Voltage at an electrovibration display, volts. The added friction is proportional to its
+    /// square.
     DisplayVoltage,
-    /// Sound; 1 is full scale.
+    /// Sound, where 1 is full scale.
     Sound,
 }
 
@@ -164,7 +166,7 @@ impl Quantity {
         Self::Sound,
     ];
 
-    /// Its name in the capabilities.
+    /// Returns the name used in the capabilities.
     pub fn name(self) -> &'static str {
         match self {
             Self::LateralForce => "lateral_force",
@@ -177,13 +179,13 @@ impl Quantity {
         }
     }
 
-    /// Whether samples are a mechanical quantity in an SI unit: levels are then those of the
-    /// textures.
+    /// Whether the samples are a mechanical quantity in an SI unit. If so, a texture's levels are
+    /// played as they are.
     pub fn is_physical(self) -> bool {
         !matches!(self, Self::DisplayVoltage | Self::Sound)
     }
 
-    /// Symbol of the unit; `FS` is full scale.
+    /// Returns the symbol of the unit. `FS` is full scale.
     pub fn unit(self) -> &'static str {
         match self {
             Self::LateralForce | Self::NormalForce => "N",
@@ -196,7 +198,7 @@ impl Quantity {
     }
 }
 
-/// The rates a device runs at, hertz.
+/// The sample rates that a device supports, hertz.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -221,7 +223,7 @@ pub enum Rates {
 }
 
 impl Rates {
-    /// Whether the device runs at `rate_hz`.
+    /// Whether the device supports `rate_hz`.
     pub fn has(&self, rate_hz: f64) -> bool {
         match self {
             Self::List(all) => all.contains(&rate_hz),
@@ -293,7 +295,7 @@ mod tests {
 
     #[test]
     fn the_first_sample_over_the_limit_is_named() {
-        // 0.1 as f32 is a little more than 0.1, and is allowed.
+        // 0.1 as `f32` is a little more than 0.1. It must still be allowed.
         assert_eq!(sane().check_samples(&[0.1, -0.1], 7), Ok(()));
         for bad in [0.1001, -0.2, f32::NAN, f32::INFINITY] {
             let error = sane().check_samples(&[0.0, bad, bad], 7);

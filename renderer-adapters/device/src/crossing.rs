@@ -1,14 +1,14 @@
-//! Errors across the ABI: from an error to a code and a text, and back.
+//! Errors across the ABI: an error becomes a code and a text, and the other way round.
 
 use std::time::Duration;
 
 use crate::abi::Code;
 use crate::{AbiFault, DeviceError};
 
-/// Longest wait of one call, ms: a day.
+/// Longest wait of one call, milliseconds: one day.
 const MAX_WAIT_MS: u32 = 86_400_000;
 
-/// The code and the last-error text of an error.
+/// Converts an error to its code and its last-error text.
 pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     use DeviceError as E;
     let text = match error {
@@ -37,8 +37,8 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     (code, text)
 }
 
-/// The error of a code and a text. `OverLimit`, `Underflow` and `InvalidRate`, whose details only
-/// the caller knows, become failures.
+/// Converts a code and a text to an error. `OverLimit`, `Underflow` and `InvalidRate` become
+/// failures here, because only the caller knows their details.
 pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) -> DeviceError {
     match code {
         Code::InvalidSetting => {
@@ -59,14 +59,14 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
     }
 }
 
-/// A timeout as it crosses: whole milliseconds, a day at most. A wait shorter than a millisecond is
-/// still a wait.
+/// Converts a timeout to whole milliseconds, at most one day. A wait shorter than a millisecond
+/// becomes one millisecond, so that it is still a wait.
 pub(crate) fn wait_ms(timeout: Duration) -> u32 {
     let wait_ms = timeout.as_micros().div_ceil(1000);
     wait_ms.min(u128::from(MAX_WAIT_MS)) as u32
 }
 
-/// The parts before and behind the first `: `.
+/// Splits a text at the first `: `.
 fn parted(text: String) -> (String, String) {
     match text.split_once(": ") {
         Some((before, behind)) => (before.to_owned(), behind.to_owned()),

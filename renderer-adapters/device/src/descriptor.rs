@@ -1,4 +1,4 @@
-//! Descriptors of adapters of devices and sources.
+//! Descriptors of device and source adapters.
 
 use std::collections::BTreeMap;
 
@@ -7,35 +7,36 @@ use serde::{Deserialize, Serialize};
 use crate::abi::MAX_SETTINGS;
 use crate::{DeviceError, Settings};
 
-/// An adapter's description; crosses the ABI as JSON.
+/// An adapter's description. It crosses the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Descriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.file`; never changes.
     pub id: String,
-    /// Name for people.
+    /// Display name.
     pub name: String,
     /// Semantic version.
     pub version: String,
-    /// One sentence: what it drives.
+    /// One sentence that says what the adapter drives.
     pub summary: String,
     /// Settings, each with its default.
     pub settings: Vec<Setting>,
-    /// Settings that belong together, such as those of a rig.
+    /// Named groups of settings, e.g. for one rig.
     #[serde(default)]
     pub profiles: Vec<Profile>,
-    /// What it makes of the samples and what is lost; absent: it plays the samples themselves.
+    /// How the device transforms the samples and what is lost. Absent: it plays the samples
+    /// themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mapping: Option<Mapping>,
 }
 
-/// What a device that cannot play samples makes of them.
+/// How a device that cannot play samples transforms them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Mapping {
-    /// What it plays, such as level and mean frequency of blocks.
+    /// What it plays, e.g. the level and mean frequency of each block.
     pub plays: String,
-    /// What is lost on the way.
+    /// What is lost in the transformation.
     pub loses: String,
 }
 
@@ -45,42 +46,42 @@ impl std::fmt::Display for Mapping {
     }
 }
 
-/// One setting.
+/// One setting of an adapter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Setting {
-    /// Name, unit included, e.g. `limit_v`.
+    /// Name, including the unit, e.g. `limit_v`.
     pub name: String,
-    /// The values it may have.
+    /// The values that are allowed.
     pub kind: SettingKind,
-    /// Default; absent: it must be given.
+    /// Default value; absent: the user must give a value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
-    /// Default with a live motion, such as a shorter buffer.
+    /// Default value for a live motion, e.g. a shorter buffer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub live_default: Option<String>,
-    /// What a scene, which may be untrusted, may do with it.
+    /// How a scene, which may be untrusted, may change the setting.
     #[serde(default, skip_serializing_if = "FromScene::is_any")]
     pub from_scene: FromScene,
-    /// Its effect.
+    /// What the setting does.
     pub description: String,
 }
 
-/// What a scene may do with a setting. Settings that describe the hardware are given by the user,
-/// one by one or by the choice of a profile.
+/// How a scene may change a setting. Only the user gives settings that describe the hardware, one
+/// by one or by choosing a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FromScene {
-    /// Set it, unless the user does.
+    /// The scene may set it, unless the user does.
     #[default]
     Any,
-    /// Lower the number given by the user or the default: a limit, a buffer. The smallest number
-    /// given applies.
+    /// The scene may lower the user's value or the default, e.g. of a limit or a buffer. The
+    /// smallest number given applies.
     Less,
-    /// Raise the number given by the user or the default: a ramp.
+    /// The scene may raise the user's value or the default, e.g. of a ramp.
     More,
-    /// Nothing.
+    /// The scene may not change it.
     Never,
 }
 
@@ -90,19 +91,19 @@ impl FromScene {
     }
 }
 
-/// The values of a setting, as text; numbers are written as in JSON.
+/// The allowed values of a setting. Values are text; numbers are written as in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum SettingKind {
-    /// A number in a range, both ends included.
+    /// A number in a range that includes both ends.
     Number {
         /// Smallest.
         min: f64,
         /// Largest.
         max: f64,
     },
-    /// One of these.
+    /// One of several values.
     Choice {
         /// The values.
         values: Vec<String>,
@@ -113,27 +114,27 @@ pub enum SettingKind {
     Text,
 }
 
-/// Settings that belong together.
+/// A named group of settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Profile {
-    /// Name it is chosen by.
+    /// The name by which the user chooses it.
     pub name: String,
     /// Its purpose.
     pub summary: String,
-    /// The settings it fixes; those given beside a profile take precedence.
+    /// The settings it fixes. Settings given in addition to a profile take precedence.
     pub settings: BTreeMap<String, String>,
 }
 
-/// A connected device.
+/// A connected device or source.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Endpoint {
-    /// The value that chooses it.
+    /// The value of the setting that selects it.
     pub name: String,
-    /// The setting that takes the value.
+    /// The name of the setting that selects it.
     pub setting: String,
-    /// What it is, for people.
+    /// Description for the user.
     pub summary: String,
 }
 
@@ -164,7 +165,7 @@ pub enum DescriptorError {
     /// A setting is invalid.
     #[error("setting `{name}`{fault}")]
     Setting { name: String, fault: SettingFault },
-    /// A default is not a value of its setting.
+    /// The default is not an allowed value of its setting.
     #[error("the default: {0}")]
     Default(DeviceError),
     /// The target of a source is not one of its settings.
@@ -175,27 +176,27 @@ pub enum DescriptorError {
     Profile { profile: String, error: DeviceError },
 }
 
-/// Fault of a setting in a descriptor.
+/// A fault of a setting in a descriptor.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingFault {
-    /// The name has other characters.
+    /// The name contains other characters.
     #[error(": names are of a-z, 0-9 and _")]
     Name,
     /// The range is empty or not finite.
     #[error(" has the range {min} to {max}")]
     Range { min: f64, max: f64 },
-    /// There is nothing to choose from.
+    /// The list of choices is empty.
     #[error(" has nothing to choose from")]
     NoChoice,
-    /// It has a default for live motions and none for others.
+    /// It has a default for live motions but no general default.
     #[error(" has a `live_default` and no `default`")]
     LiveDefault,
 }
 
 impl Descriptor {
-    /// The last part of the id: the name used on command lines and in scenes.
+    /// Returns the last part of the id, which is the name used on command lines and in scenes.
     pub fn short_name(&self) -> &str {
         self.id.rsplit('.').next().unwrap_or(&self.id)
     }
@@ -232,7 +233,8 @@ impl Descriptor {
         Ok(())
     }
 
-    /// The settings of a profile, or of none, where nothing else must be given.
+    /// Returns the settings with a profile, or without one. `None` if some setting has no default
+    /// and must be given.
     pub fn settings(&self, profile: Option<&str>) -> Option<Settings> {
         Settings::resolve(self, profile, &BTreeMap::new()).ok()
     }

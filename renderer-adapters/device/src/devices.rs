@@ -1,4 +1,4 @@
-//! The devices that a program finds.
+//! The devices that a program can find.
 
 use std::sync::Arc;
 
@@ -6,9 +6,9 @@ use crate::abi::DeviceTable;
 use crate::registry::{AdapterKind, Known, Registry};
 use crate::{Adapter, Descriptor, DeviceError, Endpoint, NativeAdapter};
 
-/// Adapters of devices, by id and by short name.
+/// Device adapters, by id and by short name.
 pub type Devices = Registry<dyn Adapter>;
-/// An adapter of devices that was found.
+/// A device adapter that was found.
 pub type KnownDevice = Known<dyn Adapter>;
 
 impl AdapterKind for dyn Adapter {

@@ -1,20 +1,20 @@
-//! Direct voltage at a display: the mean of any 100 ms of what is written.
+//! Direct voltage at a display: the mean of the written voltage over any 100 ms.
 //!
-//! A carrier keeps charge and direct voltage from a finger. Whatever takes it away (a rate, an
-//! effect, a clipped sample, a fault of the program), the mean shows it, so the last place before a
-//! device holds it: NI cards in their session, native libraries in their host. Samples over the
-//! limit are refused and the output goes to zero; they are not reduced, since a filter that takes
-//! the mean away would hide the fault and change every sample.
+//! A carrier protects a finger from charge and direct voltage. The carrier may be lost in many
+//! ways: by a wrong rate, an effect, a clipped sample, a fault of the program. The mean shows every
+//! one of them, so the last stage before a device limits it: for NI cards the session, for native
+//! libraries the host. Samples over the limit are refused and the output goes to zero. They are not
+//! corrected, because a filter that removes the mean would hide the fault and change every sample.
 
 use crate::Settings;
 
-/// Time over which direct voltage is the mean, seconds.
+/// Length of the window whose mean is the direct voltage, seconds.
 pub const DIRECT_WINDOW_S: f64 = 0.1;
-/// Largest direct voltage of a display that states none, volts.
+/// Limit of the direct voltage for a display that states none, volts.
 pub const DIRECT_LIMIT_V: f64 = 1.0;
-/// The setting of a display that states one.
+/// Name of the setting in which a display states its limit.
 pub const DIRECT_SETTING: &str = "dc_limit_v";
-/// Relative tolerance: rounding to `f32`.
+/// Relative tolerance, for rounding to `f32`.
 const ROUNDING: f64 = 1e-6;
 
 /// The samples of the last 100 ms, and their mean.
@@ -27,17 +27,17 @@ pub struct DirectVoltage {
     sum_v: f64,
 }
 
-/// A mean over the limit.
+/// A mean that exceeds the limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Excess {
     /// Index of the sample at which the limit is exceeded.
     pub at: usize,
-    /// Mean of the 100 ms up to it, volts.
+    /// Mean of the 100 ms that end with this sample, volts.
     pub mean_v: f64,
 }
 
 impl DirectVoltage {
-    /// Begins at zero. A limit that is no number is [`DIRECT_LIMIT_V`].
+    /// Starts with a voltage of zero. If the limit is NaN, it is [`DIRECT_LIMIT_V`].
     pub fn new(limit_v: f64, rate_hz: f64) -> Self {
         let frames = (DIRECT_WINDOW_S * rate_hz).round().max(1.0) as usize;
         Self {
@@ -48,12 +48,13 @@ impl DirectVoltage {
         }
     }
 
-    /// The limit that a display's settings state, else the usual one.
+    /// Takes the limit from a display's settings, or [`DIRECT_LIMIT_V`] if they have none.
     pub fn of(settings: &Settings, rate_hz: f64) -> Self {
         Self::new(settings.number(DIRECT_SETTING), rate_hz)
     }
 
-    /// The first sample at which the mean would be over the limit, if these came next.
+    /// Finds the first of these samples at which the mean would exceed the limit, if they were
+    /// output next.
     pub fn excess<T: Copy + Into<f64>>(&self, samples: &[T]) -> Option<Excess> {
         let frames = self.last_v.len();
         let most_v = self.limit_v * (1.0 + ROUNDING) * frames as f64;
@@ -71,7 +72,7 @@ impl DirectVoltage {
         None
     }
 
-    /// Takes samples that were given to the device.
+    /// Records samples that the device took.
     pub fn take<T: Copy + Into<f64>>(&mut self, samples: &[T]) {
         for sample in samples {
             let sample: f64 = (*sample).into();
@@ -80,19 +81,19 @@ impl DirectVoltage {
             self.oldest += 1;
             if self.oldest == self.last_v.len() {
                 self.oldest = 0;
-                // Rounding errors do not add up.
+                // Computed anew once per window, so that rounding errors do not accumulate.
                 self.sum_v = self.last_v.iter().sum();
             }
         }
     }
 
-    /// Mean of the last 100 ms, volts.
+    /// Returns the mean of the last 100 ms, volts.
     pub fn mean_v(&self) -> f64 {
         self.sum_v / self.last_v.len() as f64
     }
 
-    /// The sample before the last one, the one before that, and so on, back and forth within the
-    /// last 100 ms.
+    /// Returns the last 100 ms mirrored at the newest sample: the sample before it, the one before
+    /// that, and so on, back and forth without end.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();
         let newest = self.oldest + frames - 1;
@@ -104,7 +105,7 @@ impl DirectVoltage {
         })
     }
 
-    /// The limit, volts.
+    /// Returns the limit, volts.
     pub fn limit_v(&self) -> f64 {
         self.limit_v
     }
@@ -114,7 +115,7 @@ impl DirectVoltage {
 mod tests {
     use super::*;
 
-    /// The mean of each window, computed from all samples.
+    /// Finds the first window over the limit by computing each mean from all of its samples.
     fn first_over(samples: &[f64], frames: usize, limit_v: f64) -> Option<usize> {
         (0..samples.len()).find(|&i| {
             let from = (i + 1).saturating_sub(frames);

@@ -9,7 +9,7 @@ pub enum DeviceError {
     #[error("setting `{name}`: {what}")]
     Setting {
         name: String,
-        /// The fault, and the allowed values.
+        /// What is wrong, and which values are allowed.
         what: String,
     },
     /// The device does not run at this rate.
@@ -48,11 +48,11 @@ pub enum DeviceError {
     #[error("{device} ran dry after {frames} frames; {advice}")]
     Underflow {
         device: String,
-        /// Frames that came out before.
+        /// Frames that were output before.
         frames: u64,
         advice: String,
     },
-    /// Frames of a source were lost: they were read too late. It delivers nothing more.
+    /// A source lost frames because they were read too late. It delivers nothing more.
     #[error("{source_name} lost samples after {frames} frames, which were read too late; {advice}")]
     Overrun {
         source_name: String,
@@ -60,7 +60,7 @@ pub enum DeviceError {
         frames: u64,
         advice: String,
     },
-    /// The whole message of another process, which holds the device, or of a library.
+    /// A complete message from a library, or from another process that holds the device.
     #[error("{0}")]
     Told(String),
     /// The device was removed, or its driver failed.
@@ -70,7 +70,7 @@ pub enum DeviceError {
         /// The driver's message.
         what: String,
     },
-    /// A call came after the end or after an error.
+    /// A call came after `finish` or `stop`, or after an error.
     #[error("{0} is closed")]
     Closed(String),
     /// A file could not be written or read.
@@ -82,20 +82,20 @@ pub enum DeviceError {
     /// No source of this name is known.
     #[error("no source `{wanted}`; there are {known}")]
     UnknownSource { wanted: String, known: String },
-    /// A library is not a device or source of this ABI, or breaks it.
+    /// A library is not a device or source of this ABI, or violates the ABI.
     #[error("{library}: {fault}")]
     Abi { library: String, fault: AbiFault },
 }
 
-/// Fault of a library that is not a device or source of this ABI, or does not follow it.
+/// How a library fails to be a device or source of this ABI.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AbiFault {
-    /// The system cannot load the file; its reason.
+    /// The system cannot load the file. Contains the system's reason.
     #[error("{0}")]
     NotLoaded(String),
-    /// The marker is of another major version of the ABI, or of another ABI.
+    /// The marker belongs to another major version of the ABI, or to another ABI.
     #[error("the marker {marker:#x} is not of {kind} ABI {major}.x, which this host loads")]
     Marker {
         marker: u32,
@@ -114,7 +114,7 @@ pub enum AbiFault {
     /// The descriptor cannot be read, or is invalid.
     #[error("descriptor: {0}")]
     Descriptor(String),
-    /// A call returned what the ABI does not allow, or refused arguments that it allows.
+    /// A call returned a result that the ABI forbids, or refused arguments that the ABI allows.
     #[error("{0}")]
     Call(String),
 }

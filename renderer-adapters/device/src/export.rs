@@ -1,11 +1,11 @@
-//! The macros that make the C functions of devices and sources.
+//! The macros that generate the C functions of devices and sources.
 
-/// Makes the table of C functions of an [`Adapter`](crate::Adapter) that has a `Default`, as
-/// `pub static TABLE`.
+/// Generates the C functions of an [`Adapter`](crate::Adapter) that implements `Default`, as the
+/// table `pub static TABLE`.
 ///
-/// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_device_…`)
-/// when the crate is built with that Cargo feature: for a native library, where one binary holds
-/// one adapter. A panic becomes a status code.
+/// With `symbols: "FEATURE"`, the functions are also exported under their C names (`htex_device_…`)
+/// when the crate is built with that Cargo feature. Use this for a native library, where one binary
+/// holds one adapter. A panic becomes a status code.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
@@ -55,7 +55,7 @@ macro_rules! export_device {
             extension: htex_device_exports::htex_device_extension,
         };
 
-        /// The C functions by their ABI names; `htex_device::abi` says what each does.
+        /// The C functions under their ABI names. `htex_device::abi` documents each one.
         #[allow(missing_docs, clippy::missing_safety_doc)]
         mod htex_device_exports {
             use super::HTEX_DEVICE_STATE as STATE;

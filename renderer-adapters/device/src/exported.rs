@@ -1,4 +1,4 @@
-//! What the shims of devices and of sources share: arrays of the other side, answers, texts.
+//! The common part of the device and source shims: arrays from the host, answers, texts.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,11 +13,11 @@ std::thread_local! {
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// A pointer and a length from the other side.
+/// An input array from the host: a pointer and a length.
 pub struct Input<'a, T>(Option<&'a [T]>);
 
 impl<'a, T> Input<'a, T> {
-    /// Refuses null and misaligned pointers when there is something to read.
+    /// Refuses a null or misaligned pointer if the length is above 0.
     ///
     /// # Safety
     /// `pointer` is null, or `len` values can be read there for `'a`.
@@ -35,14 +35,14 @@ impl<'a, T> Input<'a, T> {
     }
 }
 
-/// A buffer to write to, from the other side.
+/// An output buffer from the host: a pointer and a length.
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
 impl<'a, T> Output<'a, T> {
-    /// Refuses null and misaligned pointers when there is space to write.
+    /// Refuses a null or misaligned pointer if the length is above 0.
     ///
     /// # Safety
-    /// `pointer` is null, or `len` initialised values can be written there for `'a`, by us alone.
+    /// `pointer` is null, or `len` initialised values can be written there for `'a`, only by us.
     pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
         if len == 0 {
             return Self(Some(&mut []));
@@ -57,12 +57,12 @@ impl<'a, T> Output<'a, T> {
     }
 }
 
-/// Whether so many values are not longer than memory.
+/// Whether an array of `len` values fits in memory at all.
 fn fits<T>(len: usize) -> bool {
     len <= isize::MAX as usize / size_of::<T>().max(1)
 }
 
-/// A code of the ABI and its text.
+/// A refused call: a code of the ABI and its text.
 pub(crate) struct Refusal(pub(crate) i64, pub(crate) String);
 
 impl From<DeviceError> for Refusal {
@@ -76,7 +76,7 @@ pub(crate) fn argument(text: String) -> Refusal {
     Refusal(Code::InvalidArgument as i64, text)
 }
 
-/// The settings of lines from the other side.
+/// Parses the settings in lines from the host.
 pub(crate) fn settings(descriptor: &Descriptor, lines: Input<'_, u8>) -> Result<Settings, Refusal> {
     let lines = lines.get("settings")?;
     if lines.len() > MAX_TEXT_BYTES {
@@ -97,7 +97,7 @@ pub fn extension(_id: Input<'_, u8>) -> i64 {
     0
 }
 
-/// An adapter of the `kind` (`device`, `source`), and what is open of it.
+/// An exported adapter with its open devices or sources. `kind` is `device` or `source`.
 pub(crate) struct Exported<A, T: ?Sized> {
     kind: &'static str,
     adapter: OnceLock<A>,
@@ -105,7 +105,7 @@ pub(crate) struct Exported<A, T: ?Sized> {
 }
 
 impl<A: Default, T: ?Sized> Exported<A, T> {
-    /// No adapter yet, nothing open.
+    /// Creates the state without an adapter and with nothing open.
     pub(crate) const fn new(kind: &'static str) -> Self {
         Self { kind, adapter: OnceLock::new(), open: Handles::new() }
     }
@@ -114,12 +114,12 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
         self.adapter.get_or_init(A::default)
     }
 
-    /// Keeps what was opened; returns its handle.
+    /// Stores an open device or source and returns its handle.
     pub(crate) fn insert(&self, opened: Box<T>) -> i64 {
         self.open.insert(opened)
     }
 
-    /// Calls what is behind a handle.
+    /// Calls a function with the device or source behind a handle.
     pub(crate) fn with<R>(
         &self,
         handle: i64,
@@ -129,12 +129,13 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
         called.ok_or_else(|| self.bad_handle())?
     }
 
-    /// Runs a call; an error or a panic becomes a code and the last-error text.
+    /// Runs a call. An error or a panic becomes a code, and its text becomes the last error.
     pub(crate) fn answer(&self, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
         answer(self.kind, call)
     }
 
-    /// As [`Self::answer`]; a panic drops what is behind the handle, which takes an output to zero.
+    /// Runs a call as [`Self::answer`] does. After a panic, the device or source behind the handle
+    /// is dropped, so that its output goes to zero.
     pub(crate) fn answer_of(
         &self,
         handle: i64,
@@ -142,7 +143,7 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
     ) -> i64 {
         let answered = self.answer(call);
         if answered == Code::Panicked as i64 {
-            // A second panic, in the drop, adds nothing.
+            // A second panic, in the drop, is ignored: the first one is already reported.
             let _ = catch_unwind(AssertUnwindSafe(|| drop(self.open.remove(handle))));
         }
         answered
@@ -162,8 +163,8 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
     }
 }
 
-/// Runs a call of a device or source, the `kind`; an error or a panic becomes a code and the
-/// last-error text.
+/// Runs a call of a device or source (`kind`). An error or a panic becomes a code, and its text
+/// becomes the last error.
 fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
     let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
         let text = panic

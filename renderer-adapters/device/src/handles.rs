@@ -1,7 +1,7 @@
-//! Open devices or sources behind handles, which are never used twice.
+//! Open devices or sources behind handles. A handle is never used twice.
 //!
-//! A lock protects each, since opening and writing may block. The voices of a model, which may not
-//! block, have slots and generations (`sdk/model/src/voices.rs`).
+//! A lock protects each open device or source, because opening and writing may block. The voices of
+//! a model must not block, so they use slots and generations instead (`sdk/model/src/voices.rs`).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,12 +17,12 @@ struct Open<T: ?Sized> {
 }
 
 impl<T: ?Sized> Handles<T> {
-    /// With nothing open.
+    /// Creates an empty table.
     pub(crate) const fn new() -> Self {
         Self(Mutex::new(Open { last: 0, shared: BTreeMap::new() }))
     }
 
-    /// Adds one; returns its handle.
+    /// Adds an open device or source and returns its handle.
     pub(crate) fn insert(&self, one: Box<T>) -> i64 {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.last += 1;
@@ -31,7 +31,8 @@ impl<T: ?Sized> Handles<T> {
         handle
     }
 
-    /// Calls what is behind a handle; `None` if it was closed or never was.
+    /// Calls a function with the device or source behind a handle. Returns `None` if the handle was
+    /// closed or never existed.
     pub(crate) fn with<R>(&self, handle: i64, call: impl FnOnce(&mut T) -> R) -> Option<R> {
         let shared = {
             let open = self.0.lock().unwrap_or_else(PoisonError::into_inner);

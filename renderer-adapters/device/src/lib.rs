@@ -1,24 +1,24 @@
-//! Output devices and input sources: a device takes samples of one quantity at one rate, a source
-//! delivers samples of channels.
+//! Output devices and input sources: a device plays samples of one quantity at one rate, a source
+//! delivers samples of several channels.
 //!
-//! An [`Adapter`] is a family of devices; [`Adapter::open`] makes a [`Device`]. A device reports
-//! its [`Capabilities`] and enforces its limits on every sample.
-//! This crate does not depend on textures.
+//! An [`Adapter`] stands for a family of devices, such as all sound cards. [`Adapter::open`]
+//! returns an open [`Device`]. A device reports its [`Capabilities`] and enforces its limits on
+//! every sample. This crate does not depend on textures.
 //!
-//! A [`Source`] is the reverse, an input: it delivers samples of several channels. Its family is a
-//! [`SourceAdapter`].
+//! A [`Source`] is the opposite, an input. A [`SourceAdapter`] stands for a family of sources.
 //!
-//! An adapter is built in, or a native library behind the flat C functions of [`abi`] or
-//! [`source::abi`] ([`NativeAdapter`], [`NativeSourceAdapter`]); [`Devices`] and [`Sources`] find
-//! both. A Rust author implements the traits and calls [`export_device!`] or [`export_source!`].
+//! An adapter is either built into the program or a native library behind the plain C functions of
+//! [`abi`] or [`source::abi`] ([`NativeAdapter`], [`NativeSourceAdapter`]). [`Devices`] and
+//! [`Sources`] find both kinds. To write an adapter in Rust, implement the traits and call
+//! [`export_device!`] or [`export_source!`].
 //!
-//! Built-in adapters are called directly, unlike models: a device need not give the same bits in a
-//! sandbox, and its errors keep their kind either way. There is no device in WASM, since a sandbox
-//! without imports reaches no hardware.
+//! Models run in a sandbox. Devices do not, for two reasons: a device need not produce the same
+//! bits everywhere, and a WASM sandbox without imports cannot reach any hardware. Built-in adapters
+//! are therefore called directly. Their errors have the same types as the errors of a library.
 //!
-//! A device enforces its limits on every sample before it outputs any sample of a call, and a
-//! voltage without a limit is not loaded. After an error its output is at zero, and stays there.
-//! The mean of a display's voltage is limited, too ([`DirectVoltage`]).
+//! A device checks all samples of a call against its limits before it outputs any of them. A
+//! voltage device that states no limit is not loaded. After an error the output is at zero and
+//! stays there. The mean voltage of a display is limited as well ([`DirectVoltage`]).
 #![warn(missing_docs)]
 
 pub mod abi;

@@ -1,7 +1,7 @@
-//! Native libraries: loaded once, never unloaded, called through their table.
+//! Native libraries, loaded once and called through a table of their functions.
 //!
-//! A native library runs with all the rights of this program: which ones to load is the user's
-//! decision. None is ever unloaded, since open devices and sources point into it.
+//! A native library runs with all the rights of this program, so the user decides which ones to
+//! load. No library is ever unloaded, because open devices and sources point into it.
 
 use std::path::Path;
 
@@ -13,12 +13,12 @@ use crate::abi::{
 };
 use crate::{AbiFault, Descriptor, DescriptorError, DeviceError, Endpoint};
 
-/// Size of the buffer for a text at the first call, bytes.
+/// Size of the buffer in the first call for a text, bytes.
 const USUAL_TEXT: usize = 16_384;
-/// Most calls for a text whose length changes in between.
+/// Maximum number of calls for a text whose length changes from call to call.
 const TRIES: usize = 8;
 
-/// The functions of an ABI, of devices or of sources; only those of this crate implement it.
+/// The functions of an ABI, for devices or for sources. Only tables of this crate implement it.
 pub trait Table: Copy + 'static {
     /// Negative results.
     type Code;
@@ -26,30 +26,30 @@ pub trait Table: Copy + 'static {
     type About: Clone + DeserializeOwned;
     /// `device` or `source`.
     const KIND: &'static str;
-    /// The marker of this host's version.
+    /// The marker of this host's ABI version.
     const MARKER: u32;
     /// Name of the function that returns the marker.
     const ABI_VERSION: &'static str;
 
-    /// The functions of the library, whose marker has been checked.
+    /// Looks up the functions of a library whose marker has been checked.
     ///
     /// # Safety
     /// The library's functions have the types of the ABI.
     unsafe fn of_symbols(symbols: &Symbols<'_, DeviceError>) -> Result<Self, DeviceError>;
 
-    /// The functions that both ABIs have.
+    /// Returns the functions that both ABIs have.
     fn common(&self) -> Common;
 
-    /// Checks what a library says of its adapter.
+    /// Checks the description that a library gives of its adapter.
     fn check(about: &Self::About) -> Result<(), DescriptorError>;
 
-    /// What an adapter of devices and one of sources share.
+    /// Returns the part of the description that device and source adapters have in common.
     fn descriptor_of(about: &Self::About) -> &Descriptor;
 
-    /// The code of a number that crossed the ABI.
+    /// Converts a number that crossed the ABI to its code.
     fn code(answer: i64) -> Self::Code;
 
-    /// The error of a code and its text.
+    /// Converts a code and its text to an error.
     fn incoming(code: Self::Code, text: String, name: &str, library: &str) -> DeviceError;
 }
 
@@ -73,14 +73,14 @@ pub(crate) struct Library<T: 'static> {
 
 /// The failure of a call.
 pub(crate) enum Trouble<Code> {
-    /// A code and its text.
+    /// The library returned an error code with this text.
     Told(Code, String),
-    /// A result that the ABI does not allow.
+    /// The library returned a result that the ABI does not allow.
     Broken(String),
 }
 
 impl<T: Table> Library<T> {
-    /// Loads a library and fills a table from its symbols.
+    /// Loads a library and fills the table from its symbols.
     pub(crate) fn load(path: &Path) -> Result<Self, DeviceError> {
         let name = path.display().to_string();
         let error = |fault: AbiFault| DeviceError::Abi { library: name.clone(), fault };
@@ -100,7 +100,7 @@ impl<T: Table> Library<T> {
         Ok(Self { name, table })
     }
 
-    /// Uses a table of this program.
+    /// Uses a table that is linked into this program.
     pub(crate) fn of_table(name: &str, table: &'static T) -> Result<Self, DeviceError> {
         let library = Self { name: name.to_owned(), table };
         let marker = (table.common().abi_version)();
@@ -108,7 +108,7 @@ impl<T: Table> Library<T> {
         Ok(library)
     }
 
-    /// What the library says of its adapter, checked.
+    /// Reads and checks the library's description of its adapter.
     pub(crate) fn about(&self) -> Result<T::About, DeviceError> {
         let wrong = |what: String| self.error(AbiFault::Descriptor(what));
         // SAFETY: the buffer is live and of this length, by `Self::text`.
@@ -122,7 +122,7 @@ impl<T: Table> Library<T> {
         Ok(about)
     }
 
-    /// What is connected.
+    /// Lists the connected devices or sources.
     pub(crate) fn endpoints(&self, adapter: &str) -> Result<Vec<Endpoint>, DeviceError> {
         // SAFETY: the buffer is live and of this length, by `Self::text`.
         self.json(adapter, "endpoints", |out, len| unsafe {
@@ -140,7 +140,8 @@ impl<T: Table> Library<T> {
         }
     }
 
-    /// The JSON that a call returns. `adapter` is the adapter's name, `name` that of the call.
+    /// Parses the JSON that a call returns. `adapter` is the adapter's name, `name` the name of the
+    /// call.
     pub(crate) fn json<V: DeserializeOwned>(
         &self,
         adapter: &str,
@@ -151,7 +152,7 @@ impl<T: Table> Library<T> {
         serde_json::from_str(&json).map_err(|e| self.broken(format!("{name}: {e}")))
     }
 
-    /// A status that must be 0.
+    /// Checks a status, which must be 0.
     pub(crate) fn done(&self, adapter: &str, call: &str, answer: i64) -> Result<(), DeviceError> {
         match self.count(answer) {
             Ok(0) => Ok(()),
@@ -181,7 +182,7 @@ impl<T: Table> Library<T> {
         Err(Trouble::Broken("a text that grows at each call".to_owned()))
     }
 
-    /// A count, or the failure of a negative result.
+    /// Interprets a result as a count. A negative one is a failure.
     pub(crate) fn count(&self, answer: i64) -> Result<usize, Trouble<T::Code>> {
         if answer < 0 {
             return Err(Trouble::Told(T::code(answer), self.last_error()));
@@ -189,7 +190,7 @@ impl<T: Table> Library<T> {
         usize::try_from(answer).map_err(|_| Trouble::Broken(format!("it returned {answer}")))
     }
 
-    /// The text of this thread's last error.
+    /// Reads the text of this thread's last error.
     pub(crate) fn last_error(&self) -> String {
         let mut bytes = vec![0; USUAL_TEXT];
         // SAFETY: a live buffer of this length.
@@ -201,7 +202,7 @@ impl<T: Table> Library<T> {
         }
     }
 
-    /// The error of a call that failed. `adapter` is the adapter's name.
+    /// Converts the failure of a call to an error. `adapter` is the adapter's name.
     pub(crate) fn trouble(
         &self,
         adapter: &str,
@@ -214,7 +215,7 @@ impl<T: Table> Library<T> {
         }
     }
 
-    /// The error of a result that the ABI does not allow.
+    /// Returns the error for a result that the ABI does not allow.
     pub(crate) fn broken(&self, what: impl Into<String>) -> DeviceError {
         self.error(AbiFault::Call(what.into()))
     }

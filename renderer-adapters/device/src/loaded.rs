@@ -1,4 +1,4 @@
-//! Adapters of native libraries, and what is open of them: the part that devices and sources share.
+//! Adapters of native libraries and their open handles: the part that devices and sources share.
 
 use std::fmt;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::abi::CloseFn;
 use crate::library::{Library, Table, Trouble};
 use crate::{Descriptor, DeviceError, Settings};
 
-/// An adapter of a native library: [`NativeAdapter`](crate::NativeAdapter) or
+/// The adapter of a native library: [`NativeAdapter`](crate::NativeAdapter) or
 /// [`NativeSourceAdapter`](crate::NativeSourceAdapter). Cheap to clone.
 #[derive(Clone)]
 pub struct Native<T: Table> {
@@ -24,19 +24,20 @@ impl<T: Table> fmt::Debug for Native<T> {
 }
 
 impl<T: Table> Native<T> {
-    /// Loads a native library, which runs with all rights of this program.
+    /// Loads a native library, which runs with all the rights of this program.
     ///
     /// # Errors
-    /// When the file is not a library of this machine or not one of this ABI, or its descriptor
-    /// is invalid.
+    /// When the file is not a library for this machine, does not follow this ABI, or has an invalid
+    /// descriptor.
     pub fn load(path: &Path) -> Result<Self, DeviceError> {
         Self::new(Library::load(path)?)
     }
 
-    /// An adapter behind a table of this program; `name` identifies it in messages.
+    /// Creates an adapter from a table that is linked into this program. `name` identifies it in
+    /// messages.
     ///
     /// # Errors
-    /// As [`Self::load`].
+    /// The errors of [`Self::load`].
     pub fn from_table(name: &str, table: &'static T) -> Result<Self, DeviceError> {
         Self::new(Library::of_table(name, table)?)
     }
@@ -62,7 +63,7 @@ impl<T: Table> Native<T> {
         &self.described().name
     }
 
-    /// The settings as they cross.
+    /// Writes the settings in the form in which they cross the ABI.
     pub(crate) fn lines(&self, settings: &Settings) -> String {
         settings.to_lines(self.described())
     }
@@ -71,7 +72,7 @@ impl<T: Table> Native<T> {
         self.library.trouble(self.name(), call, trouble)
     }
 
-    /// What an opening call returned.
+    /// Interprets the result of an opening call.
     pub(crate) fn opened(&self, answer: i64) -> Result<Opened<T>, Trouble<T::Code>> {
         match self.library.count(answer)? {
             0 => Err(Trouble::Broken("the handle is 0".to_owned())),
@@ -80,7 +81,7 @@ impl<T: Table> Native<T> {
     }
 }
 
-/// An open device or source; dropping it closes it.
+/// An open device or source. Dropping it closes it.
 pub(crate) struct Opened<T: Table> {
     pub(crate) adapter: Native<T>,
     pub(crate) handle: i64,
@@ -99,13 +100,13 @@ impl<T: Table> Opened<T> {
         self.adapter.library.table
     }
 
-    /// Calls a function of the handle, which must return 0.
+    /// Calls a function that takes the handle and must return 0.
     pub(crate) fn done(&self, call: &str, function: CloseFn) -> Result<(), DeviceError> {
         let answer = function(self.handle);
         self.adapter.library.done(self.adapter.name(), call, answer)
     }
 
-    /// Closes it and keeps its handle, for checkers.
+    /// Closes the device or source but keeps its handle, for checkers.
     pub(crate) fn close(&mut self) -> Result<(), DeviceError> {
         self.closed = true;
         self.done("close", self.table().common().close)
@@ -115,7 +116,7 @@ impl<T: Table> Opened<T> {
 impl<T: Table> Drop for Opened<T> {
     fn drop(&mut self) {
         if !self.closed {
-            // An error of closing cannot be returned from a drop.
+            // A drop cannot return the error of closing.
             (self.table().common().close)(self.handle);
         }
     }

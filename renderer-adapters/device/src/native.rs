@@ -1,4 +1,4 @@
-//! Adapters and devices behind the C functions: safe calls, checked results.
+//! Adapters and devices of native libraries: safe calls of the C functions, checked results.
 
 use std::time::Duration;
 
@@ -59,14 +59,14 @@ impl Table for DeviceTable {
     }
 }
 
-/// An adapter of devices of a native library.
+/// A device adapter from a native library.
 pub type NativeAdapter = Native<DeviceTable>;
 
 impl NativeAdapter {
-    /// As [`Adapter::capabilities`], of lines that need not be settings: for checkers of devices.
+    /// For checkers: [`Adapter::capabilities`] with lines of settings, which may be invalid.
     ///
     /// # Errors
-    /// As [`Adapter::capabilities`].
+    /// The errors of [`Adapter::capabilities`].
     pub fn capabilities_of(&self, lines: &str) -> Result<Capabilities, DeviceError> {
         let name = "capabilities";
         // SAFETY: a live text, and a buffer that is live and of this length, by `Library::text`.
@@ -79,10 +79,11 @@ impl NativeAdapter {
         Ok(capabilities)
     }
 
-    /// As [`Adapter::open`], as a type with further functions for checkers.
+    /// Opens a device as [`Adapter::open`] does. The returned type has further functions for
+    /// checkers.
     ///
     /// # Errors
-    /// As [`Adapter::open`].
+    /// The errors of [`Adapter::open`].
     pub fn open_native(
         &self,
         settings: &Settings,
@@ -137,21 +138,21 @@ impl Adapter for NativeAdapter {
     }
 }
 
-/// An open device of a native library; dropping it closes it.
+/// An open device of a native library. Dropping it closes it.
 #[derive(Debug)]
 pub struct NativeDevice {
     opened: Opened<DeviceTable>,
     capabilities: Capabilities,
-    /// Of a display.
+    /// Present if the device is a paced display.
     direct: Option<DirectVoltage>,
     written: u64,
 }
 
 impl NativeDevice {
-    /// As [`Device::status`], with an error for an invalid result.
+    /// Returns the status as [`Device::status`] does, but reports an invalid result as an error.
     ///
     /// # Errors
-    /// When the device returns too few numbers, or NaN.
+    /// When the device returns too few numbers, or one that is negative or not finite.
     pub fn checked_status(&self) -> Result<Status, DeviceError> {
         let mut numbers = [f64::NAN; STATUS_NUMBERS];
         let (adapter, handle) = (&self.opened.adapter, self.opened.handle);
@@ -168,17 +169,16 @@ impl NativeDevice {
         Ok(numbers.into())
     }
 
-    /// For checkers of devices: closes the device and keeps its handle, so that later calls show
-    /// whether the device refuses a handle that was closed. An app drops the device instead.
+    /// For checkers: closes the device and keeps its handle, so that later calls show whether the
+    /// library refuses a closed handle. An app drops the device instead.
     ///
     /// # Errors
-    /// The error of the device; when called a second time, that the handle is unknown.
+    /// The error of the device. A second call must return that the handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         self.opened.close()
     }
 
-    /// Closes the device, whose output is then at zero, if these samples would make a direct
-    /// voltage.
+    /// Closes the device if these samples would make a direct voltage. Its output is then at zero.
     fn check_direct(&mut self, samples: &[f32]) -> Result<(), DeviceError> {
         let Some(direct) = &self.direct else {
             return Ok(());
@@ -195,7 +195,7 @@ impl NativeDevice {
         Err(error)
     }
 
-    /// The error of a write, with the details that only this side knows.
+    /// Builds the error of a write, with details that only the host knows.
     fn write_error(&self, trouble: Trouble<Code>, samples: &[f32]) -> DeviceError {
         let adapter = &self.opened.adapter;
         match trouble {
@@ -238,7 +238,7 @@ impl Device for NativeDevice {
     }
 
     fn status(&self) -> Status {
-        // A device that cannot tell has still taken what it took.
+        // If the device returns no valid status, the host still knows how many frames it took.
         self.checked_status()
             .unwrap_or(Status { frames_written: self.written, ..Status::default() })
     }

@@ -1,4 +1,4 @@
-//! For checkers: calls with arguments that a host never passes. An app has no use for them.
+//! For checkers: calls with arguments that a host never passes. Apps do not need them.
 
 use crate::abi::{Code, DeviceTable, STATUS_NUMBERS};
 use crate::library::{Library, Table};
@@ -6,9 +6,9 @@ use crate::loaded::{Native, Opened};
 use crate::source::abi::SourceTable;
 use crate::{DeviceError, Settings, StreamFormat};
 
-/// Least number of guard values behind a buffer.
+/// Minimum number of guard values behind a buffer.
 const GUARDS: usize = 64;
-/// Values of a buffer of samples.
+/// Number of values in a buffer of samples.
 const SAMPLES: usize = 8;
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
@@ -24,19 +24,19 @@ impl<T: Copy + PartialEq> Guarded<T> {
         Self::before(len, GUARDS, guard)
     }
 
-    /// A buffer with at least so many guard values, which take what a call writes that ignores its
-    /// length.
+    /// Creates a buffer with at least `guards` guard values. They absorb the writes of a call that
+    /// ignores the length.
     fn before(len: usize, guards: usize, guard: T) -> Self {
         let all = vec![guard; len + guards.max(GUARDS)];
         Self { all, len, guard }
     }
 
-    /// The address of the buffer, whose guard values may be written to as well.
+    /// Returns the address of the buffer. The guard values behind it may be overwritten as well.
     fn pointer(&mut self) -> *mut T {
         self.all.as_mut_ptr()
     }
 
-    /// An address that no value of more than a byte may have.
+    /// Returns an address that is misaligned for every value of more than one byte.
     fn misaligned(&mut self) -> *mut T {
         self.pointer().cast::<u8>().wrapping_add(1).cast()
     }
@@ -50,7 +50,7 @@ impl<T: Copy + PartialEq> Guarded<T> {
     }
 }
 
-/// Fails unless a call refused an array that is not usable.
+/// Fails unless the call refused the unusable array.
 fn refused(call: &str, array: &str, answer: i64) -> Result<(), String> {
     if answer == INVALID_ARGUMENT {
         return Ok(());
@@ -60,7 +60,7 @@ fn refused(call: &str, array: &str, answer: i64) -> Result<(), String> {
     ))
 }
 
-/// Calls a function that writes a text, with buffers of every kind; `call` gets a pointer and a
+/// Tests a function that writes a text, with buffers of every kind. `call` gets a pointer and a
 /// capacity.
 fn check_text(name: &str, call: impl Fn(*mut u8, usize) -> i64) -> Result<(), String> {
     let len = call(std::ptr::null_mut(), 0);
@@ -87,8 +87,8 @@ impl<T: Table> Library<T> {
 }
 
 impl Native<DeviceTable> {
-    /// The status and the text with which `open` refuses these lines, rate and block; `None` if it
-    /// opens a device, which is closed.
+    /// Returns the status and the text with which `open` refuses these lines, rate and block. If it
+    /// opens a device instead, closes it and returns `None`.
     pub fn refusal_of_open(
         &self,
         lines: &str,
@@ -101,11 +101,11 @@ impl Native<DeviceTable> {
         self.refusal(answer)
     }
 
-    /// Fails unless every call refuses null and misaligned arrays, and writes no further than it
-    /// may.
+    /// Fails unless every call refuses null and misaligned arrays and writes only within the given
+    /// length.
     ///
     /// # Errors
-    /// The call that is at fault, and how.
+    /// Names the call that is at fault, and how.
     pub fn check_arrays(&self, settings: &Settings, format: &StreamFormat) -> Result<(), String> {
         let (table, lines) = (self.library.table, self.lines(settings));
         let (text, null) = (lines.as_bytes(), std::ptr::null());
@@ -133,7 +133,7 @@ impl Native<DeviceTable> {
         self.opened(handle).map_err(|trouble| self.error("open", trouble).to_string())
     }
 
-    /// A refusal may close a device: each has one of its own.
+    /// Uses a new device for each array, because a refusal may close the device.
     fn check_write(&self, lines: &str, format: &StreamFormat) -> Result<(), String> {
         let (write, mut samples) = (self.library.table.write, Guarded::new(SAMPLES, 0.0f32));
         for (array, pointer) in [
@@ -170,17 +170,17 @@ impl Native<DeviceTable> {
 }
 
 impl Native<SourceTable> {
-    /// As [`Native::refusal_of_open`] of devices, of a source.
+    /// [`Native::refusal_of_open`] for a source.
     pub fn refusal_of_lines(&self, lines: &str) -> Option<(i64, String)> {
         // SAFETY: a live text.
         let answer = unsafe { (self.library.table.open)(lines.as_ptr(), lines.len()) };
         self.refusal(answer)
     }
 
-    /// As [`Native::check_arrays`] of devices, of a source.
+    /// [`Native::check_arrays`] for a source.
     ///
     /// # Errors
-    /// The call that is at fault, and how.
+    /// Names the call that is at fault, and how.
     pub fn check_source_arrays(&self, settings: &Settings) -> Result<(), String> {
         let (table, told) = (self.library.table, |e: DeviceError| e.to_string());
         self.library.check_texts()?;
@@ -210,7 +210,8 @@ impl Native<SourceTable> {
 }
 
 impl<T: Table> Native<T> {
-    /// The number and the text of a negative answer of `open`; closes what was opened.
+    /// Returns the number and the text if `open` gave a negative answer. Otherwise closes what it
+    /// opened.
     fn refusal(&self, answer: i64) -> Option<(i64, String)> {
         if answer > 0 {
             (self.library.table.common().close)(answer);

@@ -1,4 +1,4 @@
-//! The adapters that a program finds: devices, or sources.
+//! The adapters of devices or sources that a program can find.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,19 +9,19 @@ use crate::library::Table;
 use crate::loaded::Native;
 use crate::{Descriptor, DeviceError, Endpoint};
 
-/// Where native libraries of devices or of sources are searched. Earlier places take precedence
-/// over later ones: `files`, `dirs`, the environment variable (`HTEX_DEVICE_PATH`,
-/// `HTEX_SOURCE_PATH`), the user's folder, built in.
+/// Where to search for native libraries of devices or sources. Earlier places take precedence over
+/// later ones: `files`, `dirs`, the environment variable (`HTEX_DEVICE_PATH`, `HTEX_SOURCE_PATH`),
+/// the user's folder, built in.
 #[derive(Debug, Clone)]
 pub struct Search {
-    /// Libraries by their files; one that cannot be loaded is an error.
+    /// Library files to load. A file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
-    /// Folders of libraries; one that cannot be read is an error, a library in it that cannot be
-    /// loaded a [`Note`].
+    /// Folders of libraries. A folder that cannot be read is an error. A library in it that cannot
+    /// be loaded is only a [`Note`].
     pub dirs: Vec<PathBuf>,
-    /// Whether to look into the folders that the environment variable names.
+    /// Whether to search the folders that the environment variable names.
     pub env: bool,
-    /// Whether to look into `htex/devices` or `htex/sources` in the user's data folder
+    /// Whether to search `htex/devices` or `htex/sources` in the user's data folder
     /// (`$XDG_DATA_HOME`, else `~/.local/share`).
     pub user_dir: bool,
 }
@@ -38,7 +38,7 @@ impl Default for Search {
 pub enum Origin {
     /// Linked into this program.
     Builtin,
-    /// A native library, which runs with all rights of this program.
+    /// A native library, which runs with all the rights of this program.
     Library(PathBuf),
 }
 
@@ -51,30 +51,30 @@ impl std::fmt::Display for Origin {
     }
 }
 
-/// A kind of adapter: of devices or of sources.
+/// A kind of adapter: for devices or for sources.
 pub trait AdapterKind: Send + Sync + 'static {
     /// The C functions of a native library of this kind.
     type Table: Table;
     /// `device` or `source`.
     const WORD: &'static str;
-    /// The environment variable with folders of libraries, separated as in `PATH`.
+    /// The environment variable that lists folders of libraries, separated as in `PATH`.
     const VARIABLE: &'static str;
-    /// The user's folder of libraries, in the data folder.
+    /// The user's folder of libraries, relative to the data folder.
     const FOLDER: &'static str;
 
-    /// Name, version, settings and profiles.
+    /// Returns the adapter's name, version, settings and profiles.
     fn about(&self) -> &Descriptor;
 
-    /// What is connected now.
+    /// Lists the devices or sources that are connected now.
     ///
     /// # Errors
     /// When a driver is missing: the message says what to install.
     fn connected(&self) -> Result<Vec<Endpoint>, DeviceError>;
 
-    /// The adapter of a native library.
+    /// Wraps the adapter of a native library.
     fn of_native(native: Native<Self::Table>) -> Arc<Self>;
 
-    /// The error that there is no adapter of the name `wanted`.
+    /// Returns the error that there is no adapter called `wanted`.
     fn unknown(wanted: String, known: String) -> DeviceError;
 }
 
@@ -82,12 +82,12 @@ pub trait AdapterKind: Send + Sync + 'static {
 pub struct Known<A: ?Sized> {
     /// The adapter.
     pub adapter: Arc<A>,
-    /// Where it comes from.
+    /// Where its code comes from.
     pub origin: Origin,
 }
 
 impl<A: AdapterKind + ?Sized> Known<A> {
-    /// The adapter of a native library, which runs with all rights of this program.
+    /// Loads the adapter of a native library, which runs with all the rights of this program.
     ///
     /// # Errors
     /// When the file is not a library of this kind.
@@ -98,12 +98,12 @@ impl<A: AdapterKind + ?Sized> Known<A> {
         })
     }
 
-    /// Name, version, settings and profiles.
+    /// Returns the adapter's name, version, settings and profiles.
     pub fn descriptor(&self) -> &Descriptor {
         self.adapter.about()
     }
 
-    /// What is connected now.
+    /// Lists the devices or sources that are connected now.
     ///
     /// # Errors
     /// When a driver is missing: the message says what to install.
@@ -140,16 +140,17 @@ impl<A: AdapterKind + ?Sized> std::fmt::Debug for Known<A> {
 pub enum Note {
     /// Two adapters have the same id; the one found first is used.
     Shadowed { kind: &'static str, id: String, used: Origin, shadowed: Origin },
-    /// Two adapters of different ids have the same short name, which means the one found first.
+    /// Two adapters with different ids have the same short name. The short name means the one found
+    /// first.
     SameName {
         kind: &'static str,
         name: String,
-        /// The id it means.
+        /// The id that the short name means.
         means: String,
-        /// The id that must be written out.
+        /// The id of the other adapter, which must be written in full.
         other: String,
     },
-    /// A file or folder that was not named could not be loaded or read.
+    /// A file or folder that the user did not name could not be loaded or read.
     LeftOut { kind: &'static str, error: DeviceError },
 }
 
@@ -193,14 +194,15 @@ impl<A: AdapterKind + ?Sized> std::fmt::Debug for Registry<A> {
 }
 
 impl<A: AdapterKind + ?Sized> Registry<A> {
-    /// Only those linked into a program.
+    /// Creates a registry of only the adapters linked into a program.
     pub fn new(builtin: Vec<Arc<A>>) -> Self {
         let mut found = Self::default();
         found.add_builtin(builtin);
         found
     }
 
-    /// Those that a search finds, then those linked into a program.
+    /// Creates a registry of the adapters that a search finds, followed by those linked into the
+    /// program.
     ///
     /// # Errors
     /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
@@ -221,17 +223,18 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
         Ok(found)
     }
 
-    /// All adapters in use, each id once.
+    /// Returns all adapters in use, each id once.
     pub fn all(&self) -> &[Known<A>] {
         &self.known
     }
 
-    /// Notes for the user: adapters that shadow others, and those that could not be loaded.
+    /// Returns notes for the user about adapters that shadow others and libraries that could not be
+    /// loaded.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }
 
-    /// An adapter by its id or by its short name (`org.htex.file` or `file`, in any case).
+    /// Finds an adapter by its id or its short name (`org.htex.file` or `file`, case-insensitive).
     ///
     /// # Errors
     /// [`DeviceError::Unknown`] or [`DeviceError::UnknownSource`] with the known names.
@@ -269,7 +272,7 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
         Ok(())
     }
 
-    /// Adds an adapter behind all others, unless its id is taken.
+    /// Appends an adapter, unless its id is already present.
     fn add(&mut self, one: Known<A>) {
         if let Some(used) = self.known.iter().find(|known| known.id() == one.id()) {
             self.notes.push(Note::Shadowed {
@@ -293,7 +296,7 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
     }
 }
 
-/// The folders of the environment variable and of the user.
+/// Returns the folders of the environment variable and of the user, which nobody named explicitly.
 fn unnamed_folders<A: AdapterKind + ?Sized>(search: &Search) -> impl Iterator<Item = PathBuf> {
     let listed = search.env.then(|| listed(A::VARIABLE));
     let own = search.user_dir.then(|| data(A::FOLDER)).flatten();

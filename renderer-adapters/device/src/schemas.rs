@@ -1,11 +1,11 @@
-//! JSON Schemas of the documents that cross the ABI.
+//! The JSON Schemas of the documents that cross the ABI.
 
 use htex_schema::crossing;
 use serde_json::Value;
 
 use crate::{Capabilities, Descriptor, Endpoint, SourceDescriptor, SourceStream};
 
-/// The files of `spec/schemas` that this crate generates, and their schemas.
+/// Returns the files of `spec/schemas` that this crate generates, with their schemas.
 pub fn schemas() -> [(&'static str, Value); 3] {
     let [descriptor, capabilities, endpoints] =
         ["device-descriptor-1.json", "device-capabilities-1.json", "device-endpoints-1.json"];
@@ -17,7 +17,8 @@ pub fn schemas() -> [(&'static str, Value); 3] {
     ]
 }
 
-/// As [`schemas`], of sources; their endpoints have the schema of devices.
+/// Returns the schemas of sources, like [`schemas`]. The endpoints of sources have the schema of
+/// devices.
 pub fn source_schemas() -> [(&'static str, Value); 2] {
     let [descriptor, stream] = ["source-descriptor-1.json", "source-stream-1.json"];
     [

@@ -1,46 +1,49 @@
-//! Settings of a device: given values over those of a profile over the defaults.
+//! Settings of a device. Values given by the user override the profile, which overrides the
+//! defaults.
 //!
-//! [`Settings::settle`] is the one place where what a file asks for meets what a person says.
+//! [`Settings::settle`] is the only place where the requests of a file meet the choices of the
+//! user.
 //!
-//! They cross the ABI as lines of text, all of them, with defaults applied: an author in C needs no
-//! parser of JSON.
+//! Settings cross the ABI as lines of text, all of them, with defaults applied, so that an author
+//! in C needs no JSON parser.
 
 use std::collections::BTreeMap;
 
 use crate::{Descriptor, DeviceError, FromScene, Setting, SettingKind};
 
-/// All settings of an adapter, each with a value that its kind allows.
+/// All settings of an adapter, each with a valid value.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings(BTreeMap<String, String>);
 
-/// Settings of a device, by their source.
+/// Requested settings of a device, grouped by who states them.
 #[derive(Debug, Clone, Copy)]
 pub struct Stated<'a> {
     /// Name of the profile that the user chose.
     pub profile: Option<&'a str>,
-    /// Settings that the user gave.
+    /// Settings that the user gave one by one.
     pub given: &'a BTreeMap<String, String>,
-    /// Settings that a scene asks for: [`FromScene`] says which it gets.
+    /// Settings that a scene asks for. [`FromScene`] decides which of them take effect.
     pub asked: &'a BTreeMap<String, String>,
-    /// Whether the motion is live: [`Setting::live_default`] then replaces the default.
+    /// Whether the motion is live. If so, [`Setting::live_default`] replaces the default.
     pub live: bool,
 }
 
-/// A setting that a scene asks for and does not get.
+/// A setting that a scene asked for without success.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
     /// Name of a setting of the descriptor.
     pub name: String,
-    /// Why, as a sentence.
+    /// The reason, as a sentence.
     pub what: String,
 }
 
 impl Settings {
-    /// Resolves `given` over `profile` (by name) over the descriptor's defaults. Of a limit
-    /// ([`FromScene::Less`]) that both state, the smaller one holds.
+    /// Combines the settings: `given` overrides `profile` (a name), which overrides the
+    /// descriptor's defaults. If both state the same limit ([`FromScene::Less`]), the smaller value
+    /// holds.
     ///
     /// # Errors
-    /// When the profile or a setting is not known, one is missing, or a value is not allowed.
+    /// When the profile or a setting is unknown, a setting is missing, or a value is not allowed.
     pub fn resolve(
         descriptor: &Descriptor,
         profile: Option<&str>,
@@ -50,10 +53,11 @@ impl Settings {
         Ok(Self::settle(descriptor, &stated)?.0)
     }
 
-    /// As [`Self::resolve`], with the settings of a scene; returns those that it does not get.
+    /// Combines the settings as [`Self::resolve`] does, and adds the settings of a scene. Returns
+    /// the scene's settings that take no effect.
     ///
     /// # Errors
-    /// As [`Self::resolve`].
+    /// The errors of [`Self::resolve`].
     pub fn settle(
         descriptor: &Descriptor,
         stated: &Stated<'_>,
@@ -100,35 +104,35 @@ impl Settings {
         Ok((Self(values), ignored))
     }
 
-    /// The value of a setting; empty when the adapter has none of this name.
+    /// Returns the value of a setting; empty if the adapter has no setting of this name.
     pub fn text(&self, name: &str) -> &str {
         self.0.get(name).map_or("", String::as_str)
     }
 
-    /// The value of a setting as a number; NaN when it is not one.
+    /// Returns the value of a setting as a number; NaN if it is not a number.
     pub fn number(&self, name: &str) -> f64 {
         self.text(name).parse().unwrap_or(f64::NAN)
     }
 
-    /// All settings in the order of their names.
+    /// Iterates over all settings in the order of their names.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.0.iter().map(|(k, v)| (k.as_str(), v.as_str()))
     }
 }
 
-/// Settings as they cross the ABI.
+/// The settings in the form in which they cross the ABI.
 impl Settings {
-    /// One line a setting, `name=value`, in the order of the descriptor.
+    /// Writes one line for each setting, `name=value`, in the order of the descriptor.
     pub fn to_lines(&self, descriptor: &Descriptor) -> String {
         let settings = descriptor.settings.iter();
         let line = |s: &Setting| format!("{}={}\n", s.name, self.text(&s.name));
         settings.map(line).collect()
     }
 
-    /// Reads the lines of [`Self::to_lines`]. A setting without a line has its default.
+    /// Reads lines written by [`Self::to_lines`]. A setting without a line gets its default.
     ///
     /// # Errors
-    /// When a line is invalid or occurs twice, and as [`Self::resolve`].
+    /// When a line is invalid or occurs twice, and the errors of [`Self::resolve`].
     pub fn from_lines(descriptor: &Descriptor, lines: &str) -> Result<Self, DeviceError> {
         let mut given = BTreeMap::new();
         for line in lines.lines() {
@@ -171,10 +175,10 @@ fn number(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }
 
-/// What becomes of a setting that a scene asks for.
+/// What happens to a setting that a scene asks for.
 enum Asked {
     Used,
-    /// The user has given another value.
+    /// The user gave another value, which holds.
     Given,
     /// It is not used, for this reason.
     Ignored(String),
@@ -213,7 +217,7 @@ fn profile_settings(
     })
 }
 
-/// Whether a setting may have this value.
+/// Checks that a setting may have this value.
 pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
     let refuse = |what: String| Err(error(&setting.name, what));
     if value.contains(['\n', '\r']) {
@@ -293,8 +297,8 @@ mod tests {
         Ok(())
     }
 
-    /// Whatever a scene asks for, settings of the hardware stay, the limit is not raised and the
-    /// ramp not shortened.
+    /// Whatever a scene asks for, it cannot change settings of the hardware, raise the limit or
+    /// shorten the ramp.
     #[test]
     fn a_scene_asks_for_less_and_never_gets_more() -> Result<(), DeviceError> {
         let map = |name: &str, value: &str| BTreeMap::from([(name.to_owned(), value.to_owned())]);

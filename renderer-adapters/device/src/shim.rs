@@ -1,6 +1,7 @@
-//! From the traits of devices to the C functions: checks arguments and catches panics.
+//! Implements the C functions by the device traits: checks arguments and catches panics.
 //!
-//! Called by the functions that [`export_device!`](crate::export_device) makes; not by hand.
+//! The functions that [`export_device!`](crate::export_device) generates call it. Do not call it by
+//! hand.
 
 use std::time::Duration;
 
@@ -10,7 +11,7 @@ use crate::{Adapter, Device, DeviceError, Settings, StreamFormat};
 
 pub use crate::exported::{Input, Output, extension, last_error};
 
-/// The state of an exported adapter: itself and its open devices.
+/// The state of an exported adapter: the adapter itself and its open devices.
 pub struct State<A>(Exported<A, dyn Device>);
 
 impl<A: Adapter + Default> Default for State<A> {
@@ -20,7 +21,7 @@ impl<A: Adapter + Default> Default for State<A> {
 }
 
 impl<A: Adapter + Default> State<A> {
-    /// No adapter yet, nothing open.
+    /// Creates a state without an adapter and with nothing open.
     pub const fn new() -> Self {
         Self(Exported::new("device"))
     }

@@ -11,7 +11,8 @@ use htex_device::{
     Rates, Settings, Status, StreamFormat,
 };
 
-/// Panics at a sample of 0.5, runs dry at 0.25, takes too many at 2.
+/// A faulty device: it panics at a sample of 0.5, runs dry at 0.25, and claims too many frames
+/// at 2.
 #[derive(Default)]
 struct Bad;
 
@@ -65,7 +66,7 @@ impl Device for Open {
             });
         }
         self.0 += samples.len() as u64;
-        // One more than there is, at 2.
+        // Claims one frame more than it got if a sample is 2.
         Ok(samples.len() + usize::from(samples.contains(&2.0)))
     }
 
@@ -112,8 +113,8 @@ fn running_dry_keeps_its_kind() {
     assert_eq!(device.write(&[0.25], Duration::ZERO), Err(dry));
 }
 
-/// A display of a library has no setting of direct voltage: its host holds it to a mean of 1 V over
-/// 100 ms, 1,000 frames here.
+/// This display of a library has no setting for direct voltage. Its host therefore limits the mean
+/// to 1 V over 100 ms, which is 1,000 frames here.
 #[test]
 fn a_host_holds_direct_voltage_of_a_display() {
     let mut device = open();

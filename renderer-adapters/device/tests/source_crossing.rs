@@ -12,7 +12,7 @@ use htex_device::{
     NativeSourceAdapter, Setting, SettingKind, Settings, Source, SourceAdapter, Sources,
 };
 
-/// Two channels that count; what `fault` names is wrong.
+/// A source with two counting channels, in which the setting `fault` chooses what is wrong.
 #[derive(Default)]
 struct Counter;
 
@@ -142,7 +142,7 @@ fn samples_come_as_they_are() {
     assert_eq!((source.rate_hz(), source.channels().len()), (1000.0, 2));
     assert_eq!(source.channels()[1], Channel::new("b", "N"));
     source.start().unwrap();
-    // One value more than two frames have is left as it is.
+    // The buffer has one value more than two frames need. That value must stay unchanged.
     let mut samples = [-1.0; 5];
     let delivered = source.read(&mut samples, Duration::ZERO);
     assert_eq!(delivered, Ok(Delivered::Frames(2)));
@@ -209,7 +209,7 @@ extern "C" fn newer_minor() -> u32 {
     0x4853_0107
 }
 
-/// Text that is not UTF-8, with a valid length.
+/// Returns text that is not UTF-8, with a valid length.
 unsafe extern "C" fn no_text(out: *mut u8, capacity: usize) -> i64 {
     // SAFETY: the host's buffer has this length.
     unsafe { std::slice::from_raw_parts_mut(out, capacity) }.fill(0xff);
@@ -220,7 +220,7 @@ extern "C" fn endless(_: *mut u8, _: usize) -> i64 {
     i64::MAX
 }
 
-/// What a table of other functions is refused for.
+/// Returns the fault for which the host refuses a table.
 fn refused(table: SourceTable) -> AbiFault {
     match NativeSourceAdapter::from_table("counter", Box::leak(Box::new(table))) {
         Err(DeviceError::Abi { fault, .. }) => fault,

@@ -1,11 +1,11 @@
-//! The macro that makes a source's C functions.
+//! The macro that generates a source's C functions.
 
-/// Makes the table of C functions of a [`SourceAdapter`](crate::SourceAdapter) that has a
-/// `Default`, as `pub static SOURCE_TABLE`.
+/// Generates the C functions of a [`SourceAdapter`](crate::SourceAdapter) that implements
+/// `Default`, as the table `pub static SOURCE_TABLE`.
 ///
-/// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_source_…`)
-/// when the crate is built with that Cargo feature: for a native library, where one binary holds
-/// one adapter. A panic becomes a status code.
+/// With `symbols: "FEATURE"`, the functions are also exported under their C names (`htex_source_…`)
+/// when the crate is built with that Cargo feature. Use this for a native library, where one binary
+/// holds one adapter. A panic becomes a status code.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
@@ -59,7 +59,7 @@ macro_rules! export_source {
                 extension: htex_source_exports::htex_source_extension,
             };
 
-        /// The C functions by their ABI names; `htex_device::source::abi` says what each does.
+        /// The C functions under their ABI names. `htex_device::source::abi` documents each one.
         #[allow(missing_docs, clippy::missing_safety_doc)]
         mod htex_source_exports {
             use super::HTEX_SOURCE_STATE as STATE;

@@ -1,10 +1,11 @@
-//! Sources: inputs that deliver samples of several channels at one rate. Their traits, their ABI,
-//! libraries of them.
+//! Input sources, which deliver samples of several channels at one rate: their traits, their ABI,
+//! and native libraries of sources.
 //!
-//! Their ABI stands beside that of devices, which is frozen. Both have the same conventions: the
-//! shim, the loader, handles, settings and the registry exist once, and codes with the same meaning
-//! have the same number. A built-in source is trusted; of a library's source each rate, channel,
-//! count and sample is checked ([`NativeSource`]), since a recording must not be wrong silently.
+//! Sources have an ABI of their own, because the ABI of devices is frozen. Both follow the same
+//! conventions. They share one shim, loader, handle table, settings and registry, and codes with
+//! the same meaning have the same number. A built-in source is trusted. For a source of a library,
+//! every rate, channel, count and sample is checked ([`NativeSource`]), because a recording must
+//! not be wrong silently.
 
 pub mod abi;
 mod adapter;

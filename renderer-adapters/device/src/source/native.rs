@@ -1,4 +1,4 @@
-//! Adapters and sources behind the C functions: safe calls, checked results.
+//! Source adapters and sources of native libraries: safe calls of the C functions, checked results.
 
 use std::time::Duration;
 
@@ -52,28 +52,28 @@ impl Table for SourceTable {
         Code::from_answer(answer)
     }
 
-    /// `Overrun` and `End`, which only a read may return, become failures.
+    /// Only a read may return `Overrun` and `End`; from another call they become failures.
     fn incoming(code: Code, text: String, name: &str, library: &str) -> DeviceError {
         match code {
             Code::InvalidRate => DeviceError::Told(text),
             Code::Overrun | Code::End => {
                 DeviceError::Failed { device: name.to_owned(), what: text }
             }
-            // The others have the numbers of devices.
+            // The other codes have the same numbers as for devices.
             code => incoming(abi::Code::from_answer(code as i64), text, name, library),
         }
     }
 }
 
-/// An adapter of sources of a native library.
+/// A source adapter from a native library.
 pub type NativeSourceAdapter = Native<SourceTable>;
 
 impl NativeSourceAdapter {
-    /// As [`SourceAdapter::open`], as a type with further functions for checkers, and of lines that
-    /// need not be settings.
+    /// Opens a source from lines of settings, which may be invalid. The returned type has further
+    /// functions for checkers.
     ///
     /// # Errors
-    /// As [`SourceAdapter::open`].
+    /// The errors of [`SourceAdapter::open`].
     pub fn open_lines(&self, lines: &str) -> Result<NativeSource, DeviceError> {
         // SAFETY: a live text.
         let handle = unsafe { (self.library.table.open)(lines.as_ptr(), lines.len()) };
@@ -81,10 +81,11 @@ impl NativeSourceAdapter {
         NativeSource::new(opened.map_err(|trouble| self.error("open", trouble))?)
     }
 
-    /// As [`SourceAdapter::open`], as a type with further functions for checkers.
+    /// Opens a source as [`SourceAdapter::open`] does. The returned type has further functions for
+    /// checkers.
     ///
     /// # Errors
-    /// As [`SourceAdapter::open`].
+    /// The errors of [`SourceAdapter::open`].
     pub fn open_native(&self, settings: &Settings) -> Result<NativeSource, DeviceError> {
         self.open_lines(&self.lines(settings))
     }
@@ -108,18 +109,18 @@ impl SourceAdapter for NativeSourceAdapter {
     }
 }
 
-/// An open source of a native library; dropping it closes it.
+/// An open source of a native library. Dropping it closes it.
 #[derive(Debug)]
 pub struct NativeSource {
     opened: Opened<SourceTable>,
     stream: SourceStream,
     delivered: u64,
-    /// Nothing is read any more: an error occurred.
+    /// After an error nothing more is read.
     failed: bool,
 }
 
 impl NativeSource {
-    /// Checks rate and channels; closes the source if they are invalid.
+    /// Checks the rate and the channels. Closes the source if they are invalid.
     fn new(opened: Opened<SourceTable>) -> Result<Self, DeviceError> {
         let mut source = Self {
             opened,
@@ -131,10 +132,10 @@ impl NativeSource {
         Ok(source)
     }
 
-    /// Asks for rate and channels.
+    /// Asks the library for the rate and the channels.
     ///
     /// # Errors
-    /// When they cannot be had, or are invalid.
+    /// When the library does not return them, or they are invalid.
     pub fn stream_again(&self) -> Result<SourceStream, DeviceError> {
         let (library, name) = (&self.opened.adapter.library, self.name());
         // SAFETY: a buffer that is live and of this length, by `Library::text`.
@@ -145,11 +146,11 @@ impl NativeSource {
         Ok(stream)
     }
 
-    /// For checkers of sources: closes the source and keeps its handle, so that later calls show
-    /// whether the source refuses a handle that was closed. An app drops the source instead.
+    /// For checkers: closes the source and keeps its handle, so that later calls show whether the
+    /// library refuses a closed handle. An app drops the source instead.
     ///
     /// # Errors
-    /// The error of the source; when called a second time, that the handle is unknown.
+    /// The error of the source. A second call must return that the handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         self.failed = false;
         self.opened.close()
@@ -163,7 +164,7 @@ impl NativeSource {
         self.opened.handle
     }
 
-    /// Samples of a frame.
+    /// Number of samples in a frame.
     pub(crate) fn width(&self) -> usize {
         self.stream.channels.len()
     }
@@ -172,7 +173,7 @@ impl NativeSource {
         self.opened.done("start", self.opened.table().start)
     }
 
-    /// The result of a read of at most `frames`.
+    /// Checks the answer to a read of at most `frames` frames.
     fn delivered(
         &mut self,
         answer: i64,

@@ -1,6 +1,7 @@
-//! From the traits of sources to the C functions: checks arguments and catches panics.
+//! Implements the C functions by the source traits: checks arguments and catches panics.
 //!
-//! Called by the functions that [`export_source!`](crate::export_source) makes; not by hand.
+//! The functions that [`export_source!`](crate::export_source) generates call it. Do not call it by
+//! hand.
 
 use std::time::Duration;
 
@@ -12,7 +13,7 @@ use crate::{DeviceError, Settings};
 
 pub use crate::exported::{Input, Output};
 
-/// The state of an exported adapter: itself and its open sources.
+/// The state of an exported adapter: the adapter itself and its open sources.
 pub struct State<A>(Exported<A, dyn Source>);
 
 impl<A: SourceAdapter + Default> Default for State<A> {
@@ -22,7 +23,7 @@ impl<A: SourceAdapter + Default> Default for State<A> {
 }
 
 impl<A: SourceAdapter + Default> State<A> {
-    /// No adapter yet, nothing open.
+    /// Creates a state without an adapter and with nothing open.
     pub const fn new() -> Self {
         Self(Exported::new("source"))
     }
@@ -115,12 +116,12 @@ impl<A: SourceAdapter + Default> State<A> {
     }
 }
 
-/// The code and the text of a source's error.
+/// Converts a source's error to its code and text.
 fn refused(error: DeviceError) -> Refusal {
     let failed = |text: String| Refusal(Code::Failed as i64, text);
     match error {
         DeviceError::Overrun { advice, .. } => Refusal(Code::Overrun as i64, advice),
-        // Their numbers mean something else here.
+        // In the source ABI, the numbers of these device codes mean something else.
         DeviceError::OverLimit { .. } | DeviceError::Underflow { .. } => failed(error.to_string()),
         other => {
             let (code, text) = outgoing(&other);

@@ -1,4 +1,4 @@
-//! The sources that a program finds.
+//! The sources that a program can find.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,9 +8,9 @@ use crate::source::abi::SourceTable;
 use crate::source::{NativeSourceAdapter, Source, SourceAdapter};
 use crate::{Descriptor, DeviceError, Endpoint, Settings};
 
-/// Adapters of sources, by id and by short name.
+/// Source adapters, by id and by short name.
 pub type Sources = Registry<dyn SourceAdapter>;
-/// An adapter of sources that was found.
+/// A source adapter that was found.
 pub type KnownSource = Known<dyn SourceAdapter>;
 
 impl AdapterKind for dyn SourceAdapter {
@@ -37,9 +37,9 @@ impl AdapterKind for dyn SourceAdapter {
 }
 
 impl Sources {
-    /// Opens the source that a text names, `NAME:TARGET` such as `file:rec.csv` or
-    /// `daq:Dev1/ai0:5`, with a profile and further settings. What follows the first colon is the
-    /// value of the adapter's [`SourceAdapter::target`].
+    /// Opens the source named by a text `NAME:TARGET`, e.g. `file:rec.csv` or `daq:Dev1/ai0:5`,
+    /// with a profile and further settings. The part after the first colon becomes the value of the
+    /// setting that [`SourceAdapter::target`] names.
     ///
     /// # Errors
     /// When the name is not known, a setting is not usable, or the source cannot be opened.

@@ -1,5 +1,5 @@
-//! What crosses the ABI of sources as JSON: the descriptor of an adapter, the rate and the channels
-//! of an open source.
+//! The JSON documents of the source ABI: the descriptor of an adapter, and the rate and channels of
+//! an open source.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,19 +7,19 @@ use crate::source::Channel;
 use crate::source::abi::{MAX_CHANNELS, MAX_NAME_BYTES, MAX_RATE_HZ, MIN_RATE_HZ};
 use crate::{Descriptor, DescriptorError};
 
-/// The description of an adapter of sources.
+/// The description of a source adapter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct SourceDescriptor {
-    /// What it shares with a device.
+    /// The part that a source has in common with a device.
     #[serde(flatten)]
     pub descriptor: Descriptor,
-    /// Name of the setting that says which source of the family is meant.
+    /// Name of the setting that chooses a source of the family.
     pub target: String,
 }
 
 impl SourceDescriptor {
-    /// As [`Descriptor::check`]; and the target is one of the settings.
+    /// Checks the descriptor ([`Descriptor::check`]), and that the target is one of the settings.
     ///
     /// # Errors
     /// The first fault.
@@ -34,14 +34,14 @@ impl SourceDescriptor {
     }
 }
 
-/// Rate and channels of an open source.
+/// The rate and the channels of an open source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct SourceStream {
-    /// Frames a second.
+    /// Frames per second.
     #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
     pub rate_hz: f64,
-    /// The channels, in the order of the samples of a frame.
+    /// The channels, in the order of the samples within a frame.
     #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = MAX_CHANNELS)))]
     pub channels: Vec<Channel>,
 }
@@ -68,7 +68,7 @@ pub enum SourceStreamError {
 }
 
 impl SourceStream {
-    /// Checks the rate, and number, names and units of the channels.
+    /// Checks the rate, and the number, names and units of the channels.
     ///
     /// # Errors
     /// The first fault.

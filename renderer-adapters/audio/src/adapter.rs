@@ -1,4 +1,4 @@
-//! The adapter of outputs: its descriptor, and opening a card.
+//! The sound output adapter: its descriptor, and opening a card.
 
 use htex_device::{
     Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, FromScene, Setting,
@@ -8,13 +8,13 @@ use htex_device::{
 use crate::card::{self, Card, DEFAULT, Side};
 use crate::sound::{Channels, Sound};
 
-/// The adapter; see the crate's documentation.
+/// The sound output adapter. See the crate's documentation.
 pub struct Audio {
     descriptor: Descriptor,
 }
 
 impl Audio {
-    /// The adapter. Opens nothing.
+    /// Creates the adapter. Opens nothing.
     pub fn new() -> Self {
         Self { descriptor: descriptor() }
     }

@@ -1,22 +1,22 @@
-//! Sound cards, their outputs and inputs, and the configuration that is chosen for a stream.
+//! Sound cards, their outputs and inputs, and the choice of a configuration for a stream.
 
 use cpal::traits::{DeviceTrait, HostTrait};
 use cpal::{SampleFormat, StreamConfig, SupportedStreamConfigRange};
 use htex_device::{Capabilities, DeviceError, Endpoint, Quantity, Rates};
 
-/// Formats a stream may have, the best first.
+/// Sample formats that a stream may use, best first.
 const FORMATS: [SampleFormat; 4] =
     [SampleFormat::F32, SampleFormat::I32, SampleFormat::I16, SampleFormat::U8];
-/// Rate that is preferred where the card's own one is not there, hertz.
+/// Preferred rate if the card does not offer the rate that it prefers itself, hertz.
 const USUAL_RATE_HZ: f64 = 48_000.0;
-/// Preferred frames in a block.
+/// Preferred block size, frames.
 const BLOCK_FRAMES: u32 = 256;
-/// Highest rate that is reported, hertz: plugins of ALSA report unlimited ranges.
+/// Highest rate that is reported, hertz. Without it, ALSA plugins would report unlimited ranges.
 const MAX_RATE_HZ: f64 = 768_000.0;
-/// The name of the card that the system prefers.
+/// The name that stands for the system's preferred card.
 pub(crate) const DEFAULT: &str = "default";
 
-/// Which side of a card is meant.
+/// The side of a card: output or input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
     Output,
@@ -31,7 +31,7 @@ pub(crate) struct Card {
 }
 
 impl Card {
-    /// The card of this name, which must be connected and have this side.
+    /// Finds the card of this name, which must be connected and have this side.
     pub(crate) fn find(name: &str, side: Side) -> Result<Self, DeviceError> {
         let host = cpal::default_host();
         let device = match (name, side) {
@@ -49,7 +49,7 @@ impl Card {
         }
     }
 
-    /// The card with the configurations of so many channels only.
+    /// Keeps only the card's configurations with this number of channels.
     pub(crate) fn with_channels(mut self, channels: u16) -> Result<Self, DeviceError> {
         self.configs.retain(|config| config.channels() == channels);
         if self.configs.is_empty() {
@@ -60,7 +60,7 @@ impl Card {
         }
     }
 
-    /// What the card prefers: rate, hertz, and number of channels.
+    /// Returns the rate (hertz) and number of channels that the card prefers.
     pub(crate) fn preferred(&self) -> Result<(f64, u16), DeviceError> {
         let preferred = match self.side {
             Side::Output => self.device.default_output_config(),
@@ -84,8 +84,8 @@ impl Card {
         })
     }
 
-    /// The rate that the card prefers; without it, as with so many channels, the highest up to 48
-    /// kHz.
+    /// Returns the rate that the card prefers. If the chosen number of channels does not support
+    /// it, returns the highest supported rate up to 48 kHz.
     fn usual_rate_hz(&self) -> Result<f64, DeviceError> {
         let (preferred_hz, rates) = (self.preferred()?.0, self.rates());
         Ok(match &rates {
@@ -113,7 +113,8 @@ impl Card {
         Rates::List(all.into_iter().map(|r| r.0).collect())
     }
 
-    /// The best format at this rate, with so many channels or the number closest to it.
+    /// Chooses the best format at this rate, with the number of channels asked for or the closest
+    /// one.
     pub(crate) fn config(
         &self,
         rate_hz: f64,
@@ -138,7 +139,7 @@ impl Card {
     }
 }
 
-/// The configurations of a card that this crate can use.
+/// Returns the configurations of a card that this crate can use.
 fn configs(
     device: &cpal::Device,
     side: Side,
@@ -151,7 +152,7 @@ fn configs(
     Ok(configs)
 }
 
-/// All connected cards with this side.
+/// Lists all connected cards that have this side.
 fn cards(side: Side) -> Result<Vec<cpal::Device>, DeviceError> {
     let host = cpal::default_host();
     let cards: Result<Vec<_>, _> = match side {
@@ -161,7 +162,7 @@ fn cards(side: Side) -> Result<Vec<cpal::Device>, DeviceError> {
     cards.map_err(|error| missing(side, "sound", &error.to_string()))
 }
 
-/// All connected cards with this side, and the one that the system prefers.
+/// Lists all connected cards that have this side, and the one that the system prefers.
 pub(crate) fn endpoints(side: Side) -> Result<Vec<Endpoint>, DeviceError> {
     let endpoint =
         |name: String, summary: String| Endpoint { name, setting: "device".to_owned(), summary };
@@ -175,7 +176,7 @@ pub(crate) fn endpoints(side: Side) -> Result<Vec<Endpoint>, DeviceError> {
     Ok(default.into_iter().chain(named).collect())
 }
 
-/// The name of a card; empty when the system gives none.
+/// Returns the name of a card; empty if the system gives none.
 fn id(device: &cpal::Device) -> String {
     device.id().map(|id| id.to_string()).unwrap_or_default()
 }

@@ -1,30 +1,30 @@
-//! Cards whose channels play different things, for devices that choose them.
+//! Sound cards whose channels play different signals, for devices that assign the channels.
 
 use htex_device::{Capabilities, Device, DeviceError, Endpoint, StreamFormat};
 
 use crate::card::{self, Card, Side};
 use crate::sound::{Channels, Sound};
 
-/// The connected outputs, each chosen by a setting called `device`.
+/// Lists the connected outputs. Each is selected by a setting called `device`.
 ///
 /// # Errors
-/// When the system's sound does not answer.
+/// When the system's sound service does not respond.
 pub fn outputs() -> Result<Vec<Endpoint>, DeviceError> {
     card::endpoints(Side::Output)
 }
 
-/// What an output can do with so many channels.
+/// Returns the capabilities of an output with this number of channels.
 ///
 /// # Errors
-/// When it is not connected, or does not take so many.
+/// When the output is not connected, or does not support this number of channels.
 pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilities, DeviceError> {
     Card::find(device, Side::Output)?.with_channels(channels)?.capabilities()
 }
 
-/// Opens an output with a channel for each factor: what the channel plays of each sample.
+/// Opens an output with one channel for each factor. A channel plays each sample times its factor.
 ///
 /// # Errors
-/// As [`capabilities_of_channels`], and when it does not have the rate.
+/// The errors of [`capabilities_of_channels`], and when the output does not support the rate.
 pub fn open_channels(
     device: &str,
     factors: &[f32],

@@ -1,28 +1,28 @@
-//! Errors of a card's thread, for the thread that plays or records.
+//! Passes errors of a card's thread to the thread that plays or records.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use cpal::ErrorKind;
 use htex_device::DeviceError;
 
-/// The error of a card's thread.
+/// The last error of a card's thread, if any.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
 
 impl Failure {
-    /// The error.
+    /// Returns the error and keeps it.
     pub(crate) fn peek(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The error, once.
+    /// Returns the error and removes it.
     pub(crate) fn take(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
-/// Handles errors of the card's thread: buffers that ran dry or over go to `xrun`, errors after
-/// which the card continues are ignored, and others are stored.
+/// Handles errors of the card's thread. Buffers that ran dry or over go to `xrun`. Errors after
+/// which the card continues are ignored. Other errors are stored.
 pub(crate) fn reporter(
     failure: Failure,
     mut xrun: impl FnMut() + Send + 'static,

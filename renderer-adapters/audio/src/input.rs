@@ -1,4 +1,4 @@
-//! The adapter of inputs: its descriptor, and opening a card.
+//! The sound input adapter: its descriptor, and opening a card.
 
 use htex_device::{
     Descriptor, DeviceError, Endpoint, FromScene, Setting, SettingKind, Settings, Source,
@@ -8,18 +8,18 @@ use htex_device::{
 use crate::card::{self, Card, DEFAULT, Side};
 use crate::recorder::Recorder;
 
-/// Most channels of a source.
+/// Maximum number of channels of a source.
 const MOST_CHANNELS: f64 = 64.0;
-/// Most samples that may wait to be read, 512 MiB.
+/// Maximum number of samples that may wait to be read (512 MiB).
 const MOST_SAMPLES: f64 = 67_108_864.0;
 
-/// Inputs of sound cards as a source: 1 is full scale.
+/// The inputs of sound cards as a source, where 1 is full scale.
 pub struct AudioInput {
     descriptor: Descriptor,
 }
 
 impl AudioInput {
-    /// The adapter. Opens nothing.
+    /// Creates the adapter. Opens nothing.
     pub fn new() -> Self {
         Self { descriptor: descriptor() }
     }

@@ -1,14 +1,16 @@
-//! Sound cards: texture as sound, and their inputs as a source; 1 is full scale.
+//! Sound cards as devices and sources: outputs play texture as sound, inputs are recorded. 1 is
+//! full scale.
 //!
 //! The adapter needs the feature `cpal`, which on Linux is built against ALSA (`libasound2-dev`).
-//! Without it this crate is empty, so that a machine without ALSA builds all other crates.
+//! Without the feature this crate is empty, so that a machine without ALSA can build all other
+//! crates.
 //!
-//! Samples wait in a ring of `buffer_ms`, and the sound card's own thread takes them from there
-//! (`player.rs`): it takes no lock, does not allocate and does not wait. An empty ring is
-//! counted as an underrun and fades to silence; playback continues with the next samples.
+//! Samples wait in a ring buffer of `buffer_ms`. The sound card's own thread takes them from there
+//! (`player.rs`). It takes no lock, does not allocate and does not wait. If the ring is empty, it
+//! counts an underrun and fades to silence. Playback continues with the next samples.
 //!
-//! An input is the reverse (`listener.rs`): the card's thread puts samples into a ring of
-//! `buffer_s`. A full ring is an overrun, after which nothing is delivered.
+//! An input works the other way round (`listener.rs`): the card's thread puts samples into a ring
+//! buffer of `buffer_s`. If the ring is full, that is an overrun, after which nothing is delivered.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "cpal")]

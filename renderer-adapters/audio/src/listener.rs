@@ -1,4 +1,4 @@
-//! The part of an input that runs in the sound card's thread.
+//! The part of a sound input that runs in the sound card's thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -8,13 +8,13 @@ use rtrb::Producer;
 /// State shared by the sound card's thread and the reader.
 #[derive(Debug, Default)]
 pub(crate) struct Heard {
-    /// Frames were lost; none comes after them.
+    /// Frames were lost. No frames come after them.
     pub(crate) lost: AtomicBool,
-    /// Times the card gave samples.
+    /// How often the card has delivered samples.
     pub(crate) calls: AtomicU64,
 }
 
-/// Puts samples into the ring. Does not allocate or wait.
+/// Puts samples into the ring buffer. Does not allocate or wait.
 pub(crate) struct Listener {
     ring: Producer<f64>,
     heard: Arc<Heard>,
@@ -25,14 +25,15 @@ impl Listener {
         Self { ring, heard }
     }
 
-    /// Takes interleaved frames: all of them, or none from the first time on that they do not fit.
+    /// Takes all of these interleaved frames. From the first time that they do not fit, takes no
+    /// more.
     pub(crate) fn take<T: Copy>(&mut self, samples: &[T], convert: impl Fn(T) -> f64) {
         if self.ring.slots() < samples.len() {
             self.heard.lost.store(true, Ordering::Release);
         }
         if !self.heard.lost.load(Ordering::Acquire) {
             for sample in samples {
-                // There is space for all.
+                // Cannot fail: there is space for all samples.
                 let _ = self.ring.push(convert(*sample));
             }
         }
@@ -52,7 +53,7 @@ mod tests {
         let mut listener = Listener::new(writer, Arc::clone(&heard));
         listener.take(&[1i16, 2, 3, 4], f64::from);
         assert!(!heard.lost.load(Ordering::Relaxed));
-        // Two are free: these four are lost, and all others.
+        // Only two places are free, so these four samples and all later ones are lost.
         listener.take(&[5i16, 6, 7, 8], f64::from);
         assert!(heard.lost.load(Ordering::Relaxed));
         let mut read: Vec<f64> = (0..4).map(|_| ring.pop().unwrap()).collect();

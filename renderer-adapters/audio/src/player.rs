@@ -1,17 +1,17 @@
-//! The part that runs in the sound card's thread.
+//! The part of a sound output that runs in the sound card's thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 
 use rtrb::Consumer;
 
-/// Length of a fade when samples are missing, seconds.
+/// Duration of the fade when samples are missing, seconds.
 const FADE_S: f64 = 0.005;
 
-/// State that the writer asks for.
+/// What the writer asks the player to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wish {
-    /// Play; a missing sample is an underrun.
+    /// Play. A missing sample is an underrun.
     Play = 0,
     /// Play the samples in the ring, then silence.
     Drain = 1,
@@ -23,15 +23,15 @@ pub(crate) enum Wish {
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     wish: AtomicU8,
-    /// Frames taken from the ring.
+    /// Number of frames taken from the ring buffer.
     pub(crate) taken: AtomicU64,
-    /// Times the ring was found empty.
+    /// How often the ring buffer was empty.
     pub(crate) underruns: AtomicU64,
-    /// Latency from taking a frame to its output, frames.
+    /// Latency from taking a frame out of the ring buffer to its output, frames.
     pub(crate) delay: AtomicU64,
-    /// After [`Wish::Drain`] or [`Wish::Stop`]: the last sample has been output.
+    /// Whether the last sample has been output after [`Wish::Drain`] or [`Wish::Stop`].
     pub(crate) silent: AtomicBool,
-    /// Times the card asked for samples.
+    /// How often the card has asked for samples.
     pub(crate) calls: AtomicU64,
 }
 
@@ -41,17 +41,17 @@ impl Shared {
     }
 }
 
-/// Takes samples from the ring. Does not allocate or wait.
+/// Plays samples from the ring buffer. Does not allocate or wait.
 pub(crate) struct Player {
     ring: Consumer<f32>,
-    /// What each channel plays of a sample.
+    /// The factor of each channel: a channel plays each sample times its factor.
     factors: Vec<f32>,
     shared: Arc<Shared>,
     last: f32,
     gain: f32,
     step: f32,
     dry: bool,
-    /// Frames of silence at the end.
+    /// Number of silent frames since the last sample.
     quiet: u64,
 }
 
@@ -74,11 +74,11 @@ impl Player {
         }
     }
 
-    /// Fills interleaved frames. `delay` frames are output before these.
+    /// Fills interleaved frames. `delay` frames are output before them.
     pub(crate) fn fill<T: Copy>(&mut self, out: &mut [T], delay: u64, convert: impl Fn(f32) -> T) {
         let wish = self.shared.wish.load(Ordering::Acquire);
         let channels = self.factors.len().max(1);
-        // One block more than the delay, since some systems only estimate it.
+        // Waits one block longer than the delay, because some systems only estimate the delay.
         let silent = self.quiet > delay + (out.len() / channels) as u64;
         for frame in out.chunks_mut(channels) {
             let sample = self.next(wish);

@@ -1,4 +1,4 @@
-//! An open sound input: the reader's side.
+//! An open sound input: the part that runs in the reader's thread.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -14,9 +14,9 @@ use crate::card::Card;
 use crate::failure::{Failure, failed, reporter};
 use crate::listener::{Heard, Listener};
 
-/// Time between two looks for samples.
+/// Polling interval for samples.
 const LOOK: Duration = Duration::from_millis(2);
-/// Time without a call from the card after which it is regarded as stopped.
+/// If the card makes no call for this long, it is considered stopped.
 const STILL: Duration = Duration::from_secs(2);
 
 pub(crate) struct Recorder {
@@ -26,16 +26,16 @@ pub(crate) struct Recorder {
     ring: Consumer<f64>,
     heard: Arc<Heard>,
     failure: Failure,
-    /// `None` after the end.
+    /// `None` after the source has ended.
     stream: Option<cpal::Stream>,
     is_running: bool,
     delivered: u64,
-    /// Number of calls of the card at the last look, and when it changed.
+    /// The card's number of calls when last polled, and the time when that number last changed.
     last_call: (u64, Instant),
 }
 
 impl Recorder {
-    /// Opens a card, which does not sample yet; `buffered` samples may wait to be read.
+    /// Opens a card, which does not sample yet. At most `buffered` samples may wait to be read.
     pub(crate) fn open(
         card: &Card,
         config: StreamConfig,
@@ -71,18 +71,18 @@ impl Recorder {
         })
     }
 
-    /// Reads whole frames that are there.
+    /// Reads the whole frames that are available now.
     fn read_now(&mut self, samples: &mut [f64]) -> usize {
         let width = self.channels.len();
         let frames = (self.ring.slots() / width).min(samples.len() / width);
         for sample in &mut samples[..frames * width] {
-            // That many are there.
+            // Cannot fail: that many samples are in the ring buffer.
             *sample = self.ring.pop().unwrap_or_default();
         }
         frames
     }
 
-    /// The reason why no more samples will come, after those that are there.
+    /// Returns the reason why no samples will follow those in the ring buffer, if there is one.
     fn fault(&mut self) -> Option<DeviceError> {
         if let Some(what) = self.failure.peek() {
             return Some(failed(&self.name, what));
@@ -132,7 +132,8 @@ impl Source for Recorder {
         }
         let since = Instant::now();
         loop {
-            // A fault that is seen before the samples are taken came after them.
+            // The fault is read before the samples. Otherwise samples that arrived before the fault
+            // could be missed.
             let fault = self.fault();
             let frames = self.read_now(samples);
             if frames > 0 {

@@ -1,4 +1,4 @@
-//! An open sound card: the writer's side.
+//! An open sound output: the part that runs in the writer's thread.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -14,21 +14,21 @@ use crate::card::Card;
 use crate::failure::{Failure, failed, reporter};
 use crate::player::{Player, Shared, Wish};
 
-/// Number of channels that is preferred.
+/// Preferred number of channels.
 const CHANNELS: u16 = 2;
 
-/// Which channel plays what.
+/// How the channels of a card play the samples.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Channels<'a> {
-    /// All play the samples, however many there are.
+    /// All channels play the samples, whatever their number.
     All,
-    /// The card has so many, and each plays the samples times its factor.
+    /// The card has one channel for each factor. A channel plays the samples times its factor.
     Factors(&'a [f32]),
 }
 
-/// Time between two checks for space.
+/// Polling interval for free space.
 const LOOK: Duration = Duration::from_millis(2);
-/// Time without a call from the card after which it is regarded as stopped.
+/// If the card makes no call for this long, it is considered stopped.
 const STILL: Duration = Duration::from_secs(2);
 
 pub(crate) struct Sound {
@@ -37,7 +37,7 @@ pub(crate) struct Sound {
     rate_hz: f64,
     ring: Producer<f32>,
     shared: Arc<Shared>,
-    /// `None` after the end.
+    /// `None` after playback has ended.
     stream: Option<cpal::Stream>,
     playing: bool,
     /// The error of the card's thread.
@@ -119,7 +119,7 @@ impl Sound {
         checked
     }
 
-    /// Ends playback, and closes the card when the last sample has been output.
+    /// Ends playback. Closes the card after the last sample has been output.
     fn end(&mut self, wish: Wish) -> Result<(), DeviceError> {
         self.shared.wish(wish);
         let ended = self.wait_for_silence();
@@ -185,7 +185,8 @@ impl Device for Sound {
 
     fn finish(&mut self) -> Result<(), DeviceError> {
         self.usable()?;
-        // Set before the ring can become empty, which would count as an underrun.
+        // Set before the ring buffer can become empty, because an empty ring would count as an
+        // underrun.
         self.shared.wish(Wish::Drain);
         if self.written > 0 {
             self.play()?;

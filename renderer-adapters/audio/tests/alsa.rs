@@ -43,7 +43,7 @@ fn what_is_recorded_is_what_was_written() {
 fn a_ring_that_runs_dry_is_counted_and_goes_on() {
     let mut device = open("gap", "100").unwrap();
     device.write(&[0.5; 4_800], LONG).unwrap();
-    // This card takes samples as fast as it can; there are none after these.
+    // This card takes samples as fast as it can. It soon finds the ring buffer empty.
     while device.status().underruns == 0 {
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -113,7 +113,7 @@ fn open(name: &str, buffer_ms: &str) -> Result<Box<dyn Device>, DeviceError> {
     Audio::new().open(&settings(&format!("alsa:{name}"), buffer_ms), &format)
 }
 
-/// Both channels of what a device recorded.
+/// Returns both channels of what a device recorded.
 fn recorded(name: &str) -> [Vec<f32>; 2] {
     let bytes = fs::read(folder().join(name)).unwrap();
     let samples: Vec<f32> = match name {
@@ -126,7 +126,8 @@ fn recorded(name: &str) -> [Vec<f32>; 2] {
     [0, 1].map(|channel| samples.iter().skip(channel).step_by(2).copied().collect())
 }
 
-/// Where devices record to, each to the file of its name. ALSA is given these devices only.
+/// Returns the folder in which each device records to a file of its own name. ALSA knows only these
+/// devices.
 fn folder() -> &'static PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -134,7 +135,7 @@ fn folder() -> &'static PathBuf {
         let _ = fs::remove_dir_all(&folder); // What an earlier run recorded.
         fs::create_dir_all(&folder).unwrap();
         let device = |name: &str| {
-            // `linear` takes integers only.
+            // The `linear` plugin takes only integers.
             let (kind, format) = match name {
                 "short" => ("linear", "format S16_LE"),
                 _ => ("plug", "format FLOAT_LE rate 48000 channels 2"),
@@ -149,7 +150,8 @@ fn folder() -> &'static PathBuf {
         };
         let devices: String = ["float", "short", "gap", "drop", "loud"].map(device).concat();
         fs::write(folder.join("asound.conf"), devices).unwrap();
-        // SAFETY: every test comes here first, so nobody reads the environment meanwhile.
+        // SAFETY: every test comes here first, so no other thread reads the environment at this
+        // time.
         unsafe { std::env::set_var("ALSA_CONFIG_PATH", folder.join("asound.conf")) };
         folder
     })

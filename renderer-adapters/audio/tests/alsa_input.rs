@@ -12,7 +12,7 @@ use htex_device::{Delivered, DeviceError, Source, SourceAdapter, Sources};
 use htex_device_audio::AudioInput;
 
 const LONG: Duration = Duration::from_secs(5);
-/// Frames of the file that is played.
+/// Number of frames in the file that is played.
 const FRAMES: usize = 40_000;
 
 #[test]
@@ -39,7 +39,7 @@ fn what_is_read_is_what_the_card_delivers() {
     assert!(matches!(source.start(), Err(DeviceError::Closed(_))));
 }
 
-/// This card delivers as fast as it can: what nobody reads does not fit soon.
+/// This card delivers as fast as it can. If nobody reads, the buffer soon overflows.
 #[test]
 fn an_overrun_ends_the_source_behind_what_came_before_it() {
     let mut source = open("float", &[("buffer_s", "0.1")]).unwrap();
@@ -58,7 +58,7 @@ fn an_overrun_ends_the_source_behind_what_came_before_it() {
     let frames = read.len() / 2;
     let is_lost = |e: &DeviceError| matches!(e, DeviceError::Overrun { frames: f, .. } if *f == frames as u64);
     assert!(is_lost(&error) && error.to_string().contains("raise `buffer_s`"), "{error}");
-    // As many as the buffer has, less what the card delivers at once.
+    // As many frames as the buffer holds, minus what the card delivers at once.
     assert!((1_000..=4_800).contains(&frames), "{frames}");
     let same = |(i, x): (usize, &f64)| *x == f64::from(sample(i));
     assert!(read.iter().enumerate().all(same));
@@ -112,13 +112,13 @@ fn named(device: &str, given: &[(&str, &str)]) -> Result<Box<dyn Source>, Device
     Sources::new(vec![Arc::new(AudioInput::new())]).open(&format!("audio:{device}"), None, &given)
 }
 
-/// A sample of the file: frames of two channels.
+/// Returns a sample of the file, which has frames of two channels.
 fn sample(index: usize) -> f32 {
     let channel = if index.is_multiple_of(2) { 0.5 } else { -0.25 };
     channel * ((index / 2) as f32 * 0.01).sin()
 }
 
-/// Where the files are that devices play. ALSA is given these devices only.
+/// Returns the folder of the files that the devices play. ALSA knows only these devices.
 fn folder() -> &'static PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -135,7 +135,8 @@ fn folder() -> &'static PathBuf {
             file.display()
         );
         fs::write(folder.join("asound.conf"), devices).unwrap();
-        // SAFETY: every test comes here first, so nobody reads the environment meanwhile.
+        // SAFETY: every test comes here first, so no other thread reads the environment at this
+        // time.
         unsafe { std::env::set_var("ALSA_CONFIG_PATH", folder.join("asound.conf")) };
         folder
     })

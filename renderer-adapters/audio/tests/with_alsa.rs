@@ -1,5 +1,5 @@
-//! The tests of the feature `cpal`, where ALSA is installed: `cargo test` builds
-//! without it, so that a machine without ALSA passes all other tests.
+//! Runs the tests of the feature `cpal` if ALSA is installed. `cargo test` builds without the
+//! feature, so that a machine without ALSA passes all other tests.
 #![cfg(all(not(feature = "cpal"), target_os = "linux"))]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 

@@ -1,5 +1,5 @@
-//! The devices and sources that programs have without loading a library. One that is added here is
-//! in the command, in Python and in C.
+//! The built-in devices and sources, which need no library. An adapter that is added here becomes
+//! available in the command, in Python and in C.
 //!
 //! ```
 //! use htex_device::Devices;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use htex_device::{Adapter, SourceAdapter};
 
-/// Returns the devices, in the order in which they are shown.
+/// Returns the devices in display order.
 pub fn devices() -> Vec<Arc<dyn Adapter>> {
     vec![
         Arc::new(htex_device_file::FileAdapter),
@@ -30,7 +30,7 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
-/// Returns the sources, in the order in which they are shown.
+/// Returns the sources in display order.
 pub fn sources() -> Vec<Arc<dyn SourceAdapter>> {
     vec![
         #[cfg(feature = "daq")]
@@ -40,20 +40,20 @@ pub fn sources() -> Vec<Arc<dyn SourceAdapter>> {
     ]
 }
 
-/// A device, and a source of the same name, that a program has only if it is built with a feature.
+/// A device, and a source of the same name, that are built in only with a Cargo feature.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,
-    /// What it gives, in a word.
+    /// The output it provides, in one word.
     pub what: &'static str,
     pub feature: &'static str,
-    /// What it is built against on Linux.
+    /// The package it is built against on Linux.
     pub package: &'static str,
-    /// Whether this program has it.
+    /// Whether this program was built with it.
     pub is_built: bool,
 }
 
-/// The device that plays a texture by ear.
+/// The device that plays a texture as sound.
 pub const SOUND: Optional = Optional {
     id: "org.htex.audio",
     what: "sound",
@@ -63,14 +63,14 @@ pub const SOUND: Optional = Optional {
 };
 
 impl Optional {
-    /// Returns the one called `name`, by its short name or its id, if this program does not have
-    /// it.
+    /// Returns the optional device called `name` (short name or id), if this program was built
+    /// without it.
     pub fn left_out(name: &str) -> Option<Self> {
         let named = |one: &Self| [one.id, one.short_name()].contains(&name);
         [SOUND].into_iter().find(|one| !one.is_built && named(one))
     }
 
-    /// Returns the last part of the id.
+    /// Returns the last part of the device's id.
     pub fn short_name(&self) -> &'static str {
         self.id.rsplit('.').next().unwrap_or(self.id)
     }

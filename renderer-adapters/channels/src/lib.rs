@@ -1,9 +1,9 @@
-//! Outputs with several channels, of which chosen ones play the texture: the interleaved frames of
-//! a sound card, of a WAV file, or of nothing.
+//! Multi-channel outputs in which selected channels play the texture. The interleaved frames go to
+//! a sound card, to a WAV file, or nowhere.
 //!
-//! A DualSense that is connected by a cable is a sound card of four channels. The first two are its
-//! loudspeaker and headset, the others its left and right actuator; they play samples, so that
-//! nothing of a texture is reduced.
+//! A DualSense controller connected by a cable is a sound card of four channels. The first two are
+//! its loudspeaker and headset, the others its left and right actuator. The actuators play samples,
+//! so nothing of a texture is lost.
 #![forbid(unsafe_code)]
 
 mod nowhere;
@@ -18,13 +18,13 @@ use htex_device_motor::{buffer_setting, setting};
 
 use to::To;
 
-/// The adapter; see the crate's documentation.
+/// The multi-channel adapter. See the crate's documentation.
 pub struct Channels {
     descriptor: Descriptor,
 }
 
 impl Channels {
-    /// The adapter. Opens nothing.
+    /// Creates the adapter. Opens nothing.
     pub fn new() -> Self {
         Self { descriptor: descriptor() }
     }
@@ -41,8 +41,8 @@ impl Adapter for Channels {
         &self.descriptor
     }
 
-    /// Where it can play; of sound cards those that the system names, whose numbers of channels are
-    /// seen when one is chosen.
+    /// Lists the outputs. Sound cards are those that the system names. Their number of channels is
+    /// checked only when one is chosen.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let nothing = Endpoint {
             name: "null".to_owned(),

@@ -1,9 +1,9 @@
-//! An output that forgets the samples, at the pace of the clock: to try settings without hardware.
+//! An output that discards the samples in real time, for trying settings without hardware.
 
 use htex_device::{Capabilities, Device, DeviceError, StreamFormat};
 use htex_device_motor::{Block, Motor, Paced, Plan};
 
-/// Length of a block, seconds.
+/// Duration of a block, seconds.
 const BLOCK_S: f64 = 0.01;
 
 struct Nowhere;

@@ -1,18 +1,18 @@
-//! Which channel plays what.
+//! The assignment of signals to channels.
 
 use htex_device::DeviceError;
 
-/// What a DualSense takes as sound: two channels for its loudspeaker and headset, and one for each
-/// of its two actuators.
+/// The channels of a DualSense as a sound card: two for its loudspeaker and headset, and one for
+/// each of its two actuators.
 pub(crate) const DUALSENSE: &str = "off,off,texture,texture";
-/// Most channels.
+/// Maximum number of channels.
 const MOST: usize = 32;
 
-/// Reads a list such as `off,off,texture,-0.5`, an item for each channel; returns what each plays
-/// of a sample, as a factor.
+/// Parses a list such as `off,off,texture,-0.5`, with one item for each channel. Returns the factor
+/// of each channel: a channel plays each sample times its factor.
 ///
 /// # Errors
-/// When an item is none, or no channel plays.
+/// When an item is invalid, or no channel plays.
 pub(crate) fn factors(list: &str) -> Result<Vec<f32>, DeviceError> {
     let factors: Vec<f32> = list.split(',').map(factor).collect::<Result<_, _>>()?;
     if factors.len() > MOST {

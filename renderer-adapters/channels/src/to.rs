@@ -1,4 +1,4 @@
-//! Where the frames go.
+//! The destination of the frames.
 
 use std::path::PathBuf;
 
@@ -9,11 +9,11 @@ use htex_device_motor::{has_usual_buffer, rate_error};
 
 use crate::nowhere;
 
-/// Values of the setting `to`.
+/// The values of the setting `to`.
 pub(crate) const NAMES: [&str; 3] = ["sound", "file", "null"];
 pub(crate) const DEFAULT_CARD: &str = "default";
 
-/// Rates where no card decides, hertz; a DualSense has 48 kHz.
+/// Rates offered where no sound card decides, hertz. A DualSense uses 48 kHz.
 const RATES_HZ: [f64; 6] = [8_000.0, 16_000.0, 32_000.0, 44_100.0, 48_000.0, 96_000.0];
 const DEFAULT_RATE_HZ: f64 = 48_000.0;
 const BLOCK_FRAMES: u32 = 480;
@@ -29,7 +29,7 @@ impl To {
     /// Reads the settings.
     ///
     /// # Errors
-    /// When one cannot take effect beside the others.
+    /// When a setting has no effect together with the others.
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let to = settings.text("to");
         let (card, path) = (settings.text("device"), settings.text("path"));
@@ -80,7 +80,7 @@ impl To {
     }
 }
 
-/// What it can do where no card decides.
+/// Returns the capabilities where no sound card decides.
 fn free(paced: bool) -> Capabilities {
     Capabilities {
         quantity: Quantity::Sound,
@@ -94,7 +94,7 @@ fn free(paced: bool) -> Capabilities {
     }
 }
 
-/// The connected sound cards; none without sound.
+/// Lists the connected sound cards; empty in a build without sound.
 pub(crate) fn cards() -> Vec<Endpoint> {
     sound::cards()
 }

@@ -28,14 +28,14 @@ fn a_card_of_four_channels_plays_on_the_chosen_ones() {
     let _ = fs::remove_dir_all(&folder); // What an earlier run recorded.
     fs::create_dir_all(&folder).unwrap();
     let file = folder.join("pad.raw");
-    // `hw` of a DualSense takes four channels and no other number; so does this one.
+    // The `hw` device of a DualSense accepts exactly four channels, and so does this one.
     let card = format!(
         "pcm.pad {{ type linear slave {{ format S16_LE pcm {{ type plug slave {{ format S16_LE rate 48000 channels 4 \
          pcm {{ type file file \"{}\" format raw slave.pcm.type null }} }} }} }} hint {{ show on description \"a pad\" }} }}\n",
         file.display()
     );
     fs::write(folder.join("asound.conf"), card).unwrap();
-    // SAFETY: this process has one test, which has made no other thread.
+    // SAFETY: this process has one test, which has started no other thread.
     unsafe { std::env::set_var("ALSA_CONFIG_PATH", folder.join("asound.conf")) };
     let channels = Channels::new();
     let listed = channels.endpoints().unwrap();

@@ -1,5 +1,5 @@
-//! Chosen channels of a file, of nothing, and of a sound card (`with_alsa.rs` runs that part where
-//! ALSA is installed).
+//! Selected channels of a file, of no output, and of a sound card (`with_alsa.rs` runs that part
+//! where ALSA is installed).
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! What is under test, a device or a source, and running its checks.
+//! The device or source under test, and how its checks run.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -9,34 +9,34 @@ use htex_device::{AbiFault, Adapter, AdapterKind, DeviceError, Native, Setting, 
 
 use crate::report::{AdapterName, Report};
 
-/// A kind of adapter that is checked: of devices or of sources.
+/// A kind of adapter that can be checked: for devices or for sources.
 pub trait CheckedKind: CaseKind {
-    /// Its checks, in the order in which they run.
+    /// The checks, in the order in which they run.
     const CHECKS: &'static [Check<Case<Self>>];
 }
 
-/// What a case of this kind holds.
+/// The part of a case that depends on its kind.
 pub trait CaseKind: AdapterKind {
-    /// The files that its checks write.
+    /// The files that the checks write.
     type Files;
 
-    /// A place for these files.
+    /// Creates a place for these files.
     ///
     /// # Errors
-    /// When it cannot be made.
+    /// When it cannot be created.
     fn files() -> Result<Self::Files, DeviceError>;
 }
 
-/// The device under test, or the source.
+/// The device or source under test.
 #[derive(Clone)]
 pub enum Subject<A: ?Sized = dyn Adapter> {
-    /// A library.
+    /// A native library.
     Library(PathBuf),
-    /// An adapter of this program.
+    /// An adapter that is built into this program.
     Builtin(Arc<A>),
 }
 
-/// A loaded adapter, and its settings.
+/// A loaded adapter and its settings.
 pub struct Case<A: CaseKind + ?Sized> {
     pub(crate) adapter: Arc<A>,
     /// The same adapter, if it is a native library.
@@ -46,9 +46,9 @@ pub struct Case<A: CaseKind + ?Sized> {
     pub(crate) files: A::Files,
 }
 
-/// Runs all checks of the adapter of this file or id, each in a process of its own. `runner` is a
-/// program that calls [`run_one`]; it gets its own arguments, which name the adapter and its
-/// settings, then the check's name.
+/// Runs all checks of an adapter, given by its file or id, each check in its own process. `runner`
+/// is a program that calls [`run_one`]. Its arguments are the ones it was given, which name the
+/// adapter and its settings, followed by the name of the check.
 pub fn check<A: CheckedKind + ?Sized>(adapter: &str, runner: &Runner) -> Report {
     let checks = run_all(A::CHECKS, runner, |command, name| {
         command.arg(name);
@@ -57,10 +57,10 @@ pub fn check<A: CheckedKind + ?Sized>(adapter: &str, runner: &Runner) -> Report 
     Report::new(subject, checks)
 }
 
-/// Runs one check in this process: a crash ends the process.
+/// Runs one check in this process. A crash ends the process.
 ///
 /// # Errors
-/// When there is no check of this name.
+/// When no check has this name.
 pub fn run_one<A: CheckedKind + ?Sized>(
     subject: &Subject<A>,
     name: &str,
@@ -71,7 +71,7 @@ pub fn run_one<A: CheckedKind + ?Sized>(
     htex_check_runner::run_one(A::CHECKS, name, load, owner)
 }
 
-/// The check that a loading error belongs to.
+/// Returns the check to which a loading error belongs.
 fn owner(error: &DeviceError) -> Owner {
     let DeviceError::Abi { fault, .. } = error else {
         return Owner::not_reached("exports");
@@ -83,7 +83,7 @@ fn owner(error: &DeviceError) -> Owner {
             Owner::reached("marker")
         }
         AbiFault::Symbol { .. } => Owner::reached("exports"),
-        // What cannot be loaded has no marker.
+        // A file that cannot be loaded has no marker to check.
         _ => Owner::not_reached("exports"),
     }
 }
@@ -110,7 +110,7 @@ impl<A: CaseKind + ?Sized> Case<A> {
         })
     }
 
-    /// The library of an adapter that is not built in; the check is skipped for another.
+    /// Returns the adapter's library. For a built-in adapter, the check is skipped.
     pub(crate) fn native(&self) -> Result<&Native<A::Table>, Finding> {
         let built_in = || Finding::skipped("it is built in and has no library");
         self.native.as_ref().ok_or_else(built_in)
@@ -120,7 +120,7 @@ impl<A: CaseKind + ?Sized> Case<A> {
         self.profile.as_deref()
     }
 
-    /// The given settings; `value` fills required ones that are missing.
+    /// Returns the given settings. `value` provides required settings that are missing.
     pub(crate) fn filled(
         &self,
         profile: Option<&str>,
@@ -140,7 +140,7 @@ impl<A: CaseKind + ?Sized> Case<A> {
         Ok(Settings::resolve(descriptor, profile, &given)?)
     }
 
-    /// The first endpoint that this setting takes.
+    /// Returns the first endpoint that belongs to this setting.
     pub(crate) fn first_endpoint(&self, setting: &str) -> Option<String> {
         let all = self.adapter.connected().unwrap_or_default();
         let first = all.into_iter().find(|endpoint| endpoint.setting == setting);
@@ -148,7 +148,7 @@ impl<A: CaseKind + ?Sized> Case<A> {
     }
 }
 
-/// A finding of an error; the check is skipped where a driver or what it drives is missing.
+/// Converts an error to a finding. If a driver or the hardware is missing, the check is skipped.
 pub(crate) fn skip_missing(error: DeviceError) -> Finding {
     match error {
         DeviceError::Missing(what) => Finding::skipped(what),

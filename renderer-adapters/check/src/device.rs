@@ -1,4 +1,4 @@
-//! Operations on the device under test that several checks use.
+//! Operations on the device under test that several checks share.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
@@ -11,18 +11,18 @@ use tempfile::TempDir;
 
 use crate::case::{CaseKind, skip_missing};
 
-/// A loaded device, and its settings.
+/// A loaded device and its settings.
 pub(crate) type Case = crate::case::Case<dyn Adapter>;
 
-/// A hundredth of the limit, or of the unit where there is none.
+/// Level of the test tone: a hundredth of the limit, or of the unit if there is no limit.
 const QUIET: f64 = 0.01;
-/// Frequency of the tone, hertz.
+/// Frequency of the test tone, hertz.
 const TONE_HZ: f64 = 100.0;
-/// Most consecutive writes that may take nothing, each waiting [`PATIENCE`].
+/// Maximum number of consecutive writes that may take nothing, each waiting [`PATIENCE`].
 const EMPTY_WRITES: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// The folder of the files that a device writes, and their number.
+/// The folder for the files that a device writes, and a counter for their names.
 pub struct Files {
     pub(crate) folder: TempDir,
     count: AtomicU32,
@@ -42,7 +42,8 @@ impl CaseKind for dyn Adapter {
 }
 
 impl Case {
-    /// The given settings; required ones that are missing are a new file or the first endpoint.
+    /// Returns the given settings. A missing required setting becomes a new file or the first
+    /// endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
         self.settings_of(self.profile())
     }
@@ -55,20 +56,21 @@ impl Case {
         self.filled(profile, value)
     }
 
-    /// The path of a new WAV file.
+    /// Returns the path of a new WAV file.
     fn new_file(&self) -> String {
         let count = self.files.count.fetch_add(1, Ordering::Relaxed);
         let path = self.files.folder.path().join(format!("check-{count}.wav"));
         path.display().to_string()
     }
 
-    /// The device's capabilities; the check is skipped where the driver or the device is missing.
+    /// Returns the device's capabilities. If the driver or the device is missing, the check is
+    /// skipped.
     pub(crate) fn capabilities(&self) -> Result<Capabilities, Finding> {
         let can = self.adapter.capabilities(&self.settings()?);
         can.map_err(skip_missing)
     }
 
-    /// A device at its default rate, and its settings.
+    /// Opens a device at its default rate. Also returns its settings.
     pub(crate) fn open(&self) -> Result<(Box<dyn Device>, Settings), Finding> {
         let settings = self.settings()?;
         let rate_hz = self.capabilities()?.default_rate_hz;
@@ -86,7 +88,7 @@ impl Case {
         self.adapter.open(settings, &format)
     }
 
-    /// A quiet tone at the default rate.
+    /// Generates a quiet tone at the default rate.
     pub(crate) fn tone(&self, frames: usize) -> Result<Vec<f32>, Finding> {
         let can = self.capabilities()?;
         let amplitude = QUIET * can.limit.unwrap_or(1.0);
@@ -96,7 +98,7 @@ impl Case {
     }
 }
 
-/// Writes all samples, waiting for a device that has a clock.
+/// Writes all samples, and waits if the device has a clock.
 pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), Finding> {
     let (mut left, mut empty) = (samples, 0);
     while !left.is_empty() {
@@ -114,7 +116,7 @@ pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), 
     Ok(())
 }
 
-/// The rates to try: all of a list, both ends of a range, and the default.
+/// Returns the rates to try: all of a list, or both ends of a range, and the default.
 pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     let mut rates = match &can.rates {
         Rates::List(all) => all.clone(),

@@ -1,12 +1,13 @@
-//! The checker of devices and of sources: one check for each promise of their ABI, run by
-//! [`htex_check_runner`] in a process of its own, so that a crash or an endless loop becomes a
-//! finding.
+//! The checker for devices and sources, with one check for each guarantee of their ABI.
+//! [`htex_check_runner`] runs each check in its own process, so that a crash or an endless loop
+//! becomes a finding.
 //!
-//! [`CHECKS`] is the table of devices, [`source::CHECKS`] that of sources; [`check`] runs it over
-//! one of them; [`run_one`] runs one check in this process. A device is called as a scene calls it,
-//! through [`htex_device::Adapter`]; checks of a library's exports are skipped for a built-in
-//! device. Devices are driven at a hundredth of their limit, and offered samples beyond it: nobody
-//! may touch one while it is checked.
+//! [`CHECKS`] is the table of checks for devices, [`source::CHECKS`] the one for sources. [`check`]
+//! runs such a table over one adapter, and [`run_one`] runs a single check in this process. A
+//! device is called as a scene calls it, through [`htex_device::Adapter`]. For a built-in device,
+//! checks of a library's exports are skipped. The checks drive a device at a hundredth of its
+//! limit, and they also offer it samples beyond the limit. Nobody may touch a device while it is
+//! checked.
 //!
 //! The faults in `tests/bad-devices` and `tests/bad-sources` test these checkers.
 #![forbid(unsafe_code)]

@@ -1,18 +1,18 @@
-//! Reports of the checks of a device or a source.
+//! Reports of checking a device or a source.
 
 use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 
-/// All checks of one device or source.
+/// The results of all checks of one device or source.
 pub type Report = htex_check_runner::Report<AdapterName>;
 
-/// The device or source that was checked. In JSON its key is its kind.
+/// The device or source that was checked. In JSON, the key is its kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdapterName {
     /// `device` or `source`.
     pub kind: &'static str,
-    /// A file or an id.
+    /// The library's file, or an id.
     pub name: String,
 }
 

@@ -1,5 +1,5 @@
-//! Reservation of outputs: each belongs to one open device. The driver reserves an output only
-//! while a task runs, and a device is open before that.
+//! Reservation of outputs: each output belongs to one open device. The driver itself reserves an
+//! output only while a task runs, but a device is already open before that.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -8,10 +8,10 @@ use htex_device::DeviceError;
 
 use crate::rig::Rig;
 
-/// Driver and output of each open device.
+/// The driver and the output of each open device.
 static CLAIMED: Mutex<BTreeSet<(String, String)>> = Mutex::new(BTreeSet::new());
 
-/// Released when dropped.
+/// A reserved output. Dropping it releases the output.
 pub(crate) struct Claim((String, String));
 
 impl Claim {

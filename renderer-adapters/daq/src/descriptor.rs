@@ -1,4 +1,4 @@
-//! The adapter's descriptor: settings and the profiles of rigs.
+//! The adapter's descriptor: settings, and profiles of rigs.
 
 use std::collections::BTreeMap;
 

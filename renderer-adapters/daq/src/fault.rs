@@ -1,11 +1,11 @@
-//! Errors of NI-DAQmx, and their device errors. The codes are those of `NIDAQmx.h`.
+//! Errors of NI-DAQmx and the device errors they become. The codes are from `NIDAQmx.h`.
 
 use htex_device::DeviceError;
 
-/// The device is not or no longer available: not present (-88705), removed, absent, powered off,
-/// not accessible.
+/// Codes for a device that is not available or no longer available: not present (-88705), removed,
+/// absent, powered off, not accessible.
 const GONE: [i32; 8] = [-88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003];
-/// Another task, or another program, has the output.
+/// Another task or another program uses the output.
 const RESERVED: i32 = -50103;
 /// Samples came too late: the buffer, or the memory on the card, became empty.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
@@ -33,7 +33,7 @@ impl Fault {
         OVERRUN.contains(&self.code)
     }
 
-    /// The error of a device that was running.
+    /// Converts to the error of a device that was running.
     pub(crate) fn failed(&self, device: &str) -> DeviceError {
         DeviceError::Failed {
             device: device.to_owned(),
@@ -41,7 +41,7 @@ impl Fault {
         }
     }
 
-    /// The error of a device that was running and no longer responds.
+    /// Converts to the error of a device that was running and no longer responds.
     pub(crate) fn failed_and_not_zero(&self, device: &str) -> DeviceError {
         DeviceError::Failed {
             device: device.to_owned(),
@@ -49,7 +49,7 @@ impl Fault {
         }
     }
 
-    /// The error of a device that cannot be opened.
+    /// Converts to the error of a device that cannot be opened.
     pub(crate) fn missing(&self, device: &str) -> DeviceError {
         let Self { code, words } = self;
         match *code {

@@ -1,4 +1,4 @@
-//! The adapter of analog inputs and its settings.
+//! The analog input adapter and its settings.
 
 use htex_device::{
     Descriptor, DeviceError, Endpoint, FromScene, Setting, SettingKind, Settings, Source,
@@ -9,8 +9,8 @@ use crate::driver::Driver;
 use crate::input_stream::InputStream;
 use crate::inputs::Inputs;
 
-/// Analog inputs of National Instruments cards as a source: volts of the card. The driver is loaded
-/// at the first use.
+/// The analog inputs of National Instruments cards as a source. Samples are volts at the card. The
+/// driver is loaded on first use.
 pub struct DaqInput {
     descriptor: Descriptor,
 }
@@ -99,7 +99,7 @@ impl SourceAdapter for DaqInput {
         "channels"
     }
 
-    /// The analog inputs of all cards that the installed driver knows.
+    /// Lists the analog inputs of all cards that the installed driver knows.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let inputs = Driver::load("")?.inputs().map_err(|fault| fault.failed("NI-DAQmx"))?;
         let endpoint = |(name, product)| Endpoint {

@@ -1,4 +1,4 @@
-//! An open source: waits for samples in the driver's buffer.
+//! An open source, which waits for samples in the driver's buffer.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -9,20 +9,20 @@ use crate::driver::{Driver, InputTask};
 use crate::fault::Fault;
 use crate::inputs::Inputs;
 
-/// Time between two looks for samples.
+/// Polling interval for samples.
 const LOOK: Duration = Duration::from_millis(2);
 
 pub(crate) struct InputStream {
     inputs: Inputs,
     channels: Vec<Channel>,
-    /// `None` after the end.
+    /// `None` after the source has ended.
     task: Option<InputTask>,
     is_running: bool,
     delivered: u64,
 }
 
 impl InputStream {
-    /// Makes the task, which does not run yet.
+    /// Creates the task, which does not run yet.
     pub(crate) fn open(inputs: Inputs, driver: &'static Driver) -> Result<Self, DeviceError> {
         let task = Self::task(&inputs, driver).map_err(|fault| fault.missing(&inputs.given))?;
         let name = |full: &String| full.rsplit('/').next().unwrap_or(full).to_owned();
@@ -48,7 +48,7 @@ impl InputStream {
         task.ok_or_else(|| DeviceError::Closed(self.inputs.given.clone()))
     }
 
-    /// Reads what is there.
+    /// Reads the available samples.
     fn read_now(&self, samples: &mut [f64]) -> Result<Result<usize, Fault>, DeviceError> {
         let (task, width) = (self.running()?, self.channels.len());
         let most = samples.len() / width;
@@ -58,7 +58,7 @@ impl InputStream {
         }))
     }
 
-    /// Ends the task and returns the error of a fault.
+    /// Ends the task and converts the fault to an error.
     fn fail(&mut self, fault: &Fault) -> DeviceError {
         self.task = None;
         let Inputs { given, buffer_s, .. } = &self.inputs;

@@ -1,18 +1,18 @@
-//! The channels and the clock that the settings of a source name.
+//! The channels and the clock that a source's settings name.
 
 use htex_device::{DeviceError, Settings};
 
 use crate::driver::{Driver, Terminals};
 
-/// Most channels of a source.
+/// Maximum number of channels of a source.
 const MOST_CHANNELS: usize = 256;
 
-/// Channels and clock, from the settings.
+/// Channels and clock, read from the settings.
 #[derive(Debug, Clone)]
 pub(crate) struct Inputs {
-    /// As given, for messages.
+    /// The channels as the user wrote them, for messages.
     pub(crate) given: String,
-    /// Each channel's full name.
+    /// The full name of each channel.
     pub(crate) channels: Vec<String>,
     pub(crate) rate_hz: f64,
     pub(crate) range_v: f64,
@@ -73,7 +73,8 @@ impl Inputs {
     }
 }
 
-/// The channels of `Dev1/ai0:2, Dev1/ai5`: each by its full name, all of one card.
+/// Expands a list such as `Dev1/ai0:2, Dev1/ai5` to the full name of each channel. All must be of
+/// one card.
 fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
     let refuse = |what: String| DeviceError::Setting {
         name: "channels".to_owned(),

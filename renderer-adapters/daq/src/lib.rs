@@ -1,22 +1,23 @@
-//! The analog output of a National Instruments card, and the amplifier behind it: electrovibration;
-//! and its analog inputs.
+//! National Instruments cards: their analog outputs as electrovibration devices behind an
+//! amplifier, and their analog inputs as sources.
 //!
-//! Samples are volts *at the display*, the carrier included; this adapter divides by the
-//! amplifier's gain and streams through NI-DAQmx, which is loaded at run time and not linked.
+//! Samples are volts *at the display*, including the carrier. This adapter divides them by the
+//! amplifier's gain and streams them through NI-DAQmx, which is loaded at run time and not linked.
 //!
-//! The voltage is limited by:
-//! - a sample beyond `limit_v` is never output, and the driver's own channel limits are set to the
-//!   same;
-//! - the output goes to zero before a stream, after it, on every error, and when the device is
-//!   dropped; a thread of the device detects an empty buffer even if no more samples are
-//!   written, and sets the output to zero if a call of the driver does not return for 0.3 s;
-//! - a mean over 100 ms beyond `dc_limit_v` is never output, whatever produced it;
-//! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its first and
-//!   after its last* sample: the mirror image of what is there, under a falling weight, so that a
-//!   carrier stays one. Samples themselves are never changed;
-//! - buffer and ramp together have at most 400 ms.
+//! The voltage is limited in these ways:
+//! - A sample beyond `limit_v` is never output. The driver's own channel limits are set to the same
+//!   value.
+//! - The output goes to zero before a stream, after it, on every error, and when the device is
+//!   dropped. A thread of the device detects an empty buffer even if no more samples are written.
+//!   It also sets the output to zero if a call of the driver does not return for 0.3 s.
+//! - A mean over 100 ms beyond `dc_limit_v` is never output, whatever caused it.
+//! - A stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its first and
+//!   after its last* sample. The ramp mirrors the stream there under a falling weight, so that a
+//!   carrier stays a carrier. The samples themselves are never changed.
+//! - Buffer and ramp together last at most 400 ms.
 //!
-//! [`DaqInput`] is the reverse: the analog inputs of a card as a source, in volts.
+//! [`DaqInput`] works the other way round: it provides the analog inputs of a card as a source, in
+//! volts.
 #![deny(unsafe_code)]
 
 mod claim;
@@ -41,13 +42,13 @@ pub use input::DaqInput;
 use driver::Driver;
 use rig::Rig;
 
-/// The adapter; see the crate's documentation.
+/// The analog output adapter. See the crate's documentation.
 pub struct Daq {
     descriptor: Descriptor,
 }
 
 impl Daq {
-    /// The adapter. The driver is loaded at the first use.
+    /// Creates the adapter. The driver is loaded on first use.
     pub fn new() -> Self {
         Self { descriptor: descriptor::descriptor() }
     }
@@ -64,7 +65,7 @@ impl Adapter for Daq {
         &self.descriptor
     }
 
-    /// The analog outputs of all cards that the installed driver knows.
+    /// Lists the analog outputs of all cards that the installed driver knows.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let driver = Driver::load("")?;
         let outputs = driver.outputs().map_err(|f| f.failed("NI-DAQmx"))?;

@@ -1,4 +1,4 @@
-//! Card, amplifier and limits, from the settings.
+//! The rig that the settings describe: card, amplifier and limits.
 
 use htex_device::{
     Capabilities, DIRECT_SETTING, DeviceError, Quantity, RATE_PER_CARRIER, Rates, Settings,
@@ -6,31 +6,31 @@ use htex_device::{
 
 use crate::driver::Driver;
 
-/// The rate at which the paper records forces, hertz; it states no output rate.
+/// The rate at which the paper records forces, hertz. The paper states no output rate.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
-/// Lowest rate, hertz: textures reach 1000 Hz, and a control block of eight frames takes 8 ms here,
-/// seconds far below.
+/// Lowest rate, hertz. Textures reach 1000 Hz. A control block of eight frames takes 8 ms at this
+/// rate, and seconds at much lower rates.
 const LOWEST_RATE_HZ: f64 = 1_000.0;
-/// Longest buffer and ramp together, milliseconds: the output of a player that is killed is then at
-/// zero within half a second.
+/// Longest total duration of buffer and ramp, milliseconds. It ensures that the output of a killed
+/// player is at zero within half a second.
 pub(crate) const MOST_TO_ZERO_MS: f64 = 400.0;
-/// Preferred frames in a block.
+/// Preferred block size, frames.
 const BLOCK_FRAMES: u32 = 256;
-/// Relative tolerance of the limit: rounding to f32.
+/// Relative tolerance of the limit, for rounding to `f32`.
 const ROUNDING: f64 = 1e-6;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Rig {
-    /// `Dev1/ao0`
+    /// The output, e.g. `Dev1/ao0`.
     pub(crate) device: String,
     pub(crate) driver: String,
-    /// Volts at the display for one volt of the card.
+    /// Gain of the amplifier: volts at the display for one volt of the card.
     pub(crate) gain: f64,
     /// Limit at the display, volts.
     pub(crate) limit_v: f64,
-    /// Distance of two neighbouring voltages at the display, volts.
+    /// Difference between two neighbouring voltages at the display, volts.
     pub(crate) step_v: f64,
-    /// Limit of the mean at the display, volts.
+    /// Limit of the mean voltage at the display, volts.
     pub(crate) dc_limit_v: f64,
     carrier_hz: f64,
     pub(crate) buffer_s: f64,
@@ -70,7 +70,7 @@ impl Rig {
         }
     }
 
-    /// The capabilities of card and amplifier together.
+    /// Returns the capabilities of card and amplifier together.
     pub(crate) fn capabilities(&self, driver: &Driver) -> Result<Capabilities, DeviceError> {
         let card = self.device.split('/').next().unwrap_or_default();
         let outputs = driver.outputs().map_err(|f| f.failed(&self.device))?;
@@ -101,7 +101,7 @@ impl Rig {
         })
     }
 
-    /// Advice for samples that come too late.
+    /// Returns advice for the case that samples come too late.
     pub(crate) fn larger_buffer(&self) -> String {
         let buffer_ms = self.buffer_s * 1e3;
         let most_ms = MOST_TO_ZERO_MS - self.ramp_s * 1e3;
@@ -111,8 +111,8 @@ impl Rig {
         )
     }
 
-    /// The card's voltage for a voltage at the display; `None` when it is over the limit or not a
-    /// number.
+    /// Converts a voltage at the display to a voltage of the card; `None` if it is over the limit
+    /// or not a number.
     pub(crate) fn card_v(&self, display_v: f64) -> Option<f64> {
         let within = display_v.abs() <= self.limit_v * (1.0 + ROUNDING);
         within.then(|| display_v.clamp(-self.limit_v, self.limit_v) / self.gain)

@@ -1,10 +1,11 @@
-//! The state that writer and watchdog of an open device share: the running task, and the return to
-//! zero.
+//! The state that the writer and the watchdog of an open device share: the running task, and the
+//! return to zero.
 //!
-//! The adapter refuses a sample over the limit and a mean over that of direct voltage, the driver's
-//! own channel limits repeat the first, and the watchdog detects an underflow: a writer that hangs
-//! would leave the last voltage at the output. Every exit ends with an unclocked write of zero,
-//! which is repeated if it fails, and finally after a reset of the card.
+//! The adapter refuses a sample over the limit and a mean over the direct-voltage limit. The
+//! driver's own channel limits repeat the first of these checks. The watchdog detects an underflow,
+//! because a writer that hangs would leave the last voltage at the output. Every way to end a
+//! session ends with an unclocked write of zero. If that write fails, it is repeated, the last time
+//! after a reset of the card.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,45 +18,46 @@ use crate::fault::Fault;
 use crate::rig::{MOST_TO_ZERO_MS, Rig};
 use crate::zero::{Emergency, Zero};
 
-/// Time without output after which the clock is regarded as stopped: the last voltage would stay.
+/// If nothing is output for this long, the clock is considered stopped. The last voltage would then
+/// stay.
 const STILL: Duration = Duration::from_millis(400);
 
 pub(crate) struct Session {
     rig: Rig,
-    /// `None` after the end.
+    /// `None` after the session has ended.
     claim: Option<Claim>,
     driver: &'static Driver,
     emergency: Arc<Emergency>,
     rate_hz: f64,
-    /// Most frames of the stream that wait in the driver's buffer and on the card.
+    /// Maximum number of the stream's frames that wait in the driver's buffer and on the card.
     ahead: usize,
-    /// Capacity of the driver's buffer, frames: a ramp before the stream may be longer than
-    /// `ahead`.
+    /// Capacity of the driver's buffer, frames. It may exceed `ahead`, because a ramp before the
+    /// stream may be longer than `ahead`.
     capacity: usize,
-    /// `None` before the first sample and after the end.
+    /// `None` before the first sample and after the session has ended.
     task: Option<Task>,
-    /// An error that the next call returns, once.
+    /// An error that the next call returns and thereby clears.
     error: Option<DeviceError>,
     closed: bool,
     /// Whether the output could not be set to zero at the end.
     not_zero: bool,
-    /// Frames in front of the stream: zeros, and a ramp if there is one.
+    /// Number of frames before the stream: zeros, and a ramp if there is one.
     lead: u64,
-    /// Frames given to the driver, the lead included.
+    /// Number of frames given to the driver, including the lead.
     given: u64,
-    /// Frames output so far, the lead included.
+    /// Number of frames output so far, including the lead.
     generated: u64,
-    /// When that number last grew.
+    /// When `generated` last grew.
     moved_at: Instant,
-    /// The stream's last sample, volts of the card.
+    /// The stream's last sample, in volts of the card.
     last_v: f64,
-    /// What was given to the driver, volts of the card.
+    /// The mean of the voltages given to the driver, in volts of the card.
     direct: DirectVoltage,
     status: Status,
 }
 
 impl Session {
-    /// Sets the output to zero.
+    /// Opens the device and sets its output to zero.
     pub(crate) fn open(
         rig: Rig,
         driver: &'static Driver,
@@ -95,12 +97,12 @@ impl Session {
         Ok(session)
     }
 
-    /// The way to zero that needs no session.
+    /// Returns the emergency zero, which works without the session.
     pub(crate) fn emergency(&self) -> Arc<Emergency> {
         Arc::clone(&self.emergency)
     }
 
-    /// Takes the samples that fit now.
+    /// Takes the samples that fit now and returns their number.
     pub(crate) fn write(&mut self, samples: &[f32]) -> Result<usize, DeviceError> {
         self.usable()?;
         let samples = &samples[..samples.len().min(self.capacity)];
@@ -123,9 +125,9 @@ impl Session {
         Ok(taken)
     }
 
-    /// Frames of the stream that may be given now, counted by the frames output so far: the driver
-    /// reports space in its buffer as soon as samples have moved to the card's own memory, which
-    /// may hold a second of them.
+    /// Returns how many frames of the stream may be given to the driver now. They are counted from
+    /// the frames output so far. The driver's own count is no use: it reports free space as soon as
+    /// samples have moved to the card's memory, which may hold a second of them.
     fn space(&mut self) -> Result<usize, DeviceError> {
         let generated = self
             .task
@@ -138,8 +140,9 @@ impl Session {
         Ok(self.ahead.saturating_sub(waiting as usize))
     }
 
-    /// What leads from the stream's last sample to zero, volts: the mirror image of its end under a
-    /// falling weight, or zero at once where that would be a direct voltage.
+    /// Returns the voltages that lead from the stream's last sample to zero: the stream's end
+    /// mirrored, under a falling weight. If that would make a direct voltage, the output goes to
+    /// zero at once.
     pub(crate) fn tail(&self) -> Vec<f64> {
         let mut tail = self.ramp(self.last_v, self.direct.mirrored());
         tail.push(0.0);
@@ -149,7 +152,7 @@ impl Session {
         }
     }
 
-    /// Gives the driver as many voltages as fit; returns their number.
+    /// Gives the driver as many of these voltages as fit and returns their number.
     pub(crate) fn give(&mut self, volts: &[f64]) -> Result<usize, DeviceError> {
         self.usable()?;
         let task = self.task.as_ref();
@@ -175,7 +178,8 @@ impl Session {
         self.generated = generated;
     }
 
-    /// Reads the driver's state; an error, or a clock that stands still, sets the output to zero.
+    /// Reads the driver's state. After an error, or if the clock stands still, sets the output to
+    /// zero.
     pub(crate) fn watch(&mut self) {
         let Some(task) = &self.task else { return };
         match task.is_done().and_then(|done| Ok((done, task.generated()?))) {
@@ -194,12 +198,13 @@ impl Session {
         }
     }
 
-    /// An error that was not returned yet and that left a voltage at the display.
+    /// Returns an error that left a voltage at the display and that no call has returned yet.
     pub(crate) fn untold_danger(&self) -> Option<&DeviceError> {
         self.error.as_ref().filter(|_| self.not_zero)
     }
 
-    /// Frames given to the driver, and frames output so far; both with the lead.
+    /// Returns the frames given to the driver and the frames output so far, both including the
+    /// lead.
     pub(crate) fn progress(&self) -> (u64, u64) {
         (self.given, self.generated)
     }
@@ -217,7 +222,8 @@ impl Session {
         }
     }
 
-    /// Latency of a sample, seconds; after the end, that of the last one.
+    /// Returns the latency of a sample, seconds. After the session has ended, that is the latency
+    /// of the last sample.
     fn latency_s(&self) -> f64 {
         match self.task {
             Some(_) => self.waiting_s(),
@@ -229,7 +235,8 @@ impl Session {
         self.given.saturating_sub(self.generated) as f64 / self.rate_hz
     }
 
-    /// Stops, sets the output to zero and takes no more samples; returns an earlier error.
+    /// Stops, sets the output to zero and takes no more samples. Returns an earlier error if there
+    /// was one.
     pub(crate) fn close(&mut self) -> Result<(), DeviceError> {
         if self.closed {
             return self.error.take().map_or(Ok(()), Err);
@@ -247,7 +254,7 @@ impl Session {
         }
     }
 
-    /// Ends the session if a call took so long that zero was set without it.
+    /// Ends the session if a call took so long that the emergency has set the output to zero.
     fn still_holds(&mut self) -> Result<(), DeviceError> {
         match self.emergency.error() {
             Some(error) if !self.closed => Err(self
@@ -258,9 +265,9 @@ impl Session {
         }
     }
 
-    /// Starts the clock with zeros (half of the frames kept ahead, so that the first write is not
-    /// late) that end in a ramp to the first sample if that is not zero: the mirror image of the
-    /// first ones.
+    /// Starts the clock with a lead of zeros. The lead has half of the frames that are kept ahead,
+    /// so that the first write is not late. If the first sample is not zero, the lead ends in a
+    /// ramp to it, which mirrors the first samples.
     fn start(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
         let (first, rest) = (volts[0], volts.get(1..).unwrap_or_default());
         let there = if rest.is_empty() { volts } else { rest };
@@ -279,7 +286,7 @@ impl Session {
         Ok(())
     }
 
-    /// A task whose clock runs.
+    /// Starts a task with a running clock.
     fn started(&self, lead: &[f64]) -> Result<Task, Fault> {
         let limit_v = self.rig.limit_v / self.rig.gain;
         let task = Task::new(self.driver, &self.rig.device, limit_v)?;
@@ -294,8 +301,8 @@ impl Session {
         started.map(|()| task)
     }
 
-    /// A ramp from `from_v` to zero without its ends, of samples under a falling weight; empty if
-    /// `from_v` is zero within the card's step.
+    /// Returns a ramp from `from_v` to zero without its two ends: the samples under a falling
+    /// weight. It is empty if `from_v` is zero within the card's step.
     fn ramp(&self, from_v: f64, samples: impl Iterator<Item = f64>) -> Vec<f64> {
         if from_v.abs() * self.rig.gain < self.rig.step_v {
             return Vec::new();
@@ -306,7 +313,7 @@ impl Session {
         weighted.map(|(i, volts)| volts * weight(i)).collect()
     }
 
-    /// Sets the output to zero if these samples would make a direct voltage.
+    /// Sets the output to zero if these voltages would make a direct voltage.
     fn check_direct(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
         let Some(Excess { at, mean_v }) = self.direct.excess(volts) else {
             return Ok(());
@@ -322,7 +329,8 @@ impl Session {
         })
     }
 
-    /// The card's voltages for samples that are all within the limit.
+    /// Converts samples to voltages of the card, after checking that all of them are within the
+    /// limit.
     fn checked(&mut self, samples: &[f32]) -> Result<Vec<f64>, DeviceError> {
         let mut volts = Vec::with_capacity(samples.len());
         for (i, &sample) in samples.iter().enumerate() {
@@ -335,7 +343,8 @@ impl Session {
         Ok(volts)
     }
 
-    /// Sets the output to zero and returns the warning if that failed.
+    /// Sets the output to zero after a fault. If that fails, the returned error contains the
+    /// warning.
     fn fail(&mut self, fault: &Fault) -> DeviceError {
         if let Err(error) = self.still_holds() {
             return error;
@@ -356,7 +365,7 @@ impl Session {
         }
     }
 
-    /// Sets the output to zero because of a sample.
+    /// Sets the output to zero because of an invalid sample.
     fn refuse(&mut self, frame: u64, value: f64) -> DeviceError {
         match self.end() {
             Err(fault) => fault.failed_and_not_zero(&self.rig.device),

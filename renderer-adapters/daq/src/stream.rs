@@ -1,8 +1,9 @@
 //! An open device: waits for space in the buffer, and at the end until all samples are output.
 //!
-//! Samples in the buffer are counted from those that were played, since the driver reports space as
-//! soon as samples have moved to the card's memory. The ramp before a stream is not counted. A live
-//! motion has 20 ms in the buffer (`live_default` of `buffer_ms`).
+//! The number of samples in the buffer is counted from the samples that were output. The driver
+//! itself reports free space as soon as samples have moved to the card's memory. The ramp before a
+//! stream is not counted. With a live motion, the buffer holds 20 ms (`live_default` of
+//! `buffer_ms`).
 
 use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;
@@ -16,9 +17,9 @@ use crate::session::Session;
 use crate::watchdog::{Watchdog, Watches};
 use crate::zero::Shared;
 
-/// Time between two checks for space.
+/// Polling interval for free space.
 const LOOK: Duration = Duration::from_millis(2);
-/// Zeros given at a time after the end of a stream.
+/// Number of zeros given at a time after the end of a stream.
 const ZEROS: usize = 16_384;
 
 pub(crate) struct Stream {
@@ -50,8 +51,8 @@ impl Stream {
         Ok(self.shared.lock()?)
     }
 
-    /// Gives the tail, and then zeros until the tail has been output, so that the buffer is never
-    /// empty while the clock runs.
+    /// Gives the driver the tail, and then zeros until the tail has been output. This way, the
+    /// buffer is never empty while the clock runs.
     fn drain(&self) -> Result<(), DeviceError> {
         let mut tail = self.session()?.tail();
         let end = self.session()?.progress().0 + tail.len() as u64;

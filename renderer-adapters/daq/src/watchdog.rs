@@ -10,33 +10,33 @@ use htex_device::DeviceError;
 
 use crate::zero::{HANG, Hung, Shared};
 
-/// Time between two looks at whether the thread has ended.
+/// Polling interval while waiting for the thread to end.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// Prints on standard error, which may be closed.
+/// Prints an error on standard error, which may be closed.
 pub(crate) fn say(error: &DeviceError) {
     let _ = writeln!(std::io::stderr(), "htex: {error}");
 }
 
-/// What a watchdog does with the session.
+/// What a watchdog checks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Watches {
-    /// Asks the driver whether the output still runs.
+    /// Asks the driver whether the output is still running.
     Output,
-    /// Sees that the session is free from time to time, without a call of the driver that may hang
-    /// as well.
+    /// Checks only that the session is free from time to time. Makes no call of the driver, because
+    /// that call might hang as well.
     Calls,
 }
 
-/// Ends when dropped.
+/// A running watchdog thread. Dropping it ends the thread.
 pub(crate) struct Watchdog {
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Watchdog {
-    /// Watches a session every `period`. If another thread has it for too long, zero is set without
-    /// it.
+    /// Watches a session every `period`. If another thread holds the session for too long, the
+    /// watchdog sets the output to zero without it.
     pub(crate) fn start(
         shared: &Arc<Shared>,
         period: Duration,
@@ -48,7 +48,8 @@ impl Watchdog {
             let mut told = false;
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
                 let error = look(&shared, watches);
-                // A thread whose call hangs, or a writer that makes no more calls, prints nothing.
+                // The watchdog has to print, because a thread whose call hangs, or a writer that
+                // makes no more calls, cannot.
                 if let Some(error) = error.filter(|_| !told) {
                     say(&error);
                     told = true;
@@ -60,7 +61,7 @@ impl Watchdog {
     }
 }
 
-/// Looks once; returns an error that nobody else may tell.
+/// Checks once. Returns an error that perhaps nobody else can report.
 fn look(shared: &Shared, watches: Watches) -> Option<DeviceError> {
     let mut session = match shared.lock() {
         Ok(session) => session,
@@ -78,7 +79,7 @@ fn look(shared: &Shared, watches: Watches) -> Option<DeviceError> {
 impl Drop for Watchdog {
     fn drop(&mut self) {
         drop(self.end.take());
-        // A call of the driver in it may hang.
+        // A driver call in the thread may hang.
         let Some(thread) = self.thread.take() else {
             return;
         };

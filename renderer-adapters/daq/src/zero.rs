@@ -1,8 +1,8 @@
-//! The written zero, and the way to it when a call of the driver does not return.
+//! Writing zero to the output, even when a call of the driver does not return.
 //!
-//! A call may hang while it holds the session. Nothing here needs the session: whoever waits for it
-//! for [`HANG`] sets the output to zero by a task of its own, the watchdog or a caller. The session
-//! sees that as soon as its call returns, and ends.
+//! A call may hang while it holds the session. Nothing here needs the session. The watchdog or a
+//! caller that waits for the session longer than [`HANG`] sets the output to zero by a task of its
+//! own. The session notices this as soon as its call returns, and ends.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -15,28 +15,28 @@ use crate::driver::{Driver, Stopper, Task};
 use crate::fault::{Fault, NOT_ZERO};
 use crate::session::Session;
 
-/// Attempts to output zero before the card is reset.
+/// Number of attempts to output zero before the card is reset.
 const ATTEMPTS: usize = 5;
-/// Pause between two attempts, for transient faults.
+/// Pause between two attempts, so that transient faults can pass.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Time that one use of the session may take. With the watchdog's period, at most 0.1 s, zero is
-/// written within half a second.
+/// Longest time that one use of the session may take. Together with the watchdog's period (at most
+/// 0.1 s), it ensures that zero is written within half a second.
 pub(crate) const HANG: Duration = Duration::from_millis(300);
-/// Time between two looks at whether the session is free.
+/// Polling interval while waiting for the session.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// Outputs zero at one channel.
+/// Writes zero to one output channel.
 pub(crate) struct Zero {
     pub(crate) driver: &'static Driver,
-    /// `Dev1/ao0`
+    /// The output, e.g. `Dev1/ao0`.
     pub(crate) device: String,
-    /// Limit of the card's voltage.
+    /// Limit of the card's voltage, volts.
     pub(crate) limit_v: f64,
 }
 
 impl Zero {
-    /// Outputs zero by a separate task without a clock; retries on failure, at last after a reset
-    /// of the card.
+    /// Outputs zero by a separate task without a clock. Retries on failure, the last time after a
+    /// reset of the card.
     pub(crate) fn put(&self) -> Result<(), Fault> {
         let mut zero = self.once();
         for _ in 1..ATTEMPTS {
@@ -46,8 +46,8 @@ impl Zero {
             sleep(PAUSE);
             zero = self.once();
         }
-        // A reset ends all tasks of the card and sets its outputs to their power-on state, which
-        // need not be zero: so zero is written again.
+        // A reset ends all tasks of the card and sets its outputs to their power-on state. That
+        // state need not be zero, so zero is written again.
         zero.or_else(|fault| {
             self.driver.reset(&self.device).map_err(|_| fault)?;
             self.once()
@@ -65,11 +65,11 @@ impl Zero {
     }
 }
 
-/// Another thread has had the session for [`HANG`].
+/// Another thread has held the session for longer than [`HANG`].
 pub(crate) struct Hung {
     /// Says so, and whether the output was set to zero.
     pub(crate) error: DeviceError,
-    /// Whether this thread was the first to find it, and set the output to zero.
+    /// Whether this thread was the first to notice, and therefore set the output to zero.
     pub(crate) is_first: bool,
 }
 
@@ -79,13 +79,13 @@ impl From<Hung> for DeviceError {
     }
 }
 
-/// Zero without the session.
+/// The emergency zero, which works without the session.
 pub(crate) struct Emergency {
     pub(crate) zero: Zero,
-    /// The task whose clock runs, which holds the output.
+    /// The task whose clock runs. It holds the output.
     running: Mutex<Option<Stopper>>,
     has_begun: AtomicBool,
-    /// The error of the emergency, when it is over.
+    /// The error of the emergency, once it is over.
     error: Mutex<Option<DeviceError>>,
 }
 
@@ -99,12 +99,12 @@ impl Emergency {
         }
     }
 
-    /// Notes the task whose clock runs from now on; `None` before the task is cleared.
+    /// Records the task whose clock runs from now on; `None` before that task is cleared.
     pub(crate) fn runs(&self, task: Option<Stopper>) {
         *self.running.lock().unwrap_or_else(PoisonError::into_inner) = task;
     }
 
-    /// The error of an emergency that has begun.
+    /// Returns the error if an emergency has begun.
     pub(crate) fn error(&self) -> Option<DeviceError> {
         if !self.has_begun.load(Ordering::SeqCst) {
             return None;
@@ -113,7 +113,8 @@ impl Emergency {
         Some(error.clone().unwrap_or_else(|| self.hangs(NOT_ZERO)))
     }
 
-    /// Sets the output to zero, once; returns the error that says why, and whether it is.
+    /// Sets the output to zero once. The returned error gives the reason and says whether the
+    /// output is at zero.
     fn begin(&self) -> Hung {
         if self.has_begun.swap(true, Ordering::SeqCst) {
             let error = self.error().unwrap_or_else(|| self.hangs(NOT_ZERO));
@@ -148,10 +149,10 @@ impl Emergency {
     }
 }
 
-/// The session that callers and the watchdog share.
+/// The session, shared by callers and the watchdog.
 pub(crate) struct Shared {
     session: Mutex<Session>,
-    /// Counts the uses of the session: one that lasts hangs, many short ones do not.
+    /// Counts the uses of the session, to tell one long use (a hang) from many short ones.
     turn: AtomicU64,
     emergency: Arc<Emergency>,
 }
@@ -165,11 +166,11 @@ impl Shared {
         }
     }
 
-    /// The session, as soon as it is free.
+    /// Waits until the session is free and returns it.
     ///
     /// # Errors
-    /// When another thread has had it for [`HANG`]: the output was then set to zero, or the error
-    /// says that it could not be.
+    /// When another thread has held it for longer than [`HANG`]. The output was then set to zero,
+    /// or the error says that this failed.
     pub(crate) fn lock(&self) -> Result<MutexGuard<'_, Session>, Hung> {
         let mut turn = self.turn.load(Ordering::SeqCst);
         let mut since = Instant::now();

@@ -29,7 +29,7 @@ fn what_comes_out_is_what_was_written() {
     assert_eq!((status.frames_written, status.frames_played), (9_000, 9_000));
     assert_eq!((status.underruns, status.peak), (0, f64::from(peak(&samples))));
     drop(device);
-    // One zero when it was opened, half a buffer (200 ms) of zeros, the samples, zeros.
+    // Expected: one zero at opening, half a buffer (200 ms) of zeros, the samples, zeros.
     let recorded = card.recorded();
     let (before, rest) = recorded.split_at(1 + 2_000);
     let (played, after) = rest.split_at(samples.len());
@@ -65,8 +65,8 @@ fn a_stream_that_is_not_zero_at_its_ends_is_led_there() {
     assert_eq!((recorded[0], recorded[recorded.len() - 1]), (0.0, 0.0));
 }
 
-/// What is written waits no longer than `buffer_ms`, also behind a ramp that is longer. A machine
-/// that is busy for 20 ms lets the stream run dry, which is tried again.
+/// Samples wait no longer than `buffer_ms`, even after a ramp that is longer than the buffer. On a
+/// busy machine, a pause of 20 ms lets the stream run dry; then the test tries again.
 #[test]
 fn a_short_buffer_is_a_short_wait() {
     let played = (0..10).find_map(|_| short_buffer().ok());
@@ -108,7 +108,7 @@ fn no_sample_beyond_the_limit_comes_out() {
     }
 }
 
-/// Largest magnitude of the mean over any 100 ms, volts at the display.
+/// Returns the largest magnitude of the mean over any 100 ms, volts at the display.
 fn direct_v(card: &Card) -> f64 {
     let recorded = card.recorded();
     let window = (0.1 * RATE_HZ) as usize;
@@ -118,15 +118,15 @@ fn direct_v(card: &Card) -> f64 {
     GAIN * means.fold(0.0, |most, mean| mean.abs().max(most))
 }
 
-/// A mean over 100 ms beyond the limit is not put out, whatever the blocks: the output goes to zero
-/// with an error.
+/// A mean over 100 ms beyond the limit is not output, whatever the block size. The output goes to
+/// zero with an error.
 #[test]
 fn no_direct_voltage_beyond_the_limit_comes_out() {
     for (volts, limit_v, block) in
         [(100.0, "1", 256), (-100.0, "1", 300), (20.0, "5", 4_000), (1.2, "1", 500)]
     {
         let card = Card::new();
-        // A tone that has no mean, and then one that has.
+        // A tone without a mean, followed by a tone with one.
         let tone = |i: usize| (40.0 * (TAU * i as f64 / 8.0).sin()) as f32;
         let mut samples: Vec<f32> = (0..8_000).map(tone).collect();
         samples.extend((8_000..20_000).map(|i| tone(i) + volts));
@@ -143,15 +143,15 @@ fn no_direct_voltage_beyond_the_limit_comes_out() {
         println!("{volts} V: {direct_v:.3} V came out");
         assert!(direct_v <= limit * (1.0 + 1e-5), "{direct_v}");
     }
-    // At the limit itself it comes out.
+    // A mean equal to the limit is output.
     let card = Card::new();
     let mut device = card.open(&[("dc_limit_v", "2")]).unwrap();
     device.write(&[2.0; 9_000], LONG).unwrap();
     device.finish().unwrap();
 }
 
-/// A player that ends in the middle of a carrier leaves no direct voltage on the way to zero, and
-/// neither does one that begins there.
+/// A player that begins or ends in the middle of a carrier causes no direct voltage on the way to
+/// zero.
 #[test]
 fn a_carrier_that_is_cut_is_led_to_zero_as_a_carrier() {
     for phase in [0.0, 0.7, 2.0] {
@@ -170,7 +170,7 @@ fn a_carrier_that_is_cut_is_led_to_zero_as_a_carrier() {
     }
 }
 
-/// A rate at which the carrier is none, and a buffer that delays the zero, are refused.
+/// Refused: a rate too low for the carrier, and a buffer that delays the zero.
 #[test]
 fn what_endangers_a_finger_is_refused() {
     for rate_hz in [7_000.0, 3_500.0, 14_000.0, 17_499.0] {
@@ -192,7 +192,7 @@ fn a_hung_writer_ends_at_zero() {
     let card = Card::new();
     let mut device = card.open(&[("buffer_ms", "50")]).unwrap();
     device.write(&[100.0; 800], LONG).unwrap();
-    // Without a call, the device's own thread sees the buffer run dry.
+    // Without any call, the device's own thread notices that the buffer ran dry.
     let waited = (0..2_000).any(|_| {
         std::thread::sleep(Duration::from_millis(10));
         card.recorded().ends_with(&[2.0, 0.0])
@@ -206,8 +206,8 @@ fn a_hung_writer_ends_at_zero() {
     assert!(device.finish().is_err());
 }
 
-/// A clock that stands still would leave the last voltage: the device's own thread writes zero,
-/// whether or not samples are written.
+/// A clock that stands still would leave the last voltage at the output. The device's own thread
+/// writes zero, whether or not samples are written.
 #[test]
 fn a_clock_that_stands_still_ends_at_zero() {
     let card = Card::new();
@@ -312,7 +312,7 @@ fn gain_and_limit_have_no_default() {
     }
 }
 
-/// Volts at the display: a carrier of 7 kHz under an envelope that begins and ends at zero.
+/// Returns volts at the display: a 7 kHz carrier under an envelope that begins and ends at zero.
 fn burst(frames: usize) -> Vec<f32> {
     let at = |i: usize| {
         let envelope = (0.5 * TAU * i as f64 / (frames - 1) as f64).sin().max(0.0);

@@ -1,5 +1,5 @@
-//! Every fault at every call of the driver: the output ends at zero, or an error says that it may
-//! not.
+//! Injects every fault at every driver call. The output must end at zero, or an error must say that
+//! it may not be at zero.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod simulated;
@@ -10,7 +10,7 @@ use htex_device::DeviceError;
 use simulated::Card;
 
 const LONG: Duration = Duration::from_secs(20);
-/// The functions of the driver that are called while a device is open.
+/// The driver functions that are called while a device is open.
 const FUNCTIONS: [&str; 13] = [
     "DAQmxCreateTask",
     "DAQmxCreateAOVoltageChan",
@@ -28,7 +28,8 @@ const FUNCTIONS: [&str; 13] = [
 ];
 const NOT_ZERO: &str = "could not be set to zero: switch the amplifier off";
 
-/// A burst that ends at two volts of the card: the device must bring it to zero.
+/// Plays a burst that ends at two volts of the card, so that the device has to bring the output to
+/// zero.
 fn play(card: &Card) -> Result<(), DeviceError> {
     play_with("50", card)
 }
@@ -41,7 +42,7 @@ fn play_with(buffer_ms: &str, card: &Card) -> Result<(), DeviceError> {
     device.finish()
 }
 
-/// The same, given up in the middle.
+/// Plays the same burst, but drops the device in the middle.
 fn abandon(card: &Card) {
     if let Ok(mut device) = card.open(&[("buffer_ms", "50"), ("ramp_ms", "5")]) {
         let _ = device.write(&[100.0; 900], LONG);
@@ -52,7 +53,7 @@ fn ends_at_zero(card: &Card) -> bool {
     card.recorded().last().is_none_or(|volts| *volts == 0.0)
 }
 
-/// Number of calls of each function without a fault.
+/// Counts the calls of each function in a run without a fault.
 fn calls(run: impl Fn(&Card)) -> Vec<(&'static str, u64)> {
     let card = Card::new();
     card.set("fault", "none:1:error=0");
@@ -60,7 +61,7 @@ fn calls(run: impl Fn(&Card)) -> Vec<(&'static str, u64)> {
     FUNCTIONS.map(|function| (function, card.calls(function))).to_vec()
 }
 
-/// The first calls, some in the middle, and the last ones.
+/// Selects the first calls, some in the middle, and the last ones.
 fn some(count: u64) -> impl Iterator<Item = u64> {
     (1..=count + 1).filter(move |call| *call <= 4 || *call + 3 >= count || call % 16 == 0)
 }
@@ -81,11 +82,11 @@ fn every_fault_at_every_call_ends_at_zero_or_says_so() {
                 let played = play(&card);
                 let told = played.as_ref().is_err_and(|error| error.to_string().contains(NOT_ZERO));
                 assert!(ends_at_zero(&card) || told, "{fault}: {played:?}");
-                // A warning without cause is wrong, except where the last write of zero failed to
-                // report success.
+                // A warning without cause is wrong, except if the last write of zero succeeded but
+                // reported a failure.
                 tried += 1;
                 said += usize::from(told);
-                // A single fault never leaves a voltage, except on a card that was removed.
+                // A single fault never leaves a voltage, unless the card was removed.
                 assert!(!lasts.is_empty() || *kind == "unplug" || ends_at_zero(&card), "{fault}");
             }
         }
@@ -109,7 +110,7 @@ fn a_device_that_is_dropped_ends_at_zero_whatever_fails_once() {
     }
 }
 
-/// A driver that hangs for a while in one call: late, and at zero.
+/// If the driver hangs in one call for a while, the output is at zero, only late.
 #[test]
 fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
     for function in FUNCTIONS {
@@ -120,9 +121,9 @@ fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
     }
 }
 
-/// A call of a running stream that does not return: the output is at zero long before it does,
-/// without the session that the call holds; when it returns, the stream ends and puts out nothing
-/// more.
+/// If a call of a running stream does not return, the output is at zero long before it does,
+/// without the session that the call holds. When the call returns, the stream ends and outputs
+/// nothing more.
 #[test]
 fn a_call_that_does_not_return_is_overtaken_by_zero() {
     let begins = std::time::Instant::now;
@@ -137,7 +138,7 @@ fn a_call_that_does_not_return_is_overtaken_by_zero() {
         card.set("fault", &format!("{function}:6:hang=4000"));
         std::thread::scope(|scope| {
             let begun = begins();
-            // A buffer that does not run dry on a busy machine.
+            // A buffer large enough not to run dry on a busy machine.
             let play = scope.spawn(|| play_with("380", &card));
             let is_felt = || card.recorded().iter().any(|volts| *volts != 0.0);
             while !(is_felt() && ends_at_zero(&card)) {

@@ -1,4 +1,5 @@
-//! Analog input through the simulated card: every sample once, and errors that have names.
+//! Analog input through the simulated card: every sample arrives once, and errors have the right
+//! type.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod simulated;
@@ -22,13 +23,13 @@ const FUNCTIONS: [&str; 9] = [
     "DAQmxReadAnalogF64",
 ];
 
-/// Rows of six inputs that tell their place, within ±5 V.
+/// Returns rows of six inputs whose values encode their position, within ±5 V.
 fn rows(count: usize) -> Vec<Vec<f64>> {
     let at = |row: usize, input: usize| ((row * 7 + input) % 1_000) as f64 / 200.0;
     (0..count).map(|row| (0..6).map(|input| at(row, input)).collect()).collect()
 }
 
-/// Reads so many frames in uneven pieces.
+/// Reads `frames` frames in pieces of uneven length.
 fn read(source: &mut dyn Source, frames: usize) -> Result<Vec<f64>, DeviceError> {
     let width = source.channels().len();
     let mut all = Vec::new();
@@ -168,7 +169,7 @@ fn every_fault_at_every_call_is_an_error_or_harms_no_sample() {
                 card.put_in(&rows);
                 card.set("fault", &format!("{function}:{call}:{kind}"));
                 let read = run(&card);
-                // A task that ends is cleared; what that returns changes no sample.
+                // Clearing a task comes after its last sample, so an error there changes no sample.
                 let is_end = function == "DAQmxClearTask";
                 match read {
                     Ok(samples) => assert!(

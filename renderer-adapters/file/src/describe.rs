@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use htex_device::{Descriptor, FromScene, Quantity, Setting, SettingKind};
 
-/// Largest limit, volts, and largest full scale, in the quantity's unit.
+/// Largest allowed limit (volts), and largest full scale in the quantity's unit.
 const MOST: f64 = 1_000.0;
 
 pub(crate) static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {

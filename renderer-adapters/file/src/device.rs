@@ -1,4 +1,4 @@
-//! The open device.
+//! The open file device.
 
 use std::time::Duration;
 
@@ -34,7 +34,7 @@ impl FileDevice {
         Ok(Self { capabilities: plan.capabilities(), path, open: Some(open), frames: 0, peak: 0.0 })
     }
 
-    /// After an error no file is left: the temporary file is removed.
+    /// Removes the temporary file, so that no file is left after an error.
     fn abort(&mut self, error: DeviceError) -> DeviceError {
         self.open = None;
         error

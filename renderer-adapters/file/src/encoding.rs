@@ -1,9 +1,9 @@
-//! Encodings of samples in a file.
+//! Encodings of the samples in a file.
 
-/// The encoding of a sample.
+/// How a sample is encoded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Encoding {
-    /// The quantity itself.
+    /// The quantity itself, as a 32-bit float.
     F32,
     /// A whole number of steps, in two's complement.
     Integer {
@@ -15,13 +15,13 @@ pub(crate) enum Encoding {
 }
 
 impl Encoding {
-    /// Integers of `bits` bits; `full_scale` is 2^(bits-1) steps.
+    /// Encodes as integers of `bits` bits, where `full_scale` is 2^(bits-1) steps.
     pub(crate) fn integer(bits: u16, full_scale: f64) -> Self {
         let steps = f64::from(1_i32 << (bits - 1));
         Self::Integer { bits, step: full_scale / steps }
     }
 
-    /// Bytes per sample.
+    /// Returns the number of bytes per sample.
     pub(crate) fn bytes(self) -> u16 {
         match self {
             Self::F32 => 4,
@@ -29,7 +29,7 @@ impl Encoding {
         }
     }
 
-    /// The step, and the largest magnitude that both signs can encode.
+    /// Returns the step, and the largest magnitude that can be encoded with either sign.
     pub(crate) fn step_and_limit(self) -> Option<(f64, f64)> {
         match self {
             Self::F32 => None,
@@ -41,8 +41,8 @@ impl Encoding {
     }
 }
 
-/// The nearest whole number of steps; ties go to the even one. The caller has checked that it is
-/// within the range of the encoding.
+/// Rounds to the nearest whole number of steps; ties go to the even one. The caller has checked
+/// that the result is within the range of the encoding.
 pub(crate) fn code(sample: f32, step: f64) -> i32 {
     (f64::from(sample) / step).round_ties_even() as i32
 }
@@ -61,7 +61,7 @@ mod tests {
     }
 
     proptest! {
-        /// Samples within the limit have a code, and a quantised sample keeps its code.
+        /// Every sample within the limit has a code, and a quantised sample keeps its code.
         #[test]
         fn every_sample_within_the_limit_has_a_code(
             full_scale in 1e-6..1e3_f64, at in -1.0..=1.0_f64, bits in prop_oneof![Just(16), Just(24)]

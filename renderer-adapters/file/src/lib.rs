@@ -1,11 +1,11 @@
-//! A device that is a file: the mechanical quantity at the finger, or the drive of a display, as
-//! WAV, CSV, NPY or raw samples.
+//! A device that writes a file: the mechanical quantity at the finger, or the drive signal of a
+//! display, as WAV, CSV, NPY or raw samples.
 //!
-//! Samples are written as fast as they are made, through a buffer of fixed size, into a temporary
-//! file beside the named one, which is renamed when the device is finished. A device that is
-//! dropped before leaves no file.
+//! Samples are written as fast as they are generated, through a buffer of fixed size, into a
+//! temporary file next to the named one. Finishing the device renames the temporary file. A device
+//! that is dropped before that leaves no file.
 //!
-//! A WAV file is limited to 4 GiB, with an error: few programs read RF64.
+//! A WAV file larger than 4 GiB is an error. RF64 would allow it, but few programs read RF64.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod describe;
@@ -22,7 +22,7 @@ use plan::Plan;
 
 htex_device::export_device!(FileAdapter, symbols: "plugin");
 
-/// The adapter `org.htex.file`.
+/// The file adapter, `org.htex.file`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FileAdapter;
 
@@ -49,11 +49,11 @@ impl Adapter for FileAdapter {
     }
 }
 
-/// Opens a WAV file of sound, of 32-bit floats, with a channel for each factor: what the channel
-/// plays of each sample.
+/// Opens a WAV file of sound, with 32-bit floats and one channel for each factor. A channel
+/// contains each sample times its factor.
 ///
 /// # Errors
-/// When the rate is none of a WAV file, or the file cannot be made.
+/// When a WAV file cannot have this rate, or the file cannot be created.
 pub fn open_channels(
     path: std::path::PathBuf,
     factors: &[f32],

@@ -1,4 +1,4 @@
-//! The file that the settings ask for, and whether its kind supports it.
+//! The file that the settings ask for, and whether its format supports them.
 
 use std::path::{Path, PathBuf};
 
@@ -8,13 +8,13 @@ use crate::encoding::Encoding;
 
 /// Lowest and highest rate, hertz.
 const RATES_HZ: (f64, f64) = (100.0, 1_000_000.0);
-/// The rate of friction recordings, hertz.
+/// The usual rate of friction recordings, hertz.
 const USUAL_RATE_HZ: f64 = 20_000.0;
-/// Samples per period of a carrier.
+/// Number of samples per period of a carrier.
 const PER_PERIOD: f64 = 10.0;
 const BLOCK_FRAMES: u32 = 4_096;
 
-/// Kinds of file.
+/// File formats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Form {
     Wav,
@@ -23,14 +23,15 @@ pub(crate) enum Form {
     Raw,
 }
 
-/// A file to be written.
+/// A file to write.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Plan {
     pub(crate) path: PathBuf,
     pub(crate) form: Form,
     pub(crate) encoding: Encoding,
     pub(crate) quantity: Quantity,
-    /// What each channel plays of a sample; only a WAV file has several.
+    /// The factor of each channel: a channel contains each sample times its factor. Only a WAV file
+    /// has several channels.
     pub(crate) factors: Vec<f32>,
     /// Largest magnitude, in the quantity's unit.
     limit: Option<f64>,
@@ -60,7 +61,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// A WAV file of sound with a channel for each factor.
+    /// Plans a WAV file of sound with one channel for each factor.
     pub(crate) fn channels(path: PathBuf, factors: Vec<f32>) -> Self {
         Self {
             path,
@@ -89,7 +90,7 @@ impl Plan {
         }
     }
 
-    /// The rate, if files of this kind support it.
+    /// Checks that this file format supports the rate.
     pub(crate) fn check_rate(&self, rate_hz: f64) -> Result<(), DeviceError> {
         let rates = self.capabilities().rates;
         if !rates.has(rate_hz) {
@@ -137,7 +138,7 @@ fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
     }
 }
 
-/// A setting that applies to voltages only; 0 means none.
+/// Reads a setting that applies only to voltages; 0 means that it is not set.
 fn of_voltage(
     settings: &Settings,
     quantity: Quantity,

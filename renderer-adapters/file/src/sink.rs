@@ -1,4 +1,4 @@
-//! Streaming writers of the four kinds of file.
+//! Streaming writers for the four file formats.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -9,16 +9,16 @@ use htex_device::Quantity;
 use crate::encoding::{Encoding, code};
 use crate::plan::{Form, Plan};
 
-/// Bytes gathered before they are written.
+/// Number of bytes that are buffered before they are written.
 const BUFFER: usize = 1 << 16;
-/// Most bytes of samples a WAV file can hold: its sizes have 32 bits, and headers take some.
+/// Maximum number of bytes of samples in a WAV file: its sizes have 32 bits, and headers take some.
 const MAX_WAV_BYTES: u64 = u32::MAX as u64 - 128;
 
-/// A file that is being written.
+/// A writer of a file.
 pub(crate) struct Sink {
     form: Form,
     encoding: Encoding,
-    /// What each channel of a WAV file plays of a sample.
+    /// The factor of each channel of a WAV file: a channel contains each sample times its factor.
     factors: Vec<f32>,
     rate_hz: f64,
     frames: u64,
@@ -31,7 +31,7 @@ enum Out {
 }
 
 impl Sink {
-    /// Writes the header.
+    /// Creates the writer and writes the header.
     pub(crate) fn new(file: File, plan: &Plan, rate_hz: f64) -> io::Result<Self> {
         let mut file = BufWriter::with_capacity(BUFFER, file);
         let out = match plan.form {
@@ -59,7 +59,7 @@ impl Sink {
         })
     }
 
-    /// Writes samples, which the caller has checked.
+    /// Writes samples that the caller has checked.
     pub(crate) fn write(&mut self, samples: &[f32]) -> io::Result<()> {
         let after = self.frames + samples.len() as u64;
         let (form, encoding, rate_hz) = (self.form, self.encoding, self.rate_hz);
@@ -100,7 +100,7 @@ impl Sink {
 fn wav_spec(encoding: Encoding, channels: u16, rate_hz: f64) -> WavSpec {
     WavSpec {
         channels,
-        // A whole number of at most a million, by `Plan::check_rate`.
+        // A whole number of at most a million, because `Plan::check_rate` has passed.
         sample_rate: rate_hz as u32,
         bits_per_sample: 8 * encoding.bytes(),
         sample_format: match encoding {
@@ -129,7 +129,7 @@ fn write_wav(
     }
 }
 
-/// Whether a WAV file can hold so many samples, of which there are `rate_hz` a second.
+/// Checks that a WAV file can hold this number of samples at `rate_hz`.
 fn check_wav_size(samples: u64, encoding: Encoding, rate_hz: f64) -> io::Result<()> {
     let most = MAX_WAV_BYTES / u64::from(encoding.bytes());
     if samples <= most {
@@ -141,7 +141,7 @@ fn check_wav_size(samples: u64, encoding: Encoding, rate_hz: f64) -> io::Result<
     )))
 }
 
-/// Writes samples one after the other, little-endian.
+/// Writes the samples one after the other, little-endian.
 fn write_bytes(out: &mut impl Write, encoding: Encoding, samples: &[f32]) -> io::Result<()> {
     let mut all = samples.iter();
     match encoding {
@@ -153,7 +153,7 @@ fn write_bytes(out: &mut impl Write, encoding: Encoding, samples: &[f32]) -> io:
     }
 }
 
-/// The header of an NPY of `frames` samples; its 128 bytes are enough for any number.
+/// Returns the header of an NPY file of `frames` samples. Its 128 bytes are enough for any number.
 fn npy_header(encoding: Encoding, frames: u64) -> Vec<u8> {
     let kind = match encoding {
         Encoding::F32 => "f4",

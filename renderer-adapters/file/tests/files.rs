@@ -1,4 +1,4 @@
-//! Files, read back by other readers.
+//! Reads files back with other readers.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;
@@ -28,9 +28,10 @@ fn open(
     adapter.open(&settings(path, given)?, &format)
 }
 
-/// Writes samples in uneven blocks; returns the file, which did not exist before its end.
+/// Writes samples in uneven blocks and returns the file. The file must not exist before the device
+/// is finished.
 fn written(adapter: &dyn Adapter, path: &Path, given: Given<'_>, samples: &[f32]) -> Vec<u8> {
-    // An earlier one may be there or not.
+    // A file from an earlier run may exist.
     let _ = fs::remove_file(path);
     let mut device = open(adapter, path, given, 8_000.0).unwrap();
     for block in samples.chunks(37) {
@@ -156,7 +157,7 @@ fn what_cannot_be_had_is_refused() {
     assert!(matches!(error, DeviceError::File { .. }), "{error}");
 }
 
-/// Neither a dropped device nor one that failed leaves anything behind; an old file stays.
+/// Neither a dropped device nor a failed one leaves anything behind. An old file stays.
 #[test]
 fn without_an_end_nothing_is_left() {
     let folder = tempfile::tempdir().unwrap();
@@ -178,7 +179,7 @@ fn without_an_end_nothing_is_left() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
-/// Through the C functions the same bytes come out, and the same errors.
+/// The C functions produce the same bytes and the same errors.
 #[test]
 fn the_abi_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();

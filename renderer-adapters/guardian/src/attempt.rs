@@ -1,4 +1,5 @@
-//! Attempts to set a display's output to zero without its guardian: opening the device does it.
+//! Attempts to set a display's output to zero without its guardian. Opening the device sets it to
+//! zero.
 
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,7 +10,7 @@ use crate::decision::By;
 use crate::message::{Answer, OPEN, Opening};
 use crate::worker::{converse, thread};
 
-/// A display and the helper program that can hold it.
+/// A display, and the helper program that can hold it.
 pub(crate) struct Display {
     helper: Mutex<Command>,
     known: KnownDevice,
@@ -38,7 +39,7 @@ impl Display {
         helper.spawn()
     }
 
-    /// The first message to the helper program.
+    /// Returns the first message to the helper program.
     pub(crate) fn opening(&self) -> Vec<u8> {
         let opening = Opening {
             device: self.known.descriptor().id.clone(),
@@ -50,7 +51,7 @@ impl Display {
     }
 }
 
-/// The helper program for a device, out of reach of the terminal's keys.
+/// Prepares the helper program for a device, out of reach of the terminal's keys.
 fn prepared(mut command: Command, known: &KnownDevice) -> Command {
     if let Origin::Library(path) = &known.origin {
         command.arg("--device-file").arg(path);
@@ -63,11 +64,12 @@ fn prepared(mut command: Command, known: &KnownDevice) -> Command {
     command
 }
 
-/// An attempt that runs in a thread of its own.
+/// An attempt that runs in its own thread.
 pub(crate) struct Attempt(Arc<Mutex<Option<Child>>>);
 
 impl Attempt {
-    /// Begins, and tells the result once: nothing if the output is at zero, otherwise the reason.
+    /// Starts the attempt. It reports its result once: nothing if the output is at zero, otherwise
+    /// the reason.
     pub(crate) fn start(
         display: &Arc<Display>,
         by: By,
@@ -78,7 +80,7 @@ impl Attempt {
         let run = move || match by {
             By::Process => {
                 told(by_process(&display, &child));
-                // The end of its pipes ends it.
+                // The helper ends when its pipes are closed.
                 let child = child.lock().unwrap_or_else(PoisonError::into_inner).take();
                 let _ = child.map(|mut child| child.wait());
             }
@@ -90,14 +92,14 @@ impl Attempt {
         Self(process)
     }
 
-    /// Ends the process, if there is one.
+    /// Kills the attempt's process, if there is one.
     pub(crate) fn kill(&self) {
         let mut child = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let _ = child.as_mut().map(Child::kill);
     }
 }
 
-/// A helper process opens the device.
+/// Attempts zero by a helper process, which opens the device.
 fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), String> {
     let mut started = display.start().map_err(|error| error.to_string())?;
     let pipes = started.stdin.take().zip(started.stdout.take());
@@ -113,7 +115,7 @@ fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), Str
     }
 }
 
-/// This process opens the device.
+/// Attempts zero by opening the device in this process.
 fn by_player(display: &Display) -> Result<(), String> {
     let opened = display.known.adapter.open(&display.settings, &display.format);
     opened.map(drop).map_err(|error| error.to_string())

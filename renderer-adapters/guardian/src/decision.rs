@@ -1,54 +1,55 @@
-//! What the player decides about its guardian: how long it waits, when it kills, how it gets the
-//! output to zero, and what it says.
+//! The player's decisions about its guardian: how long it waits, when it kills, how it gets the
+//! output to zero, and what it prints.
 //!
-//! This is a state machine without clock, process or pipe. The program runs it in `src/worker.rs`;
-//! the model checker (`cargo xtask prove zero`) runs the same code against a model of the guardian,
-//! the helpers, the card and the signals.
+//! This is a state machine without a clock, process or pipe. The program runs it in
+//! `src/worker.rs`. The model checker (`cargo xtask prove zero`) runs the same code against a model
+//! of the guardian, the helpers, the card and the signals.
 //!
-//! A guardian that does not answer in time gets SIGKILL, which also ends a process that is stopped.
-//! Then attempts follow, one at a time, until one confirms zero: a helper process, then a thread of
-//! the player itself (the helper program may be gone), then a process again. Processes come first
-//! because a call of a driver that does not return takes a process with it, not the player.
+//! A guardian that does not answer in time gets SIGKILL, which also ends a stopped process. Then
+//! attempts follow, one at a time, until one confirms zero. The first is made by a helper process,
+//! the next by a thread of the player itself (because the helper program may be missing), the next
+//! by a process again. Processes come first because a driver call that does not return blocks only
+//! the process, not the player.
 
 use std::time::Duration;
 
-/// Time from the detection to the first sentence, if zero is not confirmed before.
+/// Time from the detection to the first printed warning, unless zero is confirmed before.
 pub const CONFIRM: Duration = Duration::from_millis(500);
-/// Time between two sentences.
+/// Time between two printed warnings.
 pub const EVERY: Duration = Duration::from_millis(1_000);
-/// What a request itself may take; the write of a longer wait is sent as several requests.
+/// Longest duration of a request itself. A write that waits longer is sent as several requests.
 pub const REQUEST: Duration = Duration::from_millis(100);
-/// What opening a device may take: a driver may load for seconds.
+/// Longest time for opening a device, because a driver may take seconds to load.
 pub const OPENING: Duration = Duration::from_millis(10_000);
-/// What the guardian may take beyond the request, the buffer and the ramp.
+/// Additional time for the guardian beyond the request, the buffer and the ramp.
 pub const GRACE: Duration = Duration::from_millis(500);
-/// Longest wait for the end of a guardian that was killed: its tasks hold the output until then.
+/// Longest wait for a killed guardian to end. Its tasks hold the output until then.
 const GONE: Duration = Duration::from_millis(100);
-/// Pause before an attempt is repeated, until the first sentence; after it, [`EVERY`].
+/// Pause before an attempt is repeated, until the first printed warning; [`EVERY`] after it.
 const RETRY: Duration = Duration::from_millis(100);
-/// Longest attempt: a driver may load for seconds.
+/// Longest duration of an attempt, because a driver may take seconds to load.
 const ATTEMPT: Duration = Duration::from_millis(5_000);
 
-/// Longest waits for one device.
+/// The longest waits for one device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Waits {
-    /// Longest time from the last sample to zero when all is well: the device's buffer and ramp.
+    /// Longest time from the last sample to zero if nothing fails: the device's buffer and ramp.
     pub to_zero: Duration,
 }
 
 impl Waits {
-    /// D: longest wait for the answer to a request.
+    /// Returns the longest wait for the answer to a request, called D.
     pub fn answer(self) -> Duration {
         self.to_zero + REQUEST + GRACE
     }
 
-    /// Longest wait for the answer to the opening.
+    /// Returns the longest wait for the answer to the opening request.
     pub fn opening(self) -> Duration {
         self.to_zero + OPENING + GRACE
     }
 
-    /// Longest wait for the answer when the device is dropped: with [`CONFIRM`] after it, dropping
-    /// takes at most D.
+    /// Returns the longest wait for the answer when the device is dropped. Together with the
+    /// [`CONFIRM`] that follows, dropping takes at most D.
     pub fn abort(self) -> Duration {
         self.answer().saturating_sub(CONFIRM)
     }
@@ -63,55 +64,55 @@ pub enum By {
     Player,
 }
 
-/// What happens to the player.
+/// An event that the player reacts to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Event {
-    /// A caller sent a request and waits so long for its answer.
+    /// A caller sent a request and waits this long for its answer.
     Asked(Duration),
     /// The guardian answered.
     Answered,
-    /// The guardian's pipe ended, or carried something that is no answer.
+    /// The guardian's pipe ended, or carried an invalid answer.
     PipeEnded,
     /// The guardian's process is gone.
     GuardianGone,
-    /// The caller lets go of the device and waits so long for the guardian's end.
+    /// The caller drops the device and waits this long for the guardian to end.
     Closing(Duration),
     /// An attempt confirmed that the output is at zero.
     Zero,
-    /// The attempt of this number has ended without zero.
+    /// The attempt with this number has ended without reaching zero.
     Failed(u32),
     /// Time has passed.
     Tick,
 }
 
-/// What the player does then.
+/// An action of the player.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
-    /// The caller gets the guardian's answer.
+    /// Give the guardian's answer to the caller.
     GiveAnswer,
-    /// The caller gets the error that the device is closed.
+    /// Give the caller the error that the device is closed.
     RefuseClosed,
-    /// The caller gets the error that the guardian failed and that the output is at zero.
+    /// Give the caller the error that the guardian failed and that the output is at zero.
     GiveZero,
-    /// The caller gets the error that the guardian failed and that the output may not be at zero.
+    /// Give the caller the error that the guardian failed and that the output may not be at zero.
     GiveNotZero,
-    /// The pipe to the guardian is closed, which ends it.
+    /// Close the pipe to the guardian, which ends it.
     ClosePipe,
-    /// The caller may let go.
+    /// Let the caller drop the device.
     LetGo,
-    /// The guardian gets SIGKILL.
+    /// Send SIGKILL to the guardian.
     KillGuardian,
-    /// An attempt of this number begins.
+    /// Start the attempt with this number.
     Start(u32, By),
-    /// The attempt of this number is given up; if it is a process, it gets SIGKILL.
+    /// Give up the attempt with this number. If it is a process, send SIGKILL to it.
     GiveUp(u32),
-    /// The sentence "switch the amplifier off" is printed.
+    /// Print the warning "switch the amplifier off".
     Say,
-    /// After such a sentence: it is printed that the output is at zero.
+    /// After such a warning, print that the output is at zero.
     SayZero,
 }
 
-/// Why the guardian was given up.
+/// Why the player gave the guardian up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Why {
     /// Its pipe ended.
@@ -120,13 +121,13 @@ pub enum Why {
     Silent(Duration),
 }
 
-/// The player's decisions.
+/// The player as a state machine: it makes the decisions of this module.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Player {
     state: State,
     /// Number of the last attempt.
     attempt: u32,
-    /// The attempt that a thread of the player still makes, which nothing can end.
+    /// The attempt that a thread of the player is still making. Nothing can end it.
     own: Option<u32>,
     last: By,
     why: Option<Why>,
@@ -144,14 +145,14 @@ enum State {
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct Rescue {
     step: Step,
-    /// When the next sentence is due.
+    /// When the next warning is due.
     say_at: Duration,
     has_said: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 enum Step {
-    /// Waits for the end of the guardian.
+    /// Waits for the guardian's process to end.
     Killing {
         until: Duration,
     },
@@ -172,7 +173,7 @@ impl Default for Player {
 }
 
 impl Player {
-    /// What to do about an event; `now` is the time since any fixed moment.
+    /// Returns the actions for an event. `now` is the time since any fixed moment.
     pub fn on(&mut self, event: Event, now: Duration) -> Vec<Action> {
         let mut actions = match event {
             Event::Asked(patience) => self.asked(patience, now),
@@ -188,7 +189,7 @@ impl Player {
         actions
     }
 
-    /// When [`Event::Tick`] is due, if nothing happens before.
+    /// Returns when [`Event::Tick`] is due, unless another event comes before.
     pub fn wakes_at(&self) -> Option<Duration> {
         match &self.state {
             State::Idle | State::Closed => None,
@@ -197,7 +198,7 @@ impl Player {
         }
     }
 
-    /// Whether the end of the guardian's process matters now.
+    /// Whether the player currently waits for the guardian's process to end.
     pub fn waits_for_end(&self) -> bool {
         let is_killing = |rescue: &Rescue| matches!(rescue.step, Step::Killing { .. });
         match &self.state {
@@ -207,18 +208,18 @@ impl Player {
         }
     }
 
-    /// Whether nothing more will be done.
+    /// Whether the player will do nothing more.
     pub fn is_over(&self) -> bool {
         self.state == State::Closed
     }
 
-    /// Why the guardian was given up, if it was.
+    /// Returns why the player gave the guardian up, if it did.
     pub fn why(&self) -> Option<Why> {
         self.why
     }
 
-    /// The same player by a clock that is set back. The model checker keeps its clock at one time,
-    /// so that worlds that differ only in their time are one.
+    /// Moves all times of the player back by `by`. The model checker keeps its clock at a fixed
+    /// time in this way, so that worlds that differ only in their time become equal.
     pub fn set_back(&mut self, by: Duration) {
         let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
         match &mut self.state {
@@ -326,7 +327,7 @@ impl Player {
         vec![]
     }
 
-    /// What is due by the time.
+    /// Returns the actions that are due at this time.
     fn due(&mut self, now: Duration) -> Vec<Action> {
         match &mut self.state {
             State::Waiting { since, until } if now >= *until => {
@@ -370,8 +371,8 @@ impl Player {
         actions
     }
 
-    /// A number that no attempt has which may still be heard of; they are few, so that the model is
-    /// finite.
+    /// Returns a number that no attempt has which may still report a result. There are only a few
+    /// numbers, so that the model stays finite.
     fn next_number(&self) -> u32 {
         let is_free = |number: &u32| *number != self.attempt && Some(*number) != self.own;
         (1..=3).find(is_free).unwrap_or(1)

@@ -1,4 +1,4 @@
-//! The app's side: a device whose samples go to another process.
+//! The app's side: a device that passes its samples to another process.
 
 use std::fmt::Display as Show;
 use std::process::Command;
@@ -15,38 +15,38 @@ use crate::decision::{REQUEST, Waits};
 use crate::message::{ABORT, Answer, FINISH, MOST_SAMPLES, OPEN, STATUS, WRITE};
 use crate::worker::{Message, Reply, Worker};
 
-/// Settings of displays that state how long the output takes to zero, milliseconds.
+/// The settings in which a display states how long its output takes to reach zero, milliseconds.
 const BUFFER_SETTING: &str = "buffer_ms";
 const RAMP_SETTING: &str = "ramp_ms";
-/// Buffer and ramp of a display whose settings state neither, together.
+/// Total duration of buffer and ramp for a display whose settings state neither.
 const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
-/// Longest buffer or ramp that is waited for.
+/// Longest buffer or ramp that the app waits for, milliseconds.
 const MOST_MS: f64 = 10_000.0;
 
-/// Whether a device's output may hurt when it keeps its last value.
+/// Whether a device's output could cause harm if it kept its last value.
 pub fn is_wanted(able: &Capabilities) -> bool {
     able.paced && able.quantity == Quantity::DisplayVoltage
 }
 
-/// Returns the usual helper program: the command `htex guard`, found as a shell finds it.
+/// Returns the usual helper program: the command `htex guard`, looked up in the search path.
 pub fn htex() -> Command {
     let mut command = Command::new("htex");
     command.arg("guard");
     command
 }
 
-/// Returns the error that no helper program can be started.
+/// Returns the error that no helper program could be started.
 pub fn not_started(error: impl Show) -> DeviceError {
     DeviceError::Told(format!("no process to hold the output can be started: {error}"))
 }
 
-/// A device that another process holds.
+/// A device held by another process, the guardian.
 ///
-/// Each call waits for that process at most buffer + ramp + 0.6 s (10 s more to open it; a write
-/// also its own timeout), and dropping the device at most as long. Then the process is killed, and
-/// a second one sets the output to zero. If that is not confirmed 0.5 s later, the call returns an
-/// error that says so, and a thread prints every second that the amplifier is to be switched off,
-/// until zero is confirmed ([`crate::is_unconfirmed`]).
+/// Each call waits for that process at most buffer + ramp + 0.6 s. Opening may take 10 s more, and
+/// a write may also take its own timeout. Dropping the device waits at most as long. After that,
+/// the guardian is killed, and a second process sets the output to zero. If that is not confirmed
+/// 0.5 s later, the call returns an error that says so. A thread then prints every second that the
+/// amplifier must be switched off, until zero is confirmed ([`crate::is_unconfirmed`]).
 pub struct Guarded {
     worker: Mutex<Sender<Message>>,
     name: String,
@@ -55,12 +55,11 @@ pub struct Guarded {
 }
 
 impl Guarded {
-    /// Starts the helper program, which opens the device. If the device is that of a library, the
+    /// Starts the helper program, which opens the device. If the device comes from a library, the
     /// program's last arguments are `--device-file` and the library's file.
     ///
     /// # Errors
-    /// When the program cannot be started or does not answer, or the error of opening the device
-    /// there.
+    /// When the program cannot be started or does not answer, or when it cannot open the device.
     pub fn open(
         known: &KnownDevice,
         settings: &Settings,
@@ -75,8 +74,8 @@ impl Guarded {
             waits: waits(settings),
             ended: false,
         };
-        // A device that was not opened has no output to set to zero, and may belong to another
-        // process.
+        // Ended, so that dropping does not abort: a device that was not opened has no output to set
+        // to zero, and may belong to another process.
         if let Err(error) = guarded.ask(OPEN, opening, guarded.waits.opening()) {
             guarded.ended = true;
             return Err(error);
@@ -84,8 +83,8 @@ impl Guarded {
         Ok(guarded)
     }
 
-    /// Sends a request and waits for the answer, at most `patience` and then until the output is at
-    /// zero or 0.5 s have passed.
+    /// Sends a request and waits for the answer, at most `patience`. If no answer comes, waits
+    /// until the output is at zero or 0.5 s have passed.
     fn ask(&self, tag: u8, body: Vec<u8>, patience: Duration) -> Result<Answer, DeviceError> {
         let (reply, replied) = channel();
         let ask = Message::Ask { tag, body, patience, reply };
@@ -112,7 +111,7 @@ impl Guarded {
         self.ask(tag, vec![], patience).map(|_| ())
     }
 
-    /// Writes the samples that fit within a wait of at most [`REQUEST`].
+    /// Writes the samples that fit within at most [`REQUEST`].
     fn write_some(&self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let samples = &samples[..samples.len().min(MOST_SAMPLES)];
         let timeout_ms = u32::try_from(timeout.min(REQUEST).as_millis()).unwrap_or(u32::MAX);
@@ -125,7 +124,7 @@ impl Guarded {
     }
 }
 
-/// Buffer and ramp of a display, if its settings state them.
+/// Computes the waits from a display's buffer and ramp, if its settings state them.
 fn waits(settings: &Settings) -> Waits {
     let stated = [BUFFER_SETTING, RAMP_SETTING]
         .map(|name| settings.number(name))

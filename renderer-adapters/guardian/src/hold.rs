@@ -1,4 +1,4 @@
-//! The helper program's side: the device, for the app at the other end of the pipes.
+//! The helper program's side: holds the device for the app at the other end of the pipes.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::time::Duration;
@@ -7,10 +7,10 @@ use htex_device::{Device, DeviceError, KnownDevice, Settings, StreamFormat};
 
 use crate::message::{Answer, FINISH, Opening, STATUS, WRITE, put, take};
 
-/// Holds a device for the app at the other end of the pipes, standard input and output of a helper
-/// program, until they end.
+/// Holds a device for the app at the other end of the pipes, which are the standard input and
+/// output of a helper program. Returns when the pipes end.
 ///
-/// The program ignores signals: only the end of the pipe ends it.
+/// The program ignores signals. Only the end of the pipe ends it.
 pub fn hold(
     find: impl FnOnce(&str) -> Result<KnownDevice, DeviceError>,
     from: impl Read,
@@ -44,8 +44,8 @@ pub fn hold(
         let said = said.unwrap_or_else(Answer::of_error);
         heard = answer(&mut to, &said);
     }
-    // The app has ended: what was written is played and ends at zero. If that fails, dropping the
-    // device sets it to zero.
+    // The app has ended. Play what was written, so that it ends at zero. If that fails, dropping
+    // the device sets it to zero.
     let _ = device.finish();
 }
 

@@ -1,17 +1,16 @@
-//! A second process that holds the output of a display which a finger touches, so that no end of
-//! the first one leaves a voltage there.
+//! The guardian: a second process that holds the output of a display that a finger touches. However
+//! the first process ends, no voltage stays at the output.
 //!
-//! A signal that kills, stops or hangs the app reaches only the app: the guardian is in a process
-//! group of its own, receives no signals of the terminal's keys, and ends when its pipe does. It
-//! then plays what it has (at most the device's buffer), sets the output to zero, and exits; a
-//! device whose buffer runs dry sets its output to zero itself.
+//! A signal that kills, stops or hangs the app reaches only the app. The guardian is in its own
+//! process group, receives no signals from the terminal's keys, and ends when its pipe does. It
+//! then plays what it has (at most the device's buffer), sets the output to zero, and exits. A
+//! device whose buffer runs dry sets its output to zero by itself.
 //!
 //! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper
-//! process, which sets the output to zero. When and how is decided in [`decision`].
+//! process, which sets the output to zero. [`decision`] decides when and how.
 //!
-//! An app opens a device as [`Guarded`] where [`is_wanted`] says so. The helper program is
-//! [`htex`], or one of the app's own, which calls [`hold`]: it is needed for devices that `htex`
-//! does not have.
+//! An app opens a device as [`Guarded`] if [`is_wanted`] says so. The helper program is [`htex`] or
+//! the app's own, which calls [`hold`]. An app needs its own for devices that `htex` does not have.
 //!
 //! ```no_run
 //! use std::time::Duration;

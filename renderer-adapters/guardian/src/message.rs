@@ -1,14 +1,14 @@
-//! The messages between an app and its guardian: a byte, a length, and a body.
+//! The messages between an app and its guardian: one byte, a length, and a body.
 
 use std::io::{Read, Write};
 
 use htex_device::DeviceError;
 use serde::{Deserialize, Serialize};
 
-/// Longest message, bytes: a second at a million samples a second.
+/// Longest message, bytes: one second at a million samples per second.
 pub(crate) const LONGEST: u32 = 4 << 20;
 
-/// Most samples in a request.
+/// Maximum number of samples in a request.
 pub(crate) const MOST_SAMPLES: usize = 1 << 16;
 
 /// The first message of the app.
@@ -26,7 +26,7 @@ pub(crate) enum Answer {
     Done(u64),
     Status([f64; 5]),
     Failed(String),
-    /// The device ran dry: [`DeviceError::Underflow`].
+    /// The device ran dry ([`DeviceError::Underflow`]).
     Dry {
         device: String,
         frames: u64,
@@ -35,8 +35,8 @@ pub(crate) enum Answer {
 }
 
 impl Answer {
-    /// The reply of an error: its message, and of a device that ran dry, which may be tried again,
-    /// all that is known.
+    /// Converts an error to an answer with its message. If a device ran dry, the answer keeps all
+    /// details, because the app may try again.
     pub(crate) fn of_error(error: DeviceError) -> Self {
         match error {
             DeviceError::Underflow { device, frames, advice } => {
@@ -47,7 +47,7 @@ impl Answer {
     }
 }
 
-/// Requests of the app, a byte each; samples follow a time in milliseconds.
+/// Requests of the app, one byte each. Samples follow a time in milliseconds.
 pub(crate) const OPEN: u8 = b'o';
 pub(crate) const WRITE: u8 = b'w';
 pub(crate) const STATUS: u8 = b's';

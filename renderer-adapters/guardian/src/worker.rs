@@ -1,7 +1,6 @@
-//! The thread of the player that talks to the guardian, and does what [`crate::decision`] decides.
+//! The player's thread that talks to the guardian and carries out what [`crate::decision`] decides.
 //!
-//! It never blocks: pipes, attempts and standard error, which may all hang, have threads of their
-//! own.
+//! It never blocks. Pipes, attempts and standard error may all hang, so each has its own thread.
 
 use std::io::Write;
 use std::process::Child;
@@ -17,22 +16,22 @@ use crate::attempt::{Attempt, Display};
 use crate::decision::{Action, Event, Player, Why};
 use crate::message::{Answer, put, take};
 
-/// The sentence about a voltage that may remain at the display.
+/// The warning about a voltage that may remain at the display.
 pub const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
-/// Time between two looks at the clock, and at whether the guardian has ended.
+/// Polling interval for the clock and for the end of the guardian.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Outputs that are not confirmed to be at zero.
+/// Number of outputs that are not confirmed to be at zero.
 static UNCONFIRMED: AtomicUsize = AtomicUsize::new(0);
 
-/// Whether the output of a display may have kept a voltage, after its guardian failed. The player
-/// goes on trying to set it to zero, and prints every second that the amplifier is to be switched
-/// off. A program that is about to end waits here, so that it goes on.
+/// Whether the output of a display may have kept a voltage after its guardian failed. The player
+/// keeps trying to set it to zero, and prints every second that the amplifier must be switched off.
+/// A program that is about to end waits while this is true, so that the player can continue.
 pub fn is_unconfirmed() -> bool {
     UNCONFIRMED.load(Ordering::SeqCst) > 0
 }
 
-/// What the worker hears.
+/// A message to the worker.
 pub(crate) enum Message {
     Ask {
         tag: u8,
@@ -44,14 +43,14 @@ pub(crate) enum Message {
         patience: Duration,
         reply: Sender<()>,
     },
-    /// What came through the guardian's pipe.
+    /// An answer, or an error, from the guardian's pipe.
     Heard(std::io::Result<Answer>),
     Attempted(u32, Result<(), String>),
     /// Some time has passed.
     Look,
 }
 
-/// What a caller gets.
+/// The reply to a caller.
 pub(crate) enum Reply {
     Answer(Answer),
     Closed,
@@ -65,7 +64,7 @@ pub(crate) struct Worker {
     begun: Instant,
     to_self: Sender<Message>,
     messages: Receiver<Message>,
-    /// Requests for the pipe; `None` when it is closed.
+    /// Sends requests to the pipe; `None` when the pipe is closed.
     requests: Option<Sender<(u8, Vec<u8>)>>,
     asker: Option<Sender<Reply>>,
     closer: Option<Sender<()>>,
@@ -115,7 +114,8 @@ impl Worker {
             is_unconfirmed: false,
         };
         let looks = to_self.clone();
-        // Sleeps, and not a wait with a time limit, whose end is computed by a clock that may jump.
+        // Sleeps instead of waiting with a timeout, because the end of a timeout is computed by a
+        // clock that may jump.
         let look = move || {
             while looks.send(Message::Look).is_ok() {
                 sleep(LOOK);
@@ -152,7 +152,7 @@ impl Worker {
                 let requests = self.requests.as_ref();
                 let sent = requests.is_some_and(|requests| requests.send((tag, body)).is_ok());
                 if !sent {
-                    // Heard next: the pipe has ended.
+                    // The next message says that the pipe has ended.
                     let ended = std::io::ErrorKind::BrokenPipe.into();
                     let _ = self.to_self.send(Message::Heard(Err(ended)));
                 }
@@ -245,7 +245,7 @@ impl Worker {
         self.is_unconfirmed = is_unconfirmed;
     }
 
-    /// Prints on standard error, which may be closed, or a pipe that nobody reads.
+    /// Prints on standard error, which may be closed, or be a pipe that nobody reads.
     fn say(&mut self, sentence: &str) {
         let printer = self.printer.get_or_insert_with(|| {
             let (to, sentences) = channel::<String>();
@@ -263,12 +263,12 @@ fn print(sentence: &str) {
     let _ = writeln!(std::io::stderr(), "htex: {sentence}");
 }
 
-/// Starts a thread, which nothing waits for.
+/// Starts a thread that nothing waits for.
 pub(crate) fn thread(name: &str, run: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
     Builder::new().name(name.to_owned()).spawn(run).map(drop)
 }
 
-/// Sends a request and waits for the answer, without a limit.
+/// Sends a request and waits for the answer, however long that takes.
 pub(crate) fn converse(
     to: &mut impl Write,
     from: &mut impl std::io::Read,

@@ -1,4 +1,4 @@
-//! An app with a helper program of its own: this program is the test, the app, and the helper.
+//! An app with its own helper program. This one program is the test, the app, and the helper.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::fs::OpenOptions;
@@ -16,16 +16,17 @@ use htex_device_guardian::{Guarded, hold, is_unconfirmed, is_wanted};
 
 const FORMAT: StreamFormat = StreamFormat { rate_hz: 1_000.0, block_frames: 4 };
 
-/// A sample whose write does not return, and one after which closing the device does not.
+/// A sample whose write does not return.
 const HANGS: f32 = 8.0;
+/// A sample after which closing the device does not return.
 const DROP_HANGS: f32 = 9.0;
 const LONG: Duration = Duration::from_secs(3600);
-/// Longest wait for an answer of a display that states neither buffer nor ramp, seconds.
+/// Longest wait for an answer if a display states neither buffer nor ramp, seconds.
 const D_S: f64 = 1.0;
-/// What a busy machine may take longer, seconds.
+/// Additional time on a busy machine, seconds.
 const BUSY_S: f64 = 10.0;
 
-/// A display whose output is a file of lines.
+/// A display whose output is written to a file as lines.
 struct Bench(Descriptor);
 
 struct Open {
@@ -122,7 +123,7 @@ fn say(log: &str, line: &str) {
     writeln!(file.unwrap(), "{line}").unwrap();
 }
 
-/// This program in another part.
+/// Runs this program in another of its roles.
 fn this(part: &str) -> Command {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.arg(part);
@@ -167,14 +168,14 @@ fn errors_of_the_helper_are_those_of_the_app(log: &Path) {
     let other = StreamFormat { block_frames: 5, ..FORMAT };
     let refused = guarded(&log_text, &other, "helper").err().unwrap();
     assert_eq!(refused.to_string(), "no such clock");
-    // A helper that ends at once: the app opens the device, which is at zero then.
+    // If the helper ends at once, the app itself opens the device, which is then at zero.
     let gone = guarded(&log_text, &FORMAT, "nothing").err().unwrap();
     assert!(gone.to_string().contains("the output was set to zero"));
     assert_eq!(lines(log), ["opened at zero"]);
 }
 
-/// A helper that does not answer is killed, and a second one opens the device, which sets its
-/// output to zero.
+/// A helper that does not answer is killed. A second one opens the device, which sets its output to
+/// zero.
 fn a_helper_that_hangs_is_replaced_by_zero(log: &Path) {
     let mut device = guarded(&log.display().to_string(), &FORMAT, "helper").unwrap();
     let begun = Instant::now();
@@ -225,7 +226,7 @@ fn main() {
             std::process::abort();
         }
         Some("nothing") => {}
-        // As the test: with a filter of the test runner, or without.
+        // The role of the test, with or without a filter of the test runner.
         _ => {
             for test in [
                 an_app_plays_through_its_helper,

@@ -1,8 +1,8 @@
-//! `cargo xtask prove zero`: every single and double failure of the player, its guardian, the
+//! `cargo xtask prove zero`: tries every single and double failure of the player, its guardian, the
 //! helpers and the card, at every step.
 //!
-//! What must hold is in [`broken`]. Tests take every single failure, and double ones with
-//! `HTEX_WHOLE`.
+//! [`broken`] states the rules that must hold. Ordinary tests try every single failure, and with
+//! `HTEX_WHOLE` also the double ones.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "zero/faults.rs"]
@@ -18,13 +18,13 @@ use faults::Fault;
 use htex_device_guardian::decision::{CONFIRM, EVERY};
 use world::{App, Driver, Mutant, Output, Process, STEP, WAITS, World};
 
-/// What the rules need to know of the failures of a world; worlds that agree in it are one.
+/// The part of a world's failures that the rules need. Worlds that agree in this part count as one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 struct Failures {
     count: usize,
-    /// The player was stopped for a while: its own times do not hold.
+    /// The player was stopped for a while, so its own time limits do not hold.
     player_stopped: bool,
-    /// A helper, the driver or the kernel may keep every attempt from writing zero in time.
+    /// A helper, the driver or the kernel may prevent every attempt from writing zero in time.
     zero_prevented: bool,
 }
 
@@ -38,12 +38,12 @@ impl Failures {
     }
 }
 
-/// What led to a world: failures and Ctrl-C, with their steps.
+/// What led to a world: failures and Ctrl-C, each with its step.
 type Trace = [Option<(u32, Cause)>; 3];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cause {
-    /// The scene's end or Ctrl-C, which is no failure and may come beside two.
+    /// The scene's end or Ctrl-C. This is not a failure and may come in addition to two.
     End,
     Failure(Fault),
 }
@@ -51,11 +51,11 @@ enum Cause {
 #[derive(Debug, Default)]
 struct Explored {
     seen: Seen,
-    /// Worlds in which neither the player nor the guardian can act, and a voltage stands.
+    /// Number of worlds in which neither the player nor the guardian can act and a voltage stays.
     nobody: u64,
-    /// Worlds in which all have ended, at zero, and those that are not at zero and have the
-    /// sentence.
+    /// Number of worlds in which all processes have ended at zero.
     at_zero: u64,
+    /// Number of worlds in which all processes have ended with the warning and not at zero.
     said: u64,
     detected: u64,
     broken: BTreeMap<&'static str, Trace>,
@@ -68,7 +68,7 @@ fn and(mut trace: Trace, step: u32, cause: Cause) -> Trace {
     trace
 }
 
-/// A hash of small numbers, several times as fast as the one of the standard library.
+/// A hash of small numbers, several times faster than the standard library's.
 #[derive(Default)]
 struct Quick(u64);
 
@@ -96,7 +96,7 @@ impl Hasher for Quick {
     }
 }
 
-/// A world by which it is known again: two hashes of 64 bits.
+/// Returns the fingerprint of a world, made of two 64-bit hashes.
 fn print_of(key: &(World, Failures)) -> u128 {
     let [one, two] = [0, 0x9e37_79b9_7f4a_7c15].map(|seed| {
         let mut hasher = Quick(seed);
@@ -113,11 +113,11 @@ fn steps(time: Duration) -> u32 {
     time.as_millis().div_ceil(STEP.as_millis()) as u32
 }
 
-/// What does not hold in a world, if anything.
+/// Returns the rule that a world breaks, if any.
 fn broken(world: &World, failures: Failures) -> Option<&'static str> {
     let is_at_zero = world.output == Output::Zero;
     let runs = world.runs();
-    // Both the player's and the world's step may come first.
+    // One step of slack, because either the player or the world may take its step first.
     let slack = 1;
     if let Some(known) = world.known_for.filter(|_| runs) {
         if known > steps(CONFIRM) + slack && !is_at_zero && world.said.is_none() {
@@ -158,13 +158,13 @@ fn broken(world: &World, failures: Failures) -> Option<&'static str> {
     None
 }
 
-/// Whether neither the player nor the guardian is left to act.
+/// Whether neither the player nor the guardian is able to act.
 fn nobody(world: &World) -> bool {
     let guardian_acts = world.guardian == Process::Running && world.driver != Driver::Hangs;
     !world.runs() && !guardian_acts
 }
 
-/// The world, and the same with each failure, or the end of the scene, that may come now.
+/// Returns the world itself, and the world with each failure or scene end that may come now.
 fn causes(
     (world, failures, trace): (World, Failures, Trace),
     most: usize,
@@ -188,7 +188,8 @@ fn causes(
 }
 
 impl Explored {
-    /// Lets all act, the player first and last, and keeps what comes of it.
+    /// Advances a world by one step, once with the player first and once with it last, and keeps
+    /// the results.
     fn go_on(&mut self, (world, failures, trace): &(World, Failures, Trace), next: &mut Layer) {
         let (failures, trace) = (*failures, *trace);
         let [first, last] = [true, false].map(|player_first| {
@@ -220,7 +221,7 @@ impl Explored {
     }
 }
 
-/// Explores all worlds with at most so many failures.
+/// Explores all worlds with at most `most` failures.
 fn explore(most: usize, mutant: Mutant) -> Explored {
     let mut explored = Explored::default();
     let mut layer = vec![(World::new(mutant), Failures::default(), [None; 3])];
@@ -264,7 +265,7 @@ fn the_output_is_at_zero_or_the_sentence_is_printed_whatever_fails() {
     assert!(explored.detected > 100 && explored.at_zero > 100);
 }
 
-/// The model sees what it is for: a player that leaves out one of its actions breaks a rule.
+/// Tests the model itself: a player that leaves out one of its actions must break a rule.
 #[test]
 fn a_player_that_leaves_something_out_is_found() {
     type Edit = fn(&mut Mutant);

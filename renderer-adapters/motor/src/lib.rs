@@ -1,13 +1,14 @@
-//! Devices that cannot play samples: motors and interfaces that are told a strength and a frequency
-//! some hundred times a second.
+//! Devices that cannot play samples: motors and interfaces that take a strength and a frequency
+//! some hundred times per second.
 //!
-//! An adapter implements [`Motor`], and [`Paced`] makes an open device of it: it takes samples of
-//! sound, keeps them in a buffer, and a thread of its own hands them over by blocks at the pace of
-//! the clock, each with its level and mean frequency. They are measured by [`htex_dsp::envelope`],
-//! as those of `Voice::envelope` are, so that a device needs no model.
+//! An adapter implements [`Motor`], and [`Paced`] makes an open device from it. The device takes
+//! samples of sound and keeps them in a buffer. Its own thread passes them to the motor in blocks
+//! in real time, each with its level and mean frequency. [`htex_dsp::envelope`] measures them in
+//! the same way as for `Voice::envelope`, so a device needs no model.
 //!
 //! The motor is at rest before the first block, after the last one, after every error, when the
-//! device is dropped, and when samples come too late: the thread stops it even if the writer hangs.
+//! device is dropped, and when samples come too late. The thread stops the motor even if the writer
+//! hangs.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -23,36 +24,37 @@ pub use plan::{
 
 use htex_dsp::envelope::Measured;
 
-/// What plays blocks.
+/// A motor or interface that plays blocks. Implement this trait to add a device that cannot play
+/// samples.
 pub trait Motor: Send {
-    /// Plays a block from now on; the next one comes when it is over.
+    /// Starts playing a block. The next block comes when this one is over.
     ///
     /// # Errors
-    /// The reason, as a sentence; the motor is then stopped.
+    /// The reason, as a sentence. The motor is then stopped.
     fn play(&mut self, block: &Block<'_>) -> Result<(), String>;
 
-    /// Comes to rest after the last block, whose time is over; waits until that is so.
+    /// Stops after the last block, whose time is over. Waits until the motor is at rest.
     ///
     /// # Errors
     /// The reason, as a sentence.
     fn end(&mut self) -> Result<(), String>;
 
-    /// Comes to rest at once.
+    /// Stops at once.
     ///
     /// # Errors
     /// The reason, as a sentence.
     fn stop(&mut self) -> Result<(), String>;
 
-    /// Time from [`Self::play`] until a block comes out, seconds.
+    /// Returns the time from [`Self::play`] until the block is output, seconds.
     fn delay_s(&self) -> f64 {
         0.0
     }
 }
 
-/// A block of samples, and what was measured of it.
+/// A block of samples with its measurements.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
-    /// The samples, at most 1 in magnitude; the last block may be shorter than the others.
+    /// The samples, at most 1 in magnitude. The last block may be shorter than the others.
     pub samples: &'a [f32],
     /// Their level and mean frequency.
     pub measured: Measured,

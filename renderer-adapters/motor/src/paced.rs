@@ -1,4 +1,4 @@
-//! An open device: the writer's side.
+//! An open device: the part that runs in the writer's thread.
 
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
@@ -9,27 +9,27 @@ use htex_device::{Capabilities, Device, DeviceError, Status, StreamFormat};
 use crate::worker::{Shared, Wish, Worker};
 use crate::{Motor, Plan};
 
-/// A device that hands blocks to a [`Motor`].
+/// A device that passes its samples in blocks to a [`Motor`].
 pub struct Paced {
     name: String,
     can: Capabilities,
     rate_hz: f64,
     block_frames: usize,
-    /// Frames that the motor keeps until they come out.
+    /// Number of frames that the motor holds before they are output.
     delayed: usize,
     capacity: usize,
     shared: Arc<Shared>,
-    /// `None` after the end.
+    /// `None` after the device has ended.
     thread: Option<JoinHandle<()>>,
     written: u64,
     peak: f64,
 }
 
 impl Paced {
-    /// Opens a device called `name` over a motor, which is at rest.
+    /// Opens a device called `name` on a motor that is at rest.
     ///
     /// # Errors
-    /// When it does not have the rate, or there is no thread.
+    /// When the device does not support the rate, or no thread can be started.
     pub fn open(
         name: &str,
         motor: Box<dyn Motor>,
@@ -85,7 +85,7 @@ impl Paced {
         }
     }
 
-    /// Puts the motor to rest, and waits until it is.
+    /// Stops the motor and waits until it is at rest.
     fn end(&mut self, wish: Wish) {
         self.shared.lock().wish = wish;
         self.shared.changed();
@@ -94,7 +94,7 @@ impl Paced {
         }
     }
 
-    /// Takes the samples that fit now; the motor starts when half of the buffer is full.
+    /// Takes the samples that fit now. The motor starts when half of the buffer is full.
     fn take(&mut self, samples: &[f32]) -> usize {
         let mut state = self.shared.lock();
         let fits = self.capacity.saturating_sub(state.waiting.len());

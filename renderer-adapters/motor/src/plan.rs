@@ -1,18 +1,18 @@
-//! Settings that these devices share, and what follows from them.
+//! The settings that these devices share, and the values derived from them.
 
 use htex_device::{
     Capabilities, DeviceError, FromScene, Quantity, Rates, Setting, SettingKind, Settings,
 };
 
-/// Lowest and highest rate, hertz: frequencies of textures reach 1 kHz.
+/// Lowest and highest sample rate, hertz. Frequencies of textures reach 1 kHz.
 const RATES_HZ: (f64, f64) = (2_000.0, 192_000.0);
 const DEFAULT_RATE_HZ: f64 = 8_000.0;
-/// Defaults of the setting `buffer_ms`: otherwise, and with a live motion.
+/// Defaults of the setting `buffer_ms`: the general one, and the one for a live motion.
 const DEFAULT_BUFFER_MS: [&str; 2] = ["100", "30"];
 /// Default of the setting `gain`.
 pub const DEFAULT_GAIN: &str = "3";
 
-/// A setting of a person or of the hardware: no scene changes it.
+/// Creates a setting that belongs to the user or the hardware: no scene can change it.
 pub fn setting(name: &str, kind: SettingKind, default: &str, description: &str) -> Setting {
     Setting {
         name: name.to_owned(),
@@ -24,12 +24,12 @@ pub fn setting(name: &str, kind: SettingKind, default: &str, description: &str) 
     }
 }
 
-/// A number of a range.
+/// Creates the kind of setting for a number in a range.
 pub fn number(min: f64, max: f64) -> SettingKind {
     SettingKind::Number { min, max }
 }
 
-/// `gain`, `block_ms` and `buffer_ms`.
+/// Returns the settings `gain`, `block_ms` and `buffer_ms`.
 pub fn reducing_settings() -> Vec<Setting> {
     let gain = setting(
         "gain",
@@ -47,7 +47,7 @@ pub fn reducing_settings() -> Vec<Setting> {
     vec![gain, block, buffer_setting()]
 }
 
-/// `buffer_ms`, shorter with a live motion.
+/// Returns the setting `buffer_ms`, which is shorter with a live motion.
 pub fn buffer_setting() -> Setting {
     let buffer = setting(
         "buffer_ms",
@@ -62,12 +62,12 @@ pub fn buffer_setting() -> Setting {
     }
 }
 
-/// Whether nobody has given `buffer_ms` another value.
+/// Whether `buffer_ms` has one of its default values.
 pub fn has_usual_buffer(settings: &Settings) -> bool {
     DEFAULT_BUFFER_MS.contains(&settings.text("buffer_ms"))
 }
 
-/// The error of a rate that a device does not have.
+/// Returns the error for a rate that a device does not support.
 pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError {
     DeviceError::Rate { device: device.to_owned(), rate_hz, rates: can.rates.to_string() }
 }
@@ -75,11 +75,11 @@ pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError
 /// The values of the shared settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
-    /// Strength of a level of 1.
+    /// Strength at a level of 1.
     pub gain: f64,
-    /// Length of a block, seconds.
+    /// Duration of a block, seconds.
     pub block_s: f64,
-    /// Length of the buffer, seconds.
+    /// Duration of the buffer, seconds.
     pub buffer_s: f64,
 }
 
@@ -93,12 +93,12 @@ impl Plan {
         }
     }
 
-    /// The samples of a block at a rate.
+    /// Returns the number of samples in a block at a rate.
     pub fn block_frames(&self, rate_hz: f64) -> usize {
         (self.block_s * rate_hz).round().max(1.0) as usize
     }
 
-    /// What such a device takes: sound, which a clock takes.
+    /// Returns the capabilities of such a device: it takes sound, paced by a clock.
     pub fn capabilities(&self) -> Capabilities {
         Capabilities {
             quantity: Quantity::Sound,

@@ -1,4 +1,4 @@
-//! The thread that takes blocks at the pace of the clock.
+//! The thread that passes blocks to the motor in real time.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -10,30 +10,30 @@ use htex_dsp::grid::Band;
 
 use crate::{Block, Motor};
 
-/// What the writer wishes.
+/// What the writer asks the thread to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Wish {
     /// Wait for samples before the first block.
     #[default]
     Wait,
     Play,
-    /// Play what is there, then rest.
+    /// Play the samples in the buffer, then rest.
     Drain,
     /// Rest now.
     Stop,
 }
 
-/// What writer and thread share.
+/// The state that the writer and the thread share.
 #[derive(Debug, Default)]
 pub(crate) struct State {
     pub(crate) waiting: VecDeque<f32>,
     pub(crate) wish: Wish,
-    /// Frames of blocks that are over.
+    /// Number of frames in the blocks that are over.
     pub(crate) played: u64,
     pub(crate) underruns: u64,
-    /// An error that the next call returns, once.
+    /// An error that the next call returns and thereby clears.
     pub(crate) error: Option<DeviceError>,
-    /// The motor is at rest for good.
+    /// The motor is at rest and will stay at rest.
     pub(crate) ended: bool,
 }
 
@@ -52,7 +52,7 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    /// Waits for a change, at most so long.
+    /// Waits for a change, at most for this duration.
     pub(crate) fn wait<'a>(
         &'a self,
         state: MutexGuard<'a, State>,
@@ -62,7 +62,7 @@ impl Shared {
         waited.unwrap_or_else(PoisonError::into_inner).0
     }
 
-    /// Waits until a time, or until the wish is to stop.
+    /// Waits until a time, or until the writer asks to stop.
     fn wait_until(&self, due: Instant) -> MutexGuard<'_, State> {
         let mut state = self.lock();
         while state.wish != Wish::Stop {
@@ -83,7 +83,7 @@ impl Shared {
     }
 }
 
-/// What the thread does.
+/// The state of the thread.
 pub(crate) struct Worker {
     pub(crate) name: String,
     pub(crate) motor: Box<dyn Motor>,
@@ -92,7 +92,7 @@ pub(crate) struct Worker {
     pub(crate) block_frames: usize,
 }
 
-/// What is next when a block is over.
+/// The next action when a block is over.
 enum Next {
     Block,
     End,
@@ -105,7 +105,7 @@ impl Worker {
         self.shared.wait_for_start();
         let rested = self.play();
         let Self { shared, motor, .. } = self;
-        // The motor is closed before the device is known as ended.
+        // Close the motor before the device is reported as ended.
         drop(motor);
         let mut state = shared.lock();
         state.waiting.clear();
@@ -117,7 +117,7 @@ impl Worker {
         shared.changed();
     }
 
-    /// Plays until the end, a stop or an error; the motor is at rest afterwards.
+    /// Plays until the end, a stop or an error. The motor is at rest afterwards.
     fn play(&mut self) -> Result<(), DeviceError> {
         let mut analyser = Analyser::new(1, Band::TACTILE, self.rate_hz);
         let mut samples = Vec::with_capacity(self.block_frames);
@@ -135,18 +135,19 @@ impl Worker {
             let measured = analyser.read(&mut []);
             let block = Block { samples: &samples, measured };
             if let Err(what) = self.motor.play(&block) {
-                // It has failed, and its reason says more than that of the stop.
+                // The motor has failed, and the reason for that says more than an error of stopping
+                // it.
                 let _ = self.motor.stop();
                 return Err(self.failed(what));
             }
             let length = Duration::from_secs_f64(samples.len() as f64 / self.rate_hz);
-            // A program that was held up does not play what it missed all at once.
+            // A program that was held up must not play everything that it missed at once.
             let latest = Instant::now().checked_sub(length).unwrap_or(due);
             due = (due + length).max(latest);
         }
     }
 
-    /// Waits until the block in `samples` is over, and puts the next one there.
+    /// Waits until the block in `samples` is over, and replaces it with the next one.
     fn next(&self, due: Instant, samples: &mut Vec<f32>) -> Next {
         let mut state = self.shared.wait_until(due);
         if state.wish == Wish::Stop {

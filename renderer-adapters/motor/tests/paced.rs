@@ -1,4 +1,4 @@
-//! The clock of blocks: what a motor is told, when, and that it rests at the end whatever happens.
+//! The timing of blocks: what a motor is told and when, and that it always rests at the end.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use htex_device_motor::{Block, Motor, Paced, Plan, reducing_settings};
 const RATE_HZ: f64 = 8_000.0;
 const LONG: Duration = Duration::from_secs(5);
 
-/// What the motor was told.
+/// A call to the motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Told {
     Play { after: Duration, level: f64, frames: usize },
@@ -24,7 +24,7 @@ enum Told {
 struct Log {
     since: Instant,
     told: Arc<Mutex<Vec<Told>>>,
-    /// The block, from 0, that fails.
+    /// Index of the block that fails, from 0.
     fails_at: usize,
 }
 
@@ -118,7 +118,7 @@ fn blocks_come_at_the_pace_of_the_clock_and_the_end_is_rest() {
     for level in levels {
         write_all(&mut device, &[level; 800]);
     }
-    // A block that is not full.
+    // An incomplete block.
     write_all(&mut device, &[0.5; 40]);
     assert!(device.status().latency_s > 0.0);
     device.finish().unwrap();
@@ -131,7 +131,8 @@ fn blocks_come_at_the_pace_of_the_clock_and_the_end_is_rest() {
     for (i, (_, level, _)) in plays[..40].iter().enumerate() {
         assert!((level - f64::from(levels[i / 10])).abs() < 1e-6, "{i} {level}");
     }
-    // 400 ms; the thread may be late on a loaded machine, and makes up for at most a block.
+    // 400 ms in total. On a loaded machine the thread may be late, and catches up by at most one
+    // block.
     assert!(plays[40].0.saturating_sub(plays[0].0) >= Duration::from_millis(385));
     assert!(log.ends_with(&[Told::End, Told::Closed]));
     let closed = device.write(&[0.0], LONG).unwrap_err();
@@ -163,7 +164,7 @@ fn a_sample_over_the_limit_rests_at_once() {
     }
 }
 
-/// The writer hangs: the thread stops the motor without it.
+/// If the writer hangs, the thread stops the motor by itself.
 #[test]
 fn a_device_that_runs_dry_rests_and_says_so() {
     let log = Log::new(usize::MAX);
@@ -198,7 +199,8 @@ fn a_motor_that_fails_is_stopped_and_its_reason_is_told_once() {
     assert!(matches!(device.finish(), Err(DeviceError::Closed(_))));
 }
 
-/// A write that may not wait takes what fits, and one that may returns when there is space again.
+/// A write with a timeout of zero takes what fits. One that may wait returns when there is space
+/// again.
 #[test]
 fn a_write_takes_what_fits() {
     let log = Log::new(usize::MAX);

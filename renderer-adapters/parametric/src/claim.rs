@@ -1,21 +1,21 @@
-//! What an open device has to itself.
+//! Reservation of what an open device uses exclusively.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
 use htex_device::DeviceError;
 
-/// What each open device has.
+/// What each open device has reserved.
 static CLAIMED: Mutex<BTreeSet<(String, String)>> = Mutex::new(BTreeSet::new());
 
-/// Released when dropped.
+/// A reservation. Dropping it releases it.
 pub(crate) struct Claim((String, String));
 
 impl Claim {
-    /// Takes a thing of a library.
+    /// Reserves a thing of a library, such as a vibrator.
     ///
     /// # Errors
-    /// When another device has it.
+    /// When another device has reserved it.
     pub(crate) fn take(library: &str, thing: &str) -> Result<Self, DeviceError> {
         let key = (library.to_owned(), thing.to_owned());
         let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! The haptic element of a hand, which belongs to one open device.
+//! The haptic element of a hand, reserved for one open device.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use htex_device::DeviceError;
 use crate::claim::Claim;
 use crate::session::{Hand, Session};
 
-/// Released when dropped.
+/// A reserved haptic element. Dropping it releases it.
 pub(crate) struct Element {
     pub(crate) session: Arc<Session>,
     pub(crate) hand: Hand,

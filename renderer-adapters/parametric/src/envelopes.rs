@@ -1,10 +1,10 @@
-//! Piecewise linear envelopes (PWLE), as Android's `VibrationEffect.WaveformEnvelopeBuilder` (API
-//! 36) takes them.
+//! Piecewise linear envelopes (PWLE), as Android's `VibrationEffect.WaveformEnvelopeBuilder`
+//! (API 36) accepts them.
 //!
-//! Android has vibrators in Java only, so that the application exports three functions in C, which
-//! call it (`docs/devices.md` states them). An effect replaces the one before and begins at rest:
-//! its first point is a ramp from 0. Streaming is a series of effects, each handed over when its
-//! blocks are known.
+//! Android offers vibrators only in Java. The application therefore exports three C functions that
+//! call it (`docs/devices.md` declares them). An effect replaces the previous one and begins at
+//! rest: its first point is a ramp from 0. Streaming is a series of effects, each passed on as soon
+//! as its blocks are known.
 #![allow(unsafe_code)] // The application's functions are C.
 
 use std::thread::sleep;
@@ -17,13 +17,13 @@ use htex_native::{Library, Symbols};
 
 use crate::claim::Claim;
 
-/// Length of an effect, if the vibrator takes so many points, seconds: longer ones have fewer
-/// ramps, shorter ones less delay.
+/// Duration of an effect, if the vibrator accepts that many points, seconds. Longer effects have
+/// fewer ramps, shorter ones less delay.
 const EFFECT_S: f64 = 0.1;
-/// Points of an effect at least: a ramp and one more.
+/// Minimum number of points of an effect: a ramp and one more.
 const LEAST_POINTS: u32 = 2;
 
-/// What a vibrator takes: `VibratorEnvelopeEffectInfo` and `VibratorFrequencyProfile` tell it.
+/// The limits of a vibrator, from `VibratorEnvelopeEffectInfo` and `VibratorFrequencyProfile`.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C)]
 pub(crate) struct Limits {
@@ -34,7 +34,8 @@ pub(crate) struct Limits {
     high_hz: f32,
 }
 
-/// `addControlPoint`: what is reached at the end of the duration, which begins at the point before.
+/// The arguments of `addControlPoint`: the values reached at the end of the duration, which begins
+/// at the previous point.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub(crate) struct ControlPoint {
@@ -43,7 +44,7 @@ pub(crate) struct ControlPoint {
     duration_ms: u32,
 }
 
-/// The application's functions; each returns 0, or a negative number when it fails.
+/// The application's functions. Each returns 0, or a negative number if it fails.
 #[derive(Clone, Copy)]
 pub(crate) struct Vibrator {
     play: unsafe extern "C" fn(*const ControlPoint, u32) -> i32,
@@ -52,7 +53,7 @@ pub(crate) struct Vibrator {
 }
 
 impl Vibrator {
-    /// That of the library at `path`.
+    /// Loads the functions from the library at `path`.
     pub(crate) fn load(path: &str) -> Result<Self, DeviceError> {
         let refused = |what: String| DeviceError::Setting { name: "runtime".to_owned(), what };
         if path.is_empty() {
@@ -101,7 +102,7 @@ impl Vibrator {
         }
     }
 
-    /// Whether points of so many milliseconds are taken.
+    /// Checks that the vibrator accepts points of this duration.
     pub(crate) fn takes(&self, block_ms: u32) -> Result<(), DeviceError> {
         let Limits { least_ms, most_ms, .. } = self.limits;
         if (least_ms..=most_ms).contains(&block_ms) {
@@ -117,7 +118,7 @@ impl Vibrator {
     }
 }
 
-/// The points of the blocks that were not handed over.
+/// The points of blocks that have not been passed to the vibrator yet.
 pub(crate) struct Envelopes {
     vibrator: Vibrator,
     scale: Scale,
@@ -125,20 +126,20 @@ pub(crate) struct Envelopes {
     effect: usize,
     waiting: Vec<ControlPoint>,
     frequency_hz: f64,
-    /// Whether an effect was handed over.
+    /// Whether any effect has been passed to the vibrator.
     started: bool,
     _claim: Claim,
 }
 
 impl Envelopes {
-    /// Takes the vibrator; nothing plays.
+    /// Reserves the vibrator. Nothing plays yet.
     pub(crate) fn open(path: &str, plan: &Plan) -> Result<Self, DeviceError> {
         let vibrator = Vibrator::load(path)?;
         let block_ms = milliseconds(plan);
         vibrator.takes(block_ms)?;
         let Limits { most_points, low_hz, high_hz, .. } = vibrator.limits;
         let effect = (EFFECT_S / plan.block_s).ceil() as u32;
-        // The last effect has a point more, which ends it.
+        // The last effect needs one more point, which ends it.
         let most = (most_points - 1).max(1);
         Ok(Self {
             vibrator,
@@ -181,7 +182,8 @@ impl Motor for Envelopes {
     }
 
     fn end(&mut self) -> Result<(), String> {
-        // The last effect that was handed over has the time of the blocks after it still to play.
+        // The last effect was passed on early: it still has to play for the duration of the blocks
+        // after it.
         let left =
             if self.started { (self.effect - 1).saturating_sub(self.waiting.len()) } else { 0 };
         sleep(Duration::from_millis(u64::from(self.block_ms) * left as u64));
@@ -215,7 +217,7 @@ fn done(call: &str, code: i32) -> Result<(), String> {
     }
 }
 
-/// The length of a block, which is the duration of a point.
+/// Returns the duration of a block, which is the duration of a point.
 pub(crate) fn milliseconds(plan: &Plan) -> u32 {
     (1e3 * plan.block_s).round() as u32
 }

@@ -1,4 +1,4 @@
-//! An instance of OpenXR, without graphics.
+//! An OpenXR instance without graphics.
 #![allow(unsafe_code)] // The runtime's functions are C.
 
 use std::ffi::{CStr, c_char};
@@ -13,14 +13,14 @@ use crate::table::{Entry, Table, VERSION, done, function};
 const HEADLESS: &CStr = c"XR_MND_headless";
 const PCM: &CStr = c"XR_FB_haptic_pcm";
 
-/// An instance and its system; destroyed when dropped, with all that was made of it.
+/// An instance and its system. Dropping it destroys both, with everything created from them.
 pub(crate) struct Instance {
     pub(crate) table: Table,
     pub(crate) handle: xr::Instance,
     pub(crate) system: xr::SystemId,
     /// Whether the system plays points.
     pub(crate) has_points: bool,
-    /// Whether the runtime has samples.
+    /// Whether the runtime plays samples.
     pub(crate) has_pcm: bool,
 }
 
@@ -86,7 +86,7 @@ impl Instance {
         Ok(())
     }
 
-    /// The path of a text such as `/user/hand/left`.
+    /// Returns the path of a text such as `/user/hand/left`.
     pub(crate) fn path(&self, text: &CStr) -> Result<xr::Path, String> {
         let mut path = xr::Path::NULL;
         // SAFETY: the text ends in zero.
@@ -102,7 +102,7 @@ impl Drop for Instance {
     }
 }
 
-/// The extensions of the runtime.
+/// Lists the extensions of the runtime.
 fn extensions(entry: Entry) -> Result<Vec<String>, String> {
     let call = "xrEnumerateInstanceExtensionProperties";
     // SAFETY: the name and the type are those of the header.
@@ -161,7 +161,7 @@ fn create(entry: Entry, extensions: &[&CStr]) -> Result<xr::Instance, String> {
     Ok(instance)
 }
 
-/// A short text in a place of fixed size, filled with zeros.
+/// Copies a short text into an array of fixed size, filled up with zeros.
 pub(crate) fn fixed<const N: usize>(text: &str) -> [c_char; N] {
     let mut place = [0; N];
     for (to, byte) in place.iter_mut().take(N - 1).zip(text.bytes()) {

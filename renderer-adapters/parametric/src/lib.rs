@@ -1,15 +1,17 @@
-//! Controllers that are told points or samples some times a second, through an OpenXR runtime.
+//! Controllers that take points or samples some times per second, through an OpenXR runtime.
 //!
-//! The runtime is a library that is loaded at run time, a runtime itself or the installed loader;
-//! nothing is linked. `form=points` plays `XR_EXT_haptic_parametric`: each block of `block_ms` is a
-//! point of amplitude and of frequency at its end ([`htex_dsp::reduced::Points`]), handed over in
-//! frames as long as the runtime wishes. `form=pcm` plays `XR_FB_haptic_pcm`: the samples
-//! themselves, at the rate of the controller. `form=pwle` plays piecewise linear envelopes, which
-//! Android's vibrators take, by functions of the application.
+//! The library is a runtime itself or the installed loader. It is loaded at run time; nothing is
+//! linked. The setting `form` chooses what is played:
+//! - `form=points` plays `XR_EXT_haptic_parametric`. Each block of `block_ms` becomes a point with
+//!   the amplitude and the frequency at its end ([`htex_dsp::reduced::Points`]). Points are passed
+//!   on in frames of the duration that the runtime prefers.
+//! - `form=pcm` plays `XR_FB_haptic_pcm`: the samples themselves, at the rate of the controller.
+//! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept, through
+//!   functions of the application.
 //!
-//! The adapter has a session of its own, without graphics (`XR_MND_headless`), so that the command
-//! can play on a controller; a session ends with its last device. When a program hangs, the runtime
-//! ends a stream of points after 50 ms, and samples when it has no more.
+//! The adapter has its own session, without graphics (`XR_MND_headless`), so that the command can
+//! play on a controller. A session ends with its last device. If a program hangs, the runtime ends
+//! a stream of points after 50 ms, and a stream of samples when it has no more.
 #![deny(unsafe_code)]
 
 mod claim;
@@ -36,13 +38,13 @@ use samples::Samples;
 use session::{Hand, Session};
 use settings::{Asked, Form};
 
-/// The adapter; see the crate's documentation.
+/// The adapter for parametric haptics. See the crate's documentation.
 pub struct Parametric {
     descriptor: Descriptor,
 }
 
 impl Parametric {
-    /// The adapter. A runtime is loaded at the first use.
+    /// Creates the adapter. A runtime is loaded on first use.
     pub fn new() -> Self {
         Self { descriptor: descriptor() }
     }
@@ -59,7 +61,7 @@ impl Adapter for Parametric {
         &self.descriptor
     }
 
-    /// The hands of the installed runtime that it plays on.
+    /// Lists the hands on which the installed runtime can play.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let session = Session::of("")?;
         let plays = |hand: &Hand| {
@@ -109,14 +111,14 @@ impl Adapter for Parametric {
 }
 
 impl Asked {
-    /// What a vibrator can do that is set so.
+    /// Returns the capabilities of a vibrator with these settings.
     fn of_vibrator(&self) -> Result<Capabilities, DeviceError> {
         Vibrator::load(&self.runtime)?.takes(milliseconds(&self.plan))?;
         Ok(self.plan.capabilities())
     }
 
-    /// What a controller can do that is set so; points are at any rate, samples at that of the
-    /// controller.
+    /// Returns the capabilities of a controller with these settings. Points can have any rate.
+    /// Samples have the rate of the controller.
     fn of_session(&self, session: &Session) -> Result<Capabilities, DeviceError> {
         let can = self.plan.capabilities();
         if self.form != Form::Pcm {
@@ -139,7 +141,7 @@ impl Asked {
         }
     }
 
-    /// An open device over a motor, which is made if the device has the rate.
+    /// Opens a device on a motor, which is created only if the device supports the rate.
     fn paced(
         &self,
         name: &str,

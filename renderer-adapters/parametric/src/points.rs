@@ -15,29 +15,30 @@ use crate::structures::{
     FREQUENCIES_HZ, Frame, MOST_POINTS, Properties, VIBRATION, Vibration, XrPoint,
 };
 
-/// The range of frequencies where neither a person nor the runtime states one, hertz: from a little
-/// below what wideband actuators reach to a little above what a finger feels best.
+/// The frequency range if neither the user nor the runtime states one, hertz. It begins a little
+/// below what wideband actuators reach and ends a little above what a finger feels best.
 const USUAL_HZ: (f64, f64) = (50.0, 500.0);
 pub(crate) struct Stream {
     element: Element,
     scale: Scale,
     rate_hz: f64,
     points: Points,
-    /// Points that were not handed over.
+    /// Points that have not been passed to the runtime yet.
     waiting: Vec<Point>,
-    /// Seconds of samples that were handed over.
+    /// Duration of the samples that were passed to the runtime, seconds.
     sent_s: f64,
-    /// Length of the first frame at least, and of each other one, seconds. The first one is a block
-    /// longer than the others: each comes a block before the runtime needs it.
+    /// Minimum duration of the first frame, seconds. It is one block longer than the other frames,
+    /// because each frame comes one block before the runtime needs it.
     first_s: f64,
+    /// Minimum duration of every other frame, seconds.
     frame_s: f64,
     block_s: f64,
-    /// When the first frame was handed over: the runtime's time 0.
+    /// When the first frame was passed on. This is the runtime's time 0.
     since: Option<Instant>,
 }
 
 impl Stream {
-    /// Opens the haptic element; nothing plays.
+    /// Opens the haptic element. Nothing plays yet.
     pub(crate) fn open(
         element: Element,
         plan: &Plan,
@@ -74,13 +75,13 @@ impl Stream {
         })
     }
 
-    /// Seconds of samples that the points have.
+    /// Returns the duration of the samples that the points cover, seconds.
     fn there_s(&self) -> f64 {
         self.points.frames as f64 / self.rate_hz
     }
 
-    /// After a delay of this thread the runtime has played all that it had, and its time has gone
-    /// on: what comes is of its present.
+    /// Skips to the runtime's present after a delay of this thread. The runtime has then played
+    /// everything it had, and its time has gone on.
     fn catch_up(&mut self) {
         let now_s = self.since.map_or(0.0, |since| since.elapsed().as_secs_f64());
         if now_s > self.there_s() {
@@ -167,8 +168,8 @@ impl Motor for Stream {
     }
 }
 
-/// The range of frequencies that the points cover: what a person states and what the element has,
-/// as far as they meet.
+/// Returns the frequency range that the points cover: the overlap of what the user states and what
+/// the element supports.
 fn range(stated_hz: Option<(f64, f64)>, properties: &Properties) -> (f64, f64) {
     let element = (f64::from(properties.min_frequency_hz), f64::from(properties.max_frequency_hz));
     let is_told = element.0 >= FREQUENCIES_HZ.0 && element.0 <= element.1;
@@ -176,7 +177,7 @@ fn range(stated_hz: Option<(f64, f64)>, properties: &Properties) -> (f64, f64) {
         (None, false) => USUAL_HZ,
         (None, true) => element,
         (Some(stated), false) => stated,
-        // As the runtime does: both ends are moved into the range of the element.
+        // The runtime does the same: it moves both ends into the range of the element.
         (Some((low, high)), true) => {
             (low.clamp(element.0, element.1), high.clamp(element.0, element.1))
         }

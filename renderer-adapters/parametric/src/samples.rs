@@ -1,4 +1,4 @@
-//! Samples: `XR_FB_haptic_pcm`, at the rate of the controller.
+//! A stream of samples (`XR_FB_haptic_pcm`) at the rate of the controller.
 #![allow(unsafe_code)] // The runtime's functions are C.
 
 use std::ptr::null;
@@ -11,25 +11,26 @@ use openxr_sys as xr;
 
 use crate::element::Element;
 
-/// Samples that a runtime can keep.
+/// Number of samples that a runtime can hold.
 const MOST: usize = xr::MAX_HAPTIC_PCM_BUFFER_SIZE_FB;
 
 pub(crate) struct Samples {
     element: Element,
     rate_hz: f64,
     block_s: f64,
-    /// Samples that the runtime has not taken.
+    /// Samples that the runtime has not taken yet.
     waiting: Vec<f32>,
-    /// Samples of the block that is kept until the next one is there: the runtime then has a block
-    /// in hand.
+    /// Number of samples to collect before the first call: two blocks. The runtime then always has
+    /// a block in reserve.
     first: usize,
-    /// When the runtime began, and the samples that it has taken since.
+    /// When the runtime began.
     since: Option<Instant>,
+    /// Number of samples that the runtime has taken since it began.
     taken: u64,
 }
 
 impl Samples {
-    /// Opens the haptic element; nothing plays.
+    /// Opens the haptic element. Nothing plays yet.
     pub(crate) fn open(element: Element, plan: &Plan, rate_hz: f64) -> Result<Self, DeviceError> {
         let first = 2 * plan.block_frames(rate_hz);
         if first > MOST {
@@ -51,7 +52,7 @@ impl Samples {
         })
     }
 
-    /// Hands over what waits; the runtime takes as much as it has space for.
+    /// Passes the waiting samples on. The runtime takes as many as it has space for.
     fn send(&mut self) -> Result<(), String> {
         if self.waiting.is_empty() {
             return Ok(());

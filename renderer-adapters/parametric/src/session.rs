@@ -1,6 +1,6 @@
-//! A session of OpenXR with one action of haptics on both hands.
+//! An OpenXR session with one haptic action on both hands.
 //!
-//! A runtime has one session of a program at a time: devices of both hands share it, and it ends
+//! A runtime allows a program one session at a time. Devices of both hands share it, and it ends
 //! with the last one.
 #![allow(unsafe_code)] // The runtime's functions are C.
 
@@ -18,7 +18,7 @@ use crate::instance::{Instance, fixed};
 use crate::structures::{PROPERTIES, Properties};
 use crate::table::{done, entry};
 
-/// Time within which a session must have the focus.
+/// Time within which a session must get the focus.
 const FOCUS: Duration = Duration::from_secs(5);
 const LOOK: Duration = Duration::from_millis(5);
 
@@ -54,7 +54,7 @@ impl Hand {
     }
 }
 
-/// The profiles of OpenXR 1.0 whose controllers have a haptic element.
+/// The interaction profiles of OpenXR 1.0 whose controllers have a haptic element.
 const PROFILES: [&CStr; 6] = [
     c"/interaction_profiles/khr/simple_controller",
     c"/interaction_profiles/oculus/touch_controller",
@@ -64,18 +64,18 @@ const PROFILES: [&CStr; 6] = [
     c"/interaction_profiles/hp/mixed_reality_controller",
 ];
 
-/// Sessions in use, by the setting that named the runtime.
+/// The sessions in use, by the setting that named the runtime.
 static IN_USE: Mutex<BTreeMap<String, Weak<Session>>> = Mutex::new(BTreeMap::new());
 
-/// A session that has the focus, or has lost it.
+/// A session that has the focus or has lost it.
 pub(crate) struct Session {
     handle: xr::Session,
     action: xr::Action,
     action_set: xr::ActionSet,
     hands: [xr::Path; 2],
-    /// One thread at a time polls events and tells the motors.
+    /// The lock lets only one thread at a time poll events and control the motors.
     state: Mutex<State>,
-    /// Dropped after the session.
+    /// Dropped after the session: `Drop` of a struct runs before its fields are dropped.
     instance: Instance,
 }
 
@@ -86,7 +86,7 @@ struct State {
 }
 
 impl Session {
-    /// The session of the runtime that a setting names; made if nobody has it.
+    /// Returns the session of the runtime that a setting names. Creates it if no device has it.
     pub(crate) fn of(path: &str) -> Result<Arc<Self>, DeviceError> {
         let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(session) = in_use.get(path).and_then(Weak::upgrade) {
@@ -157,7 +157,7 @@ impl Session {
         done("xrCreateAction", code)
     }
 
-    /// Binds the action to all profiles that the runtime takes; it must take one.
+    /// Binds the action to all profiles that the runtime accepts. It must accept at least one.
     fn suggest(&self) -> Result<(), String> {
         let instance = &self.instance;
         let mut bindings = Vec::new();
@@ -213,7 +213,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes the runtime's events, and what is bound now.
+    /// Polls the runtime's events and updates the bindings.
     ///
     /// # Errors
     /// When the session does not have the focus.
@@ -242,7 +242,7 @@ impl Session {
         done("xrSyncActions", code)
     }
 
-    /// The state that the next event of this session tells; `None` when there is none.
+    /// Returns the state in the next event of this session; `None` if there is no event.
     fn next_state(&self) -> Result<Option<xr::SessionState>, String> {
         loop {
             let mut event = xr::EventDataBuffer {
@@ -290,7 +290,7 @@ impl Session {
         }
     }
 
-    /// Hands haptics over to a hand.
+    /// Applies haptics to a hand.
     ///
     /// # Safety
     /// `haptics` begins with the header of a structure that an extension in use defines, with valid
@@ -314,7 +314,7 @@ impl Session {
         done("xrStopHapticFeedback", code)
     }
 
-    /// What the haptic element of a hand asks for, if the system plays points.
+    /// Returns the properties of a hand's haptic element, if the system plays points.
     pub(crate) fn properties(&self, hand: Hand) -> Result<Properties, String> {
         let get = self.instance.table.parametric_properties;
         let (Some(get), true) = (get, self.instance.has_points) else {
@@ -334,7 +334,7 @@ impl Session {
         done("xrHapticParametricGetPropertiesEXT", code).map(|()| properties)
     }
 
-    /// The rate at which a hand plays samples, hertz.
+    /// Returns the rate at which a hand plays samples, hertz.
     pub(crate) fn pcm_rate_hz(&self, hand: Hand) -> Result<f64, String> {
         let get = self.instance.table.pcm_rate;
         let (Some(get), true) = (get, self.instance.has_pcm) else {
@@ -363,7 +363,7 @@ impl Drop for Session {
     }
 }
 
-/// Whether a session can get the focus no more.
+/// Whether a session in this state can no longer get the focus.
 fn is_over(state: xr::SessionState) -> bool {
     [xr::SessionState::STOPPING, xr::SessionState::LOSS_PENDING, xr::SessionState::EXITING]
         .contains(&state)

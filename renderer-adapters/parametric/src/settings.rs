@@ -1,4 +1,4 @@
-//! The settings, and what they ask for.
+//! The settings in parsed form.
 
 use htex_device::{DeviceError, Setting, SettingKind, Settings};
 use htex_device_motor::{DEFAULT_GAIN, Plan, number, reducing_settings, setting};
@@ -6,7 +6,7 @@ use htex_device_motor::{DEFAULT_GAIN, Plan, number, reducing_settings, setting};
 use crate::session::Hand;
 use crate::structures::FREQUENCIES_HZ;
 
-/// What is handed over.
+/// What is passed to the runtime or vibrator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Form {
     Points,
@@ -14,7 +14,7 @@ pub(crate) enum Form {
     Pwle,
 }
 
-/// Settings that agree.
+/// Settings that have been checked against each other.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Asked {
     pub(crate) runtime: String,
@@ -65,7 +65,7 @@ impl Asked {
     /// Reads the settings.
     ///
     /// # Errors
-    /// When one cannot take effect beside the others.
+    /// When a setting has no effect together with the others.
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let form = match settings.text("form") {
             "pcm" => Form::Pcm,

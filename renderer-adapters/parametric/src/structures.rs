@@ -1,5 +1,5 @@
-//! `XR_EXT_haptic_parametric`, revision 1 (extension 776), as the registry defines it: `openxr-sys`
-//! 0.14 does not have it yet.
+//! The structures of `XR_EXT_haptic_parametric`, revision 1 (extension 776), as the registry
+//! defines them. `openxr-sys` 0.14 does not have them yet.
 
 use std::ffi::c_void;
 
@@ -7,7 +7,7 @@ use openxr_sys::{Bool32, Duration, HapticActionInfo, Result, Session};
 
 /// The extension's name.
 pub(crate) const NAME: &std::ffi::CStr = c"XR_EXT_haptic_parametric";
-/// `XR_HAPTIC_PARAMETRIC_MAX_POINTS_TRANSIENTS_EXT`: most points of a frame.
+/// `XR_HAPTIC_PARAMETRIC_MAX_POINTS_TRANSIENTS_EXT`: maximum number of points in a frame.
 pub(crate) const MOST_POINTS: usize = 500;
 /// `XR_HAPTIC_PARAMETRIC_FREQUENCY_MIN_HZ_EXT` and `..._MAX_HZ_EXT`.
 pub(crate) const FREQUENCIES_HZ: (f64, f64) = (1.0, 1_000.0);
@@ -23,7 +23,7 @@ pub(crate) const SYSTEM_PROPERTIES: i32 = 1_000_775_002;
 pub(crate) struct Frame(pub(crate) i32);
 
 impl Frame {
-    /// The whole event.
+    /// The frame is the whole event.
     pub(crate) const WHOLE: Self = Self(0);
     pub(crate) const FIRST: Self = Self(1);
     pub(crate) const INTERMEDIATE: Self = Self(2);
@@ -60,9 +60,9 @@ pub(crate) struct Vibration {
 pub(crate) struct Properties {
     pub(crate) ty: i32,
     pub(crate) next: *mut c_void,
-    /// Time between two frames that the runtime wishes; 0 if it has no wish.
+    /// The runtime's preferred time between two frames; 0 if it has no preference.
     pub(crate) ideal_frame: Duration,
-    /// Least length of the first frame; 0 for any.
+    /// Minimum duration of the first frame; 0 for any.
     pub(crate) least_first_frame: Duration,
     pub(crate) min_frequency_hz: f32,
     pub(crate) max_frequency_hz: f32,

@@ -1,4 +1,4 @@
-//! The functions of OpenXR in use, of a runtime or a loader.
+//! The OpenXR functions in use, from a runtime or a loader.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
 use std::ffi::{CStr, CString};
@@ -10,7 +10,7 @@ use openxr_sys::{self as xr, pfn};
 
 use crate::structures::GetProperties;
 
-/// Names of the installed loader, tried in turn.
+/// Names of the installed loader, which are tried in turn.
 #[cfg(windows)]
 const LOADERS: &[&str] = &["openxr_loader.dll"];
 #[cfg(target_os = "macos")]
@@ -18,13 +18,14 @@ const LOADERS: &[&str] = &["libopenxr_loader.dylib"];
 #[cfg(not(any(windows, target_os = "macos")))]
 const LOADERS: &[&str] = &["libopenxr_loader.so.1", "libopenxr_loader.so"];
 
-/// The version of OpenXR that is asked for: the first one, which all runtimes have.
+/// The requested version of OpenXR: the first one, which all runtimes support.
 pub(crate) const VERSION: xr::Version = xr::Version::new(1, 0, 0);
 
-/// The function through which all others are found.
+/// The function that looks up all others.
 pub(crate) type Entry = pfn::GetInstanceProcAddr;
 
-/// The entry of the library at `path`, or of the installed loader when it is empty.
+/// Loads the entry function of the library at `path`, or of the installed loader if `path` is
+/// empty.
 pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
     if path.is_empty() {
         // SAFETY: the loader's own names.
@@ -44,7 +45,7 @@ pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
     })
 }
 
-/// A runtime exports the function of negotiation, a loader the entry itself.
+/// Finds the entry function. A runtime exports the negotiation function, a loader the entry itself.
 fn of(library: Result<Library, LoadError>) -> Result<Entry, String> {
     let library = library.map_err(|error| error.to_string())?;
     // SAFETY: the name is that of `openxr_loader_negotiation.h`, which states the type.
@@ -85,7 +86,7 @@ fn negotiated(negotiate: pfn::NegotiateLoaderRuntimeInterface) -> Result<Entry, 
     request.get_instance_proc_addr.ok_or_else(|| "it gives no `xrGetInstanceProcAddr`".to_owned())
 }
 
-/// A call that succeeded, or its reason.
+/// Checks that a call succeeded. The error is the reason.
 pub(crate) fn done(call: &str, code: xr::Result) -> Result<(), String> {
     match code {
         xr::Result::SUCCESS => Ok(()),
@@ -93,7 +94,7 @@ pub(crate) fn done(call: &str, code: xr::Result) -> Result<(), String> {
     }
 }
 
-/// The function of this name.
+/// Looks up the function of this name.
 ///
 /// # Safety
 /// `F` is the type that the header states for it.
@@ -114,7 +115,7 @@ pub(crate) unsafe fn function<F: Copy>(
 
 macro_rules! table {
     ($($field:ident: $type:ident,)*) => {
-        /// Functions that an instance has.
+        /// The functions of an instance.
         pub(crate) struct Table {
             $(pub(crate) $field: pfn::$type,)*
             /// `None` without the extension.

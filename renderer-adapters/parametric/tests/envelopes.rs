@@ -1,5 +1,4 @@
-//! Envelopes on the vibrator of an application, which holds them to the documented limits
-//! (`vibrator.c`).
+//! Envelopes on a mock vibrator (`vibrator.c`), which enforces the documented limits.
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the vibrator is C.
 
 mod mock;
@@ -8,7 +7,7 @@ use htex_device::{Adapter, DeviceError};
 use htex_device_parametric::Parametric;
 use mock::{LONG, Mock, RATE_HZ, settings, sine, write_all};
 
-/// Effects as lists of amplitude, frequency in hertz and duration in milliseconds.
+/// Parses effects as lists of amplitude, frequency (hertz) and duration (milliseconds).
 fn effects(lines: &[String]) -> Vec<Vec<(f64, f64, u32)>> {
     let point = |word: &str| {
         let mut numbers = word.split(':');
@@ -29,8 +28,8 @@ fn a_texture_is_a_series_of_effects() {
         return;
     };
     let given = [("form", "pwle"), ("block_ms", "20"), ("gain", "1")];
-    // Blocks of an effect of 0.1 s, and as many as the vibrator takes beside the point that ends
-    // it.
+    // The number of blocks in an effect of 0.1 s, or as many as the vibrator accepts in addition to
+    // the point that ends the effect.
     for (most, blocks) in [(16.0, 5), (4.0, 3)] {
         mock.set("most_points", most);
         let mut device = mock.open(&given).unwrap();
@@ -120,7 +119,7 @@ fn what_the_vibrator_does_not_take_is_refused() {
     }
 }
 
-/// The vibrator refuses each effect that breaks a rule.
+/// The vibrator must refuse each effect that breaks a rule.
 #[test]
 fn each_rule_bites() {
     #[repr(C)]

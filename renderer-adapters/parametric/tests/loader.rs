@@ -1,5 +1,5 @@
-//! The device through the OpenXR loader of the Khronos Group, which finds the runtime by the
-//! manifest that the environment names.
+//! Plays through the OpenXR loader of the Khronos Group, which finds the runtime by the manifest
+//! that the environment names.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the environment is set.
 
@@ -23,7 +23,7 @@ fn the_installed_loader_finds_the_runtime() {
         r#"{{ "file_format_version": "1.0.0", "runtime": {{ "library_path": "{library}" }} }}"#
     );
     std::fs::write(&manifest, text).unwrap();
-    // SAFETY: this process has one test, which has made no other thread.
+    // SAFETY: this process has one test, which has started no other thread.
     unsafe { std::env::set_var("XR_RUNTIME_JSON", &manifest) };
     let adapter = Parametric::new();
     let endpoints = adapter.endpoints().unwrap();

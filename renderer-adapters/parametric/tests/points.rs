@@ -1,4 +1,4 @@
-//! Streams of points and of samples on a runtime that holds them to the rules (`runtime.c`).
+//! Streams of points and of samples on a mock runtime (`runtime.c`), which enforces the rules.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod mock;
@@ -20,8 +20,8 @@ fn broken(lines: &[String]) -> Vec<&String> {
 #[test]
 fn a_texture_is_a_stream_that_keeps_the_rules() {
     let Some(mock) = Mock::new() else { return };
-    // Of a runtime without wishes, one that wants 50 ms before it begins, and one that wants frames
-    // of 40 ms.
+    // A runtime without preferences, one that wants 50 ms before it begins, and one that wants
+    // frames of 40 ms.
     for (ideal_ms, first_ms) in [(0.0, 0.0), (0.0, 50.0), (40.0, 30.0)] {
         mock.set("ideal_ns", ideal_ms * 1e6);
         mock.set("first_ns", first_ms * 1e6);
@@ -41,7 +41,7 @@ fn a_texture_is_a_stream_that_keeps_the_rules() {
         assert!(between.iter().all(|kind| *kind == "intermediate") && between.len() >= 6);
         assert_eq!(frames[0].range_hz, (100.0, 300.0));
         assert!(frames[0].amplitudes.last().unwrap().0 as f64 >= first_ms * 1e6);
-        // The runtime has time for the blocks that are kept.
+        // The runtime must have time for the blocks that are kept back.
         let stop = lines.iter().rposition(|line| line.starts_with("stop right")).unwrap();
         assert_eq!(lines[stop + 1..], ["end"], "the session ends with its last device");
         let since = frames[0].at_ns;
@@ -65,7 +65,7 @@ fn a_texture_is_a_stream_that_keeps_the_rules() {
     }
 }
 
-/// Frames come before the runtime has played what it has.
+/// Each frame must come before the runtime has played what it has.
 #[test]
 fn frames_come_in_time() {
     let Some(mock) = Mock::new() else { return };
@@ -75,7 +75,7 @@ fn frames_come_in_time() {
     device.finish().unwrap();
     let lines = mock.record();
     let late = lines.iter().filter(|line| line.starts_with("late")).count();
-    // A machine that is busy holds a thread up for more than the block of 20 ms now and then.
+    // On a busy machine, a thread is sometimes held up for more than one block of 20 ms.
     assert!(late <= 2 && frames(&lines).len() >= 24, "{late} late: {lines:#?}");
     assert_eq!(broken(&lines), [""; 0]);
 }
@@ -94,14 +94,15 @@ fn a_texture_shorter_than_the_first_frame_is_one_event() {
     let frames = frames(&lines);
     assert_eq!((frames.len(), frames[0].kind.as_str()), (1, "whole"));
     assert_eq!(frames[0].amplitudes.last(), Some(&(50_000_000, 0.0)));
-    // Nothing at all is nothing.
+    // A device without any samples plays nothing.
     let mut device = mock.open(&[]).unwrap();
     device.finish().unwrap();
     drop(device);
     assert!(!mock.record().iter().any(|line| line.starts_with("points")));
 }
 
-/// The points' range is within that of the controller, which the runtime would move it to.
+/// The range of the points must lie within the controller's range, because the runtime would move
+/// it there.
 #[test]
 fn frequencies_are_places_in_the_range_of_the_controller() {
     let Some(mock) = Mock::new() else { return };
@@ -109,7 +110,7 @@ fn frequencies_are_places_in_the_range_of_the_controller() {
         ((0.0, 0.0), None, (50.0, 500.0), 0.3333),
         ((80.0, 320.0), None, (80.0, 320.0), 0.5),
         ((80.0, 320.0), Some(("20", "260")), (80.0, 260.0), 0.6667),
-        // An actuator of one frequency.
+        // An actuator with a single frequency.
         ((175.0, 175.0), Some(("100", "300")), (175.0, 175.0), 0.5),
     ] {
         mock.set("min_hz", element.0);
@@ -131,7 +132,7 @@ fn frequencies_are_places_in_the_range_of_the_controller() {
 #[test]
 fn samples_are_played_as_they_are_at_the_rate_of_the_controller() {
     let Some(mock) = Mock::new() else { return };
-    // The runtime has space for 60 samples at a time: less than two blocks.
+    // One runtime has space for only 60 samples at a time, which is less than two blocks.
     for most in [4_000.0, 60.0] {
         mock.set("pcm_rate", 2_000.0);
         mock.set("pcm_most", most);
@@ -172,7 +173,7 @@ fn both_hands_share_a_session_and_each_has_one_device() {
     assert!(matches!(error, DeviceError::Busy(_)), "{error}");
     let samples = sine(200.0, 0.5, 0.1, RATE_HZ);
     write_all(left.as_mut(), &samples);
-    // It plays while the other one ends.
+    // The right hand plays while the other one ends.
     write_all(right.as_mut(), &sine(200.0, 0.5, 0.9, RATE_HZ));
     left.finish().unwrap();
     right.finish().unwrap();

@@ -1,5 +1,5 @@
-//! The runtime of the tests refuses each frame that breaks a rule, and names the rule: otherwise
-//! its silence would say nothing.
+//! The mock runtime must refuse each frame that breaks a rule, and name the rule. Otherwise its
+//! silence in other tests would prove nothing.
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the runtime is C.
 
 mod mock;
@@ -45,7 +45,7 @@ struct Given {
     frame: i32,
 }
 
-/// Calls the runtime as the device does, beside a device that keeps a session.
+/// Calls the runtime as the device does, while another device keeps a session open.
 struct Caller {
     apply: pfn::ApplyHapticFeedback,
     element: xr::HapticActionInfo,
@@ -122,7 +122,7 @@ impl Caller {
     }
 }
 
-/// Handles of `openxr-sys` have this by a trait.
+/// Imported because handles of `openxr-sys` convert through this trait.
 use xr::Handle as _;
 
 fn sound(frame: i32) -> Given {
@@ -185,7 +185,7 @@ fn each_rule_bites() {
         change(&mut given);
         refused(None, &given, rule);
     }
-    // Of a stream: none runs after one event, nor after the last frame.
+    // No stream is running after a single event, or after the last frame.
     refused(Some(0), &sound(2), "no-stream");
     let stream: [(&str, Change<'_>); 3] = [
         ("frequency-in-a-later-frame", &|g| g.range = [100.0, 200.0]),

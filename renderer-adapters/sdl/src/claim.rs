@@ -1,4 +1,5 @@
-//! Each gamepad belongs to one open device: SDL itself lets any number of users change its motors.
+//! Reservation of gamepads: each belongs to one open device. SDL itself lets any number of users
+//! change its motors.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -8,10 +9,10 @@ use htex_device::DeviceError;
 use crate::driver::Driver;
 use crate::pads::Pad;
 
-/// Library and instance of each that is open.
+/// Library and instance of each open gamepad.
 static CLAIMED: Mutex<BTreeSet<(String, i32)>> = Mutex::new(BTreeSet::new());
 
-/// Released when dropped.
+/// A reserved gamepad. Dropping it releases the gamepad.
 pub(crate) struct Claim((String, i32));
 
 impl Claim {

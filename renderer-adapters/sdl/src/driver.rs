@@ -1,4 +1,4 @@
-//! SDL, loaded and initialised at the first use; a program has it once for each library.
+//! SDL, loaded and initialised on first use, once for each library.
 #![allow(unsafe_code)] // The library's functions are C.
 
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use htex_native::Library;
 
 use crate::table::Table;
 
-/// Names of the installed library, tried in turn.
+/// Names of the installed library, which are tried in turn.
 #[cfg(windows)]
 const NAMES: &[&str] = &["SDL2.dll"];
 #[cfg(target_os = "macos")]
@@ -19,24 +19,25 @@ const NAMES: &[&str] = &["libSDL2-2.0.so.0", "libSDL2-2.0.so"];
 
 /// `SDL_INIT_JOYSTICK`.
 const JOYSTICK: u32 = 0x200;
-/// Without windows there is no focus and no loop of messages; signals stay the program's.
+/// A program without windows has no focus and no message loop. Signals must remain the program's
+/// own.
 const HINTS: [(&std::ffi::CStr, &std::ffi::CStr); 3] = [
     (c"SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", c"1"),
     (c"SDL_JOYSTICK_THREAD", c"1"),
     (c"SDL_NO_SIGNAL_HANDLERS", c"1"),
 ];
 
-/// Loaded libraries by the setting that named them. None is ever unloaded.
+/// Loaded libraries, by the setting that named them. They are never unloaded.
 static LOADED: Mutex<BTreeMap<String, &'static Driver>> = Mutex::new(BTreeMap::new());
 
 pub(crate) struct Driver {
-    /// The setting that named it.
+    /// The setting that named the library.
     pub(crate) path: String,
     pub(crate) table: Table,
 }
 
 impl Driver {
-    /// Loads the library at `path`, or the installed one when it is empty.
+    /// Loads the library at `path`, or the installed one if `path` is empty.
     pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
         let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(driver) = loaded.get(path) {
@@ -86,7 +87,8 @@ fn installed() -> Result<Table, DeviceError> {
     })
 }
 
-/// A path, or a bare name, which is a file of the current folder, else a library of the system.
+/// Loads a library by a path or a bare name. A bare name means a file in the current folder, else a
+/// library of the system.
 fn named(path: &str) -> Result<Table, DeviceError> {
     // SAFETY: the user named this library as a driver.
     let table = Table::of(unsafe { Library::named(path) });

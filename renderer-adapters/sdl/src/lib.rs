@@ -1,12 +1,12 @@
 //! The motors of gamepads and joysticks, through SDL 2, which is loaded at run time and not linked.
 //!
-//! A gamepad has two motors with an unbalanced mass, a large and a small one, which are told a
-//! strength each. They get the level of blocks of `block_ms`, divided by the mean frequency
-//! ([`htex_dsp::reduced::two_motors`]).
+//! A gamepad has two motors with an unbalanced mass, a large and a small one. Each takes a
+//! strength. They get the level of each block of `block_ms`, divided between them by the mean
+//! frequency ([`htex_dsp::reduced::two_motors`]).
 //!
-//! Each call says that it holds for `HOLD_BLOCKS` blocks: if this thread hangs in a program that
-//! asks SDL for events, SDL stops the motors then. When the program is gone, the system does. SDL
-//! stays initialised, since an application may use it, too.
+//! Each strength is set for `HOLD_BLOCKS` blocks only. If this thread hangs in a program that polls
+//! SDL's events, SDL stops the motors after that time. If the program ends, the system stops them.
+//! SDL stays initialised, because an application may use it as well.
 #![deny(unsafe_code)]
 
 mod claim;
@@ -24,13 +24,13 @@ use htex_device_motor::{Paced, Plan, reducing_settings, setting};
 use driver::Driver;
 use rumble::Rumble;
 
-/// The adapter; see the crate's documentation.
+/// The gamepad adapter. See the crate's documentation.
 pub struct Sdl {
     descriptor: Descriptor,
 }
 
 impl Sdl {
-    /// The adapter. SDL is loaded at the first use.
+    /// Creates the adapter. SDL is loaded on first use.
     pub fn new() -> Self {
         Self { descriptor: descriptor() }
     }

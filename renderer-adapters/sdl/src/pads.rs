@@ -1,4 +1,4 @@
-//! The gamepads and joysticks that are connected.
+//! The connected gamepads and joysticks.
 #![allow(unsafe_code)] // The library's functions are C.
 
 use htex_device::DeviceError;
@@ -6,22 +6,22 @@ use htex_device::DeviceError;
 use crate::driver::Driver;
 use crate::table::text;
 
-/// The value that chooses the first one.
+/// The setting's value that chooses the first one.
 pub(crate) const FIRST: &str = "first";
 
-/// One that is connected.
+/// A connected gamepad or joystick.
 #[derive(Debug, Clone)]
 pub(crate) struct Pad {
-    /// SDL's name; a second one of the same name is `NAME #2`.
+    /// SDL's name. A second one of the same name is called `NAME #2`.
     pub(crate) name: String,
-    /// Its place in SDL's list, which changes when others come and go.
+    /// Its index in SDL's list, which changes when others come and go.
     pub(crate) index: i32,
-    /// Its number as long as it is connected.
+    /// Its number, which stays the same while it is connected.
     pub(crate) instance: i32,
 }
 
 impl Driver {
-    /// All that are connected.
+    /// Lists all that are connected.
     pub(crate) fn pads(&self) -> Vec<Pad> {
         let sdl = &self.table;
         let mut pads: Vec<Pad> = Vec::new();
@@ -43,7 +43,7 @@ impl Driver {
         pads
     }
 
-    /// The one of this name.
+    /// Finds the one with this name.
     pub(crate) fn find(&self, name: &str) -> Result<Pad, DeviceError> {
         let pads = self.pads();
         let mut all = pads.iter();

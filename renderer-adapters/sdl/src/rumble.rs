@@ -10,7 +10,7 @@ use crate::driver::Driver;
 use crate::pads::Pad;
 use crate::table::Handle;
 
-/// Blocks that a strength holds if no other is told.
+/// Number of blocks for which a strength holds if no other one follows.
 pub(crate) const HOLD_BLOCKS: f64 = 10.0;
 
 pub(crate) struct Rumble {
@@ -26,7 +26,7 @@ pub(crate) struct Rumble {
 unsafe impl Send for Rumble {}
 
 impl Rumble {
-    /// Opens a gamepad; its motors are at rest.
+    /// Opens a gamepad. Its motors are at rest.
     pub(crate) fn open(
         driver: &'static Driver,
         pad: &Pad,

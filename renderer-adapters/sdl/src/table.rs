@@ -1,4 +1,4 @@
-//! The functions of SDL 2 in use, as `SDL_joystick.h`, `SDL.h`, `SDL_hints.h` and `SDL_error.h`
+//! The SDL 2 functions in use, as `SDL_joystick.h`, `SDL.h`, `SDL_hints.h` and `SDL_error.h`
 //! declare them.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
@@ -32,10 +32,10 @@ macro_rules! table {
         }
 
         impl Table {
-            /// The functions of a library.
+            /// Looks up the functions of a library.
             ///
             /// # Errors
-            /// When it is not loaded, or lacks one.
+            /// When the library is not loaded, or lacks a function.
             pub(crate) fn of(library: Result<Library, LoadError>) -> Result<Self, TableError> {
                 let library = library.map_err(TableError::Load)?;
                 $(
@@ -68,14 +68,14 @@ table! {
 }
 
 impl Table {
-    /// The reason for the last failure in this thread.
+    /// Returns the reason for the last failure in this thread.
     pub(crate) fn reason(&self) -> String {
         // SAFETY: SDL returns a text that ends in zero and lasts until the thread's next call.
         text(unsafe { (self.error)() })
     }
 }
 
-/// A text of SDL; empty for none.
+/// Copies a text of SDL; empty for a null pointer.
 pub(crate) fn text(at: *const c_char) -> String {
     if at.is_null() {
         return String::new();

@@ -1,4 +1,4 @@
-//! A gamepad of SDL itself: its virtual joystick, whose motors record what they are told (`pad.c`).
+//! A virtual joystick of SDL itself, whose motors record what they are told (`pad.c`).
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the recording is C.
 
@@ -14,7 +14,7 @@ use htex_device_sdl::Sdl;
 const RATE_HZ: f64 = 8_000.0;
 const LONG: Duration = Duration::from_secs(5);
 
-/// The library with the gamepad; `None` without SDL.
+/// Builds the library of the virtual joystick; `None` without SDL.
 fn library() -> Option<&'static Path> {
     static BUILT: OnceLock<Option<PathBuf>> = OnceLock::new();
     let built = BUILT
@@ -31,7 +31,7 @@ fn library() -> Option<&'static Path> {
     xtask::needs::SDL.met(built.is_some()).then_some(built)?
 }
 
-/// SDL is one for the whole process, and so is the gamepad: one test at a time has it.
+/// The process has only one SDL and one gamepad, so only one test at a time may use them.
 struct Pad {
     library: libloading::Library,
     path: &'static Path,
@@ -69,8 +69,8 @@ impl Pad {
         }
     }
 
-    /// What the motors were told since this test began: the time, and the large and the small one's
-    /// strength.
+    /// Returns what the motors were told since this test began: the time, and the strength of the
+    /// large and of the small motor.
     fn told(&self) -> Vec<(i64, u16, u16)> {
         type Get = unsafe extern "C" fn(usize, &mut i64, &mut u16, &mut u16);
         let count: usize = self.call("pad_count");
@@ -128,7 +128,7 @@ fn a_low_frequency_is_on_the_large_motor_and_a_high_one_on_the_small() {
         assert_eq!((status.frames_written, status.frames_played), (2_400, 2_400));
         let told = pad.told().split_off(since);
         assert_eq!(told.last().map(|t| (t.1, t.2)), Some((0, 0)), "{hz} Hz");
-        // SDL tells changes. The analyser's first window is not full before 64 ms.
+        // SDL reports only changes. The analyser's first window is full after 64 ms.
         let playing: Vec<_> = told.iter().filter(|t| t.1.max(t.2) > 0).collect();
         let late = told[0].0 + 150_000_000;
         let (last, before) = playing.split_last().unwrap();
@@ -136,8 +136,8 @@ fn a_low_frequency_is_on_the_large_motor_and_a_high_one_on_the_small() {
         for (_, large, small) in steady {
             let [large, small] = [*large, *small].map(|x| f64::from(x) / 65_535.0);
             let level = 0.5 / 2.0_f64.sqrt();
-            // A block of 10 ms has half a period of 50 Hz, whole ones of the others but for their
-            // ends.
+            // A block of 10 ms contains half a period of 50 Hz, and whole periods of the other
+            // frequencies except at their ends.
             assert!((large + small - level).abs() < 0.02, "{hz} Hz: {large} {small}");
             assert!((small - share * level).abs() < 0.01, "{hz} Hz: {large} {small}");
         }

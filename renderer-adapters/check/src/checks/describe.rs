@@ -1,5 +1,5 @@
-//! The marker, the exports, the descriptor, endpoints and capabilities; those that sources have too
-//! are of any kind.
+//! Checks of the marker, exports, descriptor, endpoints and capabilities. Checks that also apply to
+//! sources are generic over the kind of adapter.
 
 use htex_check_runner::{Finding, Found, made_up_extensions};
 use htex_device::abi::Code;
@@ -9,27 +9,27 @@ use crate::case::{self, CheckedKind};
 use crate::device::Case;
 
 const INVALID_SETTING: i64 = Code::InvalidSetting as i64;
-/// Frames of a block of a device that is opened for its settings.
+/// Block size of a device that is opened only to test its settings, frames.
 const BLOCK: u32 = 256;
 
-/// The finding where arrays are used as the ABI says.
+/// The finding when arrays are used as the ABI demands.
 pub(crate) const KEPT: &str =
     "null and misaligned arrays are refused, and nothing is written beyond an array";
 
-/// A library that was loaded has the marker and the exports.
+/// A library that could be loaded has the marker and the exports.
 pub(crate) fn loaded<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
     case.native()?;
     Ok(Finding::passed("the library was loaded"))
 }
 
-/// Loading checks a library's descriptor; this checks that of a built-in device.
+/// Checks the descriptor of a built-in device. For a library, loading has already checked it.
 pub(crate) fn descriptor(case: &Case) -> Found {
     let descriptor = case.adapter.descriptor();
     descriptor.check()?;
     Ok(described(descriptor))
 }
 
-/// A descriptor that is valid.
+/// Reports a valid descriptor.
 pub(crate) fn described(descriptor: &Descriptor) -> Finding {
     let (id, version) = (&descriptor.id, &descriptor.version);
     let (settings, profiles) = (descriptor.settings.len(), descriptor.profiles.len());
@@ -37,13 +37,13 @@ pub(crate) fn described(descriptor: &Descriptor) -> Finding {
     Finding::passed(message).with("settings", settings as f64)
 }
 
-/// Made-up extensions are absent.
+/// Made-up extensions must be reported as absent.
 pub(crate) fn extensions<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
     let native = case.native()?;
     made_up_extensions(|id| native.has_extension(id))
 }
 
-/// Endpoints choose settings of the descriptor; none, or a missing driver, is a valid result.
+/// Endpoints must choose settings of the descriptor. An empty list or a missing driver is valid.
 pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
     let descriptor = case.adapter.about();
     let known = |name: &str| descriptor.settings.iter().any(|setting| setting.name == name);
@@ -61,7 +61,7 @@ pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found 
     }
 }
 
-/// The capabilities, with the given settings and with each profile.
+/// Checks the capabilities with the given settings and with each profile.
 pub(crate) fn capabilities(case: &Case) -> Found {
     let can = case.capabilities()?;
     let checked = can.check();
@@ -81,7 +81,7 @@ pub(crate) fn capabilities(case: &Case) -> Found {
     Ok(Finding::passed(format!("{limit}, {}", can.rates)))
 }
 
-/// Settings that are not usable are refused, in `capabilities` and in `open`.
+/// Unusable settings must be refused, both in `capabilities` and in `open`.
 pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = case.native()?;
     let (descriptor, settings) = (case.adapter.descriptor(), case.settings()?);
@@ -89,7 +89,7 @@ pub(crate) fn bad_settings(case: &Case) -> Found {
     let asked = refused(descriptor, &settings, |lines| {
         match native.capabilities_of(lines) {
             Ok(_) => None,
-            // A text without a name is all in `what`.
+            // An error text without a setting's name is entirely in `what`.
             Err(DeviceError::Setting { name, what }) if name.is_empty() => {
                 Some((INVALID_SETTING, what))
             }
@@ -109,16 +109,16 @@ fn of_call(call: &str, finding: Finding) -> Finding {
     Finding::failed(format!("`{call}`: {}", finding.message))
 }
 
-/// Lines of settings that are not usable, and how the text of their refusal must begin.
+/// Unusable lines of settings, and how the text of their refusal must begin.
 struct WrongLines {
     what: String,
     lines: String,
-    /// A setting's name or a line; empty for one that is empty.
+    /// A setting's name or a line; empty for an empty line.
     begins: String,
 }
 
-/// Lines that are not usable are refused by `refusal`, which returns the status and the text, or
-/// `None` if it takes them. The text must begin with the setting's name.
+/// Checks that unusable lines are refused with a text that begins with the setting's name.
+/// `refusal` returns the status and the text, or `None` if the adapter accepts the lines.
 pub(crate) fn refused(
     descriptor: &Descriptor,
     settings: &Settings,
@@ -148,7 +148,7 @@ pub(crate) fn refused(
         .with("settings", count as f64))
 }
 
-/// Settings with one error each, among valid ones.
+/// Builds settings with exactly one error each, among valid ones.
 fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
     let mut single = vec![
         "no_such_setting_=1\n".to_owned(),
@@ -174,7 +174,7 @@ fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
     in_place.chain(twice).collect()
 }
 
-/// Lines of a setting with values that it does not have.
+/// Returns lines that give a setting an invalid value.
 fn wrong_lines(setting: &Setting) -> Vec<String> {
     let values = match &setting.kind {
         SettingKind::Number { max, .. } => {
@@ -187,7 +187,7 @@ fn wrong_lines(setting: &Setting) -> Vec<String> {
     values.iter().map(line).collect()
 }
 
-/// Arrays that are not usable are refused, and no call writes beyond the ones that it gets.
+/// Unusable arrays must be refused, and no call may write beyond the arrays that it gets.
 pub(crate) fn arrays(case: &Case) -> Found {
     let native = case.native()?;
     let format =

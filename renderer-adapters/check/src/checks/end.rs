@@ -1,4 +1,4 @@
-//! Finishing, aborting and closing.
+//! Checks of finishing, aborting and closing.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use htex_device::{Adapter, Device, DeviceError, StreamFormat};
 
 use crate::device::{Case, write_all};
 
-/// All frames are played; nothing can be written afterwards.
+/// All frames must be played, and nothing can be written afterwards.
 pub(crate) fn finishes(case: &Case) -> Found {
     let (mut device, _) = case.open()?;
     let tone = case.tone(1_000)?;
@@ -34,7 +34,7 @@ pub(crate) fn finishes(case: &Case) -> Found {
     Ok(Finding::passed("all frames came out, and writes afterwards are refused"))
 }
 
-/// Closing without the end leaves nothing behind.
+/// Closing without `finish` must leave nothing behind.
 pub(crate) fn aborts(case: &Case) -> Found {
     let before = files(case);
     let (mut device, _) = case.open()?;
@@ -53,7 +53,7 @@ fn files(case: &Case) -> Vec<String> {
     names.map(|name| name.to_string_lossy().into_owned()).collect()
 }
 
-/// A handle that was closed is refused, also when another device was opened.
+/// A closed handle must be refused, even after another device was opened.
 pub(crate) fn handles(case: &Case) -> Found {
     let native = case.native()?;
     let can = case.capabilities()?;

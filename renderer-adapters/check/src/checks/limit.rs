@@ -1,4 +1,4 @@
-//! Samples that must be refused.
+//! Checks of samples that must be refused.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use htex_device::DeviceError;
 
 use crate::device::{Case, write_all};
 
-/// Samples beyond the limit are refused, positive and negative.
+/// Samples beyond the limit must be refused, both positive and negative.
 pub(crate) fn over(case: &Case) -> Found {
     let Some(limit) = case.capabilities()?.limit else {
         return Ok(Finding::skipped("it has no limit"));
@@ -18,7 +18,7 @@ pub(crate) fn over(case: &Case) -> Found {
     Ok(Finding::passed(format!("samples over {limit} are refused, and the output stays at zero")))
 }
 
-/// NaN and infinities are refused.
+/// NaN and infinities must be refused.
 pub(crate) fn no_number(case: &Case) -> Found {
     for sample in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         refuses(case, sample)?;
@@ -26,7 +26,7 @@ pub(crate) fn no_number(case: &Case) -> Found {
     Ok(Finding::passed("NaN and infinities are refused, and the output stays at zero"))
 }
 
-/// Writes one invalid sample among valid ones: it is refused, and the device is closed.
+/// Writes one invalid sample among valid ones. The device must refuse it and be closed afterwards.
 fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
     let wrong = |what: String| Err(Finding::failed(format!("a sample of {bad}: {what}")));
     let (mut device, _) = case.open()?;

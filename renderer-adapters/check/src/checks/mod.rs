@@ -1,4 +1,4 @@
-//! The checks, grouped by what they look at.
+//! The checks, grouped by subject.
 
 pub(crate) mod describe;
 pub(crate) mod end;

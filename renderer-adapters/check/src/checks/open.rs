@@ -1,4 +1,4 @@
-//! Opening.
+//! Checks of opening.
 
 use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
@@ -8,7 +8,7 @@ use crate::device::{Case, rates, write_all};
 
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
-/// The device opens at each of its rates, and takes silence.
+/// The device must open at each of its rates, and accept silence.
 pub(crate) fn opens(case: &Case) -> Found {
     let rates = rates(&case.capabilities()?);
     for rate_hz in &rates {
@@ -20,7 +20,7 @@ pub(crate) fn opens(case: &Case) -> Found {
     Ok(Finding::passed(format!("it opens at {count} rates")).with("rates", count as f64))
 }
 
-/// Rates that the device does not have are refused.
+/// Rates that the device does not support must be refused.
 pub(crate) fn bad_rate(case: &Case) -> Found {
     let can = case.capabilities()?;
     let (lowest, highest) = match rates(&can)[..] {
@@ -42,7 +42,7 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
     Ok(Finding::passed(format!("{count} wrong rates are refused")).with("rates", count as f64))
 }
 
-/// Block sizes that the ABI does not have are refused.
+/// Block sizes outside the ABI's range must be refused.
 pub(crate) fn bad_block(case: &Case) -> Found {
     let native = case.native()?;
     let rate_hz = case.capabilities()?.default_rate_hz;
@@ -67,7 +67,7 @@ pub(crate) fn bad_block(case: &Case) -> Found {
     Ok(Finding::passed(format!("{count} wrong block sizes are refused")))
 }
 
-/// Two devices open at the same time, or the second is refused as busy.
+/// Two devices must open at the same time, or the second must be refused as busy.
 pub(crate) fn two(case: &Case) -> Found {
     let (mut first, settings) = case.open()?;
     let rate_hz = case.adapter.capabilities(&settings)?.default_rate_hz;

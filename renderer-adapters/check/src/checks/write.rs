@@ -1,4 +1,4 @@
-//! Writing, and the status.
+//! Checks of writing and of the status.
 
 use std::time::Duration;
 
@@ -7,15 +7,15 @@ use htex_device::Status;
 
 use crate::device::{Case, write_all};
 
-/// Blocks over which memory must not grow.
+/// Number of blocks over which memory must not grow.
 const BLOCKS: usize = 10_000;
 const BLOCK: usize = 256;
-/// Longest time of samples for a device with a clock, seconds.
+/// Longest total duration of samples for a device with a clock, seconds.
 const PACED_S: f64 = 10.0;
-/// Devices that are opened and closed.
+/// Number of devices that are opened and closed.
 const OPENED: usize = 100;
 
-/// Blocks of any size are taken in the end.
+/// Blocks of any size must be taken in the end.
 pub(crate) fn blocks(case: &Case) -> Found {
     let (mut device, _) = case.open()?;
     let block = case.capabilities()?.block_frames as usize;
@@ -31,7 +31,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     Ok(Finding::passed(format!("blocks of 0 to {} frames are taken", sizes[3])))
 }
 
-/// Frames and peak are counted.
+/// Frames and peak must be counted.
 pub(crate) fn status(case: &Case) -> Found {
     let (mut device, settings) = case.open()?;
     let before = device.status();
@@ -62,7 +62,7 @@ pub(crate) fn status(case: &Case) -> Found {
     Ok(Finding::passed("frames and peak are counted").with("latency_s", status.latency_s))
 }
 
-/// The process does not grow with what is written, or as devices are opened and closed.
+/// The process must not grow with the samples written, or as devices are opened and closed.
 pub(crate) fn memory(case: &Case) -> Found {
     htex_check_runner::memory(|| {
         let can = case.capabilities()?;

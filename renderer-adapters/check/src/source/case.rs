@@ -1,4 +1,4 @@
-//! Operations on the source under test that several checks use.
+//! Operations on the source under test that several checks share.
 
 use std::time::Duration;
 
@@ -7,11 +7,11 @@ use htex_device::{Delivered, DeviceError, Settings, Source, SourceAdapter};
 
 use crate::case::{CaseKind, skip_missing};
 
-/// Most consecutive reads that may deliver nothing, each waiting [`PATIENCE`].
+/// Maximum number of consecutive reads that may deliver nothing, each waiting [`PATIENCE`].
 const EMPTY_READS: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A loaded source, and its settings.
+/// A loaded source and its settings.
 pub(crate) type Case = crate::case::Case<dyn SourceAdapter>;
 
 impl CaseKind for dyn SourceAdapter {
@@ -23,17 +23,17 @@ impl CaseKind for dyn SourceAdapter {
 }
 
 impl Case {
-    /// The given settings; required ones that are missing are the first endpoint.
+    /// Returns the given settings. A missing required setting becomes the first endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
         self.filled(self.profile(), |s| self.first_endpoint(&s.name))
     }
 
-    /// An open source; the check is skipped where the driver or the source is missing.
+    /// Opens a source. If the driver or the source is missing, the check is skipped.
     pub(crate) fn open(&self) -> Result<Box<dyn Source>, Finding> {
         self.adapter.open(&self.settings()?).map_err(skip_missing)
     }
 
-    /// An open source that samples.
+    /// Opens a source and starts sampling.
     pub(crate) fn started(&self) -> Result<Box<dyn Source>, Finding> {
         let mut source = self.open()?;
         source.start()?;
@@ -41,7 +41,8 @@ impl Case {
     }
 }
 
-/// Reads `frames` frames in blocks of any size, or fewer if the source ends; returns their number.
+/// Reads `frames` frames in blocks of various sizes, or fewer if the source ends. Returns their
+/// number.
 pub(crate) fn read_all(source: &mut dyn Source, frames: usize) -> Result<usize, Finding> {
     let width = source.channels().len();
     let mut samples = vec![0.0; frames * width];
@@ -70,7 +71,7 @@ pub(crate) fn read_all(source: &mut dyn Source, frames: usize) -> Result<usize, 
     Ok(read)
 }
 
-/// A call that must be refused as closed.
+/// Checks that a call was refused as closed.
 pub(crate) fn closed<T>(call: &str, answer: Result<T, DeviceError>) -> Result<(), Finding> {
     match answer {
         Err(DeviceError::Closed(_)) => Ok(()),

@@ -1,4 +1,4 @@
-//! The descriptor, opening, settings.
+//! Checks of the descriptor, of opening, and of settings.
 
 use htex_check_runner::{Finding, Found};
 use htex_device::{SourceDescriptor, SourceStream};
@@ -7,7 +7,7 @@ use crate::case::skip_missing;
 use crate::checks::describe::{KEPT, described, refused};
 use crate::source::case::Case;
 
-/// Loading checks a library's descriptor; this checks that of a built-in source.
+/// Checks the descriptor of a built-in source. For a library, loading has already checked it.
 pub(crate) fn descriptor(case: &Case) -> Found {
     let about = SourceDescriptor {
         descriptor: case.adapter.descriptor().clone(),
@@ -17,7 +17,8 @@ pub(crate) fn descriptor(case: &Case) -> Found {
     Ok(described(&about.descriptor))
 }
 
-/// Rate and channels are valid, the same at each opening and, of a library, at each call.
+/// Rate and channels must be valid and the same at each opening. For a library, they must also be
+/// the same at each call.
 pub(crate) fn opens(case: &Case) -> Found {
     let stream = || -> Result<SourceStream, Finding> {
         let source = case.open()?;
@@ -39,7 +40,7 @@ pub(crate) fn opens(case: &Case) -> Found {
     Ok(Finding::passed(format!("{count} channels at {rate_hz} Hz")).with("rate_hz", rate_hz))
 }
 
-/// Settings that are not usable are refused.
+/// Unusable settings must be refused.
 pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = case.native()?;
     let settings = case.settings()?;
@@ -47,7 +48,7 @@ pub(crate) fn bad_settings(case: &Case) -> Found {
     refused(case.adapter.descriptor(), &settings, |lines| native.refusal_of_lines(lines))
 }
 
-/// Arrays that are not usable are refused, and no call writes beyond the ones that it gets.
+/// Unusable arrays must be refused, and no call may write beyond the arrays that it gets.
 pub(crate) fn arrays(case: &Case) -> Found {
     let checked = case.native()?.check_source_arrays(&case.settings()?);
     checked.map_err(Finding::failed)?;

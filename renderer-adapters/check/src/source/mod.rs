@@ -1,7 +1,7 @@
-//! The checks of sources: one for each guarantee of the source ABI, as for devices.
+//! The checks of sources, with one check for each guarantee of the source ABI, as for devices.
 //!
-//! A source is called as a recording calls it, through [`htex_device::SourceAdapter`]; checks of a
-//! library's exports are skipped for one that is built in.
+//! A source is called as a recording calls it, through [`htex_device::SourceAdapter`]. For a
+//! built-in source, checks of a library's exports are skipped.
 
 mod case;
 mod describe;

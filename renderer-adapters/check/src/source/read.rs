@@ -1,4 +1,4 @@
-//! Starting, reading, stopping and closing.
+//! Checks of starting, reading, stopping and closing.
 
 use std::time::{Duration, Instant};
 
@@ -7,24 +7,24 @@ use htex_device::{Delivered, DeviceError, Source};
 
 use crate::source::case::{Case, closed, read_all};
 
-/// Frames of a block in the check of memory.
+/// Block size in the check of memory, frames.
 const BLOCK: usize = 64;
-/// Most blocks, and the longest time of their samples, seconds.
+/// Maximum number of blocks, and the longest total duration of their samples, seconds.
 const BLOCKS: usize = 10_000;
 const TIME_S: f64 = 5.0;
-/// Sources that are opened and closed.
+/// Number of sources that are opened and closed.
 const OPENED: usize = 100;
-/// Longest time by which a read may exceed its timeout.
+/// How much longer than its timeout a read may take.
 const LATE: Duration = Duration::from_millis(500);
 
-/// Nothing can be read before the start, and a second start changes nothing.
+/// Nothing can be read before the start, and a second start must change nothing.
 pub(crate) fn starts(case: &Case) -> Found {
     let mut source = case.open()?;
     let mut samples = vec![0.0; source.channels().len()];
     let early = source.read(&mut samples, Duration::ZERO);
     closed("a read before the start", early)?;
     drop(source);
-    // What was refused may have ended it.
+    // A new source, because the refused call may have ended the first one.
     let mut source = case.open()?;
     source.start()?;
     source.start()?;
@@ -32,7 +32,7 @@ pub(crate) fn starts(case: &Case) -> Found {
     Ok(Finding::passed(format!("{read} frame after the start")))
 }
 
-/// Blocks of any size are delivered.
+/// Blocks of any size must be delivered.
 pub(crate) fn blocks(case: &Case) -> Found {
     let mut source = case.started()?;
     let sizes = [1, 7, 64, 193];
@@ -55,7 +55,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     Ok(Finding::passed(format!("{read} frames are delivered")).with("frames", read as f64))
 }
 
-/// A read without time returns at once, another one in time.
+/// A read with a timeout of zero must return at once, and any other read within its timeout.
 pub(crate) fn timeouts(case: &Case) -> Found {
     let mut source = case.started()?;
     let mut samples = vec![0.0; source.channels().len()];
@@ -74,7 +74,7 @@ pub(crate) fn timeouts(case: &Case) -> Found {
     Ok(finding.with("late_s", late_s))
 }
 
-/// After the stop nothing can be read or started.
+/// After stopping, the source can be neither read nor started.
 pub(crate) fn stops(case: &Case) -> Found {
     let mut source = case.started()?;
     read_all(source.as_mut(), 3)?;
@@ -87,7 +87,7 @@ pub(crate) fn stops(case: &Case) -> Found {
     Ok(Finding::passed("nothing is delivered after the stop"))
 }
 
-/// A handle that was closed is refused, also when another source was opened.
+/// A closed handle must be refused, even after another source was opened.
 pub(crate) fn handles(case: &Case) -> Found {
     let native = case.native()?;
     let mut old = native.open_native(&case.settings()?)?;
@@ -105,7 +105,7 @@ pub(crate) fn handles(case: &Case) -> Found {
     Ok(Finding::passed("a closed handle is refused"))
 }
 
-/// Two sources deliver at the same time, or the second is refused as busy.
+/// Two sources must deliver at the same time, or the second must be refused as busy.
 pub(crate) fn two(case: &Case) -> Found {
     let mut first = case.started()?;
     let second = case.adapter.open(&case.settings()?);
@@ -124,7 +124,7 @@ pub(crate) fn two(case: &Case) -> Found {
     Ok(Finding::passed("two deliver at the same time"))
 }
 
-/// The process does not grow with what is read, or as sources are opened and closed.
+/// The process must not grow with the samples read, or as sources are opened and closed.
 pub(crate) fn memory(case: &Case) -> Found {
     htex_check_runner::memory(|| {
         let mut source = case.started()?;

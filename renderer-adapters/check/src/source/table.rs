@@ -1,4 +1,4 @@
-//! The table of checks.
+//! The table of source checks.
 
 use htex_check_runner::Check;
 use htex_device::SourceAdapter;

@@ -1,16 +1,16 @@
-//! What tasks on outputs and on inputs share: the handle, the clock, start and end.
+//! The common part of output and input tasks: the handle, the clock, start and stop.
 #![allow(unsafe_code)] // The driver's functions are C.
 
 use super::Driver;
 use super::table::{Handle, Table, c_text};
 use crate::fault::Fault;
 
-// Constants of `NIDAQmx.h`.
+// Constants from `NIDAQmx.h`.
 pub(super) const VOLTS: i32 = 10348;
 const RISING: i32 = 10280;
 const CONTINUOUS: i32 = 10123;
 
-/// A task without channels at first. Stopped and cleared when dropped.
+/// A task, without channels at first. Dropping it stops and clears it.
 pub(crate) struct Clocked {
     driver: &'static Driver,
     pub(super) handle: Handle,
@@ -29,7 +29,7 @@ impl Clocked {
         &self.driver.table
     }
 
-    /// Lets the card's own clock take or deliver samples without end, by way of a buffer of
+    /// Makes the card's own clock take or deliver samples without end, through a buffer of
     /// `frames`.
     pub(super) fn set_card_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         let source = c_text("");
@@ -45,13 +45,13 @@ impl Clocked {
         self.check(unsafe { (self.table().start_task)(self.handle) })
     }
 
-    /// Stops the task; returns the error that it had.
+    /// Stops the task. Returns the error that the task had.
     pub(crate) fn stop(&self) -> Result<(), Fault> {
         // SAFETY: the handle is this task's.
         self.check(unsafe { (self.table().stop_task)(self.handle) })
     }
 
-    /// What stops this task from another thread, while one of its calls hangs.
+    /// Returns a handle that can stop this task from another thread while one of its calls hangs.
     pub(crate) fn stopper(&self) -> Stopper {
         Stopper { driver: self.driver, handle: self.handle }
     }
@@ -61,7 +61,7 @@ impl Clocked {
     }
 }
 
-/// Stops a task that was not cleared.
+/// Stops a task that has not been cleared.
 pub(crate) struct Stopper {
     driver: &'static Driver,
     handle: Handle,
@@ -72,7 +72,7 @@ pub(crate) struct Stopper {
 unsafe impl Send for Stopper {}
 
 impl Stopper {
-    /// The task then outputs nothing more; its last voltage stays.
+    /// Stops the task. It outputs nothing more, but its last voltage stays.
     pub(crate) fn stop(&self) {
         // SAFETY: a handle of this driver, which checks the handles that it is given; whoever
         // clears the task drops this before.

@@ -1,4 +1,4 @@
-//! Finds the driver's library: the installed one, or the one that the setting `driver` names.
+//! Finds the driver's library: the installed one, or the one named by the setting `driver`.
 #![allow(unsafe_code)] // A loader: the user asked to run the driver's initialisers.
 
 use htex_device::DeviceError;
@@ -6,13 +6,13 @@ use htex_native::{Library, LoadError};
 
 use super::table::{Table, TableError};
 
-/// The names of the installed library, tried in turn.
+/// Names of the installed library, which are tried in turn.
 #[cfg(windows)]
 const NAMES: &[&str] = &["nicaiu.dll"];
 #[cfg(not(windows))]
 const NAMES: &[&str] = &["libnidaqmx.so.1", "libnidaqmx.so"];
 
-/// The library that the system's loader finds under NI-DAQmx's own names.
+/// Loads the library that the system's loader finds under NI-DAQmx's own names.
 pub(super) fn installed() -> Result<Table, DeviceError> {
     let mut reasons = Vec::new();
     for name in NAMES {
@@ -24,8 +24,8 @@ pub(super) fn installed() -> Result<Table, DeviceError> {
     Err(DeviceError::Missing(not_installed(&reasons.join("; "))))
 }
 
-/// The library that a setting names: a path, or a bare name, which is a file of the current folder,
-/// else a library of the system.
+/// Loads the library that a setting names. The setting is a path or a bare name. A bare name means
+/// a file in the current folder, else a library of the system.
 pub(super) fn named(path: &str) -> Result<Table, DeviceError> {
     // SAFETY: the user named this library as a driver.
     let table = table(unsafe { Library::named(path) });

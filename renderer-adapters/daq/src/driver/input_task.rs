@@ -1,4 +1,4 @@
-//! A task of the driver on analog inputs.
+//! A driver task on analog inputs.
 #![allow(unsafe_code)] // The driver's functions are C.
 
 use std::ops::Deref;
@@ -9,10 +9,10 @@ use super::clocked::{Clocked, VOLTS};
 use super::table::c_text;
 use crate::fault::Fault;
 
-// Constants of `NIDAQmx.h`.
+// Constants from `NIDAQmx.h`.
 const GROUP_BY_SCAN_NUMBER: u32 = 1;
 
-/// How inputs are wired; the numbers are those of `NIDAQmx.h`.
+/// How inputs are wired. The numbers are from `NIDAQmx.h`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Terminals {
     Default = -1,
@@ -22,14 +22,14 @@ pub(crate) enum Terminals {
     PseudoDifferential = 12529,
 }
 
-/// Stopped and cleared when dropped.
+/// A task on analog inputs. Dropping it stops and clears it.
 pub(crate) struct InputTask {
     task: Clocked,
     width: usize,
 }
 
 impl InputTask {
-    /// A task on `width` inputs of a range of ±`range_v`.
+    /// Creates a task on `width` inputs with a range of ±`range_v`.
     pub(crate) fn new(
         driver: &'static Driver,
         channels: &str,
@@ -57,14 +57,14 @@ impl InputTask {
         Ok(Self { task, width })
     }
 
-    /// Lets the card's own clock sample into a buffer of `frames`.
+    /// Makes the card's own clock sample into a buffer of `frames`.
     pub(crate) fn set_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         self.set_card_clock(rate_hz, frames)?;
         // SAFETY: numbers only.
         self.check(unsafe { (self.table().set_input_buffer)(self.handle, frames) })
     }
 
-    /// Frames that can be read now.
+    /// Returns the number of frames that can be read now.
     pub(crate) fn available(&self) -> Result<usize, Fault> {
         let mut frames = 0u32;
         // SAFETY: a place for one number.
@@ -72,8 +72,8 @@ impl InputTask {
         Ok(frames as usize)
     }
 
-    /// Reads so many frames, which are available; returns their number. `samples` has space for
-    /// them.
+    /// Reads up to `frames` frames, which must be available, and returns their number. `samples`
+    /// must have space for them.
     pub(crate) fn read(&self, frames: usize, samples: &mut [f64]) -> Result<usize, Fault> {
         let frames = frames.min(samples.len() / self.width);
         let count = i32::try_from(frames).unwrap_or(i32::MAX);

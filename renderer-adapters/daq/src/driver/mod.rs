@@ -1,4 +1,4 @@
-//! NI-DAQmx, loaded at the first use.
+//! The NI-DAQmx driver, loaded on first use.
 
 mod clocked;
 mod found;
@@ -18,8 +18,8 @@ pub(crate) use clocked::Stopper;
 pub(crate) use input_task::{InputTask, Terminals};
 pub(crate) use task::Task;
 
-/// Loaded libraries by the setting that named them. A driver has threads of its own, so none is
-/// ever unloaded.
+/// Loaded libraries, by the setting that named them. They are never unloaded, because a driver has
+/// threads of its own.
 static LOADED: Mutex<BTreeMap<String, &'static Driver>> = Mutex::new(BTreeMap::new());
 
 pub(crate) struct Driver {
@@ -27,7 +27,7 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// Loads the library at `path`, or the installed one when it is empty.
+    /// Loads the library at `path`, or the installed one if `path` is empty.
     pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
         let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(driver) = loaded.get(path) {
@@ -42,7 +42,7 @@ impl Driver {
         Ok(driver)
     }
 
-    /// Every analog output, and the product it is part of.
+    /// Lists every analog output with the product it belongs to.
     pub(crate) fn outputs(&self) -> Result<Vec<(String, String)>, Fault> {
         let mut outputs = Vec::new();
         for card in list(&self.table.device_names()?) {
@@ -53,7 +53,7 @@ impl Driver {
         Ok(outputs)
     }
 
-    /// Every analog input, and the product it is part of.
+    /// Lists every analog input with the product it belongs to.
     pub(crate) fn inputs(&self) -> Result<Vec<(String, String)>, Fault> {
         let mut inputs = Vec::new();
         for card in list(&self.table.device_names()?) {
@@ -64,20 +64,20 @@ impl Driver {
         Ok(inputs)
     }
 
-    /// Lowest (1 Hz and above) rate of a card's analog input, and the highest of all channels
-    /// together, hertz.
+    /// Returns the lowest rate of a card's analog inputs (at least 1 Hz) and the highest total rate
+    /// of all channels together, hertz.
     pub(crate) fn input_rates(&self, card: &str) -> Result<(f64, f64), Fault> {
         Ok((self.table.min_input_rate(card)?.max(1.0), self.table.max_input_rate(card)?))
     }
 
-    /// Lowest (1 Hz and above) and highest rate of a card's analog output, hertz.
+    /// Returns the lowest (at least 1 Hz) and highest rate of a card's analog output, hertz.
     pub(crate) fn rates(&self, card: &str) -> Result<(f64, f64), Fault> {
         Ok((self.table.min_rate(card)?.max(1.0), self.table.max_rate(card)?))
     }
 }
 
 impl Driver {
-    /// Ends all tasks of an output's card.
+    /// Ends all tasks of the card that has this output.
     #[allow(unsafe_code)] // The driver's functions are C.
     pub(crate) fn reset(&self, output: &str) -> Result<(), Fault> {
         let card = table::c_text(output.split('/').next().unwrap_or_default());
@@ -86,7 +86,7 @@ impl Driver {
     }
 }
 
-/// The items of a list separated by commas.
+/// Splits a comma-separated list.
 fn list(text: &str) -> impl Iterator<Item = &str> {
     text.split(',').map(str::trim).filter(|name| !name.is_empty())
 }

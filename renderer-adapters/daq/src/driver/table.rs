@@ -1,4 +1,4 @@
-//! The functions of NI-DAQmx in use, as `NIDAQmx.h` declares them.
+//! The NI-DAQmx functions in use, as `NIDAQmx.h` declares them.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
 use std::ffi::{CString, c_char, c_void};
@@ -10,7 +10,7 @@ use crate::fault::Fault;
 
 pub(super) type Handle = *mut c_void;
 
-/// Size of the buffer for a driver's names and messages, bytes.
+/// Size of the buffer for names and messages of the driver, bytes.
 const ROOM: usize = 8192;
 
 /// Error: a library cannot be used as NI-DAQmx.
@@ -24,17 +24,17 @@ pub(super) enum TableError {
 
 macro_rules! table {
     ($($name:ident = $symbol:literal : ($($argument:ty),*),)*) => {
-        /// One function pointer for each symbol; each returns 0, a positive warning or a negative
-        /// error.
+        /// One function pointer for each symbol. Each function returns 0, a positive warning or a
+        /// negative error.
         pub(super) struct Table {
             $(pub(super) $name: unsafe extern "system" fn($($argument),*) -> i32,)*
         }
 
         impl Table {
-            /// The functions of a library.
+            /// Looks up the functions of a library.
             ///
             /// # Errors
-            /// The function that the library lacks.
+            /// Names the function that the library lacks.
             pub(super) fn of(library: Library) -> Result<Self, TableError> {
                 $(
                     // SAFETY: the name is NI-DAQmx's, and its header states the type.
@@ -78,7 +78,7 @@ table! {
 }
 
 impl Table {
-    /// The result of a call: warnings are ignored, errors carry the driver's message.
+    /// Checks the result of a call. Warnings are ignored. Errors carry the driver's message.
     pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
         if code >= 0 {
             return Ok(());
@@ -115,7 +115,7 @@ impl Table {
         self.text(|to, space| unsafe { (self.get_inputs)(card.as_ptr(), to, space) })
     }
 
-    /// Highest rate of all channels together, hertz.
+    /// Returns the highest total rate of all channels together, hertz.
     pub(super) fn max_input_rate(&self, card: &str) -> Result<f64, Fault> {
         let (card, mut rate_hz) = (c_text(card), 0.0);
         // SAFETY: a string that ends in zero, and a place for one number.
@@ -162,7 +162,7 @@ impl Table {
     }
 }
 
-/// The text that a function writes into a buffer; empty when it fails.
+/// Returns the text that a function writes into a buffer; `None` if the call fails.
 fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
     let mut bytes = vec![0u8; ROOM];
     let code = call(bytes.as_mut_ptr().cast(), ROOM as u32);
@@ -170,7 +170,8 @@ fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
     (code >= 0).then(|| String::from_utf8_lossy(&bytes[..end]).into_owned())
 }
 
-/// A string that ends in zero; one with a zero inside, which settings do not allow, becomes empty.
+/// Converts a text to a string that ends in zero. A text with a zero inside becomes empty; settings
+/// do not allow one.
 pub(super) fn c_text(text: &str) -> CString {
     CString::new(text).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! A task of the driver on one analog output.
+//! A driver task on one analog output.
 #![allow(unsafe_code)] // The driver's functions are C.
 
 use std::ops::Deref;
@@ -9,19 +9,21 @@ use super::clocked::{Clocked, VOLTS};
 use super::table::c_text;
 use crate::fault::Fault;
 
-// Constants of `NIDAQmx.h`.
+// Constants from `NIDAQmx.h`.
 const DO_NOT_ALLOW_REGENERATION: i32 = 10158;
 const GROUP_BY_CHANNEL: u32 = 0;
-/// The buffer is full: the samples that fitted were taken.
+/// Status when the buffer is full. The samples that fitted were taken.
 const NOT_YET: i32 = -200292;
 
-/// Stopped and cleared when dropped; the output then holds its last voltage.
+/// A task on one analog output. Dropping it stops and clears it; the output then holds its last
+/// voltage.
 pub(crate) struct Task {
     task: Clocked,
 }
 
 impl Task {
-    /// A task that outputs samples at once, within ±`limit_v`; volts of the card.
+    /// Creates a task that outputs samples at once, within ±`limit_v`. Voltages are those of the
+    /// card.
     pub(crate) fn new(driver: &'static Driver, output: &str, limit_v: f64) -> Result<Self, Fault> {
         let task = Clocked::new(driver)?;
         let (output, name) = (c_text(output), c_text(""));
@@ -41,7 +43,7 @@ impl Task {
         Ok(Self { task })
     }
 
-    /// Lets a clock take the samples, each once, from a buffer of `frames`.
+    /// Makes a clock take each sample once from a buffer of `frames`.
     pub(crate) fn set_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         self.set_card_clock(rate_hz, frames)?;
         // SAFETY: numbers only.
@@ -52,8 +54,8 @@ impl Task {
         })
     }
 
-    /// Takes the samples that fit now, volts; returns their number. `start` starts a task without a
-    /// clock.
+    /// Takes the samples (volts) that fit now and returns their number. `start` starts a task that
+    /// has no clock.
     pub(crate) fn write(&self, samples: &[f64], start: bool) -> Result<usize, Fault> {
         let count = i32::try_from(samples.len()).unwrap_or(i32::MAX);
         let (now_s, mut written) = (0.0, 0i32);
@@ -76,7 +78,7 @@ impl Task {
         Ok(usize::try_from(written).unwrap_or(0).min(samples.len()))
     }
 
-    /// Frames of free space; only while the task runs.
+    /// Returns the free space in frames. Works only while the task runs.
     pub(crate) fn space(&self) -> Result<usize, Fault> {
         let mut space = 0u32;
         // SAFETY: a place for one number.
@@ -84,7 +86,7 @@ impl Task {
         Ok(space as usize)
     }
 
-    /// Frames that came out since the start.
+    /// Returns the number of frames output since the start.
     pub(crate) fn generated(&self) -> Result<u64, Fault> {
         let mut frames = 0u64;
         // SAFETY: a place for one number.
@@ -92,7 +94,7 @@ impl Task {
         Ok(frames)
     }
 
-    /// Whether the task stopped by itself; the error that stopped it, if any.
+    /// Whether the task stopped by itself. Returns the error that stopped it, if any.
     pub(crate) fn is_done(&self) -> Result<bool, Fault> {
         let mut done = 0u32;
         // SAFETY: a place for one truth value.

@@ -1,10 +1,10 @@
-//! The library of `examples/nidaqmx-simulated`, built.
+//! Builds the library of `examples/nidaqmx-simulated`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// Builds the library, once for each run.
+/// Builds the library once per run and returns its path.
 pub fn built() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
@@ -23,7 +23,7 @@ pub fn built() -> &'static Path {
     })
 }
 
-/// Its folder, for the tests of any crate.
+/// Returns the project's folder, for the tests of any crate.
 fn project() -> PathBuf {
     let mut above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
     above

@@ -17,8 +17,8 @@ pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
 pub const GAIN: f64 = 50.0;
 pub const RATE_HZ: f64 = 20_000.0;
 
-/// One card, whose library is a copy of its own. Its clock advances by calls, so that tests do not
-/// depend on time.
+/// One simulated card with its own copy of the library. Its clock advances with each call, so that
+/// tests do not depend on time.
 pub struct Card {
     folder: TempDir,
     library: PathBuf,
@@ -48,7 +48,7 @@ impl Card {
         }
     }
 
-    /// How often a function of the driver was called since the last fault was set.
+    /// Returns how often a driver function was called since the last fault was set.
     pub fn calls(&self, function: &str) -> u64 {
         type Calls = unsafe extern "system" fn(*const c_char) -> u64;
         let function = CString::new(function).unwrap();
@@ -61,7 +61,7 @@ impl Card {
         }
     }
 
-    /// Settings of a person who allows direct voltage, which many tests write.
+    /// Returns settings of a user who allows direct voltage, because many tests write one.
     pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver, ("dc_limit_v", "150")], given].concat();
@@ -82,7 +82,7 @@ impl Card {
         self.open_as(rate_hz, 256, given)
     }
 
-    /// With blocks of this many frames.
+    /// Opens a device for blocks of this many frames.
     pub fn open_blocks(
         &self,
         block_frames: u32,
@@ -112,7 +112,7 @@ impl Card {
         adapter.open(&Settings::resolve(adapter.descriptor(), None, &given)?)
     }
 
-    /// Puts voltages on the inputs: a row for each frame, a number for each input.
+    /// Puts voltages on the inputs: one row for each frame, one number for each input.
     pub fn put_in(&self, rows: &[Vec<f64>]) {
         let file = self.folder.path().join("input.csv");
         let row = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
@@ -120,7 +120,8 @@ impl Card {
         self.set("input", file.to_str().unwrap());
     }
 
-    /// All that came out of `Dev1/ao0` so far, volts of the card; nothing may have.
+    /// Returns everything that `Dev1/ao0` has output so far, in volts of the card; possibly
+    /// nothing.
     pub fn recorded(&self) -> Vec<f64> {
         let lines = fs::read_to_string(self.folder.path().join("Dev1_ao0.txt")).unwrap_or_default();
         lines.lines().map(|line| line.parse().unwrap()).collect()

@@ -1,36 +1,36 @@
-//! What may fail, at any moment.
+//! The failures that may happen at any moment.
 
 use crate::world::{Driver, EVER, Helpers, Process, Thread, World};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fault {
     PlayerKilled,
-    /// Stopped for so many steps, or for ever.
+    /// The player is stopped for this many steps, or for ever.
     PlayerStopped(u32),
     GuardianKilled,
     GuardianStopped(u32),
-    /// The next answer comes so many steps late.
+    /// The next answer is late by this many steps.
     GuardianSlow(u32),
-    /// A call of the driver does not return in the main thread, for so many steps or for ever.
+    /// A driver call in the main thread does not return for this many steps, or for ever.
     MainHangs(u32),
     WatchdogHangs(u32),
-    /// A call of the driver fails in the guardian; the session ends.
+    /// A driver call in the guardian fails, and the session ends.
     CallFails,
     /// The guardian cannot write zero from now on.
     GuardianZeroFails,
-    /// What comes through the pipe is no answer.
+    /// The pipe delivers an invalid answer.
     PipeBreaks,
-    /// The guardian's process outlives SIGKILL by so many steps: a call of the kernel that cannot
-    /// be interrupted.
+    /// The guardian's process survives SIGKILL for this many steps, because a kernel call cannot be
+    /// interrupted.
     KillIsSlow(u32),
-    /// Every call of the driver fails from now on, in every process: the card was removed.
+    /// From now on, every driver call fails in every process: the card was removed.
     CardGone,
-    /// No call of the driver returns from now on, in any process.
+    /// From now on, no driver call returns in any process.
     DriverHangs,
     HelperKilled,
     HelperStopped,
     HelperHangs,
-    /// Helper processes from now on.
+    /// All helper processes from now on behave like this.
     AllHelpers(Helpers),
 }
 
@@ -67,12 +67,12 @@ impl Fault {
         Self::AllHelpers(Helpers::Slow),
     ];
 
-    /// Whether the player can no longer act, for so long that the output waits for it.
+    /// Whether the player is unable to act for so long that the output waits for it.
     pub fn is_of_player(self) -> bool {
         matches!(self, Self::PlayerKilled | Self::PlayerStopped(_))
     }
 
-    /// Whether it may keep every attempt of the player from writing zero within 0.5 s.
+    /// Whether it may prevent every attempt of the player from writing zero within 0.5 s.
     pub fn prevents_zero(self) -> bool {
         matches!(
             self,
@@ -85,7 +85,8 @@ impl Fault {
         )
     }
 
-    /// The world with this fault; `None` where there is nothing that it can happen to.
+    /// Returns the world with this fault; `None` if the world has nothing that the fault can
+    /// affect.
     pub fn in_world(self, world: &World) -> Option<World> {
         let mut world = world.clone();
         let guardian_runs = world.guardian == Process::Running;

@@ -1,40 +1,41 @@
 //! A model of everything around the player's decisions: the app, the guardian with its two threads,
-//! the helpers, the card.
+//! the helpers, and the card.
 //!
-//! Time goes in steps of 50 ms, of which all the times of the program are multiples. The player is
-//! the program's own code ([`htex_device_guardian::decision`]). Of the other processes the model
-//! has what matters for the output: who may have a call of the driver that does not return, who
-//! holds the session's lock, who can still write zero.
+//! Time advances in steps of 50 ms. All times of the program are multiples of it. The player is the
+//! program's own code ([`htex_device_guardian::decision`]). Of the other processes, the model has
+//! only what matters for the output: which of them may be in a driver call that does not return,
+//! which holds the session's lock, and which can still write zero.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use htex_device_guardian::decision::{Action, By, Event, Player, Waits};
 
-/// A step of the model.
+/// Duration of a step of the model.
 pub const STEP: Duration = Duration::from_millis(50);
-/// Buffer of 200 ms and ramp of 50 ms.
+/// A buffer of 200 ms and a ramp of 50 ms.
 pub const WAITS: Waits = Waits { to_zero: Duration::from_millis(250) };
-/// Samples that the card has after a write, steps: the buffer.
+/// Duration of the samples on the card after a write (the buffer), steps.
 const BUFFER: u32 = 4;
-/// Steps of a finish: the buffer and the ramp.
+/// Duration of a finish (the buffer and the ramp), steps.
 const FINISH: u32 = 5;
 /// Period of the watchdog, steps.
 const WATCH: u32 = 1;
-/// Time after which a held session is given up, steps (`HANG` of `htex-device-daq`).
+/// Time after which a waiting thread gives up on a held session (`HANG` of `htex-device-daq`),
+/// steps.
 const HANG: u32 = 6;
-/// Steps from the start of a helper until it has opened the device.
+/// Time from the start of a helper until it has opened the device, steps.
 const HELPER: u32 = 2;
-/// The time at which each step begins: the player's clock is set back after it.
+/// The time at which each step begins. The player's clock is set back to it after each step.
 const NOW: Duration = Duration::from_secs(60);
 
-/// Steps over which the rules look back.
+/// Number of steps over which the rules look back.
 const LONG: u32 = 40;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Process {
     Running,
-    /// Stopped (SIGSTOP), for so many steps.
+    /// Stopped (SIGSTOP) for this many steps.
     Stopped(u32),
     Dead,
 }
@@ -45,9 +46,9 @@ pub const EVER: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Output {
     Zero,
-    /// The card takes samples for so many steps more.
+    /// The card has samples for this many more steps.
     Playing(u32),
-    /// The last voltage stays.
+    /// The last voltage stays at the output.
     Standing,
 }
 
@@ -56,7 +57,7 @@ pub enum Request {
     Write,
     Finish,
     Abort,
-    /// The pipe ended.
+    /// The pipe has ended.
     End,
 }
 
@@ -65,11 +66,11 @@ pub enum Request {
 pub enum Thread {
     Idle,
     Serving(Request, u32),
-    /// In a call of the driver, with the session's lock, for so many steps.
+    /// In a driver call for this many steps, with the session's lock.
     Hung(Option<Request>, u32),
 }
 
-/// What all calls of the driver do, of every process.
+/// How all driver calls of every process behave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Driver {
     Works,
@@ -77,7 +78,7 @@ pub enum Driver {
     Hangs,
 }
 
-/// What helper processes do.
+/// How helper processes behave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Helpers {
     Work,
@@ -107,7 +108,7 @@ pub enum App {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Heard {
     Answer,
-    /// The answer of a guardian whose device failed; whether it says that the output is not at
+    /// The answer of a guardian whose device failed, and whether it says that the output is not at
     /// zero.
     Failed(bool),
     PipeEnded,
@@ -115,7 +116,7 @@ pub enum Heard {
     NoZero(u32),
 }
 
-/// Which actions of the player are left out, to see that the model finds it.
+/// The actions that a mutant of the player leaves out, to test that the model notices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Mutant {
     pub no_kill: bool,
@@ -132,26 +133,27 @@ pub struct World {
     pub player: Player,
     pub process: Process,
     pub app: App,
-    /// The scene has ended, or Ctrl-C has come.
+    /// The scene has ended, or the user has pressed Ctrl-C.
     pub ends: bool,
-    /// Steps since the caller's request was sent, and since the drop began.
+    /// Steps since the caller sent its request.
     pub asked: Option<u32>,
+    /// Steps since the drop of the device began.
     pub dropped: Option<u32>,
     pub inbox: VecDeque<Heard>,
     pub guardian: Process,
     pub main: Thread,
     pub watchdog: Thread,
-    /// Steps that a thread has waited for the session.
+    /// Steps for which a thread has waited for the session.
     pub waited: u32,
-    /// Zero was set without the session.
+    /// The emergency has set the output to zero without the session.
     pub emergency: bool,
     /// The session has ended.
     pub closed: bool,
     pub to_guardian: VecDeque<Request>,
     pub pipe_is_open: bool,
-    /// Extra steps of the next answer.
+    /// Additional steps of the next answer.
     pub slow: u32,
-    /// Steps that a kill takes.
+    /// Duration of a kill, steps.
     pub kill_takes: u32,
     pub dies_in: Option<u32>,
     pub guardian_zero_fails: bool,
@@ -159,12 +161,13 @@ pub struct World {
     pub output: Output,
     pub helpers: Helpers,
     pub helper: Vec<Helper>,
-    /// Steps since a sentence was printed last, by whom ever.
+    /// Steps since any process last printed a warning.
     pub said: Option<u32>,
-    /// Since when the player has known, counted in its own running steps.
+    /// For how long the player has known of the failure, counted in its own running steps.
     pub known_for: Option<u32>,
-    /// Steps that a voltage has stood, and how many of these steps the player ran without a pause.
+    /// Steps for which a voltage has stayed.
     pub stood: u32,
+    /// Those of these steps during which the player ran without a pause.
     pub stood_before_player: u32,
 }
 
@@ -206,7 +209,7 @@ impl World {
         self.process == Process::Running
     }
 
-    /// Nothing more will happen.
+    /// Whether nothing more will happen.
     pub fn is_over(&self) -> bool {
         let guardian_ends = self.guardian == Process::Dead;
         let player_ends = self.process == Process::Dead
@@ -214,7 +217,7 @@ impl World {
         guardian_ends && player_ends && self.output == Output::Zero && self.helper.is_empty()
     }
 
-    /// One step of all; the player before the others, or after them.
+    /// Advances everything by one step, with the player either before or after the others.
     pub fn advance(&mut self, player_first: bool) {
         for age in [&mut self.asked, &mut self.dropped, &mut self.said] {
             *age = age.map(|steps| (steps + 1).min(LONG));
@@ -269,10 +272,10 @@ impl World {
         let held = self.thread_steps();
         if let Some(by_main) = held {
             if !by_main && self.main == Thread::Idle {
-                // Takes the next request, and then waits for the session.
+                // The thread takes the next request, and then waits for the session.
                 self.main_step();
             }
-            // The watchdog that makes no call of the driver waits for the session.
+            // The watchdog, which makes no driver call, waits for the session.
             self.waited = (self.waited + 1).min(LONG);
             let is_due = self.waited > HANG + WATCH && !self.mutant.no_watchdog;
             if is_due && !self.emergency {
@@ -289,8 +292,8 @@ impl World {
         self.watch();
     }
 
-    /// Lets both threads go on; returns whether one holds the lock in a call that does not return,
-    /// and whether it is the main one.
+    /// Advances both threads. Returns whether one of them holds the lock in a call that does not
+    /// return, and whether that is the main thread.
     fn thread_steps(&mut self) -> Option<bool> {
         if self.driver == Driver::Hangs {
             if let Thread::Serving(request, _) = self.main {
@@ -321,10 +324,10 @@ impl World {
         None
     }
 
-    /// The main thread's call has returned.
+    /// Handles the return of the main thread's call.
     fn returned(&mut self, request: Request) {
         match self.emergency {
-            // The session sees it, and ends.
+            // The session notices the emergency, and ends.
             true => self.device_failed(request),
             false => self.main = Thread::Serving(request, 0),
         }
@@ -353,7 +356,7 @@ impl World {
             }
             Thread::Serving(request, left) => {
                 self.main = Thread::Serving(request, left - 1);
-                // A stream that is played to its end is fed with zeros.
+                // While a stream is played to its end, the guardian feeds it with zeros.
                 if let (Request::Finish | Request::End, Output::Playing(0)) = (request, self.output)
                 {
                     self.output = Output::Zero;
@@ -377,8 +380,8 @@ impl World {
                 let zero = self.guardian_zero();
                 match request {
                     Request::End => self.guardian_dies(),
-                    // A guardian that is told to abort answers so in any case, and prints its own
-                    // sentence.
+                    // A guardian that is told to abort answers in any case, and prints its own
+                    // warning.
                     Request::Abort => self.hear(Heard::Answer),
                     _ if zero => self.hear(Heard::Answer),
                     _ => self.hear(Heard::Failed(true)),
@@ -387,7 +390,7 @@ impl World {
         }
     }
 
-    /// The session ends with an error, as each one: at zero, or with the sentence.
+    /// Ends the session with an error, as every error does: at zero, or with the warning.
     fn device_failed(&mut self, request: Request) {
         self.closed = true;
         let not_zero = self.output != Output::Zero && !self.guardian_zero();
@@ -398,7 +401,7 @@ impl World {
         }
     }
 
-    /// Writes zero in the guardian, or prints the sentence.
+    /// Writes zero in the guardian, or prints the warning.
     fn guardian_zero(&mut self) -> bool {
         let writes = self.driver == Driver::Works && !self.guardian_zero_fails;
         match writes {
@@ -410,7 +413,7 @@ impl World {
         writes
     }
 
-    /// The watchdog sees a buffer that ran dry.
+    /// The watchdog notices a buffer that ran dry.
     fn watch(&mut self) {
         let idle = self.watchdog == Thread::Idle && self.guardian == Process::Running;
         if idle && self.output == Output::Standing && !self.closed && !self.mutant.no_watchdog {
@@ -427,7 +430,7 @@ impl World {
         }
     }
 
-    /// A call of the driver fails: the session ends, at zero if that can be.
+    /// A driver call fails: the session ends, at zero if possible.
     pub fn call_fails(&mut self) {
         if !self.closed {
             self.closed = true;
@@ -435,7 +438,7 @@ impl World {
         }
     }
 
-    /// The pipe carries something else than an answer.
+    /// The pipe delivers an invalid answer.
     pub fn pipe_breaks(&mut self) {
         self.hear(Heard::PipeEnded);
     }
@@ -510,8 +513,8 @@ impl World {
                     }
                 }
                 Heard::PipeEnded => {
-                    // Read only while there is a request; the end of the process is seen where it
-                    // is waited for.
+                    // The answer is read only during a request. The end of the process is noticed
+                    // where the player waits for it.
                     if self.asked.is_some() {
                         self.tell(Event::PipeEnded);
                     }
@@ -530,7 +533,7 @@ impl World {
         self.call();
     }
 
-    /// The app's next call, if it is not in one.
+    /// The app makes its next call, unless it is already in one.
     fn call(&mut self) {
         if self.asked.is_some() {
             return;
@@ -573,7 +576,8 @@ impl World {
         self.tell(Event::Closing(WAITS.answer().saturating_sub(spent)));
     }
 
-    /// A call of the app has returned with an error; with the sentence, the program prints it.
+    /// A call of the app has returned an error. If the error contains the warning, the program
+    /// prints it.
     fn call_failed(&mut self, not_zero: bool) {
         self.asked = None;
         if not_zero {
@@ -646,7 +650,7 @@ impl World {
     }
 }
 
-/// Whether a process runs in this step; one that was stopped for a while goes on.
+/// Whether a process runs in this step. A process that was stopped for a while resumes.
 fn woken(process: &mut Process) -> bool {
     match process {
         Process::Running => true,

@@ -1,5 +1,5 @@
-//! The runtime of `runtime.c` and the vibrator of `vibrator.c`, a copy for each test, so that each
-//! has a state of its own.
+//! The mock runtime (`runtime.c`) and vibrator (`vibrator.c`). Each test has its own copy, and
+//! thereby its own state.
 #![allow(dead_code, unsafe_code)] // Each suite uses a part of it; the runtime is C.
 
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 pub const LONG: Duration = Duration::from_secs(5);
 pub const RATE_HZ: f64 = 8_000.0;
 
-/// The library of a source; `None` without a compiler.
+/// Compiles a source to a library; `None` without a compiler.
 fn built(source: &str) -> Option<PathBuf> {
     static BUILT: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -40,7 +40,7 @@ fn built(source: &str) -> Option<PathBuf> {
     built.get(source).cloned()
 }
 
-/// What `docs/devices.md` has an application declare.
+/// Returns the declarations that `docs/devices.md` asks of an application.
 fn declared() -> String {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/devices.md");
     let blocks = xtask::markdown::blocks(&std::fs::read_to_string(page).unwrap());
@@ -55,12 +55,12 @@ pub struct Mock {
 }
 
 impl Mock {
-    /// A runtime of OpenXR.
+    /// Builds the mock OpenXR runtime.
     pub fn new() -> Option<Self> {
         Self::of("runtime.c")
     }
 
-    /// The library of a source.
+    /// Builds the library of a source.
     pub fn of(source: &str) -> Option<Self> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("libmock.so");
@@ -78,7 +78,7 @@ impl Mock {
         assert_eq!(known, 1, "{name:?}");
     }
 
-    /// The lines of the record since the last call.
+    /// Returns the recorded lines since the last call.
     pub fn record(&self) -> Vec<String> {
         type Get = unsafe extern "C" fn() -> *const c_char;
         // SAFETY: as `runtime.c` has it; the text is copied before the next call.
@@ -125,7 +125,7 @@ pub fn write_all(device: &mut dyn Device, samples: &[f32]) {
     assert_eq!(device.write(samples, LONG), Ok(samples.len()));
 }
 
-/// A frame of points as the runtime took it.
+/// A frame of points as the runtime received it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     pub hand: String,
@@ -137,7 +137,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Of a line of the record; `None` of another one.
+    /// Parses a recorded line; `None` if it is not a frame.
     pub fn of(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split(' ').collect();
         if words[0] != "points" {

@@ -1,8 +1,8 @@
-//! Checks that models and devices share.
+//! Checks that models and devices have in common.
 
 use crate::{Finding, Found};
 
-/// Growth of the resident memory that is allowed, bytes.
+/// Allowed growth of the resident memory, bytes.
 const ALLOWED: f64 = 2.0 * 1024.0 * 1024.0;
 
 /// Growth of the process's resident memory over a number of repetitions.
@@ -17,8 +17,7 @@ impl Growth {
     /// Runs a tenth of `count` repetitions as a warm-up, then `count`, and measures the growth over
     /// the latter. `of` is the plural name of the repeated object.
     ///
-    /// # Errors
-    /// Those of `repeat`.
+    /// The errors of `repeat`.
     pub fn measure(
         count: usize,
         of: &'static str,
@@ -34,9 +33,8 @@ impl Growth {
 
 /// Checks that memory does not grow while something plays and while it is opened and closed.
 ///
-/// # Errors
-/// A failed finding when either grows by more than 2 MiB, and those of `measure`; a skipped one
-/// where resident memory cannot be read.
+/// A failed finding if memory grows by more than 2 MiB in either case, and the errors of `measure`.
+/// A skipped finding if resident memory cannot be read.
 pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
     if resident_bytes().is_none() {
         return Err(Finding::skipped("resident memory is read on Linux only"));
@@ -62,8 +60,8 @@ pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
     }))
 }
 
-/// Returns the resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None`
-/// without this file.
+/// Returns the resident memory of this process, bytes (`VmRSS` in `/proc/self/status`). `None` if
+/// the file does not exist.
 pub fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -71,10 +69,10 @@ pub fn resident_bytes() -> Option<f64> {
     Some(1024.0 * kib)
 }
 
-/// Checks that made-up extensions are absent; `has` queries one.
+/// Checks that made-up extensions are absent. `has` queries one extension.
 ///
 /// # Errors
-/// A failed finding that names the extension that `has` reports; and the errors of `has`.
+/// A failed finding that names an extension that `has` reports, and the errors of `has`.
 pub fn made_up_extensions<E: Into<Finding>>(has: impl Fn(&str) -> Result<bool, E>) -> Found {
     let long = "x".repeat(100_000);
     let ids = ["htex.no-such-thing/1", "com.example.unheard-of/7", "", "\u{1f}é", &long];

@@ -12,7 +12,7 @@ pub enum Outcome {
     Passed,
     /// The guarantee holds, but something needs attention.
     Warning,
-    /// The check does not apply, or needs another one that did not pass.
+    /// The check does not apply, or it needs another check that did not pass.
     Skipped,
     /// The guarantee is violated.
     Failed,
@@ -50,41 +50,41 @@ impl Outcome {
 pub struct Finding {
     pub outcome: Outcome,
     pub message: String,
-    /// Measured numbers, by name; names end in the unit.
+    /// Measured numbers by name. Each name ends in the unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// Result of a check: both variants are findings, so that `?` ends a check.
+/// The result of a check. Both variants are findings, so that `?` ends a check.
 pub type Found = Result<Finding, Finding>;
 
 impl Finding {
-    /// A finding without numbers.
+    /// Creates a finding without numbers.
     pub fn new(outcome: Outcome, message: impl Into<String>) -> Self {
         Self { outcome, message: message.into(), numbers: BTreeMap::new() }
     }
 
-    /// The guarantee holds.
+    /// Creates a finding that the guarantee holds.
     pub fn passed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Passed, message)
     }
 
-    /// The guarantee holds, but something needs attention.
+    /// Creates a finding that the guarantee holds, but something needs attention.
     pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Outcome::Warning, message)
     }
 
-    /// The check does not apply.
+    /// Creates a finding that the check does not apply.
     pub fn skipped(message: impl Into<String>) -> Self {
         Self::new(Outcome::Skipped, message)
     }
 
-    /// The guarantee is violated.
+    /// Creates a finding that the guarantee is violated.
     pub fn failed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Failed, message)
     }
 
-    /// Adds a measured number. NaN and infinities, which JSON cannot hold, are left out.
+    /// Adds a measured number. NaN and infinities are left out, because JSON cannot represent them.
     pub fn with(mut self, name: &str, value: f64) -> Self {
         if value.is_finite() {
             self.numbers.insert(name.to_owned(), value);

@@ -1,6 +1,6 @@
-//! The common part of the checkers of models and of devices: a table of checks ([`checks!`]), a
-//! runner that runs each of them in a separate process ([`run_all`]), so that a crash or an endless
-//! loop becomes a finding, and the report.
+//! The common part of the checkers for models and for devices: a table of checks ([`checks!`]), a
+//! runner, and the report. The runner runs each check in a separate process ([`run_all`]), so that
+//! a crash or an endless loop becomes a finding.
 //!
 //! ```
 //! use htex_check_runner::{Finding, Found, Owner, run_one};

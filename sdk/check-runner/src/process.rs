@@ -1,4 +1,4 @@
-//! One check in a separate process.
+//! Runs one check in a separate process.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 use crate::{Finding, Outcome};
 
-/// Most bytes of a child's output that are kept.
+/// Maximum number of bytes of a child's output that are kept.
 const MOST_OUTPUT: usize = 1 << 20;
 
-/// Runs a program that writes one [`Finding`] as a line of JSON. A program that crashes or exceeds
-/// `timeout` gives a finding that says so.
+/// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds
+/// `timeout`, the finding says so.
 pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = match command.spawn() {
@@ -28,7 +28,7 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
             announced(finding, last_finding(&text(out)))
         }
         Some(status) => match last_finding(&text(out)) {
-            // What a check says in advance of a step that may crash.
+            // A finding that the check printed before a step that may crash.
             Some(finding) if finding.outcome == Outcome::Crashed => {
                 announced(crashed(status, &text(err)), Some(finding))
             }
@@ -38,7 +38,7 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     }
 }
 
-/// A finding with what the check said, and its numbers, before it ended without one.
+/// Completes the finding of a check that ended without a result, with what it had printed before.
 fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
     if let Some(said) = said {
         finding.message = format!("{}; {}", finding.message, said.message);
@@ -47,14 +47,15 @@ fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
     finding
 }
 
-/// Reads a pipe to its end, so that the child never blocks on it; keeps the last [`MOST_OUTPUT`]
+/// Reads a pipe to its end, so that the child never blocks on it. Keeps the last [`MOST_OUTPUT`]
 /// bytes.
 fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
     std::thread::spawn(move || {
         let mut kept = VecDeque::new();
         let mut part = vec![0; 65_536];
         if let Some(mut pipe) = pipe {
-            // A pipe that cannot be read has ended; the finding then has the exit status only.
+            // A pipe that cannot be read counts as ended. The finding then has only the exit
+            // status.
             while let Ok(len @ 1..) = pipe.read(&mut part) {
                 kept.extend(&part[..len]);
                 kept.drain(..kept.len().saturating_sub(MOST_OUTPUT));
@@ -76,7 +77,7 @@ fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
             return Some(status);
         }
         if Instant::now() >= end {
-            // Both fail if the child has ended meanwhile.
+            // Both fail if the child has already ended.
             let _ = child.kill();
             let _ = child.wait();
             return None;
@@ -85,7 +86,7 @@ fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
     }
 }
 
-/// Returns the last line that is a finding: the model or device may print other lines.
+/// Returns the last line that is a finding. The model or device may print other lines.
 fn last_finding(out: &str) -> Option<Finding> {
     out.lines().rev().find_map(|line| serde_json::from_str(line).ok())
 }

@@ -14,15 +14,16 @@ pub struct CheckReport {
     pub finding: Finding,
 }
 
-/// All checks of one `Subject`, which identifies the model or device and the settings.
+/// The results of all checks of one `Subject`, which identifies the model or device and the
+/// settings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report<Subject> {
-    /// The subject; its fields are next to `ok` in JSON.
+    /// The subject. In JSON, its fields are next to `ok`.
     #[serde(flatten)]
     pub subject: Subject,
     /// Whether no check failed, crashed or timed out.
     pub ok: bool,
-    /// Each check, in the order of the table.
+    /// The result of each check, in the order of the table.
     pub checks: Vec<CheckReport>,
 }
 
@@ -45,7 +46,7 @@ impl<Subject> Report<Subject> {
     }
 }
 
-/// A line for the subject, one for each check, and one with the counts.
+/// Prints one line for the subject, one for each check, and one with the counts.
 impl<Subject: Display> Display for Report<Subject> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.subject)?;

@@ -1,4 +1,4 @@
-//! Running checks: one in this process, or each in a separate process.
+//! Runs checks: one in this process, or each one in a separate process.
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -10,44 +10,44 @@ use crate::process::run_process;
 use crate::table::{Check, UnknownCheck, find};
 use crate::{CheckReport, Finding};
 
-/// The steps of loading, in order; each has a check of this name.
+/// The steps of loading, in order. Each has a check with the same name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
 
-/// The check that an error of loading belongs to.
+/// The check to which a loading error belongs.
 #[derive(Debug, Clone, Copy)]
 pub struct Owner {
     check: &'static str,
-    /// Whether the steps before it hold.
+    /// Whether the steps before it passed.
     reached: bool,
 }
 
 impl Owner {
-    /// The error belongs to this check, and the steps of loading before it hold.
+    /// The error belongs to this check, and the loading steps before it passed.
     pub fn reached(check: &'static str) -> Self {
         let reached = true;
         Self { check, reached }
     }
 
-    /// The error belongs to this check, and nothing is known of the steps before it.
+    /// The error belongs to this check, and it is unknown whether the steps before it passed.
     pub fn not_reached(check: &'static str) -> Self {
         let reached = false;
         Self { check, reached }
     }
 }
 
-/// A program that runs one check in its process and writes the [`Finding`] as a line of JSON.
+/// A program that runs one check in its own process and writes the [`Finding`] as a line of JSON.
 #[derive(Debug, Clone)]
 pub struct Runner {
     pub program: PathBuf,
-    /// Its first arguments; the checker adds those that name the check.
+    /// Its first arguments. The checker appends the arguments that name the check.
     pub arguments: Vec<OsString>,
     /// Longest time of one check.
     pub timeout: Duration,
 }
 
-/// Runs each check in a separate process. `add_arguments` adds the arguments that name the check. A
-/// check is skipped if one that it needs failed or was skipped for this reason; a check that did
-/// not apply does not cause others to be skipped.
+/// Runs each check in a separate process. `add_arguments` appends the arguments that name the
+/// check. A check is skipped if one that it needs failed, or was skipped for this reason. A check
+/// that does not apply does not cause others to be skipped.
 pub fn run_all<'a, Case: 'a>(
     checks: impl IntoIterator<Item = &'a Check<Case>>,
     runner: &Runner,
@@ -74,8 +74,8 @@ pub fn run_all<'a, Case: 'a>(
     reports
 }
 
-/// Runs one check in this process: a crash ends the process. `load` loads the model or device;
-/// `owner` names the check that an error of loading belongs to.
+/// Runs one check in this process. A crash ends the process. `load` loads the model or device.
+/// `owner` returns the check to which a loading error belongs.
 ///
 /// # Errors
 /// When the table has no check of this name.

@@ -4,20 +4,20 @@ use thiserror::Error;
 
 use crate::Found;
 
-/// One check of a `Case`: a loaded model or device, and the checker's settings.
+/// One check. `Case` is a loaded model or device with the checker's settings.
 pub struct Check<Case> {
     /// Stable name, unique in its table.
     pub name: &'static str,
     /// The guarantee, in one sentence.
     pub summary: &'static str,
-    /// The method of the test, with its tolerances; empty if the summary is sufficient.
+    /// The test method with its tolerances; empty if the summary is sufficient.
     pub method: &'static str,
     /// Checks that must not fail for this one to be meaningful.
     pub needs: &'static [&'static str],
     pub run: fn(&Case) -> Found,
 }
 
-/// The table has no check of this name.
+/// Error: the table has no check of this name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("there is no check `{name}`; there are {}", known.join(", "))]
 pub struct UnknownCheck {
@@ -26,13 +26,13 @@ pub struct UnknownCheck {
     pub known: Vec<&'static str>,
 }
 
-/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check follows those
-/// that it needs. A row is `"name" needs ["name", …] path::of::function: "summary", "method";`; the
-/// method may be left out.
+/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check must come after
+/// the ones that it needs. A row is
+/// `"name" needs ["name", …] path::of::function: "summary", "method";`. The method is optional.
 #[macro_export]
 macro_rules! checks {
     ($case:ty; $($name:literal needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
-        /// All checks, in the order in which they run: a check follows those that it needs.
+        /// All checks, in the order in which they run. A check comes after the ones that it needs.
         pub const CHECKS: &[$crate::Check<$case>] = &[$($crate::Check {
             name: $name,
             summary: $summary,
@@ -54,7 +54,7 @@ pub(crate) fn find<'a, Case>(
     })
 }
 
-/// Returns the checks of these names with all that they need, in the table's order.
+/// Returns the checks with these names and all checks that they need, in the table's order.
 ///
 /// # Errors
 /// When a name is not in the table.

@@ -1,19 +1,20 @@
-//! Counts calls of the C library's allocator by the libraries that this process has loaded.
+//! Counts the calls that loaded libraries make to the C library's allocator.
 //!
 //! The dynamic linker writes the addresses of `malloc` and related functions into a table of each
 //! loaded library (its relocations by symbol). [`AllocatorCalls::watch`] replaces those addresses
 //! by functions that count and then call the allocator. It changes every library of the process,
-//! the C library and the C++ runtime among them, so that `new`, `strdup` and a Rust library's `Vec`
-//! are counted, each in its own thread. It leaves the program itself as it is: what the host
-//! allocates is not counted.
+//! including the C library and the C++ runtime. So `new`, `strdup` and the `Vec` of a Rust library
+//! are counted, separately in each thread. The program itself is not changed, so the host's own
+//! allocations are not counted.
 //!
 //! Not detected: an allocator that a library links statically and that maps pages itself; calls
 //! through an address that was taken with `dlsym`; libraries loaded after the call; threads that a
 //! library starts.
 //!
-//! Other ways were not taken: the state of the heap before and after does not show memory that is
-//! allocated and freed, an own `malloc` would be in every command, and a preloaded library would be
-//! a second file to install. Of a module only the growth of its memory is visible.
+//! Other methods were rejected. The state of the heap before and after does not show memory that
+//! was allocated and freed in between. A replaced `malloc` would be in every command. A preloaded
+//! library would be a second file to install. For a WASM module, only the growth of its memory is
+//! visible.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
 use std::cell::Cell;
@@ -22,17 +23,17 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use libc::{dl_phdr_info, size_t};
 
 thread_local! {
-    // Constant and without destructor: lazy initialisation would allocate.
+    // Constant and without a destructor, because lazy initialisation would allocate.
     static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Libraries whose calls of the allocator are counted, for the rest of the process.
+/// Libraries whose allocator calls are counted, for the rest of the process.
 pub(crate) struct AllocatorCalls {
     places: usize,
 }
 
 impl AllocatorCalls {
-    /// Counts the calls of all libraries that are loaded now.
+    /// Starts counting the calls of all libraries that are loaded now.
     pub(crate) fn watch() -> Self {
         let mut places = 0usize;
         // SAFETY: `visit` has the required type, and gets the address of `places`, which outlives
@@ -41,12 +42,13 @@ impl AllocatorCalls {
         Self { places }
     }
 
-    /// Table entries that were replaced: 0 if no library calls the C library's allocator.
+    /// Returns the number of replaced table entries; 0 if no library calls the C library's
+    /// allocator.
     pub(crate) fn places(&self) -> usize {
         self.places
     }
 
-    /// Calls that `run` makes in this thread through libraries: allocations and frees.
+    /// Counts the allocations and frees that `run` makes in this thread through libraries.
     pub(crate) fn during<T>(&self, run: impl FnOnce() -> T) -> (T, u64) {
         let before = CALLS.get();
         let out = run();
@@ -98,7 +100,7 @@ unsafe extern "C" fn free(pointer: *mut c_void) {
     unsafe { libc::free(pointer) }
 }
 
-/// The counting function of a symbol of the allocator.
+/// Returns the counting function that replaces an allocator symbol.
 fn counting(symbol: &CStr) -> Option<usize> {
     Some(match symbol.to_bytes() {
         b"malloc" => malloc as *const () as usize,
@@ -141,7 +143,7 @@ struct Library {
     dynamic: *const Dynamic,
 }
 
-/// Replaces the addresses in one library; `places` is the number of those replaced.
+/// Replaces the addresses in one library. `places` counts the replaced ones.
 unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_void) -> c_int {
     // SAFETY: the dynamic linker passes a description that lives for the call, and `watch` the
     // address of a number.
@@ -151,7 +153,7 @@ unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_vo
         .then(|| unsafe { CStr::from_ptr(info.dlpi_name) })
         .map(CStr::to_bytes)
         .unwrap_or_default();
-    // The program has no name; the kernel's own library cannot be written to and allocates nothing.
+    // The program has no name. The kernel's own library cannot be written to and allocates nothing.
     if name.is_empty() || name.starts_with(b"linux-") {
         return 0;
     }
@@ -167,7 +169,7 @@ unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_vo
 }
 
 impl Library {
-    /// The value of an entry of the dynamic section, 0 if there is none.
+    /// Returns the value of an entry of the dynamic section; 0 if there is none.
     fn value(&self, tag: i64) -> usize {
         let mut at = self.dynamic;
         loop {
@@ -182,8 +184,8 @@ impl Library {
         }
     }
 
-    /// An address of the dynamic section: the GNU linker has added the base to it already, others
-    /// have not.
+    /// Returns an address of the dynamic section. The GNU linker has already added the base to it;
+    /// others have not.
     fn address(&self, tag: i64) -> usize {
         match self.value(tag) {
             0 => 0,
@@ -192,14 +194,14 @@ impl Library {
         }
     }
 
-    /// Replaces all entries that hold the address of a function of the allocator; returns their
+    /// Replaces all entries that hold the address of an allocator function and returns their
     /// number.
     fn replace(&self) -> usize {
         let mut replaced = 0;
         for relocation in self.relocations(DT_RELA, DT_RELASZ) {
             replaced += usize::from(self.replace_one(relocation));
         }
-        // Tables without addends (DT_REL) are of 32-bit machines.
+        // Tables without addends (DT_REL) exist only on 32-bit machines.
         if self.value(DT_PLTREL) == DT_RELA as usize {
             for relocation in self.relocations(DT_JMPREL, DT_PLTRELSZ) {
                 replaced += usize::from(self.replace_one(relocation));
@@ -228,7 +230,7 @@ impl Library {
             return false;
         };
         let place = (self.base + relocation.offset) as *mut usize;
-        // The linker makes the table read-only after it has filled it.
+        // The linker makes the table read-only after filling it.
         let page = place as usize & !(page_bytes() - 1);
         // SAFETY: the pages contain this word, which is data of the library, and writing to them is
         // allowed by `mprotect`.
@@ -242,7 +244,7 @@ impl Library {
         true
     }
 
-    /// Name of a symbol of the dynamic symbol table.
+    /// Returns the name of a symbol in the dynamic symbol table.
     fn name(&self, symbol: usize) -> &CStr {
         let (symbols, strings) = (self.address(DT_SYMTAB), self.address(DT_STRTAB));
         // SAFETY: relocations name symbols of this table, whose names are strings of that one.

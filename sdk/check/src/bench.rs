@@ -1,4 +1,4 @@
-//! Rendering times of several models, measured in one run.
+//! Measures the rendering times of several models in one run.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use htex_check_runner::Finding;
 
 /// Block sizes that are timed, samples.
 pub const BLOCKS: [usize; 4] = [16, 64, 256, 1024];
-/// Rounds of all models and block sizes; the first is a warm-up and not counted.
+/// Number of rounds over all models and block sizes. The first is a warm-up and is not counted.
 const ROUNDS: usize = 64;
 /// Samples rendered per round, model and block size.
 const SAMPLES: usize = 8_192;
@@ -19,17 +19,17 @@ const SAMPLES: usize = 8_192;
 /// One model, loaded in one way.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// The model's short name; subjects with the same name are compared with the first one.
+    /// The model's short name. Subjects with the same name are compared with the first one.
     pub model: String,
-    /// The kind of loading.
+    /// How the model was loaded.
     pub way: String,
     pub loaded: LoadedModel,
 }
 
-/// Minimum, median and spread of the rounds.
+/// Minimum, median and spread over the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
-    /// The fastest round, ns: the time without other load.
+    /// The fastest round, ns. It is the time without other load on the machine.
     pub min_ns: f64,
     pub median_ns: f64,
     /// Half the distance between the quartiles, ns.
@@ -42,7 +42,7 @@ pub struct BlockCost {
     /// Samples per block.
     pub block: usize,
     pub per_sample: Timing,
-    /// Its minimum divided by that of the first subject of the same model.
+    /// The minimum time divided by the minimum time of the first subject with the same model.
     pub ratio: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct BlockCost {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
     pub model: String,
-    /// The kind of loading.
+    /// How the model was loaded.
     pub way: String,
     /// The model's origin.
     pub origin: String,
@@ -58,8 +58,8 @@ pub struct Cost {
     pub rate_hz: f64,
     /// Times in blocks of [`BLOCKS`].
     pub blocks: Vec<BlockCost>,
-    /// Overhead of a call, ns: the time of a call for one sample minus that of a sample in a large
-    /// block, both minima.
+    /// Overhead of a call, ns: the minimum time of a call for one sample, minus the minimum time of
+    /// a sample in a large block.
     pub per_call_ns: f64,
     /// Time to the first sample, for a WASM module.
     pub start: Option<Start>,
@@ -69,24 +69,24 @@ struct Runner {
     voice: ModelVoice,
     rate_hz: f64,
     start: Option<Start>,
-    /// Nanoseconds per sample of each round: in each block size, and one by one.
+    /// Nanoseconds per sample in each round, for each block size and for single samples.
     rounds: [Vec<f64>; 5],
 }
 
-/// A model cannot be fitted, or fails to render.
+/// Error: a model cannot be fitted, or fails to render.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{model} ({way}): {what}")]
 #[non_exhaustive]
 pub struct BenchError {
     /// The model's short name.
     pub model: String,
-    /// The kind of loading.
+    /// How the model was loaded.
     pub way: String,
     pub what: String,
 }
 
-/// Measures models in one interleaved run, so that other load of the machine affects all equally.
-/// Each plays parameters fitted to a reference spectrum.
+/// Measures models in one interleaved run, so that other load on the machine affects all equally.
+/// Each model plays parameters fitted to a reference spectrum.
 ///
 /// # Errors
 /// [`BenchError`] when a model cannot be fitted or fails to render.

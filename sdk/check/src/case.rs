@@ -1,4 +1,4 @@
-//! The model under test, and operations that several checks use.
+//! The model under test, and operations that several checks share.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -11,14 +11,14 @@ use htex_model::Fit;
 use crate::spectra::{REFERENCES, Reference};
 use htex_check_runner::Finding;
 
-/// Rate at which sounds are checked, hertz: that of the recordings.
+/// Rate at which sounds are checked, hertz. It is the rate of the recordings.
 pub(crate) const RATE_HZ: f64 = 20_000.0;
 
-/// Total time of a module in one check. A check does far more than a player, and the runner ends
-/// one that takes too long.
+/// Total time of a module in one check. A check does far more than a player does, and the runner
+/// ends a check that takes too long.
 const MODULE_TOTAL: Duration = Duration::from_secs(600);
 
-/// The limits of a player, but for the total time.
+/// Returns the limits of a player, except for the total time.
 fn limits() -> WasmLimits {
     let limits = WasmLimits::default();
     let all = limits.all.with_time(MODULE_TOTAL);
@@ -31,18 +31,18 @@ pub struct Case {
     pub(crate) model: LoadedModel,
     pub(crate) seed: u64,
     pub(crate) against: Option<PathBuf>,
-    /// The time of the check `fuzz`, which has a fixed number of sequences by default.
+    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
     pub(crate) fuzz: Option<Duration>,
 }
 
 /// Settings of the checks.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Settings<'a> {
-    /// Seed of the voices, and of what is drawn.
+    /// Seed of the voices and of all random choices.
     pub seed: u64,
-    /// The same model as a file of the other kind.
+    /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<&'a Path>,
-    /// The time of the check `fuzz`, which otherwise plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
     pub fuzz: Option<Duration>,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Fitted {
     pub(crate) parameters: Vec<f64>,
 }
 
-/// Two sets of parameters.
+/// Two parameter sets.
 pub(crate) type Pair = (Vec<f64>, Vec<f64>);
 
 impl Case {
@@ -66,7 +66,7 @@ impl Case {
         })
     }
 
-    /// Fits a spectrum on the tactile grid with the options' defaults.
+    /// Fits a spectrum on the tactile grid, with default options.
     pub(crate) fn fit(&self, magnitude: &[f64]) -> Result<Fit, HostError> {
         self.fit_in(Band::TACTILE, &Band::TACTILE.grid_hz(), magnitude)
     }
@@ -87,7 +87,7 @@ impl Case {
         self.fit_any((Band::TACTILE, &grid), (&spectrum, &[]), condition)
     }
 
-    /// Fits a reference spectrum with a signal at [`RATE_HZ`] behind it.
+    /// Fits a reference spectrum together with its signal at [`RATE_HZ`].
     pub(crate) fn fit_signal(
         &self,
         reference: &Reference,
@@ -116,7 +116,7 @@ impl Case {
         self.model.fit_at(&request, condition)
     }
 
-    /// Parameters of every reference spectrum that the model can describe; at least one.
+    /// Returns parameters for every reference spectrum that the model can describe; at least one.
     pub(crate) fn fitted(&self) -> Result<Vec<Fitted>, Finding> {
         let mut fitted = Vec::new();
         for Reference { name, curve } in REFERENCES {
@@ -133,7 +133,7 @@ impl Case {
         Ok(fitted)
     }
 
-    /// Parameters of the first reference spectrum that can be fitted.
+    /// Returns parameters for the first reference spectrum that can be fitted.
     pub(crate) fn parameters(&self) -> Result<Vec<f64>, Finding> {
         let first = self.fitted()?.into_iter().next();
         first
@@ -141,7 +141,7 @@ impl Case {
             .ok_or_else(|| Finding::failed("there are no parameters"))
     }
 
-    /// Two different parameter sets; `None` if all fits returned the same.
+    /// Returns two different parameter sets; `None` if all fits returned the same one.
     pub(crate) fn two_sets(&self) -> Result<Option<Pair>, Finding> {
         let mut fitted = self.fitted()?.into_iter().map(|f| f.parameters);
         let Some(first) = fitted.next() else {
@@ -151,12 +151,12 @@ impl Case {
         Ok(other.map(|other| (first, other)))
     }
 
-    /// A stream at [`RATE_HZ`].
+    /// Creates a stream at [`RATE_HZ`].
     pub(crate) fn stream(&self, parameters: &[f64], seed: u64) -> Result<Stream, HostError> {
         Stream::new(&self.model, parameters, Band::TACTILE, RATE_HZ, seed)
     }
 
-    /// Samples of a new voice at the model's own rate, rendered in blocks.
+    /// Renders samples of a new voice at the model's own rate, in blocks.
     pub(crate) fn samples(
         &self,
         parameters: &[f64],
@@ -172,7 +172,7 @@ impl Case {
         Ok(out)
     }
 
-    /// A voice at the rate that the model returns for [`RATE_HZ`].
+    /// Creates a voice at the rate that the model returns for [`RATE_HZ`].
     pub(crate) fn voice(
         &self,
         parameters: &[f64],
@@ -183,7 +183,7 @@ impl Case {
         self.model.voice(parameters, band, rate_hz, seed)
     }
 
-    /// The magnitude on the tactile grid.
+    /// Returns the magnitude on the tactile grid.
     pub(crate) fn magnitude(&self, parameters: &[f64]) -> Result<Vec<f64>, HostError> {
         let grid = Band::TACTILE.grid_hz();
         self.model.magnitude(parameters, Band::TACTILE, &grid)
@@ -195,8 +195,8 @@ pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     matches!(error, HostError::Call { status: Status::CannotFit, .. })
 }
 
-/// Returns whether the model refused a call: a status that neither a failed model nor a trapped
-/// module gives.
+/// Returns whether the model refused a call: whether the error is a status that neither a failed
+/// model nor a trapped module returns.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
     matches!(error, HostError::Call { status, .. } if !matches!(status, Status::Panicked | Status::Failed))
 }

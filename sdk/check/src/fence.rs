@@ -1,5 +1,5 @@
-//! Arrays with guard values and, on 64-bit Linux, a page behind them that nobody may touch: a call
-//! that reads or writes beyond an array is found and named.
+//! Arrays with guard values and, on 64-bit Linux, a protected page behind them. A call that reads
+//! or writes beyond an array is detected and named.
 
 use htex_check_runner::Finding;
 
@@ -8,10 +8,10 @@ use crate::pages::Pages;
 #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
 use crate::vector::Pages;
 
-/// Guard values on both sides of an output.
+/// Number of guard values on both sides of an output.
 const GUARDS: usize = 16;
 
-/// Numbers of arrays, with the value of their guards.
+/// A number in an array, with the value of its guards.
 pub(crate) trait Number: Copy + PartialEq + Default + Send + 'static {
     const GUARD: Self;
 }
@@ -28,26 +28,27 @@ impl Number for f64 {
     const GUARD: Self = -1234.5;
 }
 
-/// An array that a call may read, or write to.
+/// An array that a call may read or write.
 pub(crate) struct Fenced<T> {
     pages: Pages<T>,
     guards: usize,
     len: usize,
-    /// The call and the argument that bounds the array.
+    /// The call that gets the array.
     call: &'static str,
+    /// The argument that bounds the array.
     bound: &'static str,
 }
 
 impl<T: Number> Fenced<T> {
-    /// An array that a call reads: the page is directly behind it.
+    /// Creates an array that a call reads. The protected page is directly behind it.
     pub(crate) fn input(values: &[T], call: &'static str, array: &'static str) -> Self {
         let mut fenced = Self::new(values.len(), 0, "read or wrote", (call, array));
         fenced.get().copy_from_slice(values);
         fenced
     }
 
-    /// An array that a call writes to, no more than `len` values: its guards are in front of the
-    /// page.
+    /// Creates an array to which a call writes at most `len` values. The guards are between the
+    /// array and the protected page.
     pub(crate) fn output(len: usize, call: &'static str, bound: &'static str) -> Self {
         let mut fenced = Self::new(len, GUARDS, "wrote", (call, bound));
         fenced.pages.get().fill(T::GUARD);
@@ -97,7 +98,7 @@ impl<T: Number> Fenced<T> {
     }
 }
 
-/// From now on a read or write of a fence ends this process, with a finding.
+/// From now on, reading or writing a fence ends this process with a finding.
 pub(crate) fn watch() {
     #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
     crate::pages::watch();

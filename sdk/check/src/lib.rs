@@ -1,9 +1,9 @@
-//! The checker of texture models: one check for each guarantee of the model ABI, run by
-//! [`htex_check_runner`] in a separate process, so that a crash or an endless loop becomes a
-//! finding.
+//! The checker for texture models, with one check for each guarantee of the model ABI.
+//! [`htex_check_runner`] runs each check in a separate process, so that a crash or an endless loop
+//! becomes a finding.
 //!
-//! [`CHECKS`] is the table; [`check`] runs all checks on a model file; [`run_one`] runs one check
-//! in this process, for a debugger. [`bench()`] measures the rendering time of models.
+//! [`CHECKS`] is the table of checks. [`check`] runs all checks on a model file. [`run_one`] runs
+//! one check in this process, for a debugger. [`bench()`] measures the rendering time of models.
 //!
 //! ```
 //! use htex_check::{CHECKS, model_checks_page};
@@ -11,7 +11,7 @@
 //! assert!(model_checks_page().contains("| level |"));
 //! ```
 //!
-//! A model is checked from outside, by the calls that a host makes. The faults in
+//! A model is checked from outside, by the calls that a host makes. The faulty models in
 //! `tests/bad-plugins` test that the checker blames exactly the guarantee that is broken.
 #![deny(unsafe_code)] // Allowed in `allocator` and `pages` only.
 

@@ -1,4 +1,4 @@
-//! `spec/model-checks.md`, generated from the table.
+//! Generates `spec/model-checks.md` from the table of checks.
 
 use std::fmt::Write;
 

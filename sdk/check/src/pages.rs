@@ -1,7 +1,7 @@
-//! Memory whose end is the end of a page, with pages behind it that nobody may touch, and the
-//! handler that names who did.
+//! Memory that ends at the end of a page, with protected pages behind it, and the signal handler
+//! that names the call that touched them.
 //!
-//! A debugger's allocator or an instrumented build would be needed otherwise, and a model is
+//! The alternatives would be a debugger's allocator or an instrumented build, but a model must be
 //! checked as it is shipped.
 #![allow(unsafe_code)] // Pages and signals are calls of the system.
 
@@ -12,26 +12,26 @@ use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 use htex_check_runner::Finding;
 use libc::{c_int, siginfo_t};
 
-/// Untouchable bytes behind an array; they take no memory.
+/// Size of the protected memory behind an array, bytes. It takes no physical memory.
 const FENCE: usize = 64 << 20;
-/// Arrays at a time.
+/// Maximum number of arrays at a time.
 const PLACES: usize = 32;
 
-/// Fences of the live arrays, for the handler: start, and the line that it prints. A start of 0 is
-/// a free place, of 1 one that is being filled.
+/// The fences of the live arrays, for the handler: their start and the line to print. A start of 0
+/// means a free place, 1 a place that is being filled.
 static STARTS: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
 static LINES: [AtomicPtr<u8>; PLACES] = [const { AtomicPtr::new(std::ptr::null_mut()) }; PLACES];
 static LENGTHS: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
 
 /// Values that end where a fence begins.
 pub(crate) struct Pages<T> {
-    /// The mapping, with its fence.
+    /// The mapping, including its fence.
     base: *mut c_void,
     bytes: usize,
     start: *mut T,
     len: usize,
     place: Option<usize>,
-    /// The line of the handler.
+    /// The line that the handler prints.
     line: Box<[u8]>,
     values: PhantomData<T>,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Pages<T> {
 unsafe impl<T: Send> Send for Pages<T> {}
 
 impl<T: Copy + Default> Pages<T> {
-    /// Makes space for values; `finding` is what a touch of the fence means.
+    /// Creates space for values. `finding` is reported if the fence is touched.
     pub(crate) fn new(len: usize, finding: Finding) -> Self {
         let page = page_bytes();
         let used = (len * size_of::<T>()).div_ceil(page).max(1) * page;
@@ -101,7 +101,7 @@ impl<T> Drop for Pages<T> {
     }
 }
 
-/// Prints the finding of a fence that is touched, and ends the process.
+/// Installs a handler that prints the finding of a fence that is touched, and ends the process.
 pub(crate) fn watch() {
     // SAFETY: the handler has the signature that SA_SIGINFO wants, and calls only what a handler
     // may call.

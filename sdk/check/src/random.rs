@@ -1,6 +1,6 @@
-//! Numbers for seeded parameters and the fuzzer: the same on every machine.
+//! Random numbers for seeded parameters and the fuzzer, which are the same on every machine.
 
-/// A generator of 64 bits (splitmix64).
+/// A 64-bit generator (splitmix64).
 #[derive(Debug, Clone)]
 pub(crate) struct Random(u64);
 
@@ -16,30 +16,30 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number from 0 to 1, without 1.
+    /// Returns a number from 0 to 1, excluding 1.
     pub(crate) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in a range, both ends included; even in its logarithm for a wide range of positive
-    /// numbers.
+    /// Returns a number in a range that includes both ends. For a wide range of positive numbers,
+    /// the logarithm is uniform.
     pub(crate) fn within(&mut self, min: f64, max: f64) -> f64 {
         let part = self.unit();
         let is_wide = min > 0.0 && max / min > 100.0;
         let x = match is_wide {
             true => min * (part * (max / min).ln()).exp(),
-            // Not `max - min`, which may be infinite.
+            // `max - min` would be shorter, but may be infinite.
             false => min * (1.0 - part) + max * part,
         };
         x.clamp(min, max)
     }
 
-    /// A whole number below `count`, which is above 0.
+    /// Returns a whole number below `count`, which must be above 0.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }
 
-    /// One of `choices`, of which there is at least one.
+    /// Returns one of `choices`, which must not be empty.
     pub(crate) fn choose<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
         &choices[self.below(choices.len())]
     }

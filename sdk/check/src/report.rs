@@ -1,4 +1,4 @@
-//! Reports of the checks of a model.
+//! Reports of checking a model.
 
 use std::fmt::{self, Display};
 

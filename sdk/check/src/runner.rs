@@ -1,4 +1,4 @@
-//! Running the checks of a model.
+//! Runs the checks of a model.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -17,15 +17,15 @@ pub struct Options {
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
-    /// Checks to run, with those that they need; all when `None`.
+    /// Names of the checks to run, together with the ones they need; all if `None`.
     pub only: Option<Vec<String>>,
-    /// The same model as a file of the other kind.
+    /// The same model as a file of the other kind (native library or WASM module).
     pub against: Option<PathBuf>,
-    /// The time of the check `fuzz`, which otherwise plays a fixed number of sequences.
+    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
     pub fuzz: Option<Duration>,
 }
 
-/// The checks cannot be run.
+/// Error: the checks cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
     #[error(transparent)]
@@ -35,7 +35,7 @@ pub enum CheckError {
     File { path: PathBuf, error: std::io::Error },
 }
 
-/// Fails unless the file can be read: a check would blame the model for it.
+/// Fails unless the file can be read. Otherwise a check would blame the model for it.
 fn readable(file: &Path) -> Result<(), CheckError> {
     let is_file = std::fs::File::open(file).and_then(|opened| opened.metadata());
     let error = match is_file {
@@ -73,10 +73,10 @@ pub fn check(file: &Path, options: &Options) -> Result<Report, CheckError> {
     Ok(Report::new(subject, checks))
 }
 
-/// Runs one check in this process: a crash ends the process.
+/// Runs one check in this process. A crash ends the process.
 ///
 /// # Errors
-/// When the file cannot be read, or there is no check of this name.
+/// When the file cannot be read, or no check has this name.
 pub fn run_one(file: &Path, name: &str, settings: Settings<'_>) -> Result<Finding, CheckError> {
     readable(file)?;
     let load = || Case::load(file, settings);

@@ -1,4 +1,4 @@
-//! Parameter sets to try a model with: beyond those that are fitted to reference spectra.
+//! Parameter sets for testing a model, in addition to those fitted to reference spectra.
 
 use htex_host::{Band, Field, FitCondition, HostError, Kind, Status, Store};
 use htex_model::{Values, flatten};
@@ -8,35 +8,36 @@ use crate::random::Random;
 use crate::spectra::{REFERENCES, Reference};
 use htex_check_runner::Finding;
 
-/// Seeded sets in a check.
+/// Number of seeded sets in a check.
 pub(crate) const SEEDED: usize = 16;
-/// Tries to find a set that the model takes: parameters within the ranges may describe no spectrum.
+/// Number of attempts to find a set that the model accepts. Parameters within the ranges may
+/// describe no spectrum.
 const TRIES: usize = 20;
-/// Longest list of a seeded set.
+/// Maximum length of a list in a seeded set.
 const LONGEST: usize = 32;
-/// Duration of the signals behind a spectrum, seconds.
+/// Duration of the signals of a spectrum, seconds.
 const SIGNAL_S: f64 = 0.5;
-/// Rate at which a modulated signal is loud and quiet, hertz.
+/// Rate at which a modulated signal changes between loud and quiet, hertz.
 const MODULATION_HZ: f64 = 8.0;
 
-/// Parameters, and what they are.
+/// A parameter set with a description.
 #[derive(Debug, Clone)]
 pub(crate) struct Set {
     pub(crate) name: String,
     pub(crate) parameters: Vec<f64>,
 }
 
-/// A set with one field at an end of its range, and the set with the field next to it.
+/// A set with one field at an end of its range, and the same set with the field slightly inside.
 pub(crate) struct AtBound {
     pub(crate) set: Set,
-    /// The value a thousandth of the range further in.
+    /// The set with the field a thousandth of the range further inside.
     pub(crate) inside: Vec<f64>,
-    /// Whether the end is 0, which may be silence.
+    /// Whether the end is 0, which may mean silence.
     pub(crate) is_zero: bool,
 }
 
 impl Case {
-    /// The numbers of each field.
+    /// Splits parameters into the numbers of each field.
     pub(crate) fn lists(&self, parameters: &[f64]) -> Result<Vec<Vec<f64>>, Finding> {
         let descriptor = self.model.descriptor();
         let values =
@@ -50,8 +51,8 @@ impl Case {
         flatten(self.model.descriptor(), &lists)
     }
 
-    /// Parameters with each field at both ends of its range, in turn: as a file stores them. Lists
-    /// are at their bounds as a whole.
+    /// Returns parameters with each field in turn at both ends of its range, as a file would store
+    /// them. A list is at its bound as a whole.
     pub(crate) fn at_bounds(&self, parameters: &[f64]) -> Result<Vec<AtBound>, Finding> {
         let lists = self.lists(parameters)?;
         let mut sets = Vec::new();
@@ -76,7 +77,7 @@ impl Case {
         Ok(sets)
     }
 
-    /// A set within the ranges: each field is drawn, or has the value of `near`.
+    /// Returns a random set within the ranges. Each field is drawn or has the value of `near`.
     pub(crate) fn drawn(&self, near: &[f64], random: &mut Random) -> Result<Vec<f64>, Finding> {
         let mut lists = self.lists(near)?;
         for (list, field) in lists.iter_mut().zip(&self.model.descriptor().fields) {
@@ -96,8 +97,8 @@ impl Case {
         Ok(self.flat(&lists))
     }
 
-    /// A seeded set within the ranges that the model takes; `None` if it refuses all that were
-    /// tried.
+    /// Returns a seeded set within the ranges that the model accepts; `None` if it refuses all
+    /// attempts.
     pub(crate) fn seeded(&self, near: &[f64], seed: u64) -> Result<Option<Set>, Finding> {
         let mut random = Random::new(seed);
         for _ in 0..TRIES {
@@ -110,8 +111,8 @@ impl Case {
         Ok(None)
     }
 
-    /// Whether a model has a magnitude of parameters within the ranges, which may describe no
-    /// spectrum in the band.
+    /// Whether the model has a magnitude for parameters within the ranges. Such parameters may
+    /// describe no spectrum in the band.
     ///
     /// # Errors
     /// When the magnitude is not finite, or the call fails in another way.
@@ -123,8 +124,8 @@ impl Case {
         }
     }
 
-    /// Fits of reference spectra with signals behind them, stationary and modulated: of those that
-    /// the model can be fitted to.
+    /// Fits the reference spectra together with stationary and modulated signals. Spectra that the
+    /// model cannot be fitted to are left out.
     pub(crate) fn fitted_to_signals(&self) -> Result<Vec<Set>, Finding> {
         let mut sets = Vec::new();
         for reference in [&REFERENCES[0], &REFERENCES[4]] {
@@ -162,15 +163,15 @@ pub(crate) fn describes_nothing(error: &HostError) -> bool {
     )
 }
 
-/// A signal of a spectrum: a sine of each bin, with a level that changes by `depth` in the rhythm
-/// of [`MODULATION_HZ`].
+/// Returns a signal with a spectrum: one sine for each bin, with a level that changes by `depth` at
+/// [`MODULATION_HZ`].
 fn signal(reference: &Reference, depth: f64) -> Vec<f64> {
     let mut random = Random::new(1);
     let turn = std::f64::consts::TAU / RATE_HZ;
     let sines: Vec<(f64, f64, f64)> = Band::TACTILE
         .grid_hz()
         .into_iter()
-        // A bin's power is magnitude² / 3, and half of amplitude².
+        // The power of a bin is magnitude² / 3, and also half of amplitude².
         .map(|hz| {
             let amplitude = (reference.curve)(hz) * (2.0f64 / 3.0).sqrt();
             (turn * hz, amplitude, std::f64::consts::TAU * random.unit())
@@ -185,8 +186,8 @@ fn signal(reference: &Reference, depth: f64) -> Vec<f64> {
     (0..(SIGNAL_S * RATE_HZ) as usize).map(sample).collect()
 }
 
-/// Returns numbers as a file stores them. A value in its range stays in it, as by the writer of
-/// assets: where the nearest stored value is outside, the next one towards the range is taken.
+/// Returns numbers as a file stores them. A value in its range stays in the range, as in the writer
+/// of assets: if the nearest stored value is outside, the next one towards the range is used.
 pub(crate) fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
     let Field { min, max, .. } = *field;
     let keep = |&x: &f64| {
@@ -204,7 +205,7 @@ pub(crate) fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
     numbers.iter().map(keep).collect()
 }
 
-/// The stored value next to a number, or the one above it (1) or below it (-1).
+/// Returns the stored value nearest to a number, or the one above it (1) or below it (-1).
 fn nearest_stored(store: Store, x: f64, towards: i8) -> f64 {
     let step = |scale: f64, offset: f64, log: bool, most: f64| {
         let y = if log { x.ln() } else { x };

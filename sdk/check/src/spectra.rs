@@ -1,6 +1,6 @@
 //! The reference spectra.
 
-/// A spectrum as a curve over frequency, newtons at hertz.
+/// A spectrum as a curve over frequency: newtons as a function of hertz.
 pub(crate) struct Reference {
     pub(crate) name: &'static str,
     pub(crate) curve: fn(f64) -> f64,
@@ -18,7 +18,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     Reference { name: "few peaks", curve: few_peaks },
 ];
 
-/// Degenerate spectra: a fit succeeds or returns a status.
+/// Degenerate spectra. A fit of one may succeed or return a status.
 pub(crate) const HARD: &[Reference] = &[
     Reference { name: "silence", curve: |_| 0.0 },
     Reference { name: "one line", curve: |f| if f == 200.0 { 0.01 } else { 0.0 } },

@@ -1,4 +1,4 @@
-//! The time to the first sample of a WASM module.
+//! Measures the time to the first sample of a WASM module.
 
 use std::path::Path;
 use std::time::Instant;
@@ -9,20 +9,20 @@ use serde::Serialize;
 use crate::case::RATE_HZ;
 use htex_check_runner::Finding;
 
-/// Measurements without and with a cached module; the minimum of each counts.
+/// Number of measurements without and with a cached module. The minimum of each counts.
 const COLD: usize = 3;
 const WARM: usize = 10;
 
 /// Times from a file to the first sample, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Start {
-    /// The module is compiled.
+    /// Time if the module has to be compiled.
     pub cold_ms: f64,
-    /// The compiled module is in the cache.
+    /// Time if the compiled module is in the cache.
     pub warm_ms: f64,
 }
 
-/// Measures a module with a new cache folder; `None` for a model that is not a module in a file.
+/// Measures a module with a new cache folder. `None` for a model that is not a module in a file.
 pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<Start>, Finding> {
     let Origin::Wasm(file) = model.origin() else {
         return Ok(None);

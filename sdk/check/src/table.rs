@@ -1,4 +1,4 @@
-//! Every check, in one table.
+//! The table of all checks.
 
 use crate::case::Case;
 use crate::checks::{

@@ -1,7 +1,7 @@
-//! The projects of a new model, which `htex plugin new` writes: files and their contents, with
-//! placeholders (`templates/README.md`).
+//! The project templates that `htex plugin new` writes for a new model: files and their contents,
+//! with placeholders (`templates/README.md`).
 
-/// A project in Rust: paths from the project's folder, and texts.
+/// A project in Rust: paths relative to the project's folder, and file contents.
 pub const RUST: &[(&str, &str)] = &[
     ("README.md", include_str!("../templates/rust/README.md.in")),
     ("Cargo.toml", include_str!("../templates/rust/Cargo.toml.in")),
@@ -9,7 +9,7 @@ pub const RUST: &[(&str, &str)] = &[
     ("src/follow.rs", include_str!("../templates/rust/src/follow.rs")),
 ];
 
-/// A project in C: paths from the project's folder, and texts.
+/// A project in C: paths relative to the project's folder, and file contents.
 pub const C: &[(&str, &str)] = &[
     ("README.md", include_str!("../templates/c/README.md.in")),
     ("model.c", include_str!("../templates/c/model.c")),

@@ -1,4 +1,4 @@
-//! The memory of fenced arrays where no page is protected: on other systems than 64-bit Linux.
+//! The memory of fenced arrays on systems other than 64-bit Linux, where no page is protected.
 
 use htex_check_runner::Finding;
 

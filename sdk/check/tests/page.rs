@@ -1,4 +1,4 @@
-//! `spec/model-checks.md`, the order of the table that it lists, and the templates' headers.
+//! Tests `spec/model-checks.md`, the order of the table that it lists, and the templates' headers.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_check::{CHECKS, model_checks_page};

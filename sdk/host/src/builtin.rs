@@ -12,14 +12,14 @@ use crate::{LoadedModel, Origin};
 pub(crate) fn models() -> &'static [LoadedModel] {
     static MODELS: LazyLock<Vec<LoadedModel>> = LazyLock::new(|| {
         let load = |table| LoadedModel::new(Origin::Builtin, Arc::new(table));
-        // A built-in model that cannot be loaded is left out; a test checks their number.
+        // A built-in model that cannot be loaded is left out. A test checks the number of models.
         tables().into_iter().flat_map(load).collect()
     });
     &MODELS
 }
 
-/// What renders several voices of a model in one call, as large scenes do. Pages have few voices,
-/// and would download it for nothing.
+/// The functions that render several voices of a model in one call, for large scenes. Web pages
+/// have few voices and should not download these functions.
 #[cfg(not(target_family = "wasm"))]
 macro_rules! voices {
     ($model:ident) => {
@@ -33,8 +33,9 @@ macro_rules! voices {
     };
 }
 
-/// The table of a model's crate, and any of `knobs`, `usual` and `motion`; with the fit only in
-/// programs that fit: otherwise nothing links it, nor what it computes with.
+/// The table of a model's crate, with any of `knobs`, `usual` and `motion`. The fit is included
+/// only in programs that fit. In other programs nothing refers to it, so the linker drops it with
+/// everything it uses.
 macro_rules! model {
     ($model:ident $(, $part:ident)*) => {{
         #[cfg(feature = "fit")]
@@ -50,7 +51,7 @@ macro_rules! model {
     }};
 }
 
-/// A model with a part of its crate.
+/// Adds one of these parts of its crate to a model.
 macro_rules! part {
     ($table:ident, $model:ident, knobs) => {{
         #[cfg(feature = "fit")]
@@ -71,10 +72,13 @@ macro_rules! part {
     }};
 }
 
-/// The models. One that is added here is in every program that links this crate. `usual` are the
-/// ranges of its parameters' sliders, which a test asks for; without `knobs` a sweep spans the
-/// ranges of its options; with `motion` it has the extension `htex.motion/1`. One that is
-/// `only_named` is fitted where it is named, and is none of those that a program takes by itself.
+/// Lists the built-in models. A model that is added here is in every program that links this crate.
+///
+/// - `usual`: the ranges of its parameters' sliders, which a test requires.
+/// - `knobs`: the values of its options in a sweep. Without them, a sweep spans the options'
+///   ranges.
+/// - `motion`: it has the extension `htex.motion/1`.
+/// - `only_named`: it is fitted only if the user names it, and not chosen by default.
 fn tables() -> Vec<TableModel> {
     vec![
         model!(htex_ar, knobs, usual),
@@ -94,7 +98,7 @@ fn every_model_is_loaded() {
     assert_eq!(models().len(), tables().len());
 }
 
-/// Each parameter of a model has a usual range, which is a part of what may be stored.
+/// Each parameter of a model must have a usual range within the range that may be stored.
 #[cfg(all(test, feature = "fit"))]
 #[test]
 fn usual_ranges_are_within_the_descriptors() {
@@ -114,7 +118,7 @@ fn usual_ranges_are_within_the_descriptors() {
     }
 }
 
-/// A fit that fails.
+/// A fit that always fails.
 #[cfg(not(feature = "fit"))]
 unsafe extern "C" fn without_fits(
     _band_low_hz: f64,
@@ -134,7 +138,7 @@ unsafe extern "C" fn without_fits(
     htex_model::Status::CannotFit as i64
 }
 
-/// As [`without_fits`], of the extension `htex.motion/1`.
+/// The [`without_fits`] of the extension `htex.motion/1`.
 #[cfg(not(feature = "fit"))]
 unsafe extern "C" fn without_fits_at(
     _band_low_hz: f64,

@@ -1,7 +1,8 @@
-//! Decimal numbers in texts.
+//! Reads decimal numbers from text.
 //!
-//! They are read by the reader of JSON, which every program has that opens an asset: the reader of
-//! the standard library has a table of its own, 13 kB of the compressed library of the npm package.
+//! It uses the JSON reader, which is in every program that opens an asset anyway. The standard
+//! library's reader has its own table, which takes 13 kB of the compressed library of the npm
+//! package.
 
 /// Reads a number such as `1.5`, `.5` or `2e-3`.
 ///

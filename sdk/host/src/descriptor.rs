@@ -5,7 +5,7 @@ use htex_model::{Descriptor, Field, Kind, is_model_id};
 
 use crate::error::plain;
 
-/// An invalid descriptor. Texts of the descriptor are quoted with their control characters escaped.
+/// An invalid descriptor. Control characters are escaped in texts quoted from the descriptor.
 ///
 /// ```
 /// use htex_host::{DescriptorError, read_descriptor};

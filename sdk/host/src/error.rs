@@ -5,11 +5,11 @@ use std::fmt::Display;
 use htex_dsp::resample::UnusableRates;
 use htex_model::Status;
 
-/// Most bytes of a model's text that a message shows.
+/// Maximum number of bytes of a model's text in a message.
 const LONGEST_SHOWN: usize = 4096;
 
-/// Returns a model's text for a message: control characters are escaped, so that the text cannot
-/// control a terminal, and a long text is cut.
+/// Prepares a model's text for a message. Control characters are escaped, so that the text cannot
+/// control a terminal. A long text is cut.
 pub(crate) fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len().min(LONGEST_SHOWN));
     for c in text.chars() {
@@ -44,7 +44,7 @@ pub enum HostError {
         /// The names in the registry.
         known: String,
     },
-    /// A module contains another model than declared.
+    /// A module contains a different model from the declared one.
     #[error("{path} is declared as {declared} but contains {found}; get it again from its author")]
     OtherModel {
         /// The file, or the entry of an asset.
@@ -64,7 +64,7 @@ pub enum HostError {
         path: String,
         name: String,
     },
-    /// A file that somebody else names, such as a recipe, is no WASM module.
+    /// A file that the user did not name, e.g. one from a recipe, is not a WASM module.
     #[error(
         "{path}: it is no WASM module; only a person names a native library, which runs with all their rights: if you trust it, give it \
          yourself (`--plugin FILE`, `plugins` in Python)"
@@ -109,7 +109,7 @@ pub enum HostError {
     },
 }
 
-/// Adds the file, or the entry of an asset, to what is wrong with a model that is loaded.
+/// Adds the file, or the entry of an asset, to an error of loading a model.
 pub(crate) trait Loading<T> {
     fn loading(self, origin: impl Display) -> Result<T, HostError>;
 }
@@ -148,7 +148,7 @@ pub enum OptionError {
         /// The names of the model's options.
         known: String,
     },
-    /// The value is none of the option's choices, or not a number in its range.
+    /// The value is neither one of the option's choices nor a number in its range.
     #[error("`{name}` is `{text}`; it takes {takes}")]
     Value {
         name: String,

@@ -1,9 +1,9 @@
-//! Finds and calls texture models: one registry and one calling interface for models of all
+//! Finds and calls texture models, with one registry and one calling interface for models of all
 //! origins.
 //!
-//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]); [`Search`]
-//! lists the places that are searched. Every model is called through the flat functions of the
-//! model ABI, the built-in ones too. The results of each call are checked here, so that an invalid
+//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]). [`Search`]
+//! lists the places that are searched. Every model, including the built-in ones, is called through
+//! the plain C functions of the model ABI. The results of each call are checked here, so an invalid
 //! result is an error of that call only.
 //!
 //! ```
@@ -37,7 +37,7 @@ mod raw;
 mod reading;
 mod registry;
 mod runtime;
-// Without modules the budget is not used.
+// Only modules use the budget.
 #[cfg_attr(not(any(feature = "wasm", target_family = "wasm")), allow(dead_code))]
 mod sandbox;
 mod search;
@@ -48,7 +48,7 @@ mod together;
 mod voice;
 #[cfg(feature = "wasm")]
 mod wasm;
-// In a browser or in Node.js, which run the modules.
+// Normally used in a browser or in Node.js, which run the modules.
 #[cfg(test)]
 #[path = "browser/sections.rs"]
 mod sections;
@@ -81,6 +81,5 @@ pub use voice::ModelVoice;
 #[cfg(feature = "wasm")]
 pub use wasm::{CompilerError, end_wasm_clocks, serve_compiler};
 
-/// Whether this build runs WASM modules: by the engine of the feature `wasm`, or by the browser it
-/// runs in.
+/// Whether this build can run WASM modules, with the engine of the feature `wasm` or in a browser.
 pub const RUNS_WASM: bool = cfg!(any(feature = "wasm", target_family = "wasm"));

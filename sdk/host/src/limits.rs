@@ -1,13 +1,13 @@
 //! Limits of WASM models.
 //!
-//! Limited are memory, tables, stack, voices, time, the cost of compilation, the total of all
-//! modules, and on request instructions. Each limit has a test in `sdk/host/tests/limits.rs` in
-//! which it bites.
+//! They limit memory, tables, stack, voices, time, the cost of compilation, the total of all
+//! modules, and optionally the number of instructions. For each limit, a test in
+//! `sdk/host/tests/limits.rs` exceeds it.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Limits of one WASM model. A call that exceeds a limit fails, and its error names the limit.
+/// Limits of one WASM model. A call that exceeds a limit fails with an error that names the limit.
 ///
 /// ```
 /// use htex_host::{WasmCache, WasmLimits};
@@ -21,50 +21,51 @@ use std::time::Duration;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmLimits {
-    /// Largest module, bytes. Default 16 MiB (the models of this project have 0.2 to 0.5 MiB).
+    /// Largest module, bytes. Default 16 MiB (this project's models have 0.2 to 0.5 MiB).
     pub module_bytes: usize,
     /// Largest memory of one instance, bytes. Default 64 MiB.
     pub memory_bytes: usize,
-    /// Most elements of one table. Default 10,000.
+    /// Maximum number of elements of one table. Default 10,000.
     pub table_elements: usize,
-    /// Stack of WASM code, bytes, a part of the calling thread's stack. Default 256 KiB.
+    /// Stack of WASM code, bytes. It is part of the calling thread's stack. Default 256 KiB.
     pub stack_bytes: usize,
-    /// Most voices of one model at a time; each has a separate instance. Default 256.
+    /// Maximum number of voices of one model at a time. Each has a separate instance. Default 256.
     pub voices: usize,
-    /// Longest time of one call that does not render, and of the module's start. Default 5 s.
+    /// Longest time of the module's start, and of one call that does not render. Default 5 s.
     pub call: Duration,
     /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s: much longer than
     /// any device waits, and short enough to end an endless loop.
     pub render: Duration,
-    /// Most WASM instructions of one call, if given: unlike time, equal on every machine.
-    /// Default none: the time limits suffice, and counting takes up to a tenth more time.
+    /// Maximum number of WASM instructions of one call, or `None` for no limit. Unlike time, it is
+    /// the same on every machine. Default `None`: the time limits suffice, and counting takes up to
+    /// a tenth more time.
     pub fuel: Option<u64>,
-    /// Longest time of compiling the module. Default 5 s. The time is estimated before compilation:
-    /// a module that might exceed it is compiled without optimisation, and refused if that might
-    /// exceed it too.
+    /// Longest time of compiling the module. Default 5 s. The time is estimated before compilation.
+    /// A module that might exceed the limit is compiled without optimisation. If even that might
+    /// exceed the limit, the module is refused.
     pub compile: Duration,
-    /// Most memory of compiling a module, bytes, if [`WasmCompiler::Program`] compiles. Default 512
-    /// MiB; modules within the estimated `compile` time need less.
+    /// Maximum memory for compiling a module, bytes, if [`WasmCompiler::Program`] compiles. Default
+    /// 512 MiB. Modules within the estimated `compile` time need less.
     pub compile_bytes: usize,
     /// The compiler of modules. Default [`WasmCompiler::Here`].
     pub compiler: WasmCompiler,
     /// Total of all modules of one asset. Default 10 s, 512 MiB, 512 instances.
     pub asset: WasmTotal,
-    /// Total of all modules of one registry and its clones, including those of assets. Default 30
-    /// s, 1 GiB, 2,048 instances.
+    /// Total of all modules of one registry and its clones, including the modules of assets.
+    /// Default 30 s, 1 GiB, 2,048 instances.
     pub all: WasmTotal,
     /// Cache of compiled modules. Default [`WasmCache::User`].
     pub cache: WasmCache,
     /// The engine that runs modules. Default [`WasmEngine::Signals`].
     pub engine: WasmEngine,
-    /// For checkers of models: whether a call that writes beyond its arrays, within the module's
-    /// own memory, fails. Default no: it harms the module only.
+    /// For checkers of models: makes a call fail that writes beyond its arrays within the module's
+    /// own memory. Default no, because such a call harms only the module.
     pub guards: bool,
 }
 
-/// The engine that runs modules, by what it takes from the process. While a module is loaded, each
-/// engine has one thread that stops calls at their time limit; browsers have their own engine,
-/// which is only on or off.
+/// The engine that runs modules. The variants differ in the process resources that the engine uses.
+/// While a module is loaded, every engine except `Off` has one thread that stops calls at their
+/// time limit. Browsers have their own engine, which can only be on or off.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
@@ -76,13 +77,13 @@ pub struct WasmLimits {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmEngine {
-    /// Loading a module is an error: no thread, file or handler is made.
+    /// Loading a module is an error. No thread, file or handler is created.
     Off,
-    /// Modules run without handlers for signals: each access to memory is compared with its bound.
-    /// The measures against speculative execution that rely on such handlers are off.
+    /// Modules run without signal handlers: each memory access is compared with its bound. The
+    /// measures against speculative execution that rely on such handlers are off.
     Checked,
-    /// Modules run with handlers of the process for SIGSEGV, SIGILL, SIGFPE and SIGBUS, which pass
-    /// on what is not of a module to the handlers that were there.
+    /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. The handlers
+    /// pass signals that no module caused to the previous handlers.
     Signals,
 }
 
@@ -97,7 +98,7 @@ pub enum WasmEngine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmTotal {
-    /// Time of compilation and of all calls except those of voices. A tenth of the elapsed time is
+    /// Time of compilation and of all calls except calls of voices. A tenth of the elapsed time is
     /// added to it. A voice has a separate time: one second, and ten times the duration of its
     /// samples.
     pub time: Duration,
@@ -144,11 +145,11 @@ impl WasmTotal {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmCompiler {
-    /// This process. The limits `compile` and `compile_bytes` are applied to an estimate only.
+    /// This process. The limits `compile` and `compile_bytes` then apply only to an estimate.
     #[default]
     Here,
-    /// Another process, which is stopped if it exceeds the limits of time or memory: a program that
-    /// calls `htex_host::serve_compiler` when it is started with these arguments.
+    /// Another process, which is stopped if it exceeds the limits of time or memory. The program
+    /// must call `htex_host::serve_compiler` when it is started with these arguments.
     Program(PathBuf, Vec<String>),
 }
 
@@ -190,7 +191,7 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the most elements of one table.
+    /// Sets the maximum number of elements of one table.
     #[must_use]
     pub fn with_table_elements(mut self, table_elements: usize) -> Self {
         self.table_elements = table_elements;
@@ -204,7 +205,7 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the most voices of one model at a time.
+    /// Sets the maximum number of voices of one model at a time.
     #[must_use]
     pub fn with_voices(mut self, voices: usize) -> Self {
         self.voices = voices;
@@ -225,7 +226,7 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the most WASM instructions of one call, or `None` for no limit.
+    /// Sets the maximum number of WASM instructions of one call, or `None` for no limit.
     #[must_use]
     pub fn with_fuel(mut self, fuel: impl Into<Option<u64>>) -> Self {
         self.fuel = fuel.into();
@@ -239,7 +240,7 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the most memory of compiling a module, bytes.
+    /// Sets the maximum memory for compiling a module, bytes.
     #[must_use]
     pub fn with_compile_bytes(mut self, compile_bytes: usize) -> Self {
         self.compile_bytes = compile_bytes;
@@ -289,11 +290,11 @@ impl WasmLimits {
 
 /// Cache of compiled modules on disk.
 ///
-/// A cached file is machine code that this program runs. The folder is therefore created with
-/// permissions for this user alone (mode 0700); a folder of another user, or one that others may
-/// write to, is not used; and each file is authenticated with a key that only this user can read
-/// (`wasm.key` in the user's configuration folder). A file that is damaged, or was made by another
-/// version, is compiled again.
+/// A cached file is machine code that this program runs, so three measures protect it. The folder
+/// is created with permissions for this user only (mode 0700). A folder that belongs to another
+/// user, or that others may write to, is not used. Each file is authenticated with a key that only
+/// this user can read (`wasm.key` in the user's configuration folder). A file that is damaged, or
+/// was written by another version, is compiled again.
 ///
 /// ```
 /// use htex_host::{Search, WasmCache, WasmLimits};

@@ -1,4 +1,4 @@
-//! A loaded model: safe calls, checked results.
+//! A loaded model: safe calls of its functions, checked results.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::raw::RawModel;
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
-/// Rate of a usual sound card, hertz.
+/// Usual rate of a sound card, hertz.
 pub(crate) const HIGH_RATE_HZ: f64 = 48_000.0;
 
 /// The extension of models that follow the motion.
@@ -26,7 +26,7 @@ pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
 /// Length of the parameter buffer in the first call.
 const USUAL_PARAMETERS: usize = 256;
 
-/// Input of a fit; see [`htex_model::FitInput`] for units.
+/// Input of a fit. See [`htex_model::FitInput`] for the units.
 ///
 /// ```
 /// use htex_host::{Band, FitRequest, Registry};
@@ -102,8 +102,8 @@ impl LoadedModel {
         Ok(Self { descriptor: Arc::new(descriptor), origin: Arc::new(origin), raw })
     }
 
-    /// Loads a model from a file: a WASM module (`.wasm`), which runs in a sandbox with the default
-    /// limits, or a native library, which runs with all rights of this program.
+    /// Loads a model from a file. A WASM module (`.wasm`) runs in a sandbox with the default
+    /// limits. A native library runs with all the rights of this program.
     ///
     /// # Errors
     /// When the file is neither, or its model violates the ABI.
@@ -111,15 +111,15 @@ impl LoadedModel {
         Self::from_file_within(path, &WasmLimits::default())
     }
 
-    /// As [`Self::from_file`], with other limits for a WASM module.
+    /// Loads a model as [`Self::from_file`] does, but with other limits for a WASM module.
     ///
     /// # Errors
-    /// As [`Self::from_file`].
+    /// The errors of [`Self::from_file`].
     pub fn from_file_within(path: &Path, limits: &WasmLimits) -> Result<Self, HostError> {
         Self::from_file_in(path, &Sandbox::new(limits))
     }
 
-    /// As [`Self::from_file`], in a sandbox that other models may share.
+    /// Loads a model as [`Self::from_file`] does, in a sandbox that other models may share.
     pub(crate) fn from_file_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if path.extension().is_some_and(|extension| extension == "wasm") {
             return Self::from_wasm_file(path, sandbox);
@@ -128,8 +128,9 @@ impl LoadedModel {
         Self::new(Origin::Native(path.to_owned()), Arc::new(raw))
     }
 
-    /// Loads a model from a file that somebody else names, which is a WASM module whatever it is
-    /// called: this is the one place that decides what may be loaded for a file's word.
+    /// Loads a model from a file that the user did not name. The file must be a WASM module,
+    /// whatever its name. This is the only place that decides what may be loaded because a file
+    /// asks for it.
     pub(crate) fn from_module_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if !is_module(path).loading(path.display())? {
             return Err(HostError::NotModule { path: path.display().to_string() });
@@ -150,8 +151,8 @@ impl LoadedModel {
         Err(no_wasm(&path.display().to_string()))
     }
 
-    /// Loads a model from the bytes of a WASM module; messages name `name`, the asset or file that
-    /// contains it.
+    /// Loads a model from the bytes of a WASM module. `name` is the asset or file that contains it,
+    /// for messages.
     ///
     /// # Errors
     /// When the bytes are not a module, its model violates the ABI, or this program was built
@@ -164,7 +165,7 @@ impl LoadedModel {
         Self::from_wasm_in(name, bytes, &Sandbox::new(limits))
     }
 
-    /// As [`Self::from_wasm_bytes`], in a sandbox that other models may share.
+    /// Loads a model as [`Self::from_wasm_bytes`] does, in a sandbox that other models may share.
     #[cfg(any(feature = "wasm", target_family = "wasm"))]
     pub(crate) fn from_wasm_in(
         name: &str,
@@ -207,19 +208,19 @@ impl LoadedModel {
         id.rsplit('.').next().unwrap_or(id)
     }
 
-    /// Returns the values of the fit options in a sweep; `None` for a model that is not built in or
-    /// chooses none, and without the feature `fit`.
+    /// Returns the values of the fit options in a sweep. `None` if the model is not built in or
+    /// chooses no values, and without the feature `fit`.
     pub fn knobs(&self) -> Option<&'static Knobs> {
         self.raw.knobs()
     }
 
-    /// Returns the usual ranges of the parameters, for sliders; empty for a model that is not built
-    /// in or states none, and without the feature `fit`.
+    /// Returns the usual ranges of the parameters, for sliders. Empty if the model is not built in
+    /// or states no ranges, and without the feature `fit`.
     pub fn usual(&self) -> &'static [Usual] {
         self.raw.usual()
     }
 
-    /// Returns whether a program takes the model only where it is named
+    /// Returns whether a program uses the model only if the user names it
     /// ([`Registry::by_default`](crate::Registry::by_default)).
     pub fn is_only_named(&self) -> bool {
         self.raw.is_only_named()
@@ -234,12 +235,12 @@ impl LoadedModel {
         self.fit_at(request, FitCondition::default())
     }
 
-    /// As [`Self::fit`], of a recording at a motion. Models that follow the motion
+    /// Fits the model to a recording at a motion. Models that follow the motion
     /// ([`Self::follows_motion`]) receive it; others ignore it.
     ///
     /// # Errors
-    /// As [`Self::fit`]; for a model that follows the motion also when a speed or force is negative
-    /// or not finite.
+    /// The errors of [`Self::fit`]. For a model that follows the motion, also when a speed or force
+    /// is negative or not finite.
     #[cfg(feature = "fit")]
     pub fn fit_at(
         &self,
@@ -264,7 +265,8 @@ impl LoadedModel {
         Ok(Fit { parameters, level_rms })
     }
 
-    /// Returns the shape's magnitude at `frequency_hz`, of unit RMS on the 5 Hz grid in the band.
+    /// Returns the shape's magnitude at each `frequency_hz`. The magnitude has unit RMS on the 5 Hz
+    /// grid in the band.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason; [`HostError::Broken`] if a magnitude is not
@@ -290,7 +292,7 @@ impl LoadedModel {
         }
     }
 
-    /// Interpolates parameter sets by weights, which sum to one.
+    /// Interpolates parameter sets with weights that sum to one.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
@@ -337,11 +339,11 @@ impl LoadedModel {
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
     }
 
-    /// Returns whether a voice that renders at `rate_hz` has this rate of its own, since it would
-    /// have it at a high rate too.
+    /// Returns whether `rate_hz` is the model's own rate, which does not depend on the requested
+    /// rate: the model would return it for a high rate as well.
     ///
     /// # Errors
-    /// As [`Self::voice_rate_hz`].
+    /// The errors of [`Self::voice_rate_hz`].
     pub fn has_own_rate(
         &self,
         parameters: &[f64],
@@ -352,7 +354,8 @@ impl LoadedModel {
         Ok(self.voice_rate_hz(parameters, band, high_hz)? == rate_hz)
     }
 
-    /// Makes a voice that renders at `rate_hz`, a rate that [`Self::voice_rate_hz`] returned.
+    /// Creates a voice that renders at `rate_hz`, which must be a rate that [`Self::voice_rate_hz`]
+    /// returned.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
@@ -384,9 +387,9 @@ impl LoadedModel {
         }
     }
 
-    /// Returns whether the model has the extension `htex.motion/1`: its voices receive the motion
-    /// ([`ModelVoice::set_motion`]) and follow it themselves, and its fits receive the recording's
-    /// motion.
+    /// Returns whether the model has the extension `htex.motion/1`. If so, its voices receive the
+    /// motion ([`ModelVoice::set_motion`]) and follow it themselves, and its fits receive the
+    /// recording's motion.
     pub fn follows_motion(&self) -> bool {
         self.raw.follows_motion()
     }
@@ -422,7 +425,7 @@ impl LoadedModel {
     }
 
     /// Calls with a buffer of the usual size, and again if that is too small. The result must be
-    /// one parameter set that fits the descriptor.
+    /// one parameter set that matches the descriptor.
     fn numbers(
         &self,
         call: &'static str,
@@ -460,7 +463,7 @@ enum TextError {
     Broken(String),
 }
 
-/// Reads a text of unknown length: one call for the length, one for the text.
+/// Reads a text of unknown length with two calls: one for the length, one for the text.
 fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, TextError> {
     let first = call(&mut []);
     let len = usize::try_from(first).map_err(|_| TextError::Status(first))?;
@@ -478,7 +481,7 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, TextError> {
     }
 }
 
-/// The model's last-error text.
+/// Returns the model's last-error text.
 fn reason(last_error: impl FnMut(&mut [u8]) -> i64) -> String {
     let text = text(last_error).ok().filter(|text| !text.is_empty());
     text.map_or_else(|| "no reason given".to_owned(), |text| plain(&text))
@@ -506,7 +509,7 @@ fn no_wasm(origin: &str) -> HostError {
     }
 }
 
-/// Whether a regular file begins as a WASM module does.
+/// Whether a regular file begins with the bytes of a WASM module.
 fn is_module(path: &Path) -> std::io::Result<bool> {
     use std::io::Read;
     if !path.metadata()?.is_file() {

@@ -1,7 +1,7 @@
 //! Models in native libraries (`.so`, `.dylib`, `.dll`).
 //!
-//! A native library runs with all rights of this program, so only libraries that the user chose are
-//! loaded. They are loaded once and never unloaded, because voices and tables point into them.
+//! A native library runs with all the rights of this program, so only libraries that the user chose
+//! are loaded. They are loaded once and never unloaded, because voices and tables point into them.
 
 use std::path::Path;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::{HostError, Origin};
 
-/// A note of a search, for the user: the search went on.
+/// A note for the user about something found during a search. The search continued.
 ///
 /// ```
 /// use htex_host::{Note, Registry, Search};

@@ -1,12 +1,12 @@
-//! Fit options by name, as a person or a script gives them.
+//! Fit options by name, as given by a user or a script.
 
 use htex_model::FitOption;
 
 use crate::{HostError, LoadedModel, OptionError};
 
 impl LoadedModel {
-    /// Returns one value for each of the model's options: the value given as `(name, text)`, else
-    /// the default. A choice is given by its name.
+    /// Returns one value for each of the model's options: the value given as `(name, text)`, or
+    /// else the default. A choice is given by its name.
     ///
     /// # Errors
     /// [`HostError::Option`] with the allowed values.

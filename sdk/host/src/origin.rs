@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Origin of a model's code.
+/// Where a model's code comes from.
 ///
 /// ```
 /// use htex_host::{Origin, Registry};
@@ -17,13 +17,14 @@ pub enum Origin {
     Builtin,
     /// A type that this program registered.
     Own,
-    /// An object that this program registered while it runs; the text says what it is written in.
+    /// An object that the program registered at run time. The text names the language it is written
+    /// in.
     Runtime(String),
-    /// A native library, which runs with all rights of this program.
+    /// A native library, which runs with all the rights of this program.
     Native(PathBuf),
     /// A WASM module in a file, which runs in a sandbox.
     Wasm(PathBuf),
-    /// A WASM module in an asset or another container, by the name of the container.
+    /// A WASM module in an asset or another container. The text is the container's name.
     Embedded(String),
 }
 

@@ -1,4 +1,4 @@
-//! Models of the program itself: types that implement [`Model`], as objects.
+//! Models of the program itself: turns types that implement [`Model`] into objects.
 
 use std::sync::Arc;
 
@@ -9,32 +9,32 @@ use htex_model::{
 use crate::HostError;
 use crate::runtime::{Described, RuntimeModel, RuntimeVoice};
 
-/// A voice's [`MotionVoice::set_motion`].
+/// The function [`MotionVoice::set_motion`] of a voice.
 type SetMotion<V> = fn(&mut V, Motion);
 
-/// A type as an object.
+/// A type that implements [`Model`], as an object.
 struct Own<M: Model> {
     set_motion: Option<SetMotion<M::Voice>>,
 }
 
-/// The voice of a type as an object.
+/// The voice of such a type, as an object.
 struct OwnVoice<V> {
     voice: V,
     set_motion: Option<SetMotion<V>>,
 }
 
-/// Makes the model of a type.
+/// Creates the model of a type.
 ///
 /// # Errors
-/// As [`Described::new`].
+/// The errors of [`Described::new`].
 pub(crate) fn model<M: Model>() -> Result<Described, HostError> {
     described::<M>(None)
 }
 
-/// Makes the model of a type whose voice follows the motion.
+/// Creates the model of a type whose voice follows the motion.
 ///
 /// # Errors
-/// As [`Described::new`].
+/// The errors of [`Described::new`].
 pub(crate) fn motion_model<M: Model<Voice: MotionVoice>>() -> Result<Described, HostError> {
     described::<M>(Some(M::Voice::set_motion))
 }

@@ -1,7 +1,7 @@
 //! For checkers of models: calls with the caller's own arrays, and with arrays that a host never
-//! passes. An app has no use for them.
+//! passes. Apps do not need them.
 //!
-//! Results are checked as little as they can be: a negative answer is an error.
+//! Results are checked as little as possible: only a negative answer is an error.
 
 use htex_dsp::grid::Band;
 #[cfg(feature = "fit")]
@@ -14,12 +14,12 @@ use crate::raw::RawFit;
 use crate::table::TableModel;
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Length of an array that is not there.
+/// Stated length of an array that does not exist.
 const LEN: usize = 4;
-/// A handle of no voice.
+/// A handle that belongs to no voice.
 const NO_HANDLE: i64 = i64::MAX - 1;
 
-/// Valid arguments, of which [`LoadedModel::unusable_arrays`] replaces one array at a time.
+/// Valid arguments. [`LoadedModel::unusable_arrays`] replaces one of their arrays at a time.
 #[derive(Debug, Clone, Copy)]
 pub struct ProbeArguments<'a> {
     pub parameters: &'a [f64],
@@ -31,20 +31,20 @@ pub struct ProbeArguments<'a> {
     pub options: &'a [f64],
 }
 
-/// The answer of a call with an array that is not usable.
+/// The answer to a call with an unusable array.
 #[derive(Debug, Clone)]
 pub struct Unusable {
-    /// The call and the array, such as "`magnitude` with null `parameters`".
+    /// The call and the array, e.g. "`magnitude` with null `parameters`".
     pub what: String,
-    /// What the call answers; a rate is cut to a whole number.
+    /// The answer of the call. A rate is truncated to a whole number.
     pub answer: i64,
-    /// What it must answer.
+    /// The answer that the ABI requires.
     pub wanted: i64,
 }
 
 impl LoadedModel {
-    /// Writes a fit to `parameters`, which may be shorter than it, and its level; returns the fit's
-    /// length.
+    /// Fits the model. Writes the fit to `parameters`, which may be too short, and its level.
+    /// Returns the length of the fit.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -60,7 +60,7 @@ impl LoadedModel {
         self.check("fit", self.raw().fit(&raw, parameters, level_rms))
     }
 
-    /// Writes the shape's magnitudes, as many as there are frequencies, to `magnitude`.
+    /// Writes the shape's magnitude at each frequency to `magnitude`.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -75,8 +75,8 @@ impl LoadedModel {
         self.check("magnitude", raw.magnitude(parameters, band, frequency_hz, magnitude))
     }
 
-    /// Writes a mix of parameter sets, which stand one behind the other, to `parameters`, which may
-    /// be shorter than it.
+    /// Interpolates concatenated parameter sets. Writes the result to `parameters`, which may be
+    /// too short.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -90,7 +90,7 @@ impl LoadedModel {
         self.check("interpolate", answer)
     }
 
-    /// Writes the descriptor to `out`, which may be shorter than it; returns its length.
+    /// Writes the descriptor to `out`, which may be too short. Returns the descriptor's length.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -98,7 +98,7 @@ impl LoadedModel {
         self.check("descriptor", self.raw().descriptor(out))
     }
 
-    /// Calls each function with null and misaligned arrays; `None` for a module, whose pointers are
+    /// Calls each function with null and misaligned arrays. `None` for a module, whose pointers are
     /// indices.
     pub fn unusable_arrays(&self, arguments: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         self.raw().unusable_arrays(arguments)
@@ -106,7 +106,7 @@ impl LoadedModel {
 }
 
 impl ModelVoice {
-    /// Renders without a check of the samples.
+    /// Renders without checking the samples.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -115,8 +115,8 @@ impl ModelVoice {
         self.done("voice_render", answer)
     }
 
-    /// Calls `htex_voices_1_render` with the voices of these numbers, which may come twice or not
-    /// exist; `None` without the extension.
+    /// Calls `htex_voices_1_render` with the voices at these indices, which may be repeated or not
+    /// exist. `None` without the extension.
     pub fn render_any_together(
         voices: &mut [Self],
         numbers: &[usize],
@@ -138,7 +138,7 @@ impl ModelVoice {
     }
 }
 
-/// The address of a number that is not aligned; its bytes are readable and writable.
+/// Returns a misaligned address of a number whose bytes are readable and writable.
 fn misaligned<T>(numbers: &mut [T]) -> *mut T {
     numbers.as_mut_ptr().cast::<u8>().wrapping_add(1).cast()
 }
@@ -158,8 +158,8 @@ impl Answers {
     }
 }
 
-/// The functions of a table with arrays that are not usable. A misaligned array has a live one
-/// behind it, so that a model that uses it reads and writes nothing else.
+/// Calls the functions of a table with unusable arrays. A misaligned array has a live array behind
+/// it, so that a model that uses it reads and writes nothing else.
 impl TableModel {
     pub(crate) fn probe(&self, a: &ProbeArguments<'_>) -> Vec<Unusable> {
         let mut answers = Answers(Vec::new());

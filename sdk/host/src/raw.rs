@@ -1,8 +1,8 @@
-//! The flat calls of the model ABI with slices, which each loader implements.
+//! The plain calls of the model ABI with slices. Each loader implements them.
 //!
-//! Every model is called through one table of C functions, the built-in ones too, so that the code
-//! above does not depend on the loader: [`crate::table`] serves built-in models and native
-//! libraries, `wasm` serves modules.
+//! Every model, including the built-in ones, is called through one table of C functions, so the
+//! code above does not depend on the loader. [`crate::table`] serves built-in models and native
+//! libraries, and `wasm` serves modules.
 
 use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
@@ -20,7 +20,7 @@ pub(crate) struct RawFit<'a> {
     pub(crate) signal: &'a [f64],
     pub(crate) signal_rate_hz: f64,
     pub(crate) options: &'a [f64],
-    /// For models that follow the motion.
+    /// Used only by models that follow the motion.
     pub(crate) condition: FitCondition,
 }
 
@@ -39,8 +39,7 @@ impl<'a> RawFit<'a> {
     }
 }
 
-/// The functions of one model. Returned numbers are those of `htex_model::abi`: a length or a
-/// status.
+/// The functions of one model. A returned number is a length or a status, as in `htex_model::abi`.
 pub(crate) trait RawModel: Send + Sync {
     fn abi_version(&self) -> u32;
     fn descriptor(&self, out: &mut [u8]) -> i64;
@@ -64,16 +63,16 @@ pub(crate) trait RawModel: Send + Sync {
     fn usual(&self) -> &'static [Usual] {
         &[]
     }
-    /// Returns whether a program takes the model only where it is named.
+    /// Returns whether a program uses the model only if the user names it.
     fn is_only_named(&self) -> bool {
         false
     }
-    /// For checkers: the answers to arrays that are not usable.
+    /// For checkers: returns the answers to unusable arrays.
     fn unusable_arrays(&self, _: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         None
     }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
-    /// Makes a voice; an error is a status.
+    /// Creates a voice. An error is a status.
     fn voice_new(
         &self,
         parameters: &[f64],
@@ -83,7 +82,7 @@ pub(crate) trait RawModel: Send + Sync {
     ) -> Result<Box<dyn RawVoice>, i64>;
 }
 
-/// One voice of a model; freed when it is dropped.
+/// One voice of a model, freed when it is dropped.
 pub(crate) trait RawVoice: Send {
     fn render(&mut self, out: &mut [f32]) -> i64;
     fn retune(&mut self, parameters: &[f64]) -> i64;
@@ -91,10 +90,10 @@ pub(crate) trait RawVoice: Send {
     fn set_motion(&mut self, motion: Motion) -> i64;
     /// Calls the model's `interpolate` in this voice's thread, without a lock.
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
-    /// Frees the voice in the model and keeps the handle: later calls reach the model, which
-    /// returns `BadHandle`, and dropping does not free again.
+    /// Frees the voice in the model but keeps the handle. Later calls reach the model, which
+    /// returns `BadHandle`. Dropping does not free the voice again.
     fn free(&mut self) -> i64;
-    /// Returns the data to render this voice in one call with others, if its model has
+    /// Returns the data needed to render this voice in one call with others, if its model has
     /// `htex.voices/1`.
     fn together(&self) -> Option<Together> {
         None

@@ -1,4 +1,4 @@
-//! The magnitude that a recording of a voice reads, where it is not the model's own.
+//! The magnitude that a recording of a voice would measure, if it differs from the model's own.
 
 use htex_dsp::grid::{GRID_HZ, level_rms};
 use htex_dsp::resample::OwnRate;
@@ -8,31 +8,34 @@ use htex_dsp::window::hann_main_lobe;
 use crate::model::HIGH_RATE_HZ;
 use crate::{Band, HostError, LoadedModel};
 
-/// Points of a bin at which a magnitude is read.
+/// Number of points per bin at which a magnitude is sampled.
 const IN_BIN: i32 = 8;
-/// Part of a bin that a voice plays beyond the edges of its band: half of the edge bin's.
+/// How far a voice plays beyond the edges of its band, in bins: half of the edge bin.
 const BESIDE_EDGE_BINS: f64 = 0.5;
-/// Part of a source's own rate up to which its content passes whole.
+/// Fraction of a source's own rate up to which its content passes unchanged.
 const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
-    /// Returns whether magnitudes are what a window reads of lines, and no density: those of
-    /// sinusoids, and of models that follow the motion, whose surface a finger crosses again.
+    /// Returns whether the model's magnitudes describe lines as a window measures them, instead of
+    /// a density. This holds for sinusoids, and for models that follow the motion, because a finger
+    /// crosses their surface repeatedly.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
 
-    /// Returns the magnitude on the band's grid, of unit RMS, that a recording of the voice reads
-    /// through a Hann window of 0.2 s: bins next to steep flanks read the flank, and those at the
-    /// band's edges read what is played half a bin beyond and nothing further. A model with a rate
-    /// of its own is read as it is played at high rates: the RMS is then [`Self::played_part`].
+    /// Returns the magnitude that a recording of the voice would measure with a Hann window of 0.2
+    /// s, on the band's grid and with unit RMS. Bins next to steep flanks measure part of the
+    /// flank. Bins at the band's edges measure what is played up to half a bin beyond the edge. A
+    /// model with its own rate is measured as it is played at high rates; its RMS is then
+    /// [`Self::played_part`].
     ///
-    /// A voice plays its model's magnitude as a density; that of a model that keeps energies
-    /// ([`keeps_level`](htex_model::Descriptor::keeps_level)) plays it [sharpened](sharpen). The
-    /// magnitude of sinusoids is already what is read, as far as the window's main lobe goes.
+    /// A voice plays its model's magnitude as a density. If the model keeps energies
+    /// ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
+    /// [sharpened](sharpen). For sinusoids, the magnitude already is what a window measures, as far
+    /// as the window's main lobe reaches.
     ///
     /// # Errors
-    /// As [`Self::magnitude`].
+    /// The errors of [`Self::magnitude`].
     pub fn read_magnitude(&self, parameters: &[f64], band: Band) -> Result<Vec<f64>, HostError> {
         let grid = band.grid_hz();
         if self.has_lines() || grid.is_empty() {
@@ -60,12 +63,12 @@ impl LoadedModel {
         Ok(read)
     }
 
-    /// Returns the part of its level that a voice is played at, as the bins of the band read it:
-    /// below 1 where the model has a rate of its own and the conversion to the player's rate takes
-    /// away power near half of it (about 0.7 where all of it lies there).
+    /// Returns the fraction of its level at which a voice is played, as the bins of the band
+    /// measure it. It is below 1 if the model has its own rate and the conversion to the player's
+    /// rate removes power near half of that rate (about 0.7 if all of the power lies there).
     ///
     /// # Errors
-    /// As [`Self::magnitude`].
+    /// The errors of [`Self::magnitude`].
     pub fn played_part(&self, parameters: &[f64], band: Band) -> Result<f64, HostError> {
         if self.has_lines() || self.own_rate(parameters, band)?.is_none() {
             return Ok(1.0);
@@ -74,16 +77,16 @@ impl LoadedModel {
         Ok(if part > 0.0 { part } else { 1.0 })
     }
 
-    /// What is passed of a voice with a rate of its own, where its band reaches up to half that
-    /// rate.
+    /// Returns the part that the rate conversion passes, for a voice with its own rate whose band
+    /// reaches up to half that rate.
     fn own_rate(&self, parameters: &[f64], band: Band) -> Result<Option<OwnRate>, HostError> {
         let rate_hz = self.voice_rate_hz(parameters, band, HIGH_RATE_HZ)?;
         Ok(OwnRate::new(rate_hz, band.high_hz))
     }
 
-    /// Reads a voice's density through the window, at each bin: of what has `amplitude` at a
-    /// frequency, hertz. Above `half_hz`, half of the voice's own rate, is the image of what is
-    /// below.
+    /// Measures a voice's density through the window at each bin. `amplitude` gives the amplitude
+    /// at a frequency in hertz. Above `half_hz`, half of the voice's own rate, the image of the
+    /// lower frequencies appears.
     fn read(
         &self,
         parameters: &[f64],
@@ -117,15 +120,15 @@ impl LoadedModel {
     }
 }
 
-/// Returns the frequency in the band that is played at a frequency: beyond an edge, that of the
-/// edge for half a bin.
+/// Returns the frequency in the band whose magnitude is played at `hz`. Up to half a bin beyond an
+/// edge, that is the edge.
 fn played_at(band: Band, hz: f64) -> f64 {
     let edge_hz = hz.clamp(band.low_hz, band.high_hz);
     if (hz - edge_hz).abs() <= BESIDE_EDGE_BINS * GRID_HZ { edge_hz } else { hz.max(0.0) }
 }
 
-/// Returns the density of a sharpened magnitude, given on the band's grid, at frequencies in hertz:
-/// linear between bins, 0 outside the band.
+/// Returns the density of a sharpened magnitude, given on the band's grid, at frequencies in hertz.
+/// It is linear between bins and 0 outside the band.
 fn sharpened(magnitude: &[f64], band: Band, hertz: &[f64]) -> Vec<f64> {
     let power: Vec<f64> = magnitude.iter().map(|m| m * m).collect();
     let (mut before, mut sharp) = (power.clone(), power.clone());

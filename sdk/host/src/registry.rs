@@ -11,16 +11,16 @@ use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 use crate::{builtin, own};
 
-/// Models by id. Several models may have one id:
+/// Models by id. If several models have the same id, these rules decide which one is used:
 ///
-/// - A model that was named by its file or added by the program precedes the others, in the order
-///   in which they came.
-/// - Of the installed ones and the built-in one, the newest of each major version is used, wherever
-///   it was found; of equal versions the one that comes first in the order of [`Search`]. Major
-///   versions are in the order of the first place that has them (the folders of plugins, the user's
-///   folder, this program), the newest first within one place.
+/// - A model that the user named by its file, or that the program added, takes precedence. Several
+///   of these are used in the order in which they were added.
+/// - Among installed models and the built-in one, the newest of each major version is used,
+///   wherever it was found. Among equal versions, the first one in the order of [`Search`] is used.
+///   Major versions are ordered by the first place that has them (the plugin folders, the user's
+///   folder, this program), and within one place the newest comes first.
 ///
-/// The others are returned only for requests of their version.
+/// The other models are returned only if their version is requested.
 ///
 /// ```
 /// use htex_host::Registry;
@@ -33,15 +33,16 @@ use crate::{builtin, own};
 pub struct Registry {
     /// In display order.
     models: Vec<LoadedModel>,
-    /// The rank of each of `models`, ascending.
+    /// The rank of each model in `models`, ascending.
     ranks: Vec<Rank>,
-    /// Models with the same id as one of `models`; models of one id by precedence.
+    /// Models with the same id as one of `models`. Models with the same id are in order of
+    /// precedence.
     shadowed: Vec<Candidate>,
     notes: Vec<Note>,
     sandbox: Sandbox,
 }
 
-/// A model, and where it comes from.
+/// A model and where it comes from.
 #[derive(Debug, Clone)]
 struct Candidate {
     rank: Rank,
@@ -59,8 +60,8 @@ pub(crate) enum Rank {
 }
 
 impl Rank {
-    /// Returns whether the user or a program named this model itself, not only a folder that has
-    /// it.
+    /// Returns whether the user or a program named this model itself, not only a folder that
+    /// contains it.
     fn is_chosen(self) -> bool {
         matches!(self, Self::File | Self::Embedded)
     }
@@ -76,8 +77,8 @@ impl Candidate {
     }
 }
 
-/// Sorts models of one id, in the order in which they came, by the precedence that [`Registry`]
-/// describes.
+/// Sorts models with the same id, given in the order in which they were added, by the precedence
+/// that [`Registry`] describes.
 fn by_precedence(all: &mut [Candidate]) {
     let first_place = |major: Option<u64>| {
         let installed = all.iter().filter(|one| !one.rank.is_chosen());
@@ -111,8 +112,8 @@ impl Registry {
         models.map(LoadedModel::short_name).collect()
     }
 
-    /// Returns the short names of those among them whose sound is the same at each place: all but
-    /// models that follow the motion.
+    /// Returns the short names of the built-in models whose sound does not depend on the position:
+    /// all except models that follow the motion.
     pub fn placeless_names() -> Vec<&'static str> {
         let models = builtin::models().iter();
         let placeless = models.filter(|model| !model.follows_motion());
@@ -137,8 +138,8 @@ impl Registry {
         }
     }
 
-    /// Returns the registry of one asset: modules that are added to it share the limits
-    /// [`WasmLimits::asset`], within those of all modules of this registry.
+    /// Returns the registry of one asset. Modules that are added to it share the limits
+    /// [`WasmLimits::asset`], within the total of all modules of this registry.
     #[must_use]
     pub fn of_asset(self) -> Self {
         Self { sandbox: self.sandbox.of_asset(), ..self }
@@ -154,8 +155,8 @@ impl Registry {
         }
     }
 
-    /// Adds a model of this program: a type that implements the trait. It precedes all other models
-    /// of its id except those that were named or registered before.
+    /// Adds a model of this program: a type that implements [`Model`]. It takes precedence over all
+    /// other models with its id, except those that were named or registered before.
     ///
     /// ```
     /// use htex_host::Registry;
@@ -204,11 +205,11 @@ impl Registry {
         self.add_described(Origin::Own, own::model::<M>()?)
     }
 
-    /// As [`Self::add_model`], for a model that follows the motion itself (the extension
-    /// `htex.motion/1`).
+    /// Adds a model as [`Self::add_model`] does, but one that follows the motion itself (the
+    /// extension `htex.motion/1`).
     ///
     /// # Errors
-    /// As [`Self::add_model`].
+    /// The errors of [`Self::add_model`].
     pub fn add_motion_model<M: Model<Voice: MotionVoice>>(&mut self) -> Result<(), HostError> {
         self.add_described(Origin::Own, own::motion_model::<M>()?)
     }
@@ -218,8 +219,8 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model that is described while the program runs. `written_in` is its
-    /// [`Origin::Runtime`]. It precedes other models as [`Self::add_model`] says.
+    /// Adds a model that is described at run time. `written_in` becomes its [`Origin::Runtime`].
+    /// Its precedence is that of [`Self::add_model`].
     ///
     /// # Errors
     /// When the descriptor is invalid, or longer than 1 MiB in JSON.
@@ -233,8 +234,8 @@ impl Registry {
         self.add_described(origin, Described::new(descriptor, model)?)
     }
 
-    /// Adds the WASM model of a container `name`, such as an asset, after plugins named by their
-    /// files and before all others. A native library cannot be added in this way.
+    /// Adds the WASM model of a container called `name`, such as an asset. It comes after plugins
+    /// named by their files and before all others. A native library cannot be added in this way.
     ///
     /// # Errors
     /// When the bytes are not a module, or its model violates the ABI.
@@ -244,11 +245,11 @@ impl Registry {
         Ok(())
     }
 
-    /// As [`Self::add_wasm_bytes`], for a declared id and version: a module with another id or
-    /// version is not added.
+    /// Adds a model as [`Self::add_wasm_bytes`] does, but only if the module has the declared id
+    /// and version.
     ///
     /// # Errors
-    /// As [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
+    /// The errors of [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
     pub fn add_declared_wasm(
         &mut self,
         name: &str,
@@ -269,7 +270,7 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model, and a note if it shadows a model or is shadowed.
+    /// Adds a model, and a note if it shadows another model or is shadowed.
     pub(crate) fn add(&mut self, rank: Rank, model: LoadedModel) {
         let id = model.id().to_owned();
         let new = Candidate { rank, model };
@@ -291,7 +292,7 @@ impl Registry {
         self.insert(self.place_of(first.rank), first);
     }
 
-    /// Returns the place after the models of a rank.
+    /// Returns the index after the models of a rank.
     fn place_of(&self, rank: Rank) -> usize {
         self.ranks.partition_point(|other| *other <= rank)
     }
@@ -301,7 +302,7 @@ impl Registry {
         self.ranks.insert(at, new.rank);
     }
 
-    /// Returns all models of one id: the one that is used, and those that it shadows.
+    /// Returns all models with one id: the one that is used and the ones that it shadows.
     pub fn all<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a LoadedModel> + Clone {
         self.every().filter(move |model| model.id() == id)
     }
@@ -340,8 +341,8 @@ impl Registry {
         &self.models
     }
 
-    /// Returns the models that a program fits where none is named: all but those that are fitted
-    /// only by name ([`LoadedModel::is_only_named`]).
+    /// Returns the models that a program fits if the user names none. Models that are fitted only
+    /// by name ([`LoadedModel::is_only_named`]) are left out.
     pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
         self.models.iter().filter(|model| !model.is_only_named())
     }
@@ -351,8 +352,8 @@ impl Registry {
         &self.notes
     }
 
-    /// Returns a model by its id or its short name (`org.htex.sbeta` or `sbeta`; short names ignore
-    /// case).
+    /// Finds a model by its id or its short name (`org.htex.sbeta` or `sbeta`; short names are
+    /// case-insensitive).
     ///
     /// # Errors
     /// [`HostError::UnknownModel`] with the known names.
@@ -365,7 +366,8 @@ impl Registry {
         })
     }
 
-    /// Returns the first model of this id whose version matches `wanted`, including shadowed ones.
+    /// Finds the first model with this id whose version matches `wanted`, including shadowed
+    /// models.
     ///
     /// # Errors
     /// [`HostError::UnknownModel`] with the known ids and versions.

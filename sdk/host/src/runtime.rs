@@ -1,4 +1,4 @@
-//! Models that are described while the program runs: objects instead of types, such as models of a
+//! Models that are described at run time by objects instead of types, e.g. models written in a
 //! scripting language.
 
 use std::sync::Arc;
@@ -13,8 +13,10 @@ use htex_model::{
 use crate::raw::{RawFit, RawModel, RawVoice};
 use crate::{HostError, MOTION_EXTENSION};
 
-/// A model that is an object. Units and arguments are those of [`htex_model::Model`], and arguments
-/// are checked before each call in the same way; panics become errors.
+/// A model that is an object. Implement this trait if the model is not known at compile time.
+///
+/// Units and arguments are the same as in [`htex_model::Model`], and the host checks arguments
+/// before each call in the same way. Panics become errors.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -54,13 +56,14 @@ use crate::{HostError, MOTION_EXTENSION};
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
 pub trait RuntimeModel: Send + Sync + 'static {
-    /// As [`htex_model::Model::fit`]; the condition is known only if the model follows the motion.
+    /// Fits the model, as [`htex_model::Model::fit`] does. The condition is known only if the model
+    /// follows the motion.
     ///
     /// # Errors
     /// When the model cannot describe the spectrum.
     fn fit(&self, input: &FitInput<'_>) -> Result<Fit, Error>;
 
-    /// As [`htex_model::Model::magnitude`].
+    /// Computes the magnitude, as [`htex_model::Model::magnitude`] does.
     ///
     /// # Errors
     /// When the parameters describe no spectrum.
@@ -72,7 +75,8 @@ pub trait RuntimeModel: Send + Sync + 'static {
         magnitude: &mut [f64],
     ) -> Result<(), Error>;
 
-    /// As [`htex_model::Model::interpolate`]; the default is linear.
+    /// Interpolates parameter sets, as [`htex_model::Model::interpolate`] does. The default is
+    /// linear.
     ///
     /// # Errors
     /// When the sets cannot be interpolated.
@@ -85,15 +89,15 @@ pub trait RuntimeModel: Send + Sync + 'static {
         mix::linear(sets, weights, out)
     }
 
-    /// As [`htex_model::Model::voice_rate_hz`].
+    /// Returns the rate of a voice, as [`htex_model::Model::voice_rate_hz`] does.
     fn voice_rate_hz(&self, _parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz
     }
 
-    /// As [`htex_model::Model::voice`].
+    /// Creates a voice, as [`htex_model::Model::voice`] does.
     ///
     /// # Errors
-    /// When no voice can be made of these parameters at this rate.
+    /// When a voice cannot be created with these parameters at this rate.
     fn voice(
         &self,
         parameters: &Values<'_>,
@@ -108,21 +112,22 @@ pub trait RuntimeModel: Send + Sync + 'static {
     }
 }
 
-/// A voice of a [`RuntimeModel`]: as [`htex_model::Voice`], but rendering may fail.
+/// A voice of a [`RuntimeModel`]. It works like [`htex_model::Voice`], but rendering may fail.
 pub trait RuntimeVoice: Send {
     /// Fills `out` with the next samples.
     ///
     /// # Errors
-    /// When there are no samples; the host then plays zeros.
+    /// When the voice cannot produce samples. The host then plays zeros.
     fn render(&mut self, out: &mut [f32]) -> Result<(), Error>;
 
-    /// As [`htex_model::Voice::retune`].
+    /// Changes to other parameters, as [`htex_model::Voice::retune`] does.
     ///
     /// # Errors
     /// When the voice cannot change to these parameters.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 
-    /// As [`htex_model::MotionVoice::set_motion`], of models that follow the motion.
+    /// Sets the motion, as [`htex_model::MotionVoice::set_motion`] does. Called only for models
+    /// that follow the motion.
     fn set_motion(&mut self, _motion: Motion) {}
 }
 
@@ -131,7 +136,7 @@ pub(crate) struct Described {
     shared: Arc<Shared>,
 }
 
-/// What a model and its voices share.
+/// The data that a model and its voices share.
 struct Shared {
     descriptor: Descriptor,
     json: Vec<u8>,
@@ -139,10 +144,10 @@ struct Shared {
 }
 
 impl Described {
-    /// Makes the model.
+    /// Creates the model.
     ///
     /// # Errors
-    /// When the descriptor has a number that JSON cannot hold.
+    /// When the descriptor contains a number that JSON cannot represent.
     pub(crate) fn new(
         descriptor: Descriptor,
         model: Arc<dyn RuntimeModel>,
@@ -275,7 +280,7 @@ impl RawModel for Described {
     }
 }
 
-/// A voice; none after it was freed.
+/// A voice; `None` after it was freed.
 struct DescribedVoice {
     shared: Arc<Shared>,
     voice: Option<Box<dyn RuntimeVoice>>,

@@ -1,8 +1,8 @@
-//! The sandbox of modules: the limits of each, and the budget that several share.
+//! The sandbox of modules: the limits of each module, and the budget that several modules share.
 //!
-//! A registry has one budget, and within it each asset has one ([`crate::Registry::of_asset`]).
-//! Voices are not counted there, so that rendering takes no lock: each has an allowance that grows
-//! with what it renders.
+//! A registry has one budget. Each asset has its own budget within that of the registry
+//! ([`crate::Registry::of_asset`]). Voices do not use these budgets, so rendering takes no lock.
+//! Each voice has a time allowance that grows with the samples it renders.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,10 +12,10 @@ use std::time::Duration;
 use crate::clock::Instant;
 use crate::{WasmLimits, WasmTotal};
 
-/// The part of elapsed time that is added to a budget.
+/// Fraction of the elapsed time that is added to a budget.
 const REFILL: f64 = 0.1;
 
-/// The limits of modules, and the budget that they share. A clone shares the budget.
+/// The limits of modules and the budget that they share. A clone shares the budget.
 #[derive(Debug, Clone)]
 pub(crate) struct Sandbox {
     pub(crate) limits: WasmLimits,
@@ -23,7 +23,7 @@ pub(crate) struct Sandbox {
 }
 
 impl Sandbox {
-    /// A sandbox with a new budget.
+    /// Creates a sandbox with a new budget.
     pub(crate) fn new(limits: &WasmLimits) -> Self {
         Self {
             limits: limits.clone(),
@@ -31,7 +31,7 @@ impl Sandbox {
         }
     }
 
-    /// The sandbox of one asset: its budget is part of this sandbox's budget.
+    /// Creates the sandbox of one asset. Its budget is part of this sandbox's budget.
     pub(crate) fn of_asset(&self) -> Self {
         let outer = Some(Arc::clone(&self.budget));
         Self {
@@ -41,7 +41,7 @@ impl Sandbox {
     }
 }
 
-/// A limit that several modules share is exceeded.
+/// Error: a limit shared by several modules is exceeded.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum BudgetError {
     #[error("{owner} may have {bytes} bytes of memory together")]
@@ -54,10 +54,10 @@ pub(crate) enum BudgetError {
     Time { owner: &'static str, ms: u128 },
 }
 
-/// The shared limits of several modules, and what they use of them.
+/// The shared limits of several modules and their current use.
 #[derive(Debug)]
 pub(crate) struct Budget {
-    /// The modules that share it, for messages.
+    /// Names the modules that share it, for messages.
     owner: &'static str,
     total: WasmTotal,
     memory_bytes: AtomicUsize,
@@ -85,12 +85,12 @@ impl Budget {
         }
     }
 
-    /// Iterates over this budget and the ones that contain it.
+    /// Iterates over this budget and the budgets that contain it.
     fn all(&self) -> impl Iterator<Item = &Self> {
         std::iter::successors(Some(self), |budget| budget.outer.as_deref())
     }
 
-    /// Takes memory; takes none on error.
+    /// Reserves memory. On error, reserves nothing.
     pub(crate) fn take_memory(&self, bytes: usize) -> Result<(), BudgetError> {
         self.take(bytes, |b| (&b.memory_bytes, b.total.memory_bytes))
             .map_err(|b| BudgetError::Memory { owner: b.owner, bytes: b.total.memory_bytes })
@@ -102,7 +102,7 @@ impl Budget {
         }
     }
 
-    /// Counts one more instance; counts none on error.
+    /// Counts one more instance. On error, counts nothing.
     pub(crate) fn take_instance(&self) -> Result<(), BudgetError> {
         self.take(1, |b| (&b.instances, b.total.instances))
             .map_err(|b| BudgetError::Instances { owner: b.owner, instances: b.total.instances })
@@ -114,8 +114,8 @@ impl Budget {
         }
     }
 
-    /// Adds to a count of this budget and of those that contain it. On error adds to none, and
-    /// returns the budget whose limit would be exceeded.
+    /// Adds to a count of this budget and of the budgets that contain it. On error, adds nothing
+    /// and returns the budget whose limit would be exceeded.
     fn take(&self, n: usize, count: impl Fn(&Self) -> (&AtomicUsize, usize)) -> Result<(), &Self> {
         for (taken, budget) in self.all().enumerate() {
             let (used, most) = count(budget);
@@ -130,13 +130,13 @@ impl Budget {
         Ok(())
     }
 
-    /// Returns the time left, or the budget whose time is used up as an error.
+    /// Returns the time left. The error is the budget whose time is used up.
     pub(crate) fn time_left(&self) -> Result<Duration, BudgetError> {
         let mut least = Duration::MAX;
         for budget in self.all() {
             let left = budget.update(Duration::ZERO);
-            // After time is used up, calls are refused until a hundredth of the total has been
-            // added.
+            // Once the time is used up, calls are refused until a hundredth of the total has been
+            // added again.
             if left < budget.total.time / 100 {
                 return Err(BudgetError::Time {
                     owner: budget.owner,
@@ -154,7 +154,7 @@ impl Budget {
         }
     }
 
-    /// Adds the part of the elapsed time, subtracts the time spent, and returns the time left.
+    /// Adds a fraction of the elapsed time, subtracts the time spent, and returns the time left.
     fn update(&self, spent: Duration) -> Duration {
         let mut time = self.time.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();

@@ -8,14 +8,15 @@ use crate::error::Loading;
 use crate::registry::Rank;
 use crate::{HostError, LoadedModel, Note, Registry, WasmLimits};
 
-/// Variable with the plugin folders, separated as in `PATH`.
+/// Environment variable that lists the plugin folders, separated as in `PATH`.
 const VARIABLE: &str = "HTEX_PLUGIN_PATH";
-/// The user's folder of plugins, in the data folder.
+/// The user's plugin folder, relative to the data folder.
 const FOLDER: &str = "htex/plugins";
 
-/// The places that are searched for models, in order of precedence: `files`, models embedded in an
-/// asset, `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer
-/// version of the same major version precedes an older one, wherever each was found ([`Registry`]).
+/// The places to search for models, in order of precedence: `files`, models embedded in an asset,
+/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer version
+/// takes precedence over an older one with the same major version, wherever each was found
+/// ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};
@@ -27,14 +28,15 @@ const FOLDER: &str = "htex/plugins";
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Search {
-    /// Files of plugins; a file that cannot be loaded is an error.
+    /// Plugin files. A file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
-    /// Files that somebody else names, such as a recipe: WASM modules, which run in a sandbox.
-    /// Anything else is an error and is not loaded, since a native library runs with all rights of
-    /// its user: a person names it in `files`, which precede these.
+    /// Module files that the user did not name, e.g. files named by a recipe. They must be WASM
+    /// modules, which run in a sandbox. Anything else is an error and is not loaded, because a
+    /// native library runs with all the rights of its user. To use one, the user names it in
+    /// `files`, which takes precedence over this list.
     pub modules: Vec<PathBuf>,
-    /// Folders of plugins; a folder that cannot be read is an error, a plugin in it that cannot be
-    /// loaded is a [`Note`].
+    /// Plugin folders. A folder that cannot be read is an error. A plugin in it that cannot be
+    /// loaded is only a [`Note`].
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,
@@ -47,7 +49,7 @@ pub struct Search {
 }
 
 impl Default for Search {
-    /// All places, without `files` and `dirs`.
+    /// All places except `files` and `dirs`.
     fn default() -> Self {
         Self {
             files: Vec::new(),
@@ -62,26 +64,26 @@ impl Default for Search {
 }
 
 impl Search {
-    /// Only the models linked into this program.
+    /// Searches only the models linked into this program.
     pub fn builtin() -> Self {
         Self { env: false, user_dir: false, ..Self::default() }
     }
 
-    /// Sets the files of plugins.
+    /// Sets the plugin files.
     #[must_use]
     pub fn with_files(mut self, files: Vec<PathBuf>) -> Self {
         self.files = files;
         self
     }
 
-    /// Sets the modules that somebody else names.
+    /// Sets the module files that the user did not name.
     #[must_use]
     pub fn with_modules(mut self, modules: Vec<PathBuf>) -> Self {
         self.modules = modules;
         self
     }
 
-    /// Sets the folders of plugins.
+    /// Sets the plugin folders.
     #[must_use]
     pub fn with_dirs(mut self, dirs: Vec<PathBuf>) -> Self {
         self.dirs = dirs;
@@ -144,7 +146,7 @@ impl Search {
         Ok(registry)
     }
 
-    /// Adds the plugins of a folder that is not one of `dirs`: one that cannot be read is a note.
+    /// Adds the plugins of a folder that is not one of `dirs`. If it cannot be read, adds a note.
     fn add_folder(&self, registry: &mut Registry, rank: Rank, dir: &Path) {
         match libraries_in(dir, Some("wasm")) {
             Ok(files) => self.add_all(registry, rank, files),

@@ -1,12 +1,12 @@
-//! A source of samples with a resampler.
+//! A source of samples with an optional resampler.
 
 use htex_dsp::grid::Band;
 use htex_dsp::resample::Resampler;
 
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Samples at a requested rate: a source at its own rate, such as a voice, and a resampler if the
-/// rates differ.
+/// Samples at a requested rate. Contains a source at its own rate, such as a voice, and a resampler
+/// if the rates differ.
 ///
 /// ```
 /// use htex_host::{Band, Registry, Stream};
@@ -24,12 +24,12 @@ pub struct Stream<S = ModelVoice> {
 }
 
 impl<S> Stream<S> {
-    /// Makes a stream at `rate_hz` of a source with samples at `source_rate_hz` and frequencies up
-    /// to `top_hz`. `own_rate`: it has this rate whichever is wanted
+    /// Creates a stream at `rate_hz` from a source with samples at `source_rate_hz` and frequencies
+    /// up to `top_hz`. `own_rate` says that the source has this rate whatever rate is requested
     /// ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors
-    /// When the one rate cannot be converted to the other.
+    /// When one rate cannot be converted to the other.
     pub fn of(
         source: S,
         source_rate_hz: f64,
@@ -53,8 +53,8 @@ impl<S> Stream<S> {
         &mut self.source
     }
 
-    /// Fills `out` with the next samples; `render` fills a block with those of the source. Does not
-    /// allocate.
+    /// Fills `out` with the next samples. `render` fills a block with samples of the source. Does
+    /// not allocate.
     ///
     /// # Errors
     /// The last error of `render`.
@@ -77,7 +77,7 @@ impl<S> Stream<S> {
 }
 
 impl Stream {
-    /// Makes a voice of `model`, and a resampler to `rate_hz` if needed.
+    /// Creates a voice of `model`, and a resampler to `rate_hz` if needed.
     ///
     /// # Errors
     /// When the model refuses the parameters or the rate, or its own rate cannot be converted to
@@ -103,7 +103,7 @@ impl Stream {
     /// Fills `out` with the next samples. Does not allocate.
     ///
     /// # Errors
-    /// When the model fails; the samples that it did not render are zero.
+    /// When the model fails. Samples that it did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         self.render_by(out, ModelVoice::render)
     }
@@ -111,7 +111,7 @@ impl Stream {
     /// Changes to other parameters without a click.
     ///
     /// # Errors
-    /// When the model refuses the parameters; the stream then continues unchanged.
+    /// When the model refuses the parameters. The stream then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
         self.source.retune(parameters)
     }

@@ -1,6 +1,6 @@
-//! Alternatives to streaming a model's voice, with less computation per sample.
+//! Alternatives to streaming a model's voice, which need less computation per sample.
 //!
-//! Models do not depend on them.
+//! They work with every model.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,20 +14,21 @@ use htex_dsp::shaped_noise::economical_rate_hz;
 
 use crate::{HostError, LoadedModel, Stream, decimal};
 
-/// Default length of a loop, seconds, and default taps of a filter.
+/// Default duration of a loop, seconds.
 const LOOP_S: f64 = 2.0;
+/// Default number of taps of a filter.
 const TAPS: usize = 511;
 const LOOP_RANGE_S: (f64, f64) = (0.1, 60.0);
 const TAPS_RANGE: (usize, usize) = (15, 4095);
-/// Most samples of a loop, 256 MiB.
+/// Maximum number of samples in a loop (256 MiB).
 const MOST_SAMPLES: f64 = 6.7e7;
-/// Length of the cross-fade of a loop: at most a quarter of it.
+/// Duration of a loop's cross-fade, seconds; at most a quarter of the loop.
 const FADE_S: f64 = 0.1;
-/// The start of a voice and its resampler that is left out of a loop, seconds.
+/// Duration at the start of a voice and its resampler that is not used for a loop, seconds.
 const RUN_IN_S: f64 = 0.1;
 
-/// Method of synthesis. Its text is `streamed`, `loop:SECONDS` or `filter:TAPS`; the number is
-/// optional.
+/// A method of synthesis. Its text form is `streamed`, `loop:SECONDS` or `filter:TAPS`; the number
+/// is optional.
 ///
 /// ```
 /// use htex_host::Synthesis;
@@ -41,18 +42,18 @@ pub enum Synthesis {
     /// The model's voice. It does not repeat, and its spectrum follows the motion.
     #[default]
     Streamed,
-    /// A part of the voice, 0.1 to 60 s long, rendered once and repeated with a cross-fade of
-    /// constant power. It has the least computation per sample and needs four bytes of memory per
-    /// sample; the spectrum is that of one section of noise and does not change.
+    /// A part of the voice, 0.1 to 60 s long, which is rendered once and repeated with a
+    /// constant-power cross-fade. It needs the least computation per sample, and four bytes of
+    /// memory per sample. The spectrum is that of one section of noise and does not change.
     Loop {
         /// Length of the loop, seconds.
         seconds: f64,
     },
-    /// White noise through a linear-phase filter with the model's magnitude, of 15 to 4095 taps at
-    /// the rate of noise models. Its resolution in hertz is four times that rate divided by the
-    /// taps; the spectrum does not change.
+    /// White noise through a linear-phase filter with the model's magnitude. The filter has 15 to
+    /// 4095 taps at the rate of noise models. Its resolution in hertz is four times that rate
+    /// divided by the number of taps. The spectrum does not change.
     Filter {
-        /// Coefficients of the filter.
+        /// Number of coefficients of the filter.
         taps: usize,
     },
 }
@@ -121,7 +122,7 @@ enum Way {
 }
 
 impl StillSound {
-    /// Makes the sound of `model` at `rate_hz`; `None` for [`Synthesis::Streamed`].
+    /// Creates the sound of `model` at `rate_hz`; `None` for [`Synthesis::Streamed`].
     ///
     /// # Errors
     /// [`HostError::Synthesis`] for a length out of range, or when the model refuses the parameters
@@ -161,7 +162,7 @@ impl StillSound {
         }
     }
 
-    /// Returns the bytes of the stored samples or coefficients.
+    /// Returns the memory of the stored samples or coefficients, bytes.
     pub fn kept_bytes(&self) -> usize {
         size_of::<f32>()
             * match &self.0 {
@@ -184,7 +185,7 @@ fn looped(mut stream: Stream, seconds: f64, rate_hz: f64) -> Result<Loop, HostEr
     Ok(Loop::new(piece, samples(fade_s)).with_rms(1.0))
 }
 
-/// White noise, a filter with the magnitude, and a resampler to the requested rate.
+/// White noise, a filter with the model's magnitude, and a resampler to the requested rate.
 #[derive(Debug)]
 struct FilteredNoise {
     noise: GaussianNoise,
@@ -203,7 +204,8 @@ impl FilteredNoise {
         magnitude: impl Fn(&[f64]) -> Result<Vec<f64>, HostError>,
     ) -> Result<Self, HostError> {
         let noise_hz = economical_rate_hz(rate_hz, band);
-        // The filter reads the curve frequency by frequency; the model is called once.
+        // The filter reads the curve one frequency at a time, so the model is called once for all
+        // of them.
         let grid: Vec<f64> = (0..=(0.5 * noise_hz) as usize).map(|f| f as f64).collect();
         let curve = magnitude(&grid)?;
         let at = |hz: f64| {

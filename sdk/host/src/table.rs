@@ -13,9 +13,9 @@ use crate::raw::{RawFit, RawModel, RawVoice, Together};
 #[derive(Clone, Copy)]
 pub(crate) struct TableModel {
     table: &'static ModelTable,
-    /// If the model has the extension `htex.voices/1`.
+    /// Present if the model has the extension `htex.voices/1`.
     voices: Option<&'static VoicesTable>,
-    /// If the model has the extension `htex.motion/1`.
+    /// Present if the model has the extension `htex.motion/1`.
     motion: Option<&'static MotionTable>,
     knobs: Option<&'static Knobs>,
     usual: &'static [Usual],
@@ -27,7 +27,7 @@ impl TableModel {
         Self { table, voices, motion: None, knobs: None, usual: &[], is_only_named: false }
     }
 
-    /// Takes the model out of those that a program takes by itself.
+    /// Marks the model as one that a program uses only if the user names it.
     pub(crate) fn only_named(self) -> Self {
         Self { is_only_named: true, ..self }
     }
@@ -53,7 +53,7 @@ impl TableModel {
 }
 
 // Each call below passes slices that are readable or writable for their whole length during the
-// call, as the ABI requires; no value but its `TableVoice` holds a voice's handle.
+// call, as the ABI requires. Only its `TableVoice` holds a voice's handle.
 impl RawModel for TableModel {
     fn abi_version(&self) -> u32 {
         (self.table.abi_version)()
@@ -201,7 +201,7 @@ impl RawModel for TableModel {
     }
 }
 
-/// A voice and its handle, which no other value holds.
+/// A voice with its handle, which no other value holds.
 struct TableVoice {
     model: TableModel,
     handle: i64,
@@ -282,7 +282,7 @@ mod tests {
     use super::*;
     use crate::{FitRequest, LoadedModel, Origin};
 
-    /// A model whose samples are positions, and whose parameter is the recording's speed.
+    /// A model whose samples are positions and whose parameter is the recording's speed.
     struct Ruler;
     struct Finger(f32);
 

@@ -1,7 +1,7 @@
-//! Rendering of several voices in as few calls as their models allow.
+//! Renders several voices in as few calls as their models allow.
 //!
-//! Neighbours with the same model are grouped; a model without an own version for several voices is
-//! called in a loop.
+//! Adjacent voices of the same model are grouped. If a model has no function for several voices,
+//! its voices are rendered one by one.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 
@@ -10,13 +10,13 @@ use crate::{HostError, ModelVoice};
 /// The extension of models that render several voices in one call.
 pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
-/// Fills `out` with the next `frames` samples of each voice, one voice after another, bit-identical
-/// to [`ModelVoice::render`] of each. Neighbours with the same model are rendered in one call if
-/// the model has the extension `htex.voices/1`, as the built-in models have. AR then takes about
-/// six tenths of the time in blocks of 256 frames (`cargo xtask bench`); below 64 frames, and for
-/// other models, voices are rendered separately. If `out` is too short, the remaining voices are
-/// not advanced; if it is too long, the rest is filled with zeros. Does not allocate, lock or block
-/// if the models keep to the ABI.
+/// Fills `out` with the next `frames` samples of each voice, one voice after another. The samples
+/// are bit-identical to [`ModelVoice::render`] of each voice. Adjacent voices of the same model are
+/// rendered in one call if the model has the extension `htex.voices/1`, as the built-in models do.
+/// AR then takes about six tenths of the time in blocks of 256 frames (`cargo xtask bench`). Below
+/// 64 frames, and for other models, voices are rendered separately. If `out` is too short, the
+/// remaining voices do not advance; if it is too long, the rest is filled with zeros. Does not
+/// allocate, lock or block if the models follow the ABI.
 ///
 /// ```
 /// use htex_host::{Band, Registry, render_together};
@@ -55,7 +55,7 @@ pub fn render_together<'a>(
     result
 }
 
-/// Voices for one call.
+/// Voices collected for one call.
 #[derive(Default)]
 struct Run<'a> {
     voices: [Option<&'a mut ModelVoice>; MAX_VOICES],
@@ -63,7 +63,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Returns whether this call can render one more voice.
+    /// Returns whether this call can also render this voice.
     fn takes(&self, voice: &ModelVoice) -> bool {
         let (Some(first), Some(new)) = (self.first(), voice.together()) else {
             return self.count == 0;
@@ -82,7 +82,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Renders the voices into the front of `rest` and removes them.
+    /// Renders the voices to the front of `rest`, and removes that part from `rest`.
     fn render(&mut self, frames: usize, rest: &mut &mut [f32]) -> Result<(), HostError> {
         let Self { mut voices, count } = std::mem::take(self);
         let (out, after) = std::mem::take(rest).split_at_mut(count * frames);

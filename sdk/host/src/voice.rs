@@ -1,10 +1,11 @@
 //! A voice of a model.
 //!
-//! Samples are checked for NaN and infinity here, once for every loader, in place of a WASM
-//! compiler that canonicalises NaNs in every operation.
+//! This is the one place that checks samples for NaN and infinity, for every loader. A WASM
+//! compiler would otherwise have to canonicalise NaNs in every operation.
 //!
-//! A voice mixes the parameters of its conditions itself: in its own instance if it is WASM, in
-//! buffers that were allocated with the voice. Following a finger neither allocates nor locks.
+//! A voice mixes the parameters of its conditions itself, in buffers that were allocated with the
+//! voice, and in its own instance if it is WASM. Therefore following a finger neither allocates nor
+//! locks.
 
 use htex_model::{Motion, Status};
 
@@ -41,11 +42,11 @@ impl ModelVoice {
         Self { model, raw }
     }
 
-    /// Fills `out` with the next samples. Does not allocate, lock or block if the model keeps to
-    /// the ABI.
+    /// Fills `out` with the next samples. Does not allocate, lock or block if the model follows the
+    /// ABI.
     ///
     /// # Errors
-    /// When the model fails; `out` is then filled with zeros.
+    /// When the model fails. `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let status = self.raw.render(out);
         self.done("voice_render", status)
@@ -57,13 +58,14 @@ impl ModelVoice {
         self.raw.as_mut()
     }
 
-    /// Returns the data to render the voice in one call with others, if its model has
+    /// Returns the data needed to render the voice in one call with others, if its model has
     /// `htex.voices/1`.
     pub(crate) fn together(&self) -> Option<Together> {
         self.raw.together()
     }
 
-    /// Checks that all samples are finite: NaN would stay in the state of every following filter.
+    /// Checks that all samples are finite, because a NaN would stay in the state of every following
+    /// filter.
     pub(crate) fn check_finite(&self, out: &[f32]) -> Result<(), HostError> {
         // No early return, so that the compiler vectorises the loop.
         if out.iter().fold(true, |finite, x| finite & x.is_finite()) {
@@ -72,7 +74,7 @@ impl ModelVoice {
         Err(self.not_finite(out))
     }
 
-    /// Apart from the check, which each block passes through.
+    /// Kept apart from the check, because every block passes through the check.
     #[cold]
     fn not_finite(&self, out: &[f32]) -> HostError {
         let first = out.iter().position(|x| !x.is_finite()).unwrap_or_default();
@@ -83,19 +85,19 @@ impl ModelVoice {
     /// Changes to other parameters without a click.
     ///
     /// # Errors
-    /// When the model refuses the parameters; the voice then continues unchanged.
+    /// When the model refuses the parameters. The voice then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
         let status = self.raw.retune(parameters);
         self.done("voice_retune", status)
     }
 
-    /// Changes to interpolated parameters. `sets` are concatenated; `buffer` receives the
+    /// Changes to interpolated parameters. `sets` are concatenated. `buffer` receives the
     /// interpolated set, which has at most [`LoadedModel::most_parameters`] numbers. The voice
-    /// interpolates in its own instance: without a lock, and without allocation if the model keeps
-    /// to the ABI.
+    /// interpolates in its own instance, without a lock, and without allocation if the model
+    /// follows the ABI.
     ///
     /// # Errors
-    /// When the model cannot interpolate, or `buffer` is too short; the voice then continues
+    /// When the model cannot interpolate, or `buffer` is too short. The voice then continues
     /// unchanged.
     pub fn retune_mix(
         &mut self,
@@ -114,12 +116,12 @@ impl ModelVoice {
         }
     }
 
-    /// Sets the motion at the next sample of a voice whose model follows it
-    /// ([`LoadedModel::follows_motion`]); does nothing for others. Does not allocate, lock or block
-    /// if the model keeps to the ABI.
+    /// Sets the motion at the next sample, for a voice whose model follows it
+    /// ([`LoadedModel::follows_motion`]). Does nothing for other voices. Does not allocate, lock or
+    /// block if the model follows the ABI.
     ///
     /// # Errors
-    /// When a number is not finite or out of range, or the model refuses it; the voice then
+    /// When a number is not finite or out of range, or the model refuses it. The voice then
     /// continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let call = "motion_1_set";
@@ -129,27 +131,27 @@ impl ModelVoice {
         self.set_any_motion(motion)
     }
 
-    /// For checkers of models: as [`Self::set_motion`], without a check of the numbers, to test
-    /// which ones the model refuses.
+    /// For checkers of models: sets the motion as [`Self::set_motion`] does, but without checking
+    /// the numbers, to test which ones the model refuses.
     ///
     /// # Errors
-    /// What the model returns.
+    /// The error that the model returns.
     pub fn set_any_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let status = self.raw.set_motion(motion);
         self.done("motion_1_set", status)
     }
 
-    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes; `None`
+    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes. `None`
     /// for a native voice, which uses the memory of the process.
     pub fn memory_bytes(&self) -> Option<usize> {
         self.raw.memory_bytes()
     }
 
     /// For checkers of models: frees the voice and keeps its handle, to test whether the model
-    /// refuses a freed handle in later calls. An app drops the voice instead.
+    /// refuses a freed handle. An app drops the voice instead.
     ///
     /// # Errors
-    /// The model's error; in a second call that the handle is unknown.
+    /// The model's error. A second call must return that the handle is unknown.
     pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
         let status = self.raw.free();
         self.done("voice_free", status)

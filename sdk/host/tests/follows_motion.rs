@@ -7,20 +7,20 @@ mod common;
 use common::{SAMPLE, limits, load, load_within, text};
 use htex_host::{Band, FitCondition, FitRequest, HostError, LoadedModel, Motion, Status};
 
-/// Returns 1 for `htex.motion/1`, by its sixth letter.
+/// Returns 1 for `htex.motion/1`, which it recognises by the sixth letter.
 const SAYS_YES: (&str, &str) = (
     "extension",
     "(i64.extend_i32_u (i32.eq (i32.load8_u offset=5 (local.get 0)) (i32.const 0x6d)))",
 );
-/// The first sample of a block is the position plus x and twice y; above 100 mm an error is
-/// returned.
+/// The first sample of a block is the position plus x and twice y. Above 100 mm it returns an
+/// error.
 const SET: &str = "(global $position (mut f64) (f64.const 7))
     (func (export \"htex_motion_1_set\") (param i64 f64 f64 f64 f64 f64) (result i64)
       (if (f64.gt (local.get 3) (f64.const 100)) (then (return (i64.const -1))))
       (global.set $position (f64.add (local.get 3)
         (f64.add (local.get 4) (f64.mul (f64.const 2) (local.get 5)))))
       (i64.const 0))";
-/// The parameter is the force, the level the speed; 0.25 and 2 if unknown.
+/// The parameter is the force and the level is the speed; 0.25 and 2 if they are unknown.
 const FIT: &str = "(func (export \"htex_motion_1_fit\")
       (param f64 f64 i32 i32 i32 i32 i32 f64 i32 i32 f64 f64 i32 i32 i32) (result i64)
       (f64.store (local.get 12)
@@ -60,7 +60,7 @@ fn a_voice_is_told_where_the_finger_is() {
     voices[0].render(&mut out).unwrap();
     assert_eq!(out[0], 44.0, "and in which place");
     voices[0].set_motion(at(42.0)).unwrap();
-    // The host refuses motions outside the ranges of the extension, and the model those that it
+    // The host refuses motions outside the ranges of the extension. The model refuses those that it
     // does not accept.
     let refused = |error: HostError, words: &str| match error {
         HostError::Call { status, message, .. } => {

@@ -1,5 +1,6 @@
-//! Hostile WASM models: each fault is an error of its call that names model, call and reason,
-//! within the time limit; the host, the model's other voices and its later calls continue.
+//! Hostile WASM models. Each fault becomes an error of its call, within the time limit, and names
+//! the model, the call and the reason. The host, the model's other voices and its later calls
+//! continue.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -36,7 +37,7 @@ fn render(voice: &mut ModelVoice) -> Result<(), HostError> {
     result
 }
 
-/// Makes the one call of this name.
+/// Makes the call of this name.
 fn make(call: &str, model: &LoadedModel) -> Result<(), HostError> {
     match call {
         "fit" => fit(model),
@@ -64,7 +65,7 @@ const CALLS: [&str; 9] = [
     "extension",
 ];
 
-/// Bodies that trap or do not return, and the text of the error.
+/// Function bodies that trap or do not return, with the text of the expected error.
 const HARM: [(&str, &str); 5] = [
     ("(loop $l (br $l)) unreachable", "ran longer than"),
     ("unreachable", "panicked"),
@@ -197,8 +198,8 @@ fn answers_that_no_model_may_give() {
         let named = error.contains(ID) && error.contains(call) && error.contains(reason);
         assert!(named, "{call}: {body}: {error}");
     }
-    // An invalid length of the last-error text, and no text. A message escapes each of the zero
-    // bytes.
+    // The last-error text has an invalid length, or there is no text. In a message, each zero byte
+    // is escaped.
     for body in ["(i64.const 0x7fffffffffffffff)", "(i64.const -1)"] {
         let model = load(&[("last_error", body), ("fit", "(i64.const -4)")]).unwrap();
         let error = fit(&model).unwrap_err().to_string();

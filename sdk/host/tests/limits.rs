@@ -1,4 +1,4 @@
-//! Each limit of a WASM model: a model that exceeds it, and one that does not.
+//! Tests each limit of a WASM model with a model that exceeds it and one that does not.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -13,14 +13,14 @@ fn magnitude(model: &LoadedModel) -> Result<(), HostError> {
     model.magnitude(&[0.5], Band::TACTILE, &[50.0]).map(drop)
 }
 
-/// Loads a model whose magnitude has this body, and calls it.
+/// Loads a model with this body for its magnitude function, and calls it.
 fn run(body: &str, more: &str, limits: &WasmLimits) -> Result<(), String> {
     let wat = text("1.0.0", &[("magnitude", body)], more);
     let model = load_within(&wat, limits).map_err(|e| e.to_string())?;
     magnitude(&model).map_err(|e| e.to_string())
 }
 
-/// Checks that a body runs within the usual limits and is refused under a smaller one, with this
+/// Checks that a body runs within the usual limits, and that a smaller limit refuses it for this
 /// reason.
 fn bites(body: &str, more: &str, smaller: &WasmLimits, reason: &str) {
     run(body, more, &limits()).unwrap();
@@ -42,7 +42,7 @@ fn memory_at_the_start_and_grown() {
     bites("(drop (memory.grow (i32.const 9))) (i64.const 0)", "", &smaller, "1048576 bytes");
     let tiny = limits().with_memory_bytes(100_000);
     bites(NOTHING, "", &tiny, "100000 bytes");
-    // Arguments that the host passes are counted too.
+    // Arguments that the host passes count as well.
     let model = load_within(&text("1.0.0", &[], ""), &smaller).unwrap();
     let many = vec![50.0; 200_000];
     let error = model.magnitude(&[0.5], Band::TACTILE, &many).unwrap_err().to_string();
@@ -78,7 +78,7 @@ fn instructions() {
 fn time() {
     let shorter = limits().with_call(Duration::from_millis(20));
     let longer = limits().with_call(Duration::from_secs(60));
-    // Counting takes some seconds at most, and never less than 20 ms.
+    // Counting takes a few seconds at most, and never less than 20 ms.
     let body = "(call $count (i32.const 400000000)) (i64.const 0)";
     run(body, "", &longer).unwrap();
     let error = run(body, "", &shorter).unwrap_err();
@@ -100,7 +100,7 @@ fn voices() {
     (0..5).for_each(|_| drop(voice().unwrap()));
 }
 
-/// A voice that is slow but within the limit of each call is stopped.
+/// A voice is stopped if it is slow in total, even if each call is within its limit.
 #[test]
 fn time_of_a_voice() {
     let body = "(call $count (i32.const 200000000)) (i64.const 0)";
@@ -112,7 +112,7 @@ fn time_of_a_voice() {
     assert!(error.contains("10 times the duration of its samples"), "{error}");
 }
 
-/// The shared limits of a registry, with models that are within their own limits.
+/// The shared limits of a registry apply to models that are within their own limits.
 #[test]
 fn time_memory_and_instances_of_all() {
     let with = |all: WasmTotal| limits().with_call(Duration::from_secs(60)).with_all(all);

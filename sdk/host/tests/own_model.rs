@@ -1,4 +1,4 @@
-//! Calls of a model of the program itself, compared with those of an exported one.
+//! Compares calls of a model in the program itself with calls of an exported one.
 #![allow(clippy::unwrap_used)] // Test code: a failure is a failed test.
 
 use htex_ar::Autoregression;

@@ -1,4 +1,4 @@
-//! Precedence of several models, and notes on the others.
+//! Precedence among several models, and notes about the models that are not used.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -10,7 +10,7 @@ use common::{ID, limits, text, with_descriptor};
 use htex_host::{HostError, Note, Origin, Registry, Search};
 use semver::VersionReq;
 
-/// Writes a plugin of this version.
+/// Writes a plugin with this version.
 fn write(folder: &Path, name: &str, version: &str) {
     let module = wat::parse_str(text(version, &[], "")).unwrap();
     std::fs::write(folder.join(name), module).unwrap();
@@ -66,8 +66,8 @@ fn files_precede_embedded_models_then_folders_then_built_in_models() {
     assert!(error.contains("^9") && error.contains("hostile 1.2.0"), "{error}");
 }
 
-/// The name of a file does not decide, and neither does the place: a newer minor version plays all
-/// that an older one does.
+/// Neither the file's name nor its place decides: a newer minor version can play everything that an
+/// older one can.
 #[test]
 fn the_newest_installed_version_of_a_major_version_is_used() {
     let dir = tempfile::tempdir().unwrap();
@@ -94,8 +94,7 @@ fn the_newest_installed_version_of_a_major_version_is_used() {
     let majors: [&[_]; 2] = [&[("a.wasm", "1.0.0")], &[("b.wasm", "2.0.0"), ("c.wasm", "1.1.0")]];
     assert_eq!(versions(&majors), ["2.0.0", "1.1.0", "1.0.0"]);
 
-    // An installed model is used in place of a built-in one of its version, and not in place of a
-    // newer one.
+    // An installed model replaces a built-in one of the same version, but not a newer built-in one.
     for (installed, is_used) in
         [("0.9.0", true), ("1.0.0", true), ("1.0.1", true), ("1.0.0-a", false)]
     {
@@ -112,7 +111,7 @@ fn the_newest_installed_version_of_a_major_version_is_used() {
         assert_eq!(registry.notes().len(), 1);
     }
 
-    // A file that the user names is used whatever its version is.
+    // A file that the user names is used whatever its version.
     write(dir.path(), "named.wasm", "0.1.0");
     write(&folder("0"), "a.wasm", "3.0.0");
     let named = search().with_files(vec![folder("named.wasm")]).with_dirs(vec![folder("0")]);

@@ -13,8 +13,8 @@ const ID: &str = "org.example.steps";
 const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(ID, "Steps", "1.0.0", "Steps.")
     .fields(&[StaticField::scalar("step", "1", (0.0, 10.0), "Step.")]);
 
-/// A model whose step is the first magnitude; 7 cannot be fitted, 9 panics. Its samples are 0,
-/// step, 2·step, …
+/// A model whose step is the first magnitude. A magnitude of 7 cannot be fitted, and 9 panics. Its
+/// samples are 0, step, 2·step, …
 struct Steps;
 struct StepVoice {
     step: f32,

@@ -1,4 +1,4 @@
-//! A model built in, as a native library and as a WASM module has equal samples.
+//! A model has the same samples when built in, as a native library, and as a WASM module.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -45,7 +45,7 @@ fn smooth_spectrum(frequency_hz: &[f64]) -> Vec<f64> {
     frequency_hz.iter().map(|&f| curve(f)).collect()
 }
 
-/// A second of a voice in blocks of several sizes, with a retune in the middle.
+/// Renders one second of a voice in blocks of several sizes, with a retune in the middle.
 fn rendered(model: &LoadedModel, parameters: &[f64]) -> Vec<f32> {
     let rate_hz = model.voice_rate_hz(parameters, Band::TACTILE, RATE_HZ).unwrap();
     let mut voice = model.voice(parameters, Band::TACTILE, rate_hz, SEED).unwrap();
@@ -59,7 +59,7 @@ fn rendered(model: &LoadedModel, parameters: &[f64]) -> Vec<f32> {
     out
 }
 
-/// Largest difference over the largest sample.
+/// Returns the largest difference, relative to the largest sample.
 fn difference(a: &[f32], b: &[f32]) -> f64 {
     let full = a.iter().fold(0.0f32, |m, x| m.max(x.abs()));
     let largest = a.iter().zip(b).fold(0.0f32, |m, (x, y)| m.max((x - y).abs()));
@@ -89,7 +89,8 @@ fn the_same_samples_three_ways() {
             };
             let difference = difference(&expected, &got);
             println!("{name:8} built in and {kind:6}: differ by {difference:e} of full scale");
-            // Only an FFT may choose instructions by the machine.
+            // Bit-exact, except for models with an FFT: only an FFT may choose instructions by the
+            // machine.
             let exact = ["ar", "speak"].contains(&name);
             assert!(difference <= if exact { 0.0 } else { 1e-9 }, "{name} {kind}");
             let refitted = fitted(&other);
@@ -99,8 +100,8 @@ fn the_same_samples_three_ways() {
     }
 }
 
-/// Time per sample for each kind of loading, and time to the first samples: printed, and compared
-/// with the bounds of rendering in real time.
+/// Prints the time per sample for each kind of loading and the time to the first samples, and
+/// compares them with the bounds for rendering in real time.
 #[test]
 fn what_each_way_costs() {
     let Some(folder) = plugins::wasm_if_there() else {
@@ -133,12 +134,13 @@ fn what_each_way_costs() {
     }
 }
 
-/// The minimum of many blocks, which excludes other load of the machine.
+/// Returns the minimum over many blocks, which excludes other load of the machine.
 fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
     let rate_hz = model.voice_rate_hz(parameters, Band::TACTILE, RATE_HZ).unwrap();
     let mut voice = model.voice(parameters, Band::TACTILE, rate_hz, SEED).unwrap();
     let mut out = vec![0.0f32; block];
-    // Frames of noise are computed once in several blocks, so means of 64 blocks are compared.
+    // A frame of noise is computed once for several blocks, so the test compares means of 64
+    // blocks.
     let mean = |_| {
         let start = Instant::now();
         (0..64).for_each(|_| voice.render(&mut out).unwrap());
@@ -147,7 +149,7 @@ fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
     (0..8).map(mean).fold(f64::INFINITY, f64::min)
 }
 
-/// Time from the file to the first block, with compilation and with the cache.
+/// Measures the time from the file to the first block, with compilation and with the cache.
 fn first_sample(name: &str, module: &Path, parameters: &[f64]) {
     let folder = tempfile::tempdir().unwrap();
     let limits = WasmLimits::default().with_cache(WasmCache::Dir(folder.path().join("wasm")));

@@ -1,11 +1,11 @@
-//! The marker, the exports, the descriptor and extensions.
+//! Checks of the marker, the exports, the descriptor and extensions.
 
 use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Store};
 
 use crate::case::Case;
 use htex_check_runner::{Finding, Found, Owner, made_up_extensions};
 
-/// The check that a loading error belongs to, and whether those before it hold.
+/// Returns the check to which a loading error belongs, and whether the checks before it passed.
 pub(crate) fn owner(error: &HostError) -> Owner {
     match error {
         HostError::Broken { call, .. } if *call == "htex_model_abi_version" => {
@@ -18,12 +18,12 @@ pub(crate) fn owner(error: &HostError) -> Owner {
             Owner::reached("marker")
         }
         HostError::NoFunction { .. } => Owner::reached("exports"),
-        // What cannot be loaded has no marker.
+        // A file that cannot be loaded has no marker to check.
         _ => Owner::not_reached("exports"),
     }
 }
 
-/// Passes: a loaded model has the marker and the exports.
+/// Always passes, because a model that could be loaded has the marker and the exports.
 pub(crate) fn loaded(case: &Case) -> Found {
     let file = case.file.display();
     Ok(Finding::passed(format!("{file} was loaded")))

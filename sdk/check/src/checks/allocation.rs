@@ -1,15 +1,15 @@
-//! Allocation while a voice plays.
+//! Checks for allocations while a voice plays.
 
 use htex_host::ModelVoice;
 
 use crate::case::{Case, Fitted};
 use htex_check_runner::{Finding, Found};
 
-/// Blocks of warm-up, in which a voice may allocate.
+/// Number of warm-up blocks, in which a voice may allocate.
 const WARM_UP: usize = 64;
 const BLOCKS: usize = 1_000;
 const FRAMES: [usize; 4] = [1, 64, 256, 1_000];
-/// Blocks between two retunes.
+/// Number of blocks between two retunes.
 const BETWEEN: usize = 4;
 
 /// Checks that rendering and retuning do not allocate.
@@ -55,7 +55,7 @@ fn grown(bytes: usize) -> Finding {
     finding.with("memory_bytes", bytes as f64)
 }
 
-/// Fails if a voice allocates after its warm-up while `play` runs, as far as detected.
+/// Fails if a voice allocates after its warm-up while `play` runs, as far as that can be detected.
 pub(crate) fn none_while(
     voice: &mut ModelVoice,
     play: impl FnOnce(&mut ModelVoice) -> Result<(), Finding>,

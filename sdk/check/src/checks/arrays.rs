@@ -1,4 +1,4 @@
-//! Arrays of the host: what a call reads, how far it writes, and what it keeps.
+//! Checks how calls use the host's arrays: what they read, how far they write, and what they keep.
 
 use htex_host::{Band, FitCondition, FitRequest, HostError, ModelVoice, Origin, ProbeArguments};
 
@@ -11,7 +11,8 @@ use htex_check_runner::{Finding, Found};
 const FRAMES: [usize; 5] = [1, 7, 64, 500, 4_097];
 const SAMPLES: usize = 2_000;
 
-/// Checks how far texts and parameters are written, what is read, and that no array is kept.
+/// Checks how far texts and parameters are written, what is read, and that no array is kept after
+/// the call.
 pub(crate) fn kept_to(case: &Case) -> Found {
     watch(case);
     let parameters = fits(case)?;
@@ -27,16 +28,17 @@ pub(crate) fn kept_to(case: &Case) -> Found {
     Ok(Finding::passed(message).with("refused", refused as f64))
 }
 
-/// Names the array of a native library's call that touches what is behind it. The engine of modules
-/// has a handler of its own, and the limits of the checks put guards into the module's memory.
+/// Makes a native library's call that touches memory behind an array fail with the array's name.
+/// WASM modules need no watching: their engine has its own signal handler, and the limits of the
+/// checks put guards into the module's memory.
 fn watch(case: &Case) {
     if !matches!(case.model.origin(), Origin::Wasm(_)) {
         fence::watch();
     }
 }
 
-/// Calls with every capacity that is worth trying: the same length, the beginning of the same
-/// values, and nothing beyond.
+/// Calls with every capacity that is worth trying. Each call must return the same length, write the
+/// beginning of the same values, and write nothing beyond the capacity.
 fn capacities<T: Number>(
     call: &'static str,
     whole: &[T],
@@ -62,7 +64,7 @@ fn capacities<T: Number>(
     Ok(())
 }
 
-/// Fits the first reference that can be fitted, into every capacity; returns its parameters.
+/// Fits the first reference that can be fitted, with every capacity. Returns its parameters.
 fn fits(case: &Case) -> Result<Vec<f64>, Finding> {
     let grid = Band::TACTILE.grid_hz();
     for reference in REFERENCES {
@@ -105,7 +107,7 @@ fn descriptors(case: &Case) -> Result<(), Finding> {
     capacities("descriptor", &whole, |out| case.model.descriptor_into(out))
 }
 
-/// Checks that a magnitude is written for each frequency, and nothing beyond.
+/// Checks that one magnitude is written for each frequency, and nothing beyond.
 pub(crate) fn magnitudes(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     watch(case);
     let grid = Band::TACTILE.grid_hz();
@@ -135,7 +137,7 @@ fn mixes(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     by.unchanged(&weights, "weights")
 }
 
-/// Null and misaligned arrays of a native library; returns how many were refused.
+/// Tests null and misaligned arrays on a native library. Returns how many were refused.
 fn unusable(case: &Case, parameters: &[f64]) -> Result<usize, Finding> {
     let grid = Band::TACTILE.grid_hz();
     let spectrum: Vec<f64> = grid.iter().map(|&hz| (REFERENCES[0].curve)(hz)).collect();
@@ -158,13 +160,14 @@ fn unusable(case: &Case, parameters: &[f64]) -> Result<usize, Finding> {
     }
 }
 
-/// Checks that a block is as long as it was asked for, and that parameters are only read.
+/// Checks that a block has the requested length, and that parameters are only read.
 pub(crate) fn blocks(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     watch(case);
     let mut given = Fenced::input(parameters, "voice_new", "parameters");
     let mut voice = case.voice(given.get(), case.seed)?;
     given.unchanged(parameters, "parameters")?;
-    // They live until the end: that a voice keeps one is found, and named, by `keeps_nothing`.
+    // The arrays live until the end, so that `keeps_nothing` is the check that finds and names a
+    // voice that keeps one.
     let mut lent = vec![given];
     for frames in FRAMES {
         let mut out = Fenced::output(frames, "voice_render", "frames");
@@ -178,7 +181,7 @@ pub(crate) fn blocks(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     Ok(())
 }
 
-/// Overwrites the arrays that a voice got: its samples must not change.
+/// Overwrites the arrays that were passed to a voice. Its samples must not change.
 fn keeps_nothing(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let other = case.two_sets()?.map_or(parameters.to_vec(), |sets| sets.1);
     let play = |scrub: bool| -> Result<Vec<f32>, Finding> {
@@ -194,7 +197,7 @@ fn keeps_nothing(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
             voice.render(out)
         };
         part(&mut voice, &mut given, before)?;
-        // A voice may refuse, for example if its rate would change; it then continues unchanged.
+        // A voice may refuse, e.g. if its rate would change. It then continues unchanged.
         let _ = voice.retune(next.get());
         part(&mut voice, &mut next, behind)?;
         Ok(out)
@@ -202,7 +205,7 @@ fn keeps_nothing(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let [left, again, scrubbed] = [play(false)?, play(false)?, play(true)?];
     match first_difference(&left, &scrubbed) {
         None => Ok(()),
-        // That a voice is not reproducible is found by the check of that name.
+        // Another check reports voices that are not reproducible.
         Some(_) if first_difference(&left, &again).is_some() => Ok(()),
         Some(at) => Err(Finding::failed(format!(
             "sample {at} changes when the arrays of parameters change after the call: an array is lent for the call only"

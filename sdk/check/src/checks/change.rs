@@ -1,23 +1,23 @@
-//! Changing from one set of parameters to another.
+//! Checks of changing from one parameter set to another.
 
 use crate::case::{Case, RATE_HZ};
 use crate::checks::sound::{SECONDS, SPECTRUM_DB, spectrum_distance_db};
 use crate::signal::{distance_db, sharpest_bend};
 use htex_check_runner::{Finding, Found};
 
-/// Samples at the rate of the recordings: two seconds.
+/// Number of samples: two seconds at the rate of the recordings.
 const SAMPLES: usize = 40_000;
-/// Samples between two retunes.
+/// Number of samples between two retunes.
 const BETWEEN: usize = 500;
-/// Largest second difference around a retune, relative to that of the sounds without retunes.
+/// Largest allowed second difference around a retune, relative to the sounds without retunes.
 const SHARPER: f32 = 2.0;
-/// Least distance of two magnitudes for which a retune from one to the other is measured, dB RMS:
-/// three times the allowed error of a sound.
+/// Minimum distance between two magnitudes for measuring a retune from one to the other, dB RMS. It
+/// is three times the allowed error of a sound.
 const APART_DB: f64 = 3.0;
-/// Largest allowed sample of a sound of unit RMS.
+/// Largest allowed sample in a sound of unit RMS.
 const LOUDEST: f32 = 100.0;
 
-/// Checks that second differences at retunes are not much larger than those of the sounds without
+/// Checks that second differences at retunes are not much larger than in the sounds without
 /// retunes.
 pub(crate) fn retune(case: &Case) -> Found {
     let Some((a, b)) = case.two_sets()? else {
@@ -51,7 +51,7 @@ pub(crate) fn retune(case: &Case) -> Found {
     Ok(finding.with("bend_ratio", f64::from(ratio)))
 }
 
-/// Checks that after a retune the sound has the spectrum of the new parameters.
+/// Checks that after a retune, the sound has the spectrum of the new parameters.
 pub(crate) fn follows(case: &Case) -> Found {
     let sets = case.fitted()?;
     let magnitudes =

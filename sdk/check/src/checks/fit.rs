@@ -1,4 +1,4 @@
-//! Fits, and conversions of their parameters.
+//! Checks of fits, and of converting their parameters.
 
 use htex_host::{Band, HostError, Status};
 use htex_model::{Values, flatten};
@@ -9,7 +9,7 @@ use crate::signal::distance_db;
 use crate::spectra::{HARD, REFERENCES};
 use htex_check_runner::{Finding, Found};
 
-/// Change of a spectrum by storage above which there is a warning, dB RMS.
+/// Change of a spectrum by storage that causes a warning, dB RMS.
 const STORED_DB: f64 = 0.5;
 
 /// Fits the five reference spectra.
@@ -74,7 +74,7 @@ pub(crate) fn hard(case: &Case) -> Found {
         .with("refused", refused))
 }
 
-/// Checks conversion of parameters to fields and back, and storage.
+/// Checks that parameters survive conversion to fields and back, and storage.
 pub(crate) fn round_trip(case: &Case) -> Found {
     let descriptor = case.model.descriptor();
     let mut worst: f64 = 0.0;
@@ -105,7 +105,7 @@ pub(crate) fn round_trip(case: &Case) -> Found {
     Ok(finding.with("stored_db", worst))
 }
 
-/// Fits spectra with the signals behind them.
+/// Fits spectra together with their signals.
 pub(crate) fn with_signals(case: &Case) -> Found {
     let sets = case.fitted_to_signals()?;
     for set in &sets {

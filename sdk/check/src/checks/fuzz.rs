@@ -1,8 +1,8 @@
-//! Random use of voices within the contract.
+//! Checks random use of voices within the contract.
 //!
-//! A seed draws parameters, a band, a rate and a sequence of blocks, retunes, mixes and motions.
-//! The sequence is played twice, cut into different blocks: the samples are finite and the same. A
-//! failure names its seed, which draws the same again.
+//! A seed determines parameters, a band, a rate and a sequence of blocks, retunes, mixes and
+//! motions. The sequence is played twice, divided into different blocks. The samples must be finite
+//! and the same both times. A failure names its seed, which reproduces it.
 
 use std::time::Instant;
 
@@ -14,28 +14,28 @@ use crate::sets::describes_nothing;
 use crate::signal::first_difference;
 use htex_check_runner::{Finding, Found, Outcome};
 
-/// Sequences without a given time.
+/// Number of sequences if no time is given.
 const SEQUENCES: u64 = 16;
-/// Steps of a sequence.
+/// Number of steps in a sequence.
 const STEPS: usize = 24;
 const FRAMES: [usize; 8] = [0, 1, 2, 7, 64, 250, 1_000, 4_096];
 const BANDS: [(f64, f64); 5] =
     [(20.0, 1_000.0), (150.0, 700.0), (20.0, 200.0), (5.0, 2_000.0), (60.0, 65.0)];
-/// Rates that a host wants.
+/// Rates that a host may request, hertz.
 const RATES: [f64; 6] = [RATE_HZ, 48_000.0, 44_100.0, 8_000.0, 2_400.0, 1_000.0];
-/// Largest allowed sample of a sound of unit RMS.
+/// Largest allowed sample in a sound of unit RMS.
 const LOUDEST: f32 = 1e4;
 
-/// What a host does with a voice.
+/// One step in a host's use of a voice.
 enum Step {
     Render(usize),
     Retune(Vec<f64>),
-    /// To a mix of two sets that stand one behind the other, by the weight of the second.
+    /// Retune to a mix of two concatenated sets, with the weight of the second.
     Mix(Vec<f64>, f64),
     Move(Motion),
 }
 
-/// Plays sequences of consecutive seeds.
+/// Plays the sequences of consecutive seeds.
 pub(crate) fn plays(case: &Case) -> Found {
     let begun = Instant::now();
     let fitted: Vec<Vec<f64>> = case.fitted()?.into_iter().map(|f| f.parameters).collect();
@@ -61,7 +61,8 @@ fn by_seed(finding: Finding, seed: u64) -> Finding {
     Finding { message, ..finding }.with("seed", seed as f64)
 }
 
-/// Prints what is true if the process ends now: the runner takes the last finding that it reads.
+/// Prints the finding that holds if the process ends now. The runner uses the last finding that it
+/// reads.
 fn announce(seed: u64) {
     let finding = Finding::new(Outcome::Crashed, "it ends the process, or does not return");
     if let Ok(line) = serde_json::to_string(&by_seed(finding, seed)) {
@@ -69,7 +70,7 @@ fn announce(seed: u64) {
     }
 }
 
-/// Plays the sequence of a seed; returns whether the model takes its parameters.
+/// Plays the sequence of a seed. Returns whether the model accepts its parameters.
 fn sequence(case: &Case, fitted: &[Vec<f64>], seed: u64) -> Result<bool, Finding> {
     let mut random = Random::new(seed);
     let (low_hz, high_hz) = *random.choose(&BANDS);
@@ -125,7 +126,8 @@ fn steps(case: &Case, fitted: &[Vec<f64>], random: &mut Random) -> Result<Vec<St
     Ok(steps)
 }
 
-/// A motion in range: often one of a finger, sometimes at the end of a range.
+/// Returns a motion in range: usually a typical motion of a finger, sometimes one at the end of a
+/// range.
 fn motion(random: &mut Random) -> Motion {
     let mut number = |usual: f64, most: f64| match random.below(8) {
         0 => most,
@@ -141,7 +143,7 @@ fn motion(random: &mut Random) -> Motion {
     }
 }
 
-/// Plays steps; `cut` cuts blocks of a seed above 0 into parts.
+/// Plays steps. If the seed `cut` is above 0, it divides the blocks into parts.
 fn play(
     case: &Case,
     voice: &mut ModelVoice,
@@ -174,7 +176,7 @@ fn play(
                 Ok(())
             }
         };
-        // Parameters may describe no spectrum in this band; the voice then continues unchanged.
+        // Parameters may describe no spectrum in this band. The voice then continues unchanged.
         match changed {
             Err(error) if describes_nothing(&error) && !matches!(step, Step::Move(_)) => {}
             other => other?,

@@ -1,4 +1,4 @@
-//! Magnitudes as functions of frequency.
+//! Checks of magnitudes as functions of frequency.
 
 use htex_host::Band;
 
@@ -6,14 +6,14 @@ use crate::case::{Case, Fitted};
 use crate::checks::arrays;
 use htex_check_runner::{Finding, Found};
 
-/// Largest allowed difference between two results for one frequency, relative to the largest
+/// Largest allowed difference between two results for the same frequency, relative to the largest
 /// magnitude.
 const TOLERANCE: f64 = 1e-9;
 
 /// Step of the fine grid, hertz.
 pub(crate) const FINE_HZ: f64 = 0.5;
 
-/// Returns every 0.5 Hz of the tactile band.
+/// Returns frequencies at every 0.5 Hz of the tactile band.
 pub(crate) fn fine_grid() -> Vec<f64> {
     (40..=2000).map(|i| FINE_HZ * f64::from(i)).collect()
 }
@@ -28,7 +28,7 @@ pub(crate) fn sane(case: &Case) -> Found {
         let say = |what: String| Finding::failed(format!("spectrum `{reference}`: {what}"));
         let mut largest: f64 = 0.0;
         for grid in [band.grid_hz(), fine_grid()] {
-            // The host refuses magnitudes that are not finite or negative.
+            // The host itself refuses magnitudes that are negative or not finite.
             let magnitude = case
                 .model
                 .magnitude(&parameters, band, &grid)
@@ -52,7 +52,7 @@ pub(crate) fn sane(case: &Case) -> Found {
     Ok(Finding::passed(message).with("magnitudes", asked as f64))
 }
 
-/// Checks that a magnitude does not depend on the other frequencies of a call.
+/// Checks that a magnitude does not depend on the other frequencies in the call.
 pub(crate) fn grid(case: &Case) -> Found {
     let band = Band::TACTILE;
     let grid = band.grid_hz();

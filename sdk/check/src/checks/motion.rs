@@ -1,4 +1,4 @@
-//! The extension `htex.motion/1`.
+//! Checks of the extension `htex.motion/1`.
 
 use htex_host::{FitCondition, MOTION_EXTENSION, ModelVoice, Motion, Status};
 
@@ -10,7 +10,7 @@ use htex_check_runner::{Finding, Found};
 
 const FRAMES: usize = 4_000;
 const BLOCKS: [usize; 4] = [1, 7, 64, 1_000];
-/// Samples between two motions of a movement forward and back.
+/// Number of samples between two motions of a back-and-forth movement.
 const BETWEEN: usize = 50;
 const MOTION: Motion =
     Motion { speed_mm_s: 80.0, force_n: 0.5, position_mm: 3.0, x_mm: 2.0, y_mm: -1.0 };
@@ -92,8 +92,8 @@ fn refused(
     }
 }
 
-/// Checks that a constant motion gives equal samples in all block sizes, whether it is set again or
-/// not.
+/// Checks that a constant motion gives the same samples for all block sizes, whether or not it is
+/// set again.
 fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let render = |block: usize| -> Result<Vec<f32>, Finding> {
         let mut voice = case.voice(parameters, case.seed)?;
@@ -116,7 +116,7 @@ fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
     Ok(())
 }
 
-/// Checks a retune and a motion before the same sample, in either order.
+/// Checks that a retune and a motion before the same sample give the same result in either order.
 fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let other = case.two_sets()?.map_or(parameters.to_vec(), |sets| sets.1);
     let render = |motion_first: bool| -> Result<Vec<f32>, Finding> {
@@ -128,7 +128,7 @@ fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
         if motion_first {
             voice.set_motion(motion)?;
         }
-        // A voice may refuse, for example if its rate would change; both then continue unchanged.
+        // A voice may refuse, e.g. if its rate would change. Both voices then continue unchanged.
         let _ = voice.retune(&other);
         if !motion_first {
             voice.set_motion(motion)?;
@@ -144,7 +144,7 @@ fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
     }
 }
 
-/// A finger that moves forward and back, at different speeds, and stops.
+/// Plays a finger that moves back and forth at different speeds and stops.
 fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding> {
     let mut out = [0.0; BETWEEN];
     for i in 0..samples / BETWEEN {
@@ -168,8 +168,8 @@ fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding>
     Ok(voice.render(&mut out)?)
 }
 
-/// Checks fits at known, partly known and unknown conditions; the last is the fit of a host without
-/// the extension.
+/// Checks fits at known, partly known and unknown conditions. An unknown condition is what a host
+/// without the extension passes.
 fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
     let known = |speed_mm_s, force_n| FitCondition { speed_mm_s, force_n };
     let conditions = [

@@ -1,4 +1,4 @@
-//! Retunes at each block.
+//! Checks of retunes at every block.
 
 use crate::case::{Case, RATE_HZ};
 use crate::checks::sound::spectrum_distance_db;
@@ -7,16 +7,17 @@ use htex_check_runner::{Finding, Found};
 
 /// Duration of the sounds, seconds.
 const SECONDS: f64 = 10.0;
-/// Samples between two retunes: a host may retune at each block.
+/// Number of samples between two retunes. A host may retune at every block.
 const BETWEEN: usize = 64;
-/// Allowed distance of the level from that without retunes, dB, and in standard deviations of the
-/// level of such noise.
+/// Allowed difference in level from the sound without retunes, dB.
 const LEVEL_DB: f64 = 0.5;
+/// Allowed difference in level, in standard deviations of the level of such noise.
 const SPREADS: f64 = 4.0;
-/// Allowed increase of the distance from the magnitude, dB RMS.
+/// Allowed increase of the distance to the magnitude, dB RMS.
 const FURTHER_DB: f64 = 1.0;
 
-/// Checks that retunes at each block that change nothing change neither level nor spectrum.
+/// Checks that retuning to the same parameters at every block changes neither the level nor the
+/// spectrum.
 pub(crate) fn keeps_sounding(case: &Case) -> Found {
     let (mut worst_db, mut worst_further_db) = (0.0f64, 0.0f64);
     for fitted in case.fitted()? {

@@ -1,4 +1,4 @@
-//! The whole range of the parameters: bounds, seeded sets, and fits with signals.
+//! Checks over the whole range of the parameters: bounds, seeded sets, and fits with signals.
 
 use htex_host::{Band, Stream};
 
@@ -10,14 +10,15 @@ use htex_check_runner::{Finding, Found};
 
 /// Duration of the sounds, seconds.
 const SECONDS: f64 = 4.0;
-/// Allowed distance of a level from 1, dB, and in standard deviations of the level of such noise.
+/// Allowed difference of a level from 1, dB.
 const LEVEL_DB: f64 = 3.0;
+/// Allowed difference of a level from 1, in standard deviations of the level of such noise.
 const SPREADS: f64 = 8.0;
-/// Largest allowed sample of a sound of unit RMS.
+/// Largest allowed sample in a sound of unit RMS.
 const LOUDEST: f32 = 1_000.0;
-/// Samples between two retunes.
+/// Number of samples between two retunes.
 const BETWEEN: usize = 1_000;
-/// Further bands, in which a sound is only searched for samples that are not finite.
+/// Additional bands, in which a sound is only searched for samples that are not finite.
 const BANDS: [Band; 3] = [
     Band { low_hz: 20.0, high_hz: 200.0 },
     Band { low_hz: 150.0, high_hz: 700.0 },
@@ -50,7 +51,7 @@ pub(crate) fn bounds(case: &Case) -> Found {
     Ok(summary(played, refused))
 }
 
-/// Checks seeded sets within the ranges, and fits of spectra with signals.
+/// Checks seeded sets within the ranges, and fits of spectra with their signals.
 pub(crate) fn seeded(case: &Case) -> Found {
     let fitted = case.fitted()?;
     let mut sets = case.fitted_to_signals()?;
@@ -78,7 +79,7 @@ fn summary(played: usize, refused: usize) -> Finding {
     Finding::passed(message).with("played", played as f64).with("refused", refused as f64)
 }
 
-/// The set as it is read from a file.
+/// Returns the set as it would be read from a file.
 fn as_stored(case: &Case, set: &Set) -> Result<Set, Finding> {
     let fields = case.model.descriptor().fields.iter();
     let lists = case.lists(&set.parameters)?;
@@ -86,7 +87,8 @@ fn as_stored(case: &Case, set: &Set) -> Result<Set, Finding> {
     Ok(Set { name: format!("{}, stored in a file", set.name), parameters: case.flat(&kept) })
 }
 
-/// Checks that a set that has a magnitude plays: finite, at its level, and in other bands.
+/// Checks that a set with a magnitude can be played: with finite samples, at its level, and in
+/// other bands.
 fn plays(case: &Case, set: &Set) -> Result<(), Finding> {
     let wrong = |what: String| about(set, &what);
     let fine = fine_grid();
@@ -139,7 +141,7 @@ fn retunes(case: &Case, sets: &[Set]) -> Result<(), Finding> {
     for pair in sets.iter().chain([first]).collect::<Vec<_>>().windows(2) {
         let (from, to) = (&pair[0].name, pair[1]);
         let wrong = |what: String| about(to, &format!("retuned to it from {from}: {what}"));
-        // A voice may refuse, for example if its rate would change; it then continues unchanged.
+        // A voice may refuse, e.g. if its rate would change. It then continues unchanged.
         match stream.retune(&to.parameters) {
             Err(error) if describes_nothing(&error) => {}
             retuned => retuned.map_err(|error| wrong(error.to_string()))?,

@@ -1,4 +1,4 @@
-//! Invalid arguments.
+//! Checks that invalid arguments are refused.
 
 use htex_host::{Band, FitCondition, FitRequest, HostError, Kind, Status};
 use htex_model::{Values, flatten};
@@ -8,10 +8,10 @@ use crate::signal::first_difference;
 use crate::spectra::REFERENCES;
 use htex_check_runner::{Finding, Found};
 
-/// What a host says where a model gives no reason.
+/// The host's message if a model gives no reason.
 const NO_REASON: &str = "no reason given";
 
-/// Fails unless a call returned this status, and a reason.
+/// Fails unless a call returned this status with a reason.
 fn refused<T>(
     status: Status,
     call: &str,
@@ -33,7 +33,7 @@ fn refused<T>(
     }
 }
 
-/// Checks that parameters that do not fit the descriptor are refused.
+/// Checks that parameters that do not match the descriptor are refused.
 pub(crate) fn parameters(case: &Case) -> Found {
     let (model, band) = (&case.model, Band::TACTILE);
     let status = Status::InvalidParameters;
@@ -65,7 +65,7 @@ pub(crate) fn parameters(case: &Case) -> Found {
         .with("sets", count as f64))
 }
 
-/// Returns sets with one error each, and its description.
+/// Returns sets with one error each, and a description of the error.
 fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Finding> {
     let descriptor = case.model.descriptor();
     let values = Values::read(descriptor, good).map_err(|e| Finding::failed(e.message))?;
@@ -140,7 +140,7 @@ pub(crate) fn rate(case: &Case) -> Found {
     Ok(Finding::passed(format!("{} invalid rates are refused", rates.len())))
 }
 
-/// Checks that spectra, signals and options that cannot be used are refused.
+/// Checks that unusable spectra, signals and options are refused.
 pub(crate) fn inputs(case: &Case) -> Found {
     let grid = Band::TACTILE.grid_hz();
     let magnitude: Vec<f64> = grid.iter().map(|&hz| (REFERENCES[0].curve)(hz)).collect();
@@ -205,7 +205,7 @@ pub(crate) fn inputs(case: &Case) -> Found {
     Ok(Finding::passed(format!("13 spectra and signals and {count} sets of options are refused")))
 }
 
-/// Options with one error each.
+/// Returns options with one error each.
 fn wrong_options(case: &Case, good: &[f64]) -> Vec<(Vec<f64>, String)> {
     let mut wrong = vec![([good, &[1.0]].concat(), "one option too many".to_owned())];
     if let [.., _] = good {
@@ -227,7 +227,7 @@ fn wrong_options(case: &Case, good: &[f64]) -> Vec<(Vec<f64>, String)> {
     wrong
 }
 
-/// Checks that weights that cannot be used are refused.
+/// Checks that unusable weights are refused.
 pub(crate) fn weights(case: &Case) -> Found {
     let good = case.parameters()?;
     let wrong: [&[f64]; 7] = [
@@ -245,7 +245,7 @@ pub(crate) fn weights(case: &Case) -> Found {
         refused(Status::InvalidArgument, "interpolate", &what, told)?;
     }
     for (what, set) in broken_sets(case, &good)? {
-        // A set of another length may be the beginning of the next one.
+        // A set of another length could be mistaken for the beginning of the next one.
         if set.len() == good.len() {
             let told = case.model.interpolate(&[&good, &set], &[0.5, 0.5]);
             refused(Status::InvalidParameters, "interpolate", &what, told)?;

@@ -1,4 +1,4 @@
-//! Seeds, blocks, several voices, handles.
+//! Checks of seeds, blocks, several voices, and handles.
 
 use htex_host::{Band, HostError, Status};
 
@@ -7,14 +7,14 @@ use crate::checks::magnitude::fine_grid;
 use crate::signal::{first_difference, is_line_spectrum};
 use htex_check_runner::{Finding, Found};
 
-/// Samples that are compared.
+/// Number of samples that are compared.
 const SAMPLES: usize = 9_000;
 
 fn differ(what: &str, at: usize) -> Finding {
     Finding::failed(format!("{what}: sample {at} differs")).with("sample", at as f64)
 }
 
-/// Checks that equal seeds give equal samples.
+/// Checks that the same seed gives the same samples.
 pub(crate) fn reproducible(case: &Case) -> Found {
     for fitted in case.fitted()? {
         let render = || case.samples(&fitted.parameters, case.seed, SAMPLES, 256);
@@ -26,7 +26,7 @@ pub(crate) fn reproducible(case: &Case) -> Found {
     Ok(Finding::passed(format!("{SAMPLES} samples are equal in two voices")))
 }
 
-/// Checks that samples do not depend on block sizes.
+/// Checks that samples do not depend on the block size.
 pub(crate) fn blocks(case: &Case) -> Found {
     let parameters = case.parameters()?;
     let whole = case.samples(&parameters, case.seed, SAMPLES, SAMPLES)?;
@@ -66,7 +66,7 @@ pub(crate) fn seeds(case: &Case) -> Found {
     Err(Finding::failed("two seeds give equal samples: the seed is ignored"))
 }
 
-/// Checks that several voices at a time have the samples of each alone.
+/// Checks that voices that play at the same time have the same samples as each voice alone.
 pub(crate) fn voices_apart(case: &Case) -> Found {
     let sets = case.two_sets()?;
     let (a, b) = match sets {
@@ -130,7 +130,7 @@ pub(crate) fn handles(case: &Case) -> Found {
                 }
             }
         }
-        // May reuse the slot of the freed voice, and must not be reached by its handle.
+        // This voice may reuse the slot of the freed voice, but the old handle must not reach it.
         std::mem::forget(case.voice(&parameters, case.seed)?);
     }
     if others > 0.0 {

@@ -1,4 +1,4 @@
-//! Memory and time.
+//! Checks of memory and time.
 
 use std::time::Instant;
 
@@ -10,10 +10,10 @@ use htex_check_runner::{Finding, Found, Growth};
 const BLOCK: usize = 256;
 const BLOCKS: usize = 10_000;
 const VOICES: usize = 2_000;
-/// Load of one processor from which on there is a warning.
+/// Load of one processor above which there is a warning.
 const BUDGET: f64 = 0.1;
 
-/// Checks that memory does not grow while a voice plays, or while voices are made and freed.
+/// Checks that memory does not grow while a voice plays, or while voices are created and freed.
 pub(crate) fn memory(case: &Case) -> Found {
     htex_check_runner::memory(|| {
         let sets = case.fitted()?;
@@ -39,7 +39,7 @@ pub(crate) fn memory(case: &Case) -> Found {
     })
 }
 
-/// Measures nanoseconds per sample.
+/// Measures the rendering time in nanoseconds per sample.
 pub(crate) fn cost(case: &Case) -> Found {
     let parameters = case.parameters()?;
     let rate_hz = case.model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)?;

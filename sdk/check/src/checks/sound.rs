@@ -1,4 +1,4 @@
-//! Comparison of a voice's samples with its magnitude.
+//! Checks that compare a voice's samples with its magnitude.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Band, Stream};
@@ -11,8 +11,8 @@ use crate::signal::{
 };
 use htex_check_runner::{Finding, Found};
 
-/// Duration of the measured sounds, seconds: with a minute of noise each bin is measured within 0.2
-/// dB.
+/// Duration of the measured sounds, seconds. With a minute of noise, each bin is measured within
+/// 0.2 dB.
 pub(crate) const SECONDS: f64 = 60.0;
 /// Duration of the sounds that are searched for invalid samples, seconds.
 const SEARCHED: usize = 20;
@@ -27,10 +27,11 @@ fn about(fitted: &Fitted, what: &str) -> Finding {
     Finding::failed(format!("spectrum `{}`: {what}", fitted.reference))
 }
 
-/// A part of the band in which references are fitted; two of them have peaks outside it.
+/// A band narrower than the one in which references are fitted. Two references have peaks outside
+/// it.
 const NARROW: Band = Band { low_hz: 150.0, high_hz: 700.0 };
-/// Allowed distance of the level in that band from 1, dB: a band filter of order 4 passes as much
-/// outside the band.
+/// Allowed difference of the level in that band from 1, dB. A band filter of order 4 passes that
+/// much outside the band.
 const NARROW_DB: f64 = 1.5;
 
 /// Renders one second of every reference.
@@ -51,7 +52,7 @@ pub(crate) fn renders(case: &Case) -> Found {
     Ok(Finding::passed(format!("{voices} voices render a second each")).with("voices", voices))
 }
 
-/// Checks that no sample is infinite, NaN or subnormal, also after retunes.
+/// Checks that no sample is infinite, NaN or subnormal, even after retunes.
 pub(crate) fn clean(case: &Case) -> Found {
     let sets = case.fitted()?;
     let mut samples = 0.0;
@@ -74,14 +75,14 @@ pub(crate) fn clean(case: &Case) -> Found {
         .with("samples", samples))
 }
 
-/// Renders a minute at the rate of the recordings.
+/// Renders one minute at the rate of the recordings.
 fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
     let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
     case.stream(&fitted.parameters, case.seed)?.render(&mut out)?;
     Ok(out)
 }
 
-/// Checks the unit RMS of the magnitude and of the sound: in total, or in the band's bins.
+/// Checks the unit RMS of the magnitude and of the sound, in total or in the band's bins.
 pub(crate) fn level(case: &Case) -> Found {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
@@ -111,8 +112,8 @@ pub(crate) fn level(case: &Case) -> Found {
 }
 
 /// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, or from the spectrum that the
-/// window measures for noise of that density, dB RMS: at the band's edge the window blurs a flank
-/// by more than the allowed distance.
+/// window measures for noise with that density, dB RMS. The second comparison is needed because at
+/// the band's edge, the window blurs a flank by more than the allowed distance.
 pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
     let heard = measured_spectrum(sound);
     let blurred = distance_db(&heard, &read_as_noise(magnitude));
@@ -138,7 +139,7 @@ pub(crate) fn spectrum(case: &Case) -> Found {
     Ok(Finding::passed(message).with("distance_db", worst))
 }
 
-/// Checks unit RMS in a band narrower than that of the fit, and silence outside it.
+/// Checks unit RMS in a band narrower than the band of the fit, and silence outside it.
 pub(crate) fn narrow_band(case: &Case) -> Found {
     let grid = NARROW.grid_hz();
     let (mut worst, mut voices) = (0.0f64, 0.0);

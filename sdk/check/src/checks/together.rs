@@ -1,4 +1,4 @@
-//! Several voices in one call.
+//! Checks of rendering several voices in one call.
 
 use htex_host::{ModelVoice, Status, VOICES_EXTENSION, render_together};
 
@@ -6,14 +6,14 @@ use crate::case::Case;
 use crate::signal::first_difference;
 use htex_check_runner::{Finding, Found};
 
-/// One more than the voices of a call.
+/// Number of voices, one more than fit into a call.
 const VOICES: usize = 17;
 const FRAMES: [usize; 5] = [1, 256, 3, 64, 500];
 /// The block before which one voice is retuned.
 const RETUNED_AT: usize = 2;
 const RETUNED: usize = 5;
 
-/// Checks that handles that are not usable are refused, and that no voice has moved on.
+/// Checks that unusable handles are refused and that no voice advances.
 fn unusable_handles(case: &Case) -> Result<(), Finding> {
     let parameters = case.parameters()?;
     let voice = |i: usize| Ok(case.voice(&parameters, case.seed.wrapping_add(i as u64))?);
@@ -46,7 +46,7 @@ fn unusable_handles(case: &Case) -> Result<(), Finding> {
     }
 }
 
-/// Checks that samples of a common call equal those of separate calls.
+/// Checks that one common call gives the same samples as separate calls.
 pub(crate) fn agrees(case: &Case) -> Found {
     if !case.model.has_extension(VOICES_EXTENSION)? {
         return Ok(Finding::passed(format!("the model has no extension `{VOICES_EXTENSION}`")));
@@ -64,7 +64,7 @@ pub(crate) fn agrees(case: &Case) -> Found {
     let (mut alone, mut together) = (make()?, make()?);
     for (block, frames) in FRAMES.into_iter().enumerate() {
         if block == RETUNED_AT {
-            // A voice may refuse, for example if its rate would change; both then continue
+            // A voice may refuse, e.g. if its rate would change. Both voices then continue
             // unchanged.
             let retuned = [&mut alone, &mut together].map(|v| v[RETUNED].retune(&second).is_ok());
             if retuned[0] != retuned[1] {

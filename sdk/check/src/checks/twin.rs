@@ -1,16 +1,16 @@
-//! The same model as a native library and as a WASM module.
+//! Checks that a native library and a WASM module are the same model.
 
 use std::path::PathBuf;
 
 use crate::case::{Case, Settings};
 use htex_check_runner::{Finding, Found};
 
-/// Relative difference of parameters that is allowed.
+/// Allowed relative difference of parameters.
 const PARAMETERS: f64 = 1e-6;
-/// Difference of samples that is allowed; unit RMS.
+/// Allowed difference of samples of unit RMS.
 const SAMPLES: f64 = 1e-4;
 
-/// Compares the fits and the samples of both.
+/// Compares the fits and the samples of both files.
 pub(crate) fn agrees(case: &Case) -> Found {
     let Some(file) = other_file(case) else {
         return Ok(Finding::skipped(
@@ -54,8 +54,8 @@ pub(crate) fn agrees(case: &Case) -> Found {
     Ok(finding.with("parameter_difference", fits).with("sample_difference", sounds))
 }
 
-/// Returns the given other file, or the file of the other kind in the same folder: `libNAME.so`,
-/// `NAME.so` and `NAME.wasm` are the same model.
+/// Returns the other file if it was given, or else the file of the other kind in the same folder.
+/// `libNAME.so`, `NAME.so` and `NAME.wasm` are taken to be the same model.
 fn other_file(case: &Case) -> Option<PathBuf> {
     if let Some(file) = &case.against {
         return Some(file.clone());

@@ -1,4 +1,4 @@
-//! Waiting, and input and output, while a voice plays.
+//! Checks for waiting, input and output while a voice plays.
 
 use htex_host::{ModelVoice, Motion};
 
@@ -7,17 +7,17 @@ use htex_check_runner::{Finding, Found};
 
 const BLOCKS: usize = 2_000;
 const FRAMES: [usize; 3] = [64, 1, 256];
-/// Waits that are allowed: the system may take a processor away in a page fault.
+/// Number of waits that are allowed, because the system may take a processor away in a page fault.
 const WAITS: u64 = 8;
 
-/// Counts of this thread: waits, and calls that read or write.
+/// Counters of this thread: waits, and calls that read or write.
 #[derive(Clone, Copy)]
 struct Counts {
     waits: u64,
     transfers: u64,
 }
 
-/// Checks that rendering, retunes and motions neither wait nor read nor write.
+/// Checks that rendering, retunes and motions do not wait, read or write.
 pub(crate) fn none(case: &Case) -> Found {
     if Counts::now().is_none() {
         return Ok(Finding::skipped("waits of a thread are counted on Linux only"));
@@ -39,7 +39,7 @@ pub(crate) fn none(case: &Case) -> Found {
         Ok(())
     };
     play(&mut voice, 64)?;
-    // Reading the counts reads: what that takes is known from a second reading.
+    // Reading the counters is itself a read. A second reading shows how much it adds.
     let (first, second) = (counts()?, counts()?);
     play(&mut voice, BLOCKS)?;
     let last = counts()?;
@@ -73,7 +73,7 @@ fn counts() -> Result<Counts, Finding> {
 }
 
 impl Counts {
-    /// The counts so far; `None` where the system does not have these files.
+    /// Returns the current counts; `None` if the system does not have these files.
     fn now() -> Option<Self> {
         let value = |text: &str, key: &str| -> Option<u64> {
             let line = text.lines().find_map(|line| line.strip_prefix(key))?;

@@ -1,4 +1,4 @@
-//! An instance in the browser.
+//! A module instance that runs in the browser.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,7 +12,7 @@ use super::typed::{Parameters, Returned, TypedFunc};
 use crate::clock::Instant;
 use crate::sandbox::{Budget, BudgetError};
 
-/// The functions that are asked for, by their place in the list.
+/// The names of requested functions. A function's index is its position in the list.
 #[derive(Default)]
 struct Names(Vec<&'static str>);
 
@@ -26,14 +26,14 @@ impl Find for Names {
     }
 }
 
-/// An instance, and its part of the budget.
+/// A module instance and its share of the budget.
 pub(super) struct Guest {
     raw: GuestInstance,
     usage: Usage,
 }
 
 impl Guest {
-    /// Makes an instance, and finds its functions.
+    /// Creates an instance and finds its functions.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<(Self, Functions), Fault> {
         let mut usage = Usage::new(&module.budget)?;
         module.budget.time_left()?;
@@ -47,7 +47,7 @@ impl Guest {
         Ok((Self { raw, usage }, functions))
     }
 
-    /// Calls a function, which nothing stops.
+    /// Calls a function. Nothing can interrupt the call.
     pub(super) fn call<P: Parameters, R: Returned>(
         &mut self,
         _module: &WasmModule,
@@ -58,7 +58,8 @@ impl Guest {
         function.call(&self.raw, parameters)
     }
 
-    /// The result of a call that could take `most`. One that took longer fails afterwards.
+    /// Checks the result of a call that was allowed to take `most`. A call that took longer fails
+    /// only now, because it cannot be interrupted.
     pub(super) fn returned<R>(
         &mut self,
         _module: &WasmModule,
@@ -94,7 +95,7 @@ impl From<Outside> for Fault {
     }
 }
 
-/// An instance's part of the budget, released when it is dropped.
+/// An instance's share of the budget, released when it is dropped.
 struct Usage {
     budget: Arc<Budget>,
     memory_bytes: usize,

@@ -1,4 +1,4 @@
-//! The functions that JavaScript provides (`sdk/web/src/guests.js`) for the modules of models as
+//! The functions that JavaScript provides (`sdk/web/src/guests.js`) to run the modules of models as
 //! *guests*.
 #![allow(unsafe_code)]
 
@@ -8,13 +8,14 @@ mod raw {
         /// Compiles a module; 0 if that fails.
         pub(super) fn module_new(bytes: *const u8, len: usize) -> u32;
         pub(super) fn module_free(module: u32);
-        /// Makes an instance with the exports of these names, separated by commas; 0 if that fails.
+        /// Creates an instance with the exports of these names, separated by commas; 0 if that
+        /// fails.
         pub(super) fn instance_new(module: u32, names: *const u8, names_len: usize) -> u32;
         pub(super) fn instance_free(instance: u32);
-        /// Size of the instance's memory, bytes.
+        /// Returns the size of the instance's memory, bytes.
         pub(super) fn instance_memory(instance: u32) -> usize;
-        /// Calls the export of an index with `len` arguments, of types as in `typed`; 0 if it
-        /// returns.
+        /// Calls the export with this index with `len` arguments, whose types are those of `typed`;
+        /// 0 if it returns.
         pub(super) fn instance_call(
             instance: u32,
             function: u32,
@@ -33,7 +34,7 @@ mod raw {
     }
 }
 
-/// Text of the last failure.
+/// Returns the text of the last failure.
 fn failure() -> String {
     let mut text = vec![0; 1024];
     // SAFETY: a live buffer.
@@ -42,7 +43,7 @@ fn failure() -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// A compiled module; freed when it is dropped.
+/// A compiled module, freed when it is dropped.
 #[derive(Debug)]
 pub(super) struct Guest(u32);
 
@@ -55,7 +56,7 @@ impl Guest {
         }
     }
 
-    /// Makes an instance, whose functions are those of `names`, separated by commas.
+    /// Creates an instance with the functions called `names`, separated by commas.
     pub(super) fn instance(&self, names: &str) -> Result<GuestInstance, String> {
         // SAFETY: a live slice.
         match unsafe { raw::instance_new(self.0, names.as_ptr(), names.len()) } {
@@ -72,11 +73,11 @@ impl Drop for Guest {
     }
 }
 
-/// An instance; freed when it is dropped.
+/// An instance, freed when it is dropped.
 #[derive(Debug)]
 pub(super) struct GuestInstance(u32);
 
-/// An argument or result lies outside the instance's memory.
+/// Error: an argument or result lies outside the instance's memory.
 pub(super) struct Outside;
 
 impl GuestInstance {
@@ -85,7 +86,7 @@ impl GuestInstance {
         unsafe { raw::instance_memory(self.0) }
     }
 
-    /// Calls a function by its index among the names; types and result as in `typed`.
+    /// Calls a function by its index among the names. Types and result are those of `typed`.
     pub(super) fn call(
         &self,
         function: u32,
@@ -137,7 +138,7 @@ impl Drop for GuestInstance {
     }
 }
 
-/// What memories hold, in the byte order of both: little-endian.
+/// A number in a module's memory. Both sides use the same byte order, little-endian.
 pub(super) trait Number: Copy {}
 impl Number for u8 {}
 impl Number for f32 {}

@@ -1,18 +1,19 @@
-//! Models in WASM modules, run by the browser or Node.js that runs this program.
+//! Runs models in WASM modules by the browser or Node.js that runs this program.
 //!
-//! As with the engine of the feature `wasm`: a module imports nothing, its memory and tables are
-//! limited, each voice has a separate instance, and an instance that trapped is not called again. A
-//! call cannot be interrupted from here: one that took longer than its limit is an error
-//! afterwards, and an endless loop ends with the worker that runs it (`sdk/web/src/guarded.js`).
+//! The rules are those of the engine of the feature `wasm`: a module imports nothing, its memory
+//! and tables are limited, each voice has a separate instance, and an instance that trapped is not
+//! called again. The one difference: a call cannot be interrupted from here. A call that took
+//! longer than its limit becomes an error afterwards, and an endless loop ends only with the worker
+//! that runs it (`sdk/web/src/guarded.js`).
 //!
-//! This is a second engine for the loader in `wasm` (`calls.rs`, `model.rs`, `voice.rs`), not a
-//! second loader.
+//! This is only a second engine. The loader is the one in `wasm` (`calls.rs`, `model.rs`,
+//! `voice.rs`).
 
 #[path = "../wasm/allowance.rs"]
 mod allowance;
 #[path = "../wasm/calls.rs"]
 mod calls;
-// Some faults only the engine of the feature `wasm` reports.
+// Some faults are reported only by the engine of the feature `wasm`.
 #[allow(dead_code)]
 #[path = "../wasm/fault.rs"]
 mod fault;
@@ -41,7 +42,7 @@ use crate::HostError;
 use crate::error::Loading;
 use crate::sandbox::Sandbox;
 
-/// Loads a model from the bytes of a module; messages name `origin`.
+/// Loads a model from the bytes of a module. `origin` names it in messages.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let module = WasmModule::new(bytes, sandbox).loading(origin)?;
     WasmModel::new(origin, Arc::new(module))

@@ -1,4 +1,4 @@
-//! A module that is checked and compiled.
+//! A checked and compiled module.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::WasmLimits;
 use crate::clock::Instant;
 use crate::sandbox::{Budget, BudgetError, Sandbox};
 
-/// A module cannot be compiled.
+/// Error: a module cannot be compiled.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CompileError {
     #[error("the module is larger than the {bytes} bytes allowed")]

@@ -1,18 +1,18 @@
-//! Limits of memory and tables, written into a module: a browser enforces the limits that a module
-//! states, and no others.
+//! Writes limits of memory and tables into a module, because a browser enforces only the limits
+//! that the module itself states.
 
 use crate::WasmLimits;
 
-/// Bytes of a page of memory.
+/// Size of a page of memory, bytes.
 const PAGE: usize = 1 << 16;
-/// Ids of sections.
+/// Ids of module sections.
 const IMPORT: u8 = 2;
 const TABLE: u8 = 4;
 const MEMORY: u8 = 5;
-/// Flag of limits: a maximum follows.
+/// Flag in the limits: a maximum follows.
 const HAS_MAXIMUM: u8 = 1;
 
-/// A module states more than is allowed, or its sections cannot be read.
+/// Error: a module states a higher limit than is allowed, or its sections cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SectionError {
     #[error("invalid module: its section {id} cannot be read")]
@@ -32,7 +32,7 @@ pub(super) enum SectionError {
     Kind,
 }
 
-/// The module with at most the memory and the table elements of `limits`.
+/// Returns the module with its memory and tables limited to `limits`.
 pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
     let mut rest = module.strip_prefix(b"\0asm\x01\0\0\0").ok_or(SectionError::Header)?;
     let mut out = module[..8].to_vec();
@@ -60,7 +60,7 @@ pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Sec
     Ok(out)
 }
 
-/// The memories or tables of a section with maxima.
+/// Returns the memories or tables of a section with maxima added.
 fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
     let invalid = SectionError::Invalid { id };
     let (most, above) = match id {
@@ -81,7 +81,8 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Secti
     push(&mut out, count);
     for _ in 0..count {
         if id == TABLE {
-            // A reference type of one byte; others begin with a byte that stands for none.
+            // A reference type of one byte. The encodings of other types begin with a byte that is
+            // no such type.
             let kind = byte(&mut body).ok_or(invalid.clone())?;
             if !matches!(kind, 0x70 | 0x6f) {
                 return Err(SectionError::Kind);
@@ -113,7 +114,7 @@ fn byte(rest: &mut &[u8]) -> Option<u8> {
     Some(*first)
 }
 
-/// A number of at most 32 bits (LEB128).
+/// Reads a number of at most 32 bits (LEB128).
 fn number(rest: &mut &[u8]) -> Option<u32> {
     let mut value = 0u64;
     for shift in [0, 7, 14, 21, 28] {
@@ -139,7 +140,7 @@ mod tests {
     use super::*;
     use wasmparser::{Parser, Payload, Validator};
 
-    /// Maxima of the memories and tables of a valid module.
+    /// Returns the maxima of the memories and tables of a valid module.
     fn maxima(module: &[u8]) -> Vec<Option<u64>> {
         Validator::new().validate_all(module).unwrap();
         let mut all = Vec::new();

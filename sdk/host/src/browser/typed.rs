@@ -1,4 +1,4 @@
-//! Arguments and results of functions as numbers of 64 bits, with their types.
+//! Arguments and results of functions as 64-bit numbers with their types.
 
 use std::marker::PhantomData;
 
@@ -30,7 +30,7 @@ impl<P: Parameters, R: Returned> TypedFunc<P, R> {
     }
 }
 
-/// Most arguments of a function of the model ABI.
+/// Maximum number of arguments of a function of the model ABI.
 const MOST: usize = 16;
 
 /// Arguments and their types.
@@ -78,7 +78,7 @@ impl Parameter for f64 {
     }
 }
 
-/// The arguments of a function: one, or several.
+/// The arguments of a function: a single one, or several.
 pub(super) trait Parameters {
     fn push(&self, slots: &mut Slots);
 }

@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use super::fault::Fault;
 
-/// Longest rendering time of samples, in their duration.
+/// Longest rendering time of samples, as a multiple of their duration.
 const TIMES: f64 = 10.0;
-/// The time at the start, which is also the most.
+/// The time at the start, which is also the maximum.
 const FIRST: Duration = Duration::from_secs(1);
 
-/// The time of one voice: a second, and ten times the duration of its samples. Rendering therefore
-/// takes at most a time proportional to the duration of the samples.
+/// The time of one voice: one second, and ten times the duration of its samples. The rendering time
+/// is therefore at most proportional to the duration of the samples.
 #[derive(Debug)]
 pub(super) struct Allowance {
     left: Duration,

@@ -1,11 +1,12 @@
 //! Compiled modules on disk.
 //!
-//! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name
-//! and its content, which detects damaged files and files of other users. [`WasmCache`] documents
-//! who is trusted.
+//! A file is named by the hash of the module and of the engine. It begins with a keyed hash of its
+//! name and its content, which detects damaged files and files of other users. [`WasmCache`]
+//! documents who is trusted.
 //!
-//! The files are run as machine code. A folder that belongs to another user, or that others may
-//! write to, is not used, and a file without a tag by this user's key ([`Key`]) is compiled again.
+//! The files are run as machine code. Therefore a folder that belongs to another user, or that
+//! others may write to, is not used. A file without a tag by this user's key ([`Key`]) is compiled
+//! again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
@@ -17,11 +18,11 @@ use wasmtime::{Engine, Module};
 
 use crate::{WasmCache, folders};
 
-/// Most files in the cache.
+/// Maximum number of files in the cache.
 const MOST_FILES: usize = 64;
 const HASH: usize = blake3::OUT_LEN;
 const EXTENSION: &str = ".cwasm";
-/// Name of the key's file, in the user's folder of settings.
+/// Name of the key file in the user's configuration folder.
 const KEY: &str = "wasm.key";
 
 /// A folder of compiled modules that only this user can write to, and the key of its files.
@@ -31,8 +32,8 @@ pub(super) struct Cache {
 }
 
 impl Cache {
-    /// Opens the cache, and creates its folder and key if absent; `None` if the cache is off, or
-    /// not this user's alone.
+    /// Opens the cache, and creates its folder and key if they do not exist. `None` if the cache is
+    /// off, or others than this user can write to it.
     pub(super) fn of(cache: &WasmCache) -> Option<Self> {
         let folder = match cache {
             WasmCache::User => folders::cache()?.join("wasm"),
@@ -98,7 +99,7 @@ fn is_own(name: &str) -> bool {
         .is_some_and(|(module, engine)| hex(module, 2 * HASH) && hex(engine, 16))
 }
 
-/// Removes the cache's oldest files above the limit; other files are left.
+/// Removes the cache's oldest files above the limit. Files that do not belong to the cache stay.
 #[allow(
     clippy::disallowed_methods,
     reason = "a folder of this user that no other user may write to"
@@ -176,7 +177,7 @@ mod tests {
         flipped[whole.len() / 2] ^= 1;
         let artifact = &whole[HASH..];
         let unkeyed = [blake3::hash(artifact).as_bytes(), artifact].concat();
-        // An intact file under another module's name.
+        // An intact file, but under another module's name.
         let cache = place.cache().unwrap();
         let other = cache.key.tag("another", artifact);
         let renamed = [&other[..], artifact].concat();
@@ -185,7 +186,7 @@ mod tests {
             assert!(!place.found());
             assert!(place.found(), "made again");
         }
-        // A file of another user, who has another key.
+        // A file of another user, who has a different key.
         std::fs::remove_dir_all(place.dir.path().join("config")).unwrap();
         assert!(!place.found());
         // An engine with other settings has a different file.
@@ -234,7 +235,7 @@ mod tests {
         assert!(place.cache().is_none());
         set(&key, 0o600);
         assert!(place.cache().is_some());
-        // Root can give the folder to another user.
+        // Only root can give the folder to another user.
         if std::os::unix::fs::chown(place.folder(), Some(12345), None).is_ok() {
             assert!(place.cache().is_none());
         }

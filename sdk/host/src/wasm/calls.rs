@@ -1,5 +1,5 @@
-//! The calls of the model ABI on an instance: arrays are copied into its buffer, and results out of
-//! it.
+//! The calls of the model ABI on an instance. Arrays are copied into the instance's buffer, and
+//! results are copied out of it.
 
 use htex_model::{Band, Motion};
 
@@ -9,7 +9,7 @@ use crate::raw::RawFit;
 
 /// Longest last-error text that is read, bytes.
 const LONGEST_ERROR: usize = 4096;
-/// Longest block that is rendered at once; longer ones are rendered in parts.
+/// Longest block that is rendered at once. Longer ones are rendered in parts.
 pub(super) const BLOCK: usize = 8192;
 
 impl Instance {
@@ -148,8 +148,8 @@ impl Instance {
         rate_hz: f64,
         seed: u64,
     ) -> Result<i64, Fault> {
-        // Allocated once for the voice, unless it is retuned to a parameter set that is longer than
-        // a block.
+        // Allocated once for the voice. It is enlarged only if the voice is retuned to a parameter
+        // set that is longer than a block.
         self.buffer(4 * BLOCK)?;
         let (at, len) = self.pass(parameters)?;
         let (low, high) = band.edges();

@@ -1,4 +1,4 @@
-//! From a module's bytes to machine code, within limits of time and memory.
+//! Compiles a module's bytes to machine code, within limits of time and memory.
 
 use std::time::{Duration, Instant};
 
@@ -12,8 +12,8 @@ use super::process;
 use crate::sandbox::Sandbox;
 use crate::{WasmCompiler, WasmLimits};
 
-/// Time on the slowest machine that keeps the limit, in the time on the machine where the estimate
-/// was measured.
+/// Compilation time on the slowest machine for which the limit holds, as a multiple of the time on
+/// the machine where the estimate was measured.
 const SLOWER: f64 = 3.0;
 
 /// Returns the highest effort that the time limit allows.
@@ -57,7 +57,7 @@ pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, Compil
     if let Some(cache) = cache
         && let Ok(artifact) = module.serialize()
     {
-        // An error is ignored: the module is then compiled again the next time.
+        // The error is ignored: the module is then compiled again next time.
         let _ = cache.keep(&engine, bytes, &artifact);
     }
     Ok(module)

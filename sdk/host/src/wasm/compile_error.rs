@@ -4,7 +4,7 @@ use wasmparser::BinaryReaderError;
 
 use crate::sandbox::BudgetError;
 
-/// A module cannot be compiled.
+/// Error: a module cannot be compiled.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(super) enum CompileError {
     #[error("the module is larger than the {bytes} bytes allowed")]
@@ -44,7 +44,7 @@ pub(super) enum CompileError {
 }
 
 impl From<wasmtime::Error> for CompileError {
-    /// An error of the engine, with its causes.
+    /// Converts an error of the engine, including its causes.
     fn from(error: wasmtime::Error) -> Self {
         Self::Engine { what: format!("{error:#}") }
     }
@@ -72,7 +72,7 @@ pub enum CompilerError {
     /// The process cannot limit its memory and time.
     #[error("cannot limit the compiler process: {0}")]
     Limits(#[source] std::io::Error),
-    /// The module cannot be read, or the result not written.
+    /// The module cannot be read, or the result cannot be written.
     #[error("the pipe to the host failed: {0}")]
     Pipe(#[from] std::io::Error),
 }

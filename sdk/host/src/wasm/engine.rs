@@ -1,9 +1,9 @@
-//! The engine that compiles and runs modules, and the clock that interrupts modules.
+//! The engine that compiles and runs modules, and the clock that interrupts them.
 //!
-//! Time limits are wasmtime's epochs, counted by a thread with at most 20 ticks a second under the
-//! default limits, so an endless loop is stopped on every machine. Instructions (`fuel`) are
-//! deterministic and can be counted as well. A limit of memory costs no time while a module runs:
-//! the engine reserves addresses, and no access is compared with a bound.
+//! Time limits use wasmtime's epochs, which a thread counts with at most 20 ticks per second under
+//! the default limits. An endless loop is therefore stopped on every machine. Instructions (`fuel`)
+//! are deterministic and can be counted as well. A memory limit costs no time while a module runs:
+//! the engine reserves addresses, so no access has to be compared with a bound.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -17,11 +17,11 @@ use crate::{WasmEngine, WasmLimits};
 /// Shortest and longest time between two ticks.
 const TICK: (Duration, Duration) = (Duration::from_millis(1), Duration::from_millis(50));
 
-/// Optimisation by the compiler.
+/// How much the compiler optimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Effort {
     Optimised,
-    /// As little as possible: compilation time is then nearly proportional to the module's size.
+    /// As little as possible, so that compilation time is nearly proportional to the module's size.
     Quick,
 }
 
@@ -33,8 +33,8 @@ struct Clock {
 
 static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 
-/// Waits until the threads of engines without modules have ended, at most 50 ms each: a program
-/// that unloads this code calls this before.
+/// Waits until the clock threads of engines without modules have ended, at most 50 ms each. A
+/// program must call this before it unloads this code.
 pub fn end_wasm_clocks() {
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));
     let (live, ended): (Vec<Clock>, Vec<Clock>) =
@@ -78,7 +78,7 @@ impl ClockedEngine {
         Ok(Self { engine, tick })
     }
 
-    /// Converts a time to ticks: rounded up, and one more because the first tick may come
+    /// Converts a time to ticks. Rounds up and adds one, because the first tick may come
     /// immediately.
     pub(super) fn ticks(&self, time: Duration) -> u64 {
         let ticks = time.as_nanos().div_ceil(self.tick.as_nanos().max(1));
@@ -86,7 +86,7 @@ impl ClockedEngine {
     }
 }
 
-/// Returns an engine without a clock; a clock is needed only to run modules.
+/// Returns an engine without a clock, which is needed only to run modules.
 pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, CompileError> {
     let mut config = Config::new();
     if effort == Effort::Quick {
@@ -99,8 +99,8 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Comp
         .consume_fuel(limits.fuel.is_some())
         .max_wasm_stack(limits.stack_bytes)
         .signals_based_traps(limits.engine == WasmEngine::Signals)
-        // Relaxed operations have different results on different machines; calls use one 32-bit
-        // memory.
+        // Relaxed operations have different results on different machines. The calls here support
+        // only one 32-bit memory.
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)
         .wasm_multi_memory(false);

@@ -1,13 +1,13 @@
-//! An upper bound of the time that compiling a module takes, computed before compilation.
+//! An upper bound of the time for compiling a module, computed before compilation.
 //!
-//! The compiler's time and memory grow faster than a module: with the operators of one function,
-//! with values that are live across branches or merge where blocks end, and with nested blocks.
-//! Each of these is a term of the sum. For the modules that it was compared with, the sum is a
-//! bound within a factor of three.
+//! The compiler's time and memory can grow faster than the module: with the number of operators in
+//! one function, with values that are live across branches or merge where blocks end, and with
+//! nested blocks. Each of these is a term of the sum. For the modules it was compared with, the sum
+//! bounds the time within a factor of three.
 //!
-//! Above the bound a module is compiled without optimisation and with a single-pass register
-//! allocator ([`super::engine::Effort::Quick`]), which is nearly linear; above that one it is
-//! refused.
+//! A module whose bound exceeds the limit is compiled without optimisation and with a single-pass
+//! register allocator ([`super::engine::Effort::Quick`]), which takes nearly linear time. If that
+//! bound exceeds the limit as well, the module is refused.
 
 use wasmparser::{
     BinaryReaderError, FuncValidator, FunctionBody, Operator, OperatorsReader, Parser, Payload,
@@ -16,20 +16,19 @@ use wasmparser::{
 
 use super::compile_error::CompileError;
 
-/// Longest compilation times of a module, microseconds.
+/// Upper bounds of a module's compilation time, microseconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Estimate {
     /// With all optimisations.
     pub(super) optimised_us: f64,
-    /// With only those steps whose time is nearly proportional to the module's size.
+    /// With only the steps whose time is nearly proportional to the module's size.
     pub(super) quick_us: f64,
 }
 
 /// Estimates the compilation time of a module.
 ///
-/// # Errors
-/// When it is not a valid module of WebAssembly 2.0, the version that models may use (specification
-/// of the model ABI, section 7).
+/// When it is not a valid module of WebAssembly 2.0, the version that models may use (section 7 of
+/// the model ABI's specification).
 pub(super) fn estimate(module: &[u8]) -> Result<Estimate, CompileError> {
     let mut validator = Validator::new_with_features(WasmFeatures::WASM2);
     let mut all = Estimate::default();
@@ -76,7 +75,7 @@ fn function_us(
     Ok(cost.estimate())
 }
 
-/// The cost of a function's operators so far.
+/// The accumulated cost of a function's operators.
 struct Cost {
     us: Estimate,
     locals: f64,
@@ -84,16 +83,16 @@ struct Cost {
     blocks: f64,
     /// Values that may differ between the paths to a merge point, summed over all paths.
     joined: f64,
-    /// The blocks that contain the operator, the function's body first.
+    /// The blocks that contain the operator, from the function's body inwards.
     around: Vec<Block>,
 }
 
-/// A block whose end has not been read.
+/// A block whose end has not been read yet.
 struct Block {
     is_loop: bool,
-    /// Paths to the block's merge point: its end, or the head of a loop.
+    /// Number of paths to the block's merge point: its end, or the head of a loop.
     ways: f64,
-    /// Assignments to locals within it.
+    /// Number of assignments to locals within it.
     assigned: f64,
 }
 
@@ -156,8 +155,8 @@ impl Cost {
         self.us.quick_us += live * (0.7 + 0.00005 * depth);
     }
 
-    /// At a merge point, a local that was assigned in the block may have a different value on each
-    /// path.
+    /// Leaves a block. At its merge point, a local that was assigned in the block may have a
+    /// different value on each path.
     fn leave(&mut self) {
         let Some(block) = self.around.pop() else {
             return;
@@ -168,7 +167,7 @@ impl Cost {
         }
     }
 
-    /// Adds a branch; a branch to a loop merges all live values there.
+    /// Adds a branch. A branch to a loop merges all live values there.
     fn branch(&mut self, relative_depth: u32, live: f64) {
         let at = self.around.len().checked_sub(1 + relative_depth as usize);
         let target = at.and_then(|at| self.around.get_mut(at));
@@ -206,7 +205,7 @@ impl Estimate {
     }
 }
 
-/// Returns the time of an operator beyond that of a simple one, microseconds.
+/// Returns how much longer an operator takes than a simple one, microseconds.
 fn more_us(operator: &Operator<'_>) -> f64 {
     use Operator as O;
     match operator {
@@ -232,7 +231,7 @@ fn more_us(operator: &Operator<'_>) -> f64 {
 mod tests {
     use super::*;
 
-    /// A function of a hundred nested blocks, each with assignments and with branches to outer
+    /// A function with a hundred nested blocks, each with assignments and with branches to outer
     /// blocks, took 1.25 s of processor time to compile with all optimisations.
     #[test]
     fn branches_out_of_nested_blocks_take_long() {

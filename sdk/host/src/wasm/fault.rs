@@ -4,14 +4,14 @@ use htex_model::Status;
 
 use crate::sandbox::BudgetError;
 
-/// An error of a call of a module, after which its instance is not used again.
+/// An error of calling a module, after which its instance is not used again.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(super) enum Fault {
     #[error(transparent)]
     Budget(#[from] BudgetError),
     #[error("the voice takes more than {times} times the duration of its samples to render")]
     VoiceTime { times: f64 },
-    /// The time of the voice, or of the modules together, was used up during the call.
+    /// The voice's time, or the time of all modules together, ran out during the call.
     #[error("the module was stopped: {0}")]
     Stopped(Box<Self>),
     /// A resource was refused, or the engine reported an error that is not a trap.
@@ -27,7 +27,7 @@ pub(super) enum Fault {
     Unreachable,
     #[error("the module trapped: {0}")]
     Trap(String),
-    /// An error of the module's start function.
+    /// An error in the module's start function.
     #[error("at its start: {0}")]
     Start(Box<Self>),
     #[error("the module exports no `memory`")]

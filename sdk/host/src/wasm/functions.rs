@@ -1,9 +1,9 @@
-//! The functions of a module. Each engine finds them by name.
+//! The functions of a module, which each engine finds by name.
 
 use super::fault::Fault;
 use super::typed::{Parameters, Returned, TypedFunc};
 
-/// Addresses and lengths in the module's memory.
+/// An address or length in the module's memory.
 pub(super) type Usize = u32;
 
 /// Finds the functions of an instance.
@@ -28,7 +28,7 @@ pub(super) struct Functions {
     pub(super) voice_retune: TypedFunc<(i64, Usize, Usize), i64>,
     pub(super) voice_free: TypedFunc<i64, i64>,
     pub(super) extension: TypedFunc<(Usize, Usize), i64>,
-    /// If the model has the extension `htex.motion/1`.
+    /// Present if the model has the extension `htex.motion/1`.
     pub(super) motion: Option<MotionFunctions>,
     pub(super) alloc: TypedFunc<Usize, Usize>,
     pub(super) free: TypedFunc<(Usize, Usize), ()>,
@@ -49,7 +49,7 @@ type MotionFitParams =
 type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 
 impl Functions {
-    /// Finds all functions; those of `htex.motion/1` if the model has the extension.
+    /// Finds all functions. `motion` says whether to include those of `htex.motion/1`.
     pub(super) fn of(module: &mut impl Find, motion: bool) -> Result<Self, Fault> {
         Ok(Self {
             abi_version: module.find("htex_model_abi_version")?,

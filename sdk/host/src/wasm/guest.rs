@@ -1,4 +1,4 @@
-//! An instance in wasmtime.
+//! A module instance that runs in wasmtime.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -11,14 +11,14 @@ use super::module::WasmModule;
 use super::typed::{Parameters, Returned, TypedFunc};
 use super::usage::Usage;
 
-/// A store, and the memory in it.
+/// A store and the instance's memory in it.
 pub(super) struct Guest {
     store: Store<Usage>,
     memory: Memory,
 }
 
 impl Guest {
-    /// Makes an instance, and finds its functions.
+    /// Creates an instance and finds its functions.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<(Self, Functions), Fault> {
         let limits = &module.limits;
         let usage = Usage::new(limits, &module.budget)?;
@@ -37,7 +37,7 @@ impl Guest {
         Ok((Self { store, memory }, functions))
     }
 
-    /// Calls a function, which is stopped after a time.
+    /// Calls a function and stops it when its time is over.
     pub(super) fn call<P: Parameters, R: Returned>(
         &mut self,
         module: &WasmModule,
@@ -49,7 +49,7 @@ impl Guest {
         function.call(&mut self.store, parameters)
     }
 
-    /// The result of a call that could take `most`.
+    /// Checks the result of a call that was allowed to take `most`.
     pub(super) fn returned<R>(
         &mut self,
         module: &WasmModule,
@@ -89,7 +89,7 @@ fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtim
     }
 }
 
-/// A new instance, and its store.
+/// A new instance with its store.
 struct Exports<'a> {
     store: &'a mut Store<Usage>,
     raw: &'a Instance,
@@ -110,7 +110,7 @@ impl Find for Exports<'_> {
     }
 }
 
-/// What memories hold, little-endian.
+/// A number in a module's memory, little-endian.
 pub(super) trait Number: Sized {
     fn read(bytes: &[u8], out: &mut [Self]);
     fn write(numbers: &[Self], bytes: &mut [u8]);

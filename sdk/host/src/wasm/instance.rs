@@ -1,5 +1,5 @@
 //! One instance of a module: its functions, and a buffer in its memory for arguments and results.
-//! Shared by both engines, whose part is `guest`.
+//! Both engines share this code; their own part is `guest`.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,13 +17,13 @@ pub(super) struct Instance {
     module: Arc<WasmModule>,
     guest: Guest,
     functions: Functions,
-    /// The time of a voice; the time of other calls is part of the modules' budget.
+    /// The time of a voice. Other calls use the time of the modules' budget.
     allowance: Option<Allowance>,
     /// Address and length of the buffer; length 0 until it is allocated.
     buffer: (Usize, Usize),
 }
 
-/// Bytes behind an array, by which a call that writes beyond it is found.
+/// Guard bytes behind an array, which reveal a call that writes beyond it.
 const GUARD: [u8; 4096] = [0xA5; 4096];
 
 /// The time limit of a call.
@@ -34,25 +34,25 @@ pub(super) enum Deadline {
 }
 
 impl Instance {
-    /// Makes an instance, which runs the module's start function.
+    /// Creates an instance and runs the module's start function.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<Self, Fault> {
         let (guest, functions) = Guest::new(module)?;
         Ok(Self { module: Arc::clone(module), guest, functions, allowance: None, buffer: (0, 0) })
     }
 
-    /// Makes this the instance of a voice, which renders at a rate and has a separate time limit.
+    /// Makes this the instance of a voice that renders at a rate, with a separate time limit.
     pub(super) fn limit_as_voice(&mut self, rate_hz: f64) {
         self.allowance = Some(Allowance::new(rate_hz));
     }
 
-    /// Adds the time that rendered samples allow.
+    /// Adds the time that is allowed for rendered samples.
     pub(super) fn earn(&mut self, samples: usize) {
         if let Some(allowance) = &mut self.allowance {
             allowance.earn(samples);
         }
     }
 
-    /// Returns the time left to this instance.
+    /// Returns the time left for this instance.
     fn time_left(&self) -> Result<Duration, Fault> {
         match &self.allowance {
             Some(allowance) => allowance.left(),
@@ -77,7 +77,7 @@ impl Instance {
         self.call_if(deadline, |functions| Some(function(functions)), parameters)
     }
 
-    /// As [`Self::call`], of a function that only some models have.
+    /// Calls a function as [`Self::call`] does, but one that only some models have.
     pub(super) fn call_if<P: Parameters, R: Returned>(
         &mut self,
         deadline: Deadline,
@@ -112,8 +112,8 @@ impl Instance {
         self.guest.memory_bytes()
     }
 
-    /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's
-    /// memory. The buffer is reallocated only for more bytes.
+    /// Returns the address of a buffer in the module's memory with at least `bytes` bytes, a
+    /// multiple of 8. The buffer is reallocated only if it is too small.
     pub(super) fn buffer(&mut self, bytes: usize) -> Result<Usize, Fault> {
         let bytes = if self.module.limits.guards { bytes + GUARD.len() } else { bytes };
         if bytes <= self.buffer.1 as usize {
@@ -136,7 +136,7 @@ impl Instance {
         Ok(at)
     }
 
-    /// Writes numbers at an address; returns the address after them.
+    /// Writes numbers at an address and returns the address after them.
     pub(super) fn write(&mut self, at: Usize, numbers: &[f64]) -> Result<Usize, Fault> {
         self.guest.write(at, numbers)?;
         Ok(at + (numbers.len() * 8) as Usize)
@@ -146,13 +146,13 @@ impl Instance {
         self.guest.write(at, text)
     }
 
-    /// Writes guard bytes behind an array, if the limits want them.
+    /// Writes guard bytes behind an array, if the limits ask for them.
     pub(super) fn guard(&mut self, behind: Usize) -> Result<(), Fault> {
         if self.module.limits.guards { self.guest.write(behind, &GUARD) } else { Ok(()) }
     }
 
-    /// Fails if a call wrote to the guard bytes behind an array of `len` values, which is the
-    /// argument `bound`.
+    /// Fails if a call wrote to the guard bytes behind an array of `len` values. The argument
+    /// `bound` states that length.
     pub(super) fn unharmed(
         &self,
         behind: Usize,

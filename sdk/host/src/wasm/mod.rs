@@ -1,9 +1,9 @@
-//! Models in WASM modules, in a sandbox.
+//! Models in WASM modules, which run in a sandbox.
 //!
-//! A module imports nothing, so it has no access to files, clocks or threads. Its memory, stack and
-//! time are limited ([`WasmLimits`](crate::WasmLimits)), and so is its compilation. Each voice has
-//! a separate instance with separate memory: a trap does not affect other voices, and rendering
-//! takes no lock. All other calls share one instance, which is recreated after a trap.
+//! A module imports nothing, so it has no access to files, clocks or threads. Its memory, stack,
+//! time and compilation are limited ([`WasmLimits`](crate::WasmLimits)). Each voice has a separate
+//! instance with separate memory, so a trap does not affect other voices, and rendering takes no
+//! lock. All other calls share one instance, which is recreated after a trap.
 
 mod allowance;
 mod cache;
@@ -38,7 +38,7 @@ use crate::HostError;
 use crate::error::Loading;
 use crate::sandbox::Sandbox;
 
-/// Loads a model from the bytes of a module; messages name `origin`.
+/// Loads a model from the bytes of a module. `origin` names it in messages.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let module = WasmModule::new(bytes, sandbox).loading(origin)?;
     WasmModel::new(origin, Arc::new(module))
@@ -50,7 +50,7 @@ pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, Hos
     load(&origin, &bytes, sandbox)
 }
 
-/// Reads a file, at most one byte more than the limit.
+/// Reads a file up to one byte more than the limit, so that a file over the limit is noticed.
 fn read(path: &Path, most: usize) -> std::io::Result<Vec<u8>> {
     use std::io::Read;
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! A model in a module: the calls except those of voices.
+//! A model in a module: all calls except calls of voices.
 
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -24,12 +24,12 @@ std::thread_local! {
 pub(crate) struct WasmModel {
     module: Arc<WasmModule>,
     marker: u32,
-    /// The instance of all calls except those of voices; none after a trap.
+    /// The instance for all calls except calls of voices; `None` after a trap.
     shared: Mutex<Option<Instance>>,
 }
 
 impl WasmModel {
-    /// Makes the first instance and checks the marker.
+    /// Creates the first instance and checks the marker.
     pub(super) fn new(origin: &str, module: Arc<WasmModule>) -> Result<Self, HostError> {
         let mut instance = first(&module, origin)?;
         let marker = instance.abi_version().map_err(|fault| HostError::Call {
@@ -39,7 +39,7 @@ impl WasmModel {
             message: fault.to_string(),
         })?;
         check_marker(origin, marker)?;
-        // A module that fails here does not have the extension, and a failed instance is not used
+        // A module that fails here does not have the extension. A failed instance is not used
         // again.
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
@@ -52,7 +52,7 @@ impl WasmModel {
         Ok(Self { module, marker, shared: Mutex::new(shared) })
     }
 
-    /// Calls the shared instance; `failed` converts a status to the result of a failed call.
+    /// Calls the shared instance. `failed` converts a status to the result of a failed call.
     fn call<T: Copy>(
         &self,
         failed: impl Fn(i64) -> T,
@@ -82,7 +82,7 @@ impl WasmModel {
     }
 }
 
-/// An instance of a module that is loaded: it may lack a function.
+/// Creates the first instance of a module. The module may lack a function.
 fn first(module: &Arc<WasmModule>, origin: &str) -> Result<Instance, HostError> {
     match Instance::new(module) {
         Err(Fault::NoFunction { name }) => {

@@ -1,4 +1,4 @@
-//! A module that is checked and compiled.
+//! A checked and compiled module.
 
 use std::sync::Arc;
 

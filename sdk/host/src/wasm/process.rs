@@ -10,7 +10,7 @@ use super::compile_error::{CompileError, CompilerError};
 use super::engine::{Effort, engine, here};
 use crate::{WasmEngine, WasmLimits};
 
-/// The first byte of a reply: machine code follows, or an error message.
+/// The first byte of a reply. It says whether machine code or an error message follows.
 const COMPILED: u8 = 0;
 const REFUSED: u8 = 1;
 
@@ -37,7 +37,7 @@ pub(super) fn compile(
     let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
     let (sender, receiver) = mpsc::channel();
     let result = std::thread::scope(|scope| {
-        // A process that ends early is detected by its missing reply.
+        // If the process ends early, its missing reply reveals that.
         scope.spawn(move || stdin.map(|mut pipe| pipe.write_all(module)));
         scope.spawn(move || {
             let mut bytes = Vec::new();
@@ -65,7 +65,7 @@ pub(super) fn compile(
 
 /// Compiles the module on standard input and writes the result to standard output. A host starts
 /// the program of [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments given there,
-/// and these `arguments` after them. On Unix the process first limits its memory and its processor
+/// followed by these `arguments`. On Unix, the process first limits its memory and its processor
 /// time.
 ///
 /// ```no_run
@@ -154,7 +154,7 @@ impl Request {
         Ok(module.serialize()?)
     }
 
-    /// Sets the limits that end this process when they are exceeded, without a core dump.
+    /// Sets limits that end this process if it exceeds them, without a core dump.
     #[cfg(unix)]
     fn limit_this_process(self) -> Result<(), CompilerError> {
         use rustix::process::{Resource, Rlimit, setrlimit};

@@ -1,9 +1,9 @@
-//! What the instances of a module share.
+//! The data that all instances of a module share.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// The voices of a module, and whether it has the extension `htex.motion/1`.
+/// The number of a module's voices, and whether it has the extension `htex.motion/1`.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     voices: AtomicUsize,
@@ -21,7 +21,7 @@ impl Shared {
         self.follows_motion.store(true, Ordering::Relaxed);
     }
 
-    /// Counts one more voice; `None` when there are `most`.
+    /// Counts one more voice; `None` if there are already `most`.
     pub(super) fn place(self: &Arc<Self>, most: usize) -> Option<VoicePlace> {
         let take = |n: usize| (n < most).then_some(n + 1);
         let taken = self.voices.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
@@ -29,7 +29,7 @@ impl Shared {
     }
 }
 
-/// The count of one voice, released when it is dropped.
+/// One counted voice, released when it is dropped.
 pub(super) struct VoicePlace(Arc<Shared>);
 
 impl Drop for VoicePlace {

@@ -1,4 +1,4 @@
-//! Errors of the engine as faults.
+//! Converts errors of the engine to faults.
 
 use wasmtime::Trap;
 
@@ -6,10 +6,10 @@ use super::fault::Fault;
 use crate::WasmLimits;
 
 impl Fault {
-    /// Converts an error of the engine; the message of an exceeded limit names the limit.
+    /// Converts an error of the engine. The message of an exceeded limit names the limit.
     pub(super) fn of(error: &wasmtime::Error, limits: &WasmLimits, deadline_ms: u128) -> Self {
         let Some(trap) = error.downcast_ref::<Trap>() else {
-            // An error of `Usage` is not a trap. Its context, the running functions one per line,
+            // An error of `Usage` is not a trap. Its context, one line for each running function,
             // is left out.
             return Self::Refused { what: error.root_cause().to_string() };
         };

@@ -1,3 +1,3 @@
-//! Typed functions, by the names that both engines have for them.
+//! Typed functions, under the names that both engines use for them.
 
 pub(super) use wasmtime::{TypedFunc, WasmParams as Parameters, WasmResults as Returned};

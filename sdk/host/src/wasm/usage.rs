@@ -7,10 +7,10 @@ use wasmtime::ResourceLimiter;
 use crate::WasmLimits;
 use crate::sandbox::{Budget, BudgetError};
 
-/// Most tables of a module.
+/// Maximum number of tables of a module.
 const TABLES: usize = 4;
 
-/// An instance's part of the budget, released when it is dropped.
+/// An instance's share of the budget, released when it is dropped.
 pub(super) struct Usage {
     budget: Arc<Budget>,
     memory_bytes: usize,
@@ -38,8 +38,8 @@ impl Drop for Usage {
     }
 }
 
-/// An instance that exceeds a limit is stopped: an error here is a trap, while `false` would only
-/// be the result of its instruction.
+/// Stops an instance that exceeds a limit. An error here is a trap, whereas `false` would only be
+/// the result of the instruction.
 impl ResourceLimiter for Usage {
     fn memory_growing(
         &mut self,

@@ -19,13 +19,13 @@ pub(super) struct WasmVoice {
     instance: Instance,
     handle: i64,
     last_error: String,
-    /// Whether the instance trapped; it is then not called again.
+    /// Whether the instance trapped. If so, it is not called again.
     faulted: bool,
     _place: VoicePlace,
 }
 
 impl WasmVoice {
-    /// Makes a voice; an error is a status and its text.
+    /// Creates a voice. An error is a status with its text.
     pub(super) fn new(
         module: &Arc<WasmModule>,
         place: VoicePlace,
@@ -119,7 +119,7 @@ impl RawVoice for WasmVoice {
     }
 }
 
-/// Copies as many bytes as fit; returns the length of the whole text.
+/// Copies as many bytes as fit and returns the length of the whole text.
 pub(super) fn copy_text(text: &str, out: &mut [u8]) -> i64 {
     let n = text.len().min(out.len());
     out[..n].copy_from_slice(&text.as_bytes()[..n]);

@@ -7,7 +7,7 @@ use htex_host::{HostError, LoadedModel, WasmCache, WasmLimits};
 
 pub const ID: &str = "org.example.hostile";
 
-/// Name, signature and valid body of each function.
+/// The name, signature and valid body of each function.
 pub const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("abi_version", "(result i32)", "(i32.const 0x48540100)"),
     (
@@ -60,8 +60,8 @@ pub const FUNCTIONS: &[(&str, &str, &str)] = &[
 /// Value of the model's samples: the bytes 3e3e3e3e.
 pub const SAMPLE: f32 = f32::from_bits(0x3e3e_3e3e);
 
-/// Returns the text of a model of this version, with other bodies for some functions and additional
-/// module fields.
+/// Returns the text of a model with this version. `changed` replaces the bodies of some functions,
+/// and `fields` adds fields to the module.
 pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let json = format!(
         r#"{{"id":"{ID}","name":"H","version":"{version}","summary":"S.","fields":[{{"name":"x","unit":"1","kind":{{"type":"scalar"}},"min":0,"max":1,"store":{{"type":"f32"}},"description":"X."}}]}}"#
@@ -69,7 +69,7 @@ pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
     with_descriptor(&json, changed, fields)
 }
 
-/// As [`text`], with another descriptor.
+/// Returns the text of a model as [`text`] does, but with another descriptor.
 pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let mut functions = String::new();
     for (name, signature, body) in FUNCTIONS {
@@ -109,7 +109,7 @@ pub fn load_within(wat: &str, limits: &WasmLimits) -> Result<LoadedModel, HostEr
     LoadedModel::from_wasm_bytes("test.htex", &wat::parse_str(wat).unwrap(), limits)
 }
 
-/// Loads the model with other bodies for some functions.
+/// Loads the model with the bodies of some functions replaced.
 pub fn load(changed: &[(&str, &str)]) -> Result<LoadedModel, HostError> {
     load_within(&text("1.0.0", changed, ""), &limits())
 }

@@ -17,6 +17,7 @@ impl Growth {
     /// Runs a tenth of `count` repetitions as a warm-up, then `count`, and measures the growth over
     /// the latter. `of` is the plural name of the repeated object.
     ///
+    /// # Errors
     /// The errors of `repeat`.
     pub fn measure(
         count: usize,
@@ -33,6 +34,7 @@ impl Growth {
 
 /// Checks that memory does not grow while something plays and while it is opened and closed.
 ///
+/// # Errors
 /// A failed finding if memory grows by more than 2 MiB in either case, and the errors of `measure`.
 /// A skipped finding if resident memory cannot be read.
 pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {

@@ -27,6 +27,7 @@ pub(super) struct Estimate {
 
 /// Estimates the compilation time of a module.
 ///
+/// # Errors
 /// When it is not a valid module of WebAssembly 2.0, the version that models may use (section 7 of
 /// the model ABI's specification).
 pub(super) fn estimate(module: &[u8]) -> Result<Estimate, CompileError> {

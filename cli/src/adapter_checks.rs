@@ -1,4 +1,4 @@
-//! What `htex device check` and `htex source check` share.
+//! The common part of `htex device check` and `htex source check`.
 
 use std::ffi::OsString;
 
@@ -11,24 +11,24 @@ use crate::failure::Failure;
 use crate::hints::with_quoted;
 use crate::output::print_json;
 
-/// A device or source to check.
+/// A device or source to be checked.
 pub(crate) struct Checked<'a, A: CheckedKind + ?Sized> {
     /// A short name, an id or a library file.
     pub(crate) name: &'a str,
     pub(crate) subject: Subject<A>,
-    /// Arguments that say where it comes from, for another run of this program.
+    /// The arguments that say where to find it, for another run of this program.
     pub(crate) places: Vec<OsString>,
     pub(crate) settings: &'a SettingArgs,
 }
 
 impl<A: CheckedKind + ?Sized> Checked<'_, A> {
-    /// Runs all checks, or one in this process.
+    /// Runs all checks, or a single one in this process.
     pub(crate) fn run(self, checking: &CheckArgs) -> Result<Exit, Failure> {
         if let Some(name) = &checking.reproduce {
             return checking.print_one(name, &self.run_one(name)?, with_quoted);
         }
-        // A wrong setting is reported once, not by each check; so is a wrong name, of which there
-        // is no subject.
+        // A wrong setting is reported once, and not by each check. The same holds for a wrong name,
+        // which names nothing to check.
         self.settings.given()?;
         let (kind, adapter) = (A::WORD, self.name);
         let mut arguments = vec![kind.into(), "check-one".into()];

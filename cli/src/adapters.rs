@@ -1,4 +1,4 @@
-//! What arguments and listings of devices and of sources share.
+//! The common part of arguments and listings for devices and for sources.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -13,17 +13,18 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::output::{tamed, warn};
 
-/// The places of a search: named files and folders, then those of the environment and of the user.
+/// Returns the places to search: the named files and folders, then the environment's and the
+/// user's.
 pub(crate) fn search(files: &[PathBuf], dirs: &[PathBuf]) -> Search {
     Search { files: files.to_vec(), dirs: dirs.to_vec(), ..Search::default() }
 }
 
-/// Each path behind its flag, for another run of this program.
+/// Returns each path after its flag, for another run of this program.
 pub(crate) fn again<'a>(pairs: impl Iterator<Item = (&'static str, &'a PathBuf)>) -> Vec<OsString> {
     pairs.flat_map(|(flag, path)| [flag.into(), path.into()]).collect()
 }
 
-/// The adapter in the file of this name if there is one, else that of this short name or id.
+/// Finds an adapter: the library file of this name if it exists, else the short name or id.
 pub(crate) fn named<A: AdapterKind + ?Sized>(
     name: &str,
     known: impl FnOnce() -> Result<Registry<A>, Failure>,
@@ -35,7 +36,7 @@ pub(crate) fn named<A: AdapterKind + ?Sized>(
     Ok(known()?.find(name)?.clone())
 }
 
-/// As [`named`], for a checker, which loads a library itself.
+/// Finds an adapter as [`named`] does, but for a checker, which loads a library itself.
 pub(crate) fn subject<A: AdapterKind + ?Sized>(
     name: &str,
     known: impl FnOnce() -> Result<Registry<A>, Failure>,
@@ -50,15 +51,15 @@ pub(crate) fn subject<A: AdapterKind + ?Sized>(
     })
 }
 
-/// Reports the notes of a search on standard error.
+/// Prints the notes of a search on standard error.
 pub(crate) fn reported<A: AdapterKind + ?Sized>(found: Registry<A>) -> Registry<A> {
     let notes: Vec<String> = found.notes().iter().map(ToString::to_string).collect();
     warn(&notes);
     found
 }
 
-/// An adapter and what is connected. A missing driver is reported beside the adapter and is not an
-/// error.
+/// Describes an adapter and the connected devices as JSON. A missing driver is reported with the
+/// adapter and is not an error.
 pub(crate) fn listed_json<A: AdapterKind + ?Sized>(known: &Known<A>) -> Value {
     let descriptor = known.descriptor();
     let (endpoints, problem) = match known.endpoints() {
@@ -82,7 +83,8 @@ pub(crate) fn listed_json<A: AdapterKind + ?Sized>(known: &Known<A>) -> Value {
     listed
 }
 
-/// All adapters of a kind, with their settings, what is connected, and the notes of the search.
+/// Describes all adapters of a kind as text: settings, connected devices, and the notes of the
+/// search.
 pub(crate) fn listed_text<A: AdapterKind + ?Sized>(all: &Registry<A>) -> String {
     let mut text = format!("{}s\n", A::WORD);
     text.extend(all.all().iter().map(adapter_text));
@@ -112,7 +114,7 @@ fn adapter_text<A: AdapterKind + ?Sized>(known: &Known<A>) -> String {
     text
 }
 
-/// A descriptor with all settings and profiles.
+/// Describes an adapter with all its settings and profiles as text.
 pub(crate) fn descriptor_text(descriptor: &Descriptor) -> String {
     let Descriptor { id, name, version, summary, .. } = descriptor;
     let settings: String = descriptor.settings.iter().map(setting).collect();

@@ -16,9 +16,9 @@ use crate::columns::{Column, cells, columns, headings};
 
 /// The summary of an asset that `fit` and `info` print.
 ///
-/// The manifest is not flattened into it, because its JSON differs: `name` precedes `htex`, empty
-/// `tags` and a false `simulated` are written, the band is a list, and plugins and representations
-/// have their sizes and their numbers.
+/// The manifest is not flattened into it, because its JSON differs. In the summary, `name` precedes
+/// `htex`, empty `tags` and a false `simulated` are written, the band is a list, and plugins and
+/// representations include their sizes and numbers.
 #[derive(Serialize)]
 pub(crate) struct AssetSummary {
     pub(crate) asset: String,
@@ -41,7 +41,7 @@ pub(crate) struct AssetSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     finger: Option<String>,
     contact: Contact,
-    /// Stated, else assumed.
+    /// The stated law, else the assumed one.
     law: Law,
     simulated: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,7 +53,7 @@ pub(crate) struct AssetSummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     plugins: Vec<PluginSummary>,
     pub(crate) representations: Vec<RepresentationSummary>,
-    /// The grid that the conditions were gathered in, after a fit.
+    /// After a fit: the grid in which the conditions were collected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) grid: Option<GridReport>,
     pub(crate) repeatability_rms_db: Option<f64>,
@@ -72,7 +72,7 @@ struct PluginSummary {
     signed_by: Option<String>,
 }
 
-/// One representation; the keys of its first condition stand at its own level.
+/// One representation. The keys of its first condition are at the same level as its own keys.
 #[derive(Serialize)]
 pub(crate) struct RepresentationSummary {
     pub(crate) model: String,
@@ -80,12 +80,12 @@ pub(crate) struct RepresentationSummary {
     pub(crate) payload_bytes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fit_ms: Option<f64>,
-    /// Those that are stored: players interpolate in them.
+    /// The stored triangles, in which players interpolate.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     triangles: Vec<Triangle>,
     #[serde(flatten)]
     pub(crate) first: AtSummary,
-    /// All conditions, where there are several.
+    /// All conditions, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     at: Vec<AtSummary>,
 }
@@ -98,7 +98,7 @@ pub(crate) struct AtSummary {
     level_rms: f64,
     #[serde(flatten)]
     pub(crate) quality: Option<Quality>,
-    /// What is felt of the difference, after a fit.
+    /// After a fit: the part of the difference that can be felt.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) felt: Option<FeltError>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -147,7 +147,7 @@ impl AssetSummary {
         }
     }
 
-    /// Adds what is felt of the differences, by representation and condition.
+    /// Adds the felt part of the differences, by representation and condition.
     pub(crate) fn with_felt(mut self, felt: &[Vec<Option<FeltError>>]) -> Self {
         for (representation, felt) in self.representations.iter_mut().zip(felt) {
             representation.first.felt = felt.first().copied().flatten();
@@ -158,12 +158,12 @@ impl AssetSummary {
         self
     }
 
-    /// Adds warnings for the reader.
+    /// Adds a warning for the reader.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
     }
 
-    /// The summary as a person reads it.
+    /// Formats the summary as text.
     pub(crate) fn to_text(&self) -> String {
         let mut text = format!("{}: {} bytes\n", plain(&self.asset), self.bytes);
         let kind = if self.simulated { " (simulated)" } else { "" };
@@ -212,7 +212,7 @@ impl AssetSummary {
 }
 
 impl AssetSummary {
-    /// The metadata of the surface and its recording, a line each.
+    /// Lists the metadata of the surface and its recording, one line each.
     fn metadata_text(&self) -> String {
         let tags = Some(self.tags.join(", ")).filter(|tags| !tags.is_empty());
         let lines = [
@@ -233,7 +233,7 @@ impl AssetSummary {
 }
 
 impl AssetSummary {
-    /// How many triangles each representation stores, of those that store them.
+    /// Says how many triangles each representation stores, for representations that store any.
     fn triangles_text(&self) -> String {
         let stored = self.representations.iter().filter(|r| !r.triangles.is_empty());
         let line = |r: &RepresentationSummary| {
@@ -245,8 +245,8 @@ impl AssetSummary {
 }
 
 impl AssetSummary {
-    /// The errors of blocks of time that were left out, of each model, where they are known: RMS
-    /// and largest over the conditions.
+    /// Lists each model's error on held-out blocks of time, if known: RMS and largest value over
+    /// the conditions.
     fn left_out_text(&self) -> String {
         let measures = LeftOut::measures().filter(|m| m.row().column.is_some());
         let mut text = String::new();
@@ -275,7 +275,7 @@ fn left_out_heading(measure: Measure) -> String {
     format!("  {column}: RMS  largest")
 }
 
-/// The cells under [`left_out_heading`].
+/// Returns the table cells under [`left_out_heading`].
 fn spread_cells(measure: Measure, spread: Option<Spread>) -> String {
     let width = left_out_heading(measure).len() - "    largest".len();
     match spread {
@@ -284,14 +284,14 @@ fn spread_cells(measure: Measure, spread: Option<Spread>) -> String {
     }
 }
 
-/// RMS and largest of some errors.
+/// The RMS and the largest value of some errors.
 struct Spread {
     rms: f64,
     largest: f64,
 }
 
 impl Spread {
-    /// `None` without errors.
+    /// Computes them; `None` if there are no errors.
     fn of(errors: impl Iterator<Item = f64>) -> Option<Self> {
         let errors: Vec<f64> = errors.collect();
         let squares: f64 = errors.iter().map(|error| error * error).sum();
@@ -303,13 +303,13 @@ impl Spread {
 }
 
 impl RepresentationSummary {
-    /// The representation at all its conditions.
+    /// Returns the representation at all its conditions.
     fn all(&self) -> &[AtSummary] {
         if self.at.is_empty() { std::slice::from_ref(&self.first) } else { &self.at }
     }
 
-    /// Counts the conditions whose difference is below the difference threshold, and those within
-    /// what their recording varies.
+    /// Counts the conditions whose difference is below the difference threshold, and those whose
+    /// difference is within the variation of their recording.
     pub(crate) fn count(&self, share: &mut FeltShare) {
         let felt = self.all().iter().filter_map(|at| at.felt.as_ref());
         felt.for_each(|felt| share.count(felt));
@@ -321,7 +321,7 @@ impl RepresentationSummary {
     }
 }
 
-/// The models embedded in an asset; signatures of a valid asset are valid.
+/// Lists the models embedded in an asset. The signatures of a valid asset are valid.
 fn plugins(asset: &htex_format::Asset) -> Vec<PluginSummary> {
     let both = asset.manifest.plugins.iter().zip(&asset.plugins);
     both.map(|(plugin, module)| PluginSummary {
@@ -365,7 +365,7 @@ fn short_number(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Speed, force and repeatability of a condition, as far as they are known.
+/// Describes a condition's speed, force and repeatability, as far as they are known.
 fn condition_text(condition: &Condition) -> String {
     let mut text = motion_text(condition);
     match condition.segments {
@@ -381,7 +381,7 @@ fn condition_text(condition: &Condition) -> String {
     text
 }
 
-/// How an asset was made without a recording.
+/// Describes how an asset was made without a recording.
 fn made_text(made: &Made) -> String {
     let part = |of: &Ingredient| format!("{} of {}", of.weight, plain(&of.name));
     let parts: Vec<String> = made.from.iter().map(part).collect();
@@ -391,7 +391,7 @@ fn made_text(made: &Made) -> String {
     }
 }
 
-/// Speed and force of a condition, as far as they are known.
+/// Describes a condition's speed and force, as far as they are known.
 pub(crate) fn motion_text(condition: &Condition) -> String {
     let part = |value: Option<f64>, unit: &str, what: &str| {
         value.map_or(format!("{what} unknown"), |v| format!("{} {unit}", short_number(v)))
@@ -400,13 +400,13 @@ pub(crate) fn motion_text(condition: &Condition) -> String {
     format!("{speed}, {}", part(condition.force_n, "N", "force"))
 }
 
-/// The last part of a model's id.
+/// Returns the last part of a model's id.
 pub(crate) fn short_name(id: &str) -> &str {
     id.rsplit('.').next().unwrap_or(id)
 }
 
 impl RepresentationSummary {
-    /// `None` for a representation without conditions, which is not valid.
+    /// Summarises a representation; `None` if it has no conditions, which is invalid.
     fn new(r: &Representation, sets: &[Vec<f64>], payload_bytes: usize) -> Option<Self> {
         let at: Vec<AtSummary> =
             r.at.iter().zip(sets).map(|(at, set)| AtSummary::new(at, &r.fields, set)).collect();
@@ -435,7 +435,7 @@ impl AtSummary {
     }
 }
 
-/// A flat array of parameters by the names of its fields.
+/// Groups a flat array of parameters by the names of its fields.
 pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<String, Value> {
     let mut named = Map::new();
     for field in fields {
@@ -455,12 +455,12 @@ pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<
 }
 
 impl AtSummary {
-    /// What it has in a column.
+    /// Returns the value for a column of a table.
     pub(crate) fn measured(&self, column: Column) -> Option<f64> {
         column.of(self.quality.as_ref(), self.felt.as_ref())
     }
 
-    /// The lines of a model that is a sum of sines: hertz, newtons.
+    /// Returns the lines of a model that is a sum of sines, as pairs of hertz and newtons.
     pub(crate) fn lines(&self) -> Vec<(f64, f64)> {
         let list = |name: &str| {
             let values = self.parameters.get(name).and_then(Value::as_array);

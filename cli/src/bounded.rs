@@ -1,4 +1,4 @@
-//! Reading of files that may be too large.
+//! Reads files that may be too large.
 
 use std::fs::File;
 use std::io::Read;
@@ -9,7 +9,8 @@ use htex_format::Limits;
 
 use crate::failure::Failure;
 
-/// Returns a file's bytes; of a file that is larger than an asset may be, one more than allowed.
+/// Returns a file's bytes. If the file is larger than an asset may be, returns one byte more than
+/// is allowed.
 pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let most = Limits::default().file_bytes.saturating_add(1);

@@ -1,4 +1,4 @@
-//! What the commands that check models and devices share.
+//! The common part of the commands that check models and devices.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -31,7 +31,7 @@ pub(crate) struct CheckArgs {
 }
 
 impl CheckArgs {
-    /// Runs this program for each check, with these arguments first.
+    /// Returns a runner that starts this program for each check, with these arguments first.
     pub(crate) fn runner(
         &self,
         arguments: impl IntoIterator<Item = std::ffi::OsString>,
@@ -44,7 +44,7 @@ impl CheckArgs {
         })
     }
 
-    /// Prints the finding of a single check; `worded` replaces options of its message by flags.
+    /// Prints the finding of a single check. `worded` replaces options in its message by flags.
     pub(crate) fn print_one(
         &self,
         name: &str,
@@ -60,8 +60,8 @@ impl CheckArgs {
         Ok(exit_code(finding.outcome.is_bad()))
     }
 
-    /// Prints a report; `worded` replaces options of its messages by flags, and `again` is the
-    /// command that runs one check of it in a single process.
+    /// Prints a report. `worded` replaces options in its messages by flags. `again` is the command
+    /// that runs one of its checks in a single process.
     pub(crate) fn print_report<Subject: Display + Serialize>(
         &self,
         report: &Report<Subject>,

@@ -1,9 +1,9 @@
-//! Columns of measures in tables of text.
+//! Columns for measures in text tables.
 
 use htex_author::FeltError;
 use htex_format::{By, Measure, Quality};
 
-/// Least width, that of a correlation with its sign.
+/// Minimum width, which fits a correlation with its sign.
 const WIDTH: usize = 6;
 
 /// A column: a measure of the model's magnitudes or of rendered samples.
@@ -13,8 +13,8 @@ pub(crate) struct Column {
     by: By,
 }
 
-/// Those of these measures that have a column: of magnitudes, of rendered samples, and what no
-/// asset stores.
+/// Returns the measures that have a column, in this order: measures of magnitudes, measures of
+/// rendered samples, and measures that no asset stores.
 pub(crate) fn columns(measures: impl IntoIterator<Item = Measure>) -> Vec<Column> {
     let all: Vec<Measure> = measures.into_iter().collect();
     let (stored, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|m| m.row().stored);
@@ -24,13 +24,13 @@ pub(crate) fn columns(measures: impl IntoIterator<Item = Measure>) -> Vec<Column
     columns.filter(|column| !column.heading().is_empty()).collect()
 }
 
-/// The headings, each after two spaces.
+/// Returns the headings, each after two spaces.
 pub(crate) fn headings(columns: &[Column]) -> String {
     let heading = |column: &Column| format!("  {:>1$}", column.heading(), column.width());
     columns.iter().map(heading).collect()
 }
 
-/// The cells of a row, each after two spaces.
+/// Returns the cells of a row, each after two spaces.
 pub(crate) fn cells(columns: &[Column], value: impl Fn(Column) -> Option<f64>) -> String {
     let cell = |column: &Column| {
         let value = value(*column);
@@ -45,7 +45,7 @@ impl Column {
         Self { measure, by }
     }
 
-    /// What it has of a fit.
+    /// Returns the value of this column for a fit.
     pub(crate) fn of(self, quality: Option<&Quality>, felt: Option<&FeltError>) -> Option<f64> {
         match (self.measure, self.by) {
             (Measure::Felt, _) => felt.map(|felt| felt.error_rms_db),

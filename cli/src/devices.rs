@@ -1,5 +1,4 @@
-//! Arguments that say where devices come from and how they are set, shared by the commands that use
-//! them.
+//! Arguments for finding devices and for their settings, shared by several commands.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -13,7 +12,7 @@ use htex_device_check::Subject;
 use crate::adapters;
 use crate::failure::Failure;
 
-/// How to have a device or source that is left out.
+/// Says how to build this program with a device or source that it lacks.
 pub(crate) fn built_with(left_out: &Optional) -> String {
     let Optional { what, feature, package, .. } = left_out;
     format!(
@@ -21,7 +20,7 @@ pub(crate) fn built_with(left_out: &Optional) -> String {
     )
 }
 
-/// The reason why a device or source of this name is absent, if it is left out of this build;
+/// Returns the reason why no device or source of this name exists, if this build leaves it out.
 /// `instead` is a sentence.
 pub(crate) fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
     let left_out = Optional::left_out(name)?;
@@ -30,7 +29,7 @@ pub(crate) fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
     Some(DeviceError::Missing(why))
 }
 
-/// Where devices come from.
+/// Where to search for devices.
 #[derive(Args, Default)]
 #[command(next_help_heading = "Devices")]
 pub(crate) struct DeviceArgs {
@@ -45,25 +44,26 @@ pub(crate) struct DeviceArgs {
 }
 
 impl DeviceArgs {
-    /// The devices that are found; those that shadow others are reported on standard error.
+    /// Returns the devices that are found. Reports those that shadow others on standard error.
     pub(crate) fn devices(&self) -> Result<Devices, Failure> {
         Ok(adapters::reported(self.devices_quietly()?))
     }
 
-    /// As [`Self::devices`], without reports.
+    /// Returns the devices as [`Self::devices`] does, but without reports.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
         let search = adapters::search(&self.device_file, &self.device_dir);
         Ok(Devices::search(htex_device_builtin::devices(), &search)?)
     }
 
-    /// The reason why a device of this name is absent, if it is a matter of the build.
+    /// Returns the reason why no device of this name exists, if this build leaves it out.
     pub(crate) fn missing(name: &str) -> Option<DeviceError> {
         let instead =
             "`--device` names another device, and `htex synth` and `htex render` write files";
         left_out(name, instead)
     }
 
-    /// The device in the file of this name if there is one, else that of this short name or id.
+    /// Returns the device in the file of this name if the file exists, else the device with this
+    /// short name or id.
     pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
         let found = adapters::named(name, || self.devices());
         found.map_err(|error| match Self::missing(name) {
@@ -72,12 +72,12 @@ impl DeviceArgs {
         })
     }
 
-    /// As [`Self::named`], for a checker, which loads a library itself.
+    /// Returns the device as [`Self::named`] does, but for a checker, which loads a library itself.
     pub(crate) fn subject(&self, name: &str) -> Result<Subject, Failure> {
         adapters::subject(name, || self.devices_quietly())
     }
 
-    /// These arguments, for another run of this program.
+    /// Returns these arguments for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.device_file.iter().map(|path| ("--device-file", path));
         let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
@@ -89,12 +89,12 @@ impl DeviceArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
-    /// Settings that belong together, by their profile's name
+    /// A named group of settings
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// A setting of the device or source, such as rate_hz=20000, over its profile; may be given
-    /// several times
+    /// A setting of the device or source, e.g. rate_hz=20000, which overrides the profile; may be
+    /// given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
 }
@@ -104,12 +104,12 @@ impl SettingArgs {
         self.profile.as_deref()
     }
 
-    /// The settings that were given.
+    /// Returns the settings that were given.
     pub(crate) fn given(&self) -> Result<BTreeMap<String, String>, Failure> {
         pairs("--set", &self.settings)
     }
 
-    /// These arguments, for another run of this program.
+    /// Returns these arguments for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let profile = self.profile.iter().map(|name| ("--profile", name));
         let settings = self.settings.iter().map(|pair| ("--set", pair));
@@ -117,7 +117,7 @@ impl SettingArgs {
         profile.chain(settings).flat_map(pair).collect()
     }
 
-    /// All settings of an adapter.
+    /// Returns all settings of an adapter.
     pub(crate) fn resolve(&self, adapter: &dyn Adapter) -> Result<Settings, Failure> {
         let given = self.given()?;
         let settings = Settings::resolve(adapter.descriptor(), self.profile(), &given)?;
@@ -125,7 +125,7 @@ impl SettingArgs {
     }
 }
 
-/// Texts NAME=VALUE of a flag, by name.
+/// Parses the NAME=VALUE texts of a flag.
 pub(crate) fn pairs(flag: &str, texts: &[String]) -> Result<BTreeMap<String, String>, Failure> {
     let pair = |text: &String| {
         let (name, value) = text

@@ -1,6 +1,6 @@
 //! The exit status of the command.
 
-/// An exit status: unlike `std::process::ExitCode` its number can be read.
+/// An exit status. Unlike `std::process::ExitCode`, its number can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Exit(u8);
 
@@ -11,11 +11,11 @@ impl Exit {
     pub(crate) const FAILURE: Self = Self(1);
     /// Wrong usage.
     pub(crate) const USAGE: Self = Self(2);
-    /// Made, with some left out.
+    /// Partly made, with some left out.
     #[cfg(feature = "build")]
     pub(crate) const PART: Self = Self(3);
 
-    /// Returns the status that the process ends with.
+    /// Returns the status with which the process ends.
     pub(crate) fn code(self) -> u8 {
         self.0
     }

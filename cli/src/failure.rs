@@ -1,4 +1,4 @@
-//! The error that a failed command ends with.
+//! The error with which a failed command ends.
 
 use htex_author::AuthorError;
 use htex_files::FileError;
@@ -10,7 +10,7 @@ use crate::exit::Exit;
 use crate::hints::{flags_of, with_flags, with_hint};
 use crate::located::named;
 
-/// An error, with its place.
+/// An error and where it occurred.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     #[error(transparent)]
@@ -35,7 +35,7 @@ pub(crate) enum Failure {
     #[error("{file}: {cannot} (`htex explain CODE` says more){}", listed(.findings))]
     Findings {
         file: String,
-        /// What cannot be done for them.
+        /// What cannot be done with them.
         cannot: &'static str,
         findings: Vec<Finding>,
     },
@@ -62,7 +62,7 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// Whether an argument of an experiment is wrong.
+    /// Whether the error is a wrong argument of an experiment.
     #[cfg(feature = "lab")]
     fn is_wrong_use_of_lab(&self) -> bool {
         use htex_lab::response::ResponseError::{Column, Option};
@@ -74,13 +74,13 @@ impl Failure {
         )
     }
 
-    /// Whether there is no device or source of a name.
+    /// Whether the error is an unknown name of a device or source.
     pub(crate) fn is_unknown_name(&self) -> bool {
         use htex_device::DeviceError::{Unknown, UnknownSource};
         matches!(self, Self::Device(Unknown { .. } | UnknownSource { .. }))
     }
 
-    /// 2 for wrong usage, else 1.
+    /// Returns 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
         use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
         use htex_host::HostError::{Option, UnknownModel};
@@ -112,8 +112,8 @@ impl Failure {
         }
     }
 
-    /// The message, line by line. It may quote files and their names: control characters are
-    /// escaped, and lines end only where this program ends them.
+    /// Returns the message line by line. It may quote files and their names, so control characters
+    /// are escaped, and lines end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
         if self.has_lines() {
@@ -133,8 +133,8 @@ impl Failure {
         lines.map(|line| shown_line(&line)).collect()
     }
 
-    /// Whether the message has lines of its own: the place in a TOML file, under which a mark
-    /// stands.
+    /// Whether the message itself consists of lines: the position in a TOML file with a mark under
+    /// it.
     fn has_lines(&self) -> bool {
         #[cfg(feature = "build")]
         if let Self::Build { error: htex_build::BuildError::Recipe(_), .. } = self {
@@ -143,7 +143,7 @@ impl Failure {
         false
     }
 
-    /// The findings that end the message, each in a line of its own.
+    /// Returns the findings at the end of the message, one line each.
     fn findings(&self) -> &[Finding] {
         match self {
             Self::Findings { findings, .. }
@@ -152,7 +152,7 @@ impl Failure {
         }
     }
 
-    /// The flags that help against the error.
+    /// Returns the flags that would fix the error.
     fn flags(&self) -> Option<String> {
         let flags = flags_of(match self {
             Self::Author(error) => error.hint(),
@@ -171,7 +171,8 @@ impl Failure {
     }
 }
 
-/// Most characters of a line that is shown; what a message quotes of a file may be longer.
+/// Maximum number of characters shown per line, because a message may quote a long text from a
+/// file.
 const MOST_SHOWN: usize = 8000;
 
 fn shown_line(line: &str) -> String {
@@ -189,7 +190,7 @@ impl From<htex_format::WriteError> for Failure {
     }
 }
 
-/// The flag that caused an error of the library, which knows no flags.
+/// Returns the flag that caused an error of the library, which knows no flags.
 fn flag_of(error: &htex::Error) -> &'static str {
     match error {
         htex::Error::EmbeddedOff { .. } | htex::Error::ModelOlder { embedded: true, .. } => {

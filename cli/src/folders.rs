@@ -1,12 +1,12 @@
-//! The user's folders, as the environment names them.
+//! The user's folders, as named by the environment.
 
 use htex_native::folders::relative;
 
 use crate::failure::Failure;
 use crate::output::warn;
 
-/// Refuses a relative path in one of htex's own variables, and warns of one in a variable that
-/// other programs read too: the XDG base directory specification has it ignored.
+/// Refuses a relative path in htex's own variables. In variables that other programs read as well,
+/// it only warns, because the XDG base directory specification says to ignore a relative path.
 pub(crate) fn check() -> Result<(), Failure> {
     let shown = |variable: &str, path: &std::path::Path| {
         format!("{variable} is {}, which is no absolute path", crate::shown::shown(path))

@@ -1,4 +1,4 @@
-//! Gains of people and the levels of scenes, shared by `gain` and `play`.
+//! People's gains and the levels of scenes, shared by `gain` and `play`.
 
 use std::path::PathBuf;
 
@@ -12,15 +12,15 @@ use crate::failure::Failure;
 use crate::output::warn;
 use crate::scenes::Ready;
 
-/// Representation and levels, in place of the scene's.
+/// The representation and levels to use instead of the scene's.
 #[derive(Args)]
 pub(crate) struct FeltArgs {
     /// The representation that plays every surface, by its model's short name or id
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// `normalised`: every representation is as strong; `own`: each keeps its energy, measured by
-    /// the one that the gain of --person was found with, else by the strongest
+    /// `normalised`: all representations are equally strong; `own`: each keeps its energy relative
+    /// to the one with which the gain of --person was found, else to the strongest
     #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
     levels: Option<String>,
 }
@@ -50,7 +50,7 @@ impl FeltArgs {
     }
 }
 
-/// Where gains are kept.
+/// Returns the file in which gains are stored.
 pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
     Gains::user_file().ok_or_else(|| {
         Failure::Other("no folder for gains was found; set HTEX_CONFIG_DIR".to_owned())
@@ -63,7 +63,7 @@ pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
     Ok((gains, file))
 }
 
-/// The key of this person's gain; `texture` replaces the textures' own names.
+/// Returns the key of this person's gain. `texture` replaces the textures' own names.
 pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey {
     let device = &ready.scene.scene.device;
     GainKey {
@@ -74,12 +74,12 @@ pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey
     }
 }
 
-/// The hash that identified a texture in earlier versions.
+/// Returns the hash by which earlier versions identified a texture.
 pub(crate) fn hash(ready: &Ready) -> Result<String, Failure> {
     Ok(Gains::hash_of(&ready.file).reading(&ready.file)?)
 }
 
-/// Names of the files that the textures were recorded in.
+/// Returns the names of the files in which the textures were recorded.
 pub(crate) fn recordings(ready: &Ready) -> Vec<String> {
     recordings_of(manifests(ready))
 }
@@ -88,7 +88,7 @@ fn manifests(ready: &Ready) -> impl Iterator<Item = &Manifest> {
     ready.scene.assets.iter().map(|asset| asset.manifest())
 }
 
-/// Applies a person's kept gain to a scene.
+/// Applies a person's stored gain to a scene.
 pub(crate) fn apply_kept(
     person: &str,
     texture: Option<&str>,
@@ -125,7 +125,7 @@ pub(crate) fn apply_kept(
     Ok(())
 }
 
-/// Two textures may have one name.
+/// Warns if the gain was found with other recordings, because two textures may have the same name.
 fn warn_of_other_recordings(gain: &Gain, ready: &Ready) {
     let here = recordings(ready);
     let shared = gain.recordings.iter().any(|name| here.contains(name));

@@ -1,13 +1,13 @@
-//! Arguments, and which of them the command line has: what has a default is not what a person asked
-//! for.
+//! Arguments together with the information which of them the user gave. A default value is not
+//! something that the user asked for.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 
-/// Arguments, with the names of those that were given.
+/// Arguments with the names of those that were given.
 pub(crate) struct Given<T> {
     pub(crate) values: T,
-    /// As keywords: `full_scale` of `--full-scale`.
+    /// Their names as keywords, e.g. `full_scale` for `--full-scale`.
     pub(crate) settings: Vec<String>,
 }
 

@@ -1,12 +1,12 @@
-//! A fitted grid of conditions, as text and as a picture.
+//! Shows a fitted grid of conditions as text and as a picture.
 
 use std::fmt::Write;
 
 use htex_author::{CellStatus, GridCell, GridReport};
 use htex_report::{Axis, Plot, Series};
 
-/// Classes of repeatability: upper limit in decibels, name, colour. The colours darken from good to
-/// bad.
+/// Classes of repeatability: upper limit in decibels, name and colour. The colours darken from good
+/// to bad.
 const CLASSES: [(f64, &str, &str); 4] = [
     (0.5, "repeats within 0.5 dB", "#009e73"),
     (1.0, "0.5 to 1 dB", "#0072b2"),
@@ -17,7 +17,8 @@ const WINDOWS: &str = "#c4c4c4";
 const MESH: &str = "#8a8a8a";
 const THIN: &str = "#222222";
 
-/// The table of a grid: segments and repeatability, a line for each speed, a column for each force.
+/// Formats a grid as a table of segments and repeatability, with a line for each speed and a column
+/// for each force.
 pub(crate) fn grid_text(grid: &GridReport) -> String {
     let mut text = format!(
         "grid: {} of {} windows of 0.2 s are steady; {} conditions, {} cells too thin\n",
@@ -53,7 +54,7 @@ fn count(grid: &GridReport, is: impl Fn(&GridCell) -> bool) -> usize {
     grid.cells.iter().filter(|cell| is(cell)).count()
 }
 
-/// A cell: `23   0.61 dB`.
+/// Formats a cell, e.g. `23   0.61 dB`.
 fn entry(cell: &GridCell) -> String {
     let mark = match cell.status {
         CellStatus::Thin => return format!("{} -     ", cell.segments),
@@ -64,7 +65,7 @@ fn entry(cell: &GridCell) -> String {
     format!("{}{mark} {:>5}", cell.averaged, repeats.unwrap_or("?".to_owned()))
 }
 
-/// Three digits.
+/// Formats a number with three digits.
 fn short(x: f64) -> String {
     match x {
         x if x >= 99.95 => format!("{x:.0}"),
@@ -73,7 +74,7 @@ fn short(x: f64) -> String {
     }
 }
 
-/// Steady windows over speed and force, the mesh, and the conditions by repeatability.
+/// Draws the steady windows over speed and force, the mesh, and the conditions by repeatability.
 pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     let mut plot = Plot::new(
         &format!("{name}: steady windows, conditions and mesh"),
@@ -106,7 +107,7 @@ pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     plot
 }
 
-/// Adds cells as dots with their numbers; no series without cells.
+/// Adds cells as dots with their numbers. Adds no series if there are no cells.
 fn push_cells<'a>(
     plot: &mut Plot,
     name: &str,
@@ -135,7 +136,7 @@ fn push_cells<'a>(
     plot.series.push(series);
 }
 
-/// The outlines of the triangles, separated by points that are not drawn.
+/// Returns the outlines of the triangles, separated by points that are not drawn.
 fn mesh(grid: &GridReport) -> Vec<(f64, f64)> {
     let conditions: Vec<(f64, f64)> = grid
         .cells

@@ -18,7 +18,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Tools", &["completions", "man", "schema"]),
 ];
 
-/// Lists the subcommands of a command in their groups. clap lists them in one group.
+/// Lists the subcommands of a command in their groups, because clap itself supports only one group.
 pub(crate) fn with_groups(command: Command) -> Command {
     let mut lists = String::new();
     for (heading, names) in GROUPS {

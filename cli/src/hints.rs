@@ -1,27 +1,27 @@
-//! Settings that messages of the libraries describe, as flags of this command.
+//! Shows settings in messages of the libraries as flags of this command.
 
 use std::borrow::Cow;
 
 use htex_finding::Hint;
 
 /// Settings that messages about scenes and devices name in backquotes, with or without a value
-/// (`setting driver=x`), and their flags.
+/// (`setting driver=x`), and the flags for them.
 const QUOTED: [(&str, &str); 2] = [("profile", "--profile"), ("setting", "--set")];
 
-/// The settings of a hint as flags: a setting has the name of its flag.
+/// Returns the settings of a hint as flags. A setting has the same name as its flag.
 pub(crate) fn flags_of(hint: Hint) -> Option<String> {
     let flag = |setting: &&str| format!("--{}", setting.replace('_', "-"));
     let flags: Vec<String> = hint.settings().iter().map(flag).collect();
     (!flags.is_empty()).then(|| flags.join(", "))
 }
 
-/// A message with the flags that help.
+/// Adds the flags that would fix the problem to a message.
 pub(crate) fn with_hint(message: &str, hint: Hint) -> Cow<'_, str> {
     with_flags(message, flags_of(hint))
 }
 
-/// A message with settings of scenes and devices as flags, and with the flags that help, before its
-/// last stop or colon.
+/// Shows settings of scenes and devices in a message as flags, and adds the flags that would fix
+/// the problem before its last stop or colon.
 pub(crate) fn with_flags(message: &str, flags: Option<String>) -> Cow<'_, str> {
     let message = with_quoted(message);
     let Some(flags) = flags else {
@@ -32,7 +32,7 @@ pub(crate) fn with_flags(message: &str, flags: Option<String>) -> Cow<'_, str> {
     Cow::Owned(format!("{body} (see {flags}){end}"))
 }
 
-/// A message of scenes or devices with the settings that it quotes as flags: `--set`.
+/// Shows settings that a message about scenes or devices quotes as flags, e.g. `--set`.
 pub(crate) fn with_quoted(text: &str) -> Cow<'_, str> {
     let mut result = String::new();
     let mut rest = text;

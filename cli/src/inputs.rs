@@ -1,5 +1,5 @@
-//! Arguments about a source's channels and a tracker, and opening of sources, shared by the
-//! commands that record.
+//! Arguments about a source's channels and a tracker, and opening sources, shared by the commands
+//! that record.
 
 use std::collections::BTreeMap;
 use std::io::{BufReader, IsTerminal};
@@ -15,7 +15,7 @@ use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, 
 use crate::failure::Failure;
 use crate::sources::SourceArgs;
 
-/// The signals of a source, and a tracker beside it.
+/// The signals of a source, and an additional tracker.
 #[derive(Args)]
 #[command(next_help_heading = "Source")]
 pub(crate) struct InputArgs {
@@ -23,36 +23,36 @@ pub(crate) struct InputArgs {
     pub(crate) sources: SourceArgs,
 
     /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31.
-    /// Without it channels are known by their names
+    /// Without this, roles follow from the channels' names
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Option<String>,
 
-    /// Calibration of a six-axis sensor on the first six channels, whose names become fx, fy, fz,
-    /// tx, ty, tz: six rows of six numbers (N and N m for a volt) as CSV, or `matrix` in TOML. A
-    /// second one is that of the next six; axes are then fx1, fx2, …
+    /// Calibration of a six-axis sensor on the first six channels, which are then called fx, fy,
+    /// fz, tx, ty, tz: six rows of six numbers (N and N m per volt) as CSV, or `matrix` in TOML. A
+    /// second file calibrates the next six; axes are then called fx1, fx2, …
     #[arg(long, value_name = "FILE")]
     calibration: Vec<PathBuf>,
 
-    /// What the texture's signal is: lateral-force, normal-force, acceleration, velocity,
+    /// Quantity of the texture's signal: lateral-force, normal-force, acceleration, velocity,
     /// displacement [default: lateral-force]
     #[arg(long, value_name = "NAME", value_parser = quantity)]
     quantity: Option<Quantity>,
 
-    /// The finger's motion: a file to replay (file:track.csv), or lines `x_mm y_mm` from a pipe or
-    /// port (lines:/dev/ttyACM0) or from standard input (lines:-)
+    /// Source of the finger's motion: a file to replay (file:track.csv), or lines `x_mm y_mm` from
+    /// a pipe or port (lines:/dev/ttyACM0) or from standard input (lines:-)
     #[arg(long, value_name = "NAME:TARGET")]
     tracker: Option<String>,
 
-    /// Roles and scales of the columns of a tracker's file: time=stamp_ms:0.001,x=#2
+    /// Roles and scales of the columns in a tracker's file: time=stamp_ms:0.001,x=#2
     #[arg(long, value_name = "MAP", requires = "tracker")]
     tracker_map: Option<String>,
 
-    /// Format of the recordings [default: csv; of trials npy, which takes a third of the space]
+    /// Format of the recordings [default: csv; for trials npy, which takes a third of the space]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
 }
 
-/// Settings of a source; files are replayed without waiting if `is_fast`.
+/// Returns the settings of a source. With `is_fast`, files are replayed without waiting.
 pub(crate) fn paced(
     source: &str,
     mut given: BTreeMap<String, String>,
@@ -69,7 +69,7 @@ impl InputArgs {
         self.quantity.unwrap_or_default()
     }
 
-    /// Whether any of these was given.
+    /// Whether any of these arguments was given.
     pub(crate) fn is_given(&self) -> bool {
         self.map.is_some()
             || !self.calibration.is_empty()
@@ -78,7 +78,7 @@ impl InputArgs {
             || self.format.is_some()
     }
 
-    /// Whether a tracker's lines come from standard input.
+    /// Whether the lines of a tracker come from standard input.
     pub(crate) fn tracks_stdin(&self) -> bool {
         self.tracker.as_deref() == Some("lines:-")
     }
@@ -126,7 +126,7 @@ fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>, Failure> {
     Ok(map.map(str::parse).transpose()?)
 }
 
-/// The quantities that are recorded, by their names on the command line.
+/// Parses a quantity that can be recorded, by its name on the command line.
 fn quantity(name: &str) -> Result<Quantity, String> {
     Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
         let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));

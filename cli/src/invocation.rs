@@ -1,13 +1,13 @@
 //! How the command was started: its arguments, and the program that starts it again.
 //!
-//! The program that starts the command again is passed to the library, since the own file is the
-//! Python interpreter in the command of the Python package.
+//! The caller passes the program that starts the command again. It cannot be determined here,
+//! because in the Python package the running program is the Python interpreter.
 
 use std::ffi::OsString;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-/// Arguments and program of the current run.
+/// The arguments and the program of the current run.
 static CURRENT: Mutex<Invocation> =
     Mutex::new(Invocation { arguments: Vec::new(), program: Vec::new() });
 
@@ -16,12 +16,12 @@ struct Invocation {
     program: Vec<OsString>,
 }
 
-/// Error: the program that starts the command again is not known.
+/// Error: the program that starts the command again is unknown.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot find this program; start it by the path of its file")]
 pub(crate) struct UnknownProgram;
 
-/// The program that starts the command again, and its first arguments: `python -m htex`.
+/// The program that starts the command again, with its first arguments, e.g. `python -m htex`.
 #[derive(Debug, Clone)]
 pub(crate) struct Program {
     pub(crate) file: OsString,
@@ -37,7 +37,7 @@ impl Program {
     }
 }
 
-/// Keeps the shown arguments (without the program's name) and the program of this run.
+/// Stores the shown arguments (without the program's name) and the program of this run.
 pub(crate) fn set(arguments: Vec<OsString>, program: Vec<OsString>) {
     *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Invocation { arguments, program };
 }
@@ -51,7 +51,7 @@ pub(crate) fn arguments() -> Vec<OsString> {
 /// Returns the program that starts the command again.
 ///
 /// # Errors
-/// When it is not known.
+/// When it is unknown.
 pub(crate) fn program() -> Result<Program, UnknownProgram> {
     let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
     let (file, arguments) = current.program.split_first().ok_or(UnknownProgram)?;

@@ -1,5 +1,5 @@
-//! The `htex` command as a library: parses, calls the SDK, prints. [`run`] is the whole command;
-//! the program `htex` and the Python package call it.
+//! The `htex` command as a library: it parses arguments, calls the SDK, and prints. [`run`] is the
+//! whole command. The program `htex` and the Python package call it.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
@@ -70,7 +70,7 @@ struct Cli {
     command: Command,
 }
 
-/// The command's arguments, with its subcommands in groups.
+/// Returns the command's arguments, with its subcommands in groups.
 fn command() -> clap::Command {
     groups::with_groups(Cli::command())
 }
@@ -96,12 +96,13 @@ Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
 
 /// Runs the command and returns its exit status: 0 ok, 1 findings or failure, 2 wrong usage.
 ///
-/// `arguments` are those of a program, the first of them its name. `program` starts the command
-/// again, in a process of its own: the file, and arguments that precede those of the command, such
-/// as `python -m htex`. Checks of models and devices and the output of a display need it. An empty
-/// `program` is not known, and they fail with an error.
+/// `arguments` are a program's arguments, beginning with the program's name. `program` starts the
+/// command again in a separate process: a file, and arguments that come before the command's own,
+/// e.g. `python -m htex`. Checks of models and devices and the output of a display need it. If
+/// `program` is empty, they fail with an error.
 ///
-/// The first call handles Ctrl-C for the rest of the process. At most one call may run at a time.
+/// The first call installs a Ctrl-C handler for the rest of the process. Only one call may run at a
+/// time.
 ///
 /// ```
 /// let program = vec![std::env::current_exe()?.into_os_string()];
@@ -117,8 +118,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
     code
 }
 
-/// Whether the command takes these arguments, the first of them its name; nothing is run. By this,
-/// tests hold pages to the command.
+/// Checks whether the command accepts these arguments, beginning with the program's name. Nothing
+/// is run. Tests use it to check command lines in the documentation.
 ///
 /// ```
 /// assert!(htex_cli::check_usage(["htex", "info", "a.htex"].map(Into::into)).is_ok());
@@ -126,7 +127,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
 /// ```
 ///
 /// # Errors
-/// What the command would print.
+/// The text that the command would print.
 pub fn check_usage(arguments: impl IntoIterator<Item = OsString>) -> Result<(), String> {
     match parsed(arguments) {
         Err(error) if error.use_stderr() => Err(error.to_string()),
@@ -145,7 +146,7 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
     let command = match parsed(arguments) {
         Ok(cli) => cli.command,
         Err(error) => {
-            // A closed standard output or standard error is no error of the command.
+            // A closed standard output or standard error is not an error of the command.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(Exit::USAGE.code());
         }
@@ -162,13 +163,13 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
     code
 }
 
-/// Runs a command between the downloads of its inputs and the uploads of its outputs.
+/// Downloads the inputs of a command, runs it, and uploads its outputs.
 fn run_command(command: Command) -> Result<Exit, Failure> {
     signals::handle()?;
     folders::check()?;
     transfer::fetch()?;
     let exit = command.run()?;
-    // A command may have asked for signals, and from here on nothing looks at them.
+    // The command may have asked for signals, but from here on nothing checks for them.
     signals::handle()?;
     transfer::put()?;
     Ok(exit)

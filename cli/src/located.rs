@@ -1,8 +1,8 @@
-//! Arguments that are URIs: downloaded before the command runs, written when it is done. The
-//! command itself sees local files.
+//! Arguments that may be URIs. Inputs are downloaded before the command runs, and outputs are
+//! uploaded when it is done. The command itself sees only local files.
 //!
-//! A parser of arguments ([`ASSET`], [`RECORDING`], [`OUTPUT`]) puts a path in a temporary folder
-//! in place of a URI; what is printed names the URI again ([`named`]).
+//! The argument parsers ([`ASSET`], [`RECORDING`], [`OUTPUT`]) replace a URI by a path in a
+//! temporary folder. Printed messages show the URI again ([`named`]).
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -16,19 +16,20 @@ use htex_finding::plain;
 use htex_storage::Location;
 use tempfile::TempDir;
 
-/// An argument that is an asset, at most as large as one may be.
+/// An argument for an asset, which must not exceed the maximum size of an asset.
 pub(crate) const ASSET: Argument = Argument(Role::Asset);
-/// An argument that is a recording, or any other file that is read.
+/// An argument for a recording, or for any other file that is read.
 pub(crate) const RECORDING: Argument = Argument(Role::Recording);
-/// An argument that is a file to write.
+/// An argument for a file to write.
 pub(crate) const OUTPUT: Argument = Argument(Role::Output);
 
-/// An argument that is a file of this machine to write, with others beside it.
+/// An argument for a local file to write, next to which other files are written.
 pub(crate) const LOCAL_OUTPUT: Argument = Argument(Role::LocalOutput);
 
-/// The files elsewhere of the current run.
+/// The remote files of the current run.
 static ELSEWHERE: Mutex<Elsewhere> = Mutex::new(Elsewhere { folder: None, files: Vec::new() });
-/// The temporary folder, for a signal handler, which may run while the other lock is held.
+/// The temporary folder. It has its own lock for a signal handler, which may run while the other
+/// lock is held.
 static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
 
 struct Elsewhere {
@@ -36,7 +37,7 @@ struct Elsewhere {
     files: Vec<Copied>,
 }
 
-/// A file elsewhere and its local copy.
+/// A remote file and its local copy.
 struct Copied {
     location: Location,
     local: PathBuf,
@@ -51,7 +52,7 @@ pub(crate) enum Role {
     LocalOutput,
 }
 
-/// A parser of an argument that is a path or a URI.
+/// The parser of an argument that is a path or a URI.
 #[derive(Clone, Copy)]
 pub(crate) struct Argument(Role);
 
@@ -83,16 +84,16 @@ impl TypedValueParser for Argument {
     }
 }
 
-/// Extensions of formats that some command writes, or that a user may expect of a table.
+/// Extensions of formats that some command writes, or that a user may expect for a table.
 const FORMATS: [&str; 27] = [
     "ahap", "arrow", "csv", "feather", "flac", "glb", "gltf", "h5", "haptic", "hdf5", "hjif",
     "htex", "htexlib", "html", "json", "jsonl", "mat", "mp3", "npy", "ogg", "parquet", "png",
     "svg", "toml", "tsv", "wav", "xlsx",
 ];
 
-/// Refuses an output whose extension names another format than the one that is written, which the
-/// argument's value name states (`CSV`, `OUT.htexlib`). A value name that is no format (`FILE`)
-/// leaves the choice to the extension, and to the command.
+/// Refuses an output whose extension names a different format from the one that is written. The
+/// argument's value name states that format (`CSV`, `OUT.htexlib`). If the value name is not a
+/// format (`FILE`), the extension and the command choose the format.
 fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(), String> {
     let names = argument.and_then(clap::Arg::get_value_names);
     let written = names
@@ -115,7 +116,7 @@ fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(),
     }
 }
 
-/// An argument that may be a URI, which the command reads itself.
+/// An argument that may be a URI and that the command itself reads.
 #[cfg(feature = "build")]
 #[derive(Debug, Clone)]
 pub(crate) struct Anywhere(PathBuf);
@@ -136,12 +137,12 @@ impl std::ops::Deref for Anywhere {
     }
 }
 
-/// Refuses a URI in an argument that is a path of this machine: it would name a file or a folder
-/// such as `s3:`. An argument that may be a URI has the parser [`Argument`], which leaves a local
-/// path, or another type than a path.
+/// Refuses a URI in an argument for a local path, where it would name a file or folder such as
+/// `s3:`. An argument that may be a URI has the parser [`Argument`], which returns a local path, or
+/// has another type than a path.
 ///
 /// # Errors
-/// With the argument, and what to give.
+/// Names the argument, and says what to give.
 pub(crate) fn check_paths(
     command: &clap::Command,
     matches: &ArgMatches,
@@ -179,7 +180,8 @@ fn check_path(arg: &clap::Arg, path: &Path) -> Result<(), String> {
 }
 
 impl Elsewhere {
-    /// The local path in place of a URI; its name stays, since texts and formats depend on it.
+    /// Returns a local path that replaces a URI. The file name stays the same, because messages and
+    /// formats depend on it.
     #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
     fn copy_of(&mut self, location: Location, role: Role) -> Result<PathBuf, String> {
         let known = self.files.iter().find(|file| file.location == location);
@@ -214,7 +216,7 @@ impl Elsewhere {
         }
         let folder = tempfile::Builder::new().prefix("htex-").tempdir()?;
         let path = folder.path().to_owned();
-        // The store may be private.
+        // The copy must not be readable by others, because the store may be private.
         htex_files::private::close(&path)?;
         *FOLDER.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.clone());
         self.folder = Some(folder);
@@ -226,7 +228,7 @@ fn local() -> MutexGuard<'static, Elsewhere> {
     ELSEWHERE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Forgets the files of the last run and removes their copies.
+/// Forgets the files of the last run and removes their local copies.
 pub(crate) fn clear() {
     let mut elsewhere = local();
     elsewhere.files.clear();
@@ -234,7 +236,7 @@ pub(crate) fn clear() {
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
 }
 
-/// Removes the copies; a signal handler calls it before the process ends.
+/// Removes the local copies. A signal handler calls it before the process ends.
 #[allow(clippy::disallowed_methods, reason = "a temporary folder of this user")]
 pub(crate) fn remove_copies() {
     if let Some(folder) = FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take() {
@@ -242,17 +244,17 @@ pub(crate) fn remove_copies() {
     }
 }
 
-/// The files elsewhere whose role is wanted.
+/// Returns the remote files with a certain role.
 pub(crate) fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
     let elsewhere = local();
     let wanted = elsewhere.files.iter().filter(|file| is_wanted(file.role));
     wanted.map(|file| (file.location.clone(), file.local.clone(), file.role)).collect()
 }
 
-/// Keeps the local copies beyond the command.
+/// Keeps the local copies after the command has ended.
 pub(crate) fn keep() {
     let mut elsewhere = local();
-    // From now on a copy is named as such.
+    // From now on, messages name the copies themselves.
     elsewhere.files.clear();
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let Some(folder) = elsewhere.folder.take() {
@@ -260,12 +262,12 @@ pub(crate) fn keep() {
     }
 }
 
-/// Whether a path is a copy of a file elsewhere.
+/// Whether a path is the copy of a remote file.
 pub(crate) fn is_copy(path: &Path) -> bool {
     local().files.iter().any(|file| file.local == path)
 }
 
-/// A text with the URIs in place of their local copies, as text and as a part of JSON.
+/// Replaces local copies in a text by their URIs, both as plain text and inside JSON.
 pub(crate) fn named(text: &str) -> String {
     let mut text = text.to_owned();
     for file in &local().files {
@@ -280,7 +282,8 @@ pub(crate) fn named(text: &str) -> String {
     text
 }
 
-/// An argument as it may be shown and stored: a URL without its query, which may hold a signature.
+/// Returns an argument in a form that may be shown and stored: a URL without its query, which may
+/// contain a signature.
 pub(crate) fn without_secrets(argument: OsString) -> OsString {
     let Some(text) = argument.to_str() else {
         return argument;

@@ -1,16 +1,17 @@
-//! The name of this program, and errors of settings as errors of its flags.
+//! The name of this program, and conversion of settings errors to errors about its flags.
 
 use htex_author::settings::SettingsError;
 
 use crate::failure::Failure;
 
-/// Name and version of this program, for an asset's provenance.
+/// Returns the name and version of this program, for an asset's provenance.
 pub(crate) fn tool() -> String {
     concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned()
 }
 
 impl From<SettingsError> for Failure {
-    /// A setting is a flag of this program; a file that cannot be read is not.
+    /// A setting becomes a flag of this program. A file that cannot be read is not a matter of
+    /// flags.
     fn from(error: SettingsError) -> Self {
         match error {
             SettingsError::Model(error) => Self::Model(error),

@@ -1,5 +1,5 @@
-//! A live motion: read from lines and passed to the playing loop without a lock, or of the finger
-//! on a page.
+//! A live motion. It is either read from lines and passed to the playing loop without a lock, or it
+//! is the motion of a finger on a page.
 
 use std::io::BufRead;
 use std::thread;
@@ -10,21 +10,21 @@ use htex_lab::study::Touch;
 use htex_scene::Finger;
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// Motions that may wait for the player.
+/// Maximum number of motions that may wait for the player.
 const ROOM: usize = 1024;
-/// Time between two tries of the reader when the queue is full.
+/// Time between two attempts of the reader if the queue is full.
 const WAIT: Duration = Duration::from_millis(1);
 
-/// Where motions come from.
+/// The source of motions.
 pub(crate) enum Motions {
-    /// The queue of a reader.
+    /// The queue that a reader fills.
     Queue(Consumer<Finger>),
-    /// A page, and the force of a finger on it, N.
+    /// A page, and the force of a finger on it (N).
     #[cfg(feature = "lab")]
     Page(Touch, f64),
 }
 
-/// What has arrived since the last call.
+/// The input that arrived since the last call.
 pub(crate) enum Moved {
     /// The newest motion.
     To(Finger),
@@ -35,16 +35,16 @@ pub(crate) enum Moved {
 }
 
 impl Motions {
-    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. A
-    /// line of other words is reported with its number and skipped; one with a number that no
-    /// finger has is a failed reading, as for the renderer.
+    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a separate thread. A
+    /// malformed line is reported with its number and skipped. A line with numbers that no finger
+    /// can have is a failed reading, as in the renderer.
     pub(crate) fn from_stdin() -> Self {
         let (sender, receiver) = RingBuffer::new(ROOM);
         thread::spawn(move || read(std::io::stdin().lock(), sender));
         Self::Queue(receiver)
     }
 
-    /// What has arrived since the last call.
+    /// Returns what has arrived since the last call.
     pub(crate) fn look(&mut self) -> Moved {
         match self {
             Self::Queue(queue) => newest(queue),
@@ -56,9 +56,9 @@ impl Motions {
     }
 }
 
-/// The newest reading of a queue; one that no finger has, only if there is no other.
+/// Returns the newest valid reading in a queue. Returns a failed one only if there is no valid one.
 fn newest(queue: &mut Consumer<Finger>) -> Moved {
-    // Read before the ring is emptied, so that no motion before the end is missed.
+    // Checked before the queue is emptied, so that no motion before the end is missed.
     let is_ended = queue.is_abandoned();
     let mut newest: Option<Finger> = None;
     while let Ok(finger) = queue.pop() {
@@ -93,7 +93,7 @@ fn read(lines: impl BufRead, mut sender: Producer<Finger>) {
             }
             thread::sleep(WAIT);
         }
-        // There is space, and only this thread fills it.
+        // Cannot fail: there is space, and only this thread fills it.
         let _ = sender.push(finger);
     }
 }
@@ -126,7 +126,8 @@ mod tests {
         assert!(matches!(motions.look(), Moved::Ended));
     }
 
-    /// A reading that fails is passed on: it is held for a while, and is no contact then.
+    /// A failed reading is passed on. The renderer holds the last motion for a while, and then
+    /// assumes no contact.
     #[test]
     fn a_failed_reading_alone_is_passed_on() {
         for line in ["NaN 0.4\n", "80 inf\n", "80 -1\n", "80 21\n", "1001 0.4\n"] {

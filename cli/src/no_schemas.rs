@@ -1,14 +1,13 @@
-//! In place of the validator of JSON Schemas, in a program that is built without the feature
-//! `schemas`.
+//! Replaces the validator of JSON Schemas in a program that is built without the feature `schemas`.
 
 use std::convert::Infallible;
 
 use serde_json::Value;
 
-/// A schema that documents are not held to.
+/// A schema that does not check anything.
 pub(crate) struct Schema;
 
-/// What a document breaks: nothing.
+/// A violation of a schema, which never occurs.
 #[allow(dead_code)] // None is ever made.
 pub(crate) struct Violation {
     pub(crate) pointer: String,

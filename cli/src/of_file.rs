@@ -1,4 +1,4 @@
-//! Errors of the libraries as failures of the command.
+//! Converts errors of the libraries to failures of the command.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -10,9 +10,9 @@ use htex_scene::{LoadError, SceneError};
 use crate::failure::Failure;
 use crate::shown::shown;
 
-/// An error that does not name its file.
+/// An error that does not know its file.
 pub(crate) trait OfFile {
-    /// The failure, which names the file.
+    /// Converts the error to a failure that names the file.
     fn of(self, file: &Path) -> Failure;
 }
 
@@ -71,7 +71,7 @@ impl OfFile for htex_build::BuildError {
     }
 }
 
-/// Names the file in the error of a result.
+/// Adds the file's name to the error of a result.
 pub(crate) trait ResultOfFile<T> {
     fn of(self, file: &Path) -> Result<T, Failure>;
 }
@@ -82,11 +82,11 @@ impl<T, E: OfFile> ResultOfFile<T> for Result<T, E> {
     }
 }
 
-/// Makes a failure of the text of an error.
+/// Converts the text of an error to a failure.
 pub(crate) trait OrFail<T> {
-    /// The command line is invalid.
+    /// Reports that the command line is invalid.
     fn or_usage(self) -> Result<T, Failure>;
-    /// Anything else is wrong.
+    /// Reports any other error.
     fn or_fail(self) -> Result<T, Failure>;
 }
 

@@ -14,7 +14,8 @@ use crate::failure::Failure;
 use crate::hints::with_hint;
 use crate::located::named;
 
-/// Prints a line on standard error; unlike `eprintln!` it does not panic when that is closed.
+/// Prints a line on standard error. Unlike `eprintln!`, it does not panic if standard error is
+/// closed.
 macro_rules! tell {
     ($($words:tt)*) => {{
         use std::io::Write as _;
@@ -23,8 +24,8 @@ macro_rules! tell {
 }
 pub(crate) use tell;
 
-/// Writes text to standard output with control characters escaped, since it may quote untrusted
-/// files. A reader that has ended (`| head`) is not an error.
+/// Writes text to standard output. Control characters are escaped, because the text may quote
+/// untrusted files. A reader that has ended (`| head`) is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let lines: String = text
         .split_inclusive('\n')
@@ -36,7 +37,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write(&lines)
 }
 
-/// Writes text as it is to standard output, with the names that files elsewhere have there.
+/// Writes text unchanged to standard output, except that remote files are shown by their URIs.
 pub(crate) fn write(text: &str) -> Result<(), Failure> {
     write_bytes(named(text).as_bytes())
 }
@@ -52,15 +53,15 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a value as JSON, and a line end. What would steer a terminal, or show text in another
-/// order than it has, is escaped as JSON escapes it: these characters are in strings alone.
+/// Writes a value as JSON with a line end. Characters that could control a terminal or change the
+/// direction of text are escaped as JSON escapes, because such characters occur only in strings.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     use std::fmt::Write as _;
     let text = serde_json::to_string(value)?;
     let mut escaped = String::with_capacity(text.len() + 1);
     for c in text.chars() {
         match steers(c) {
-            // All of them are in the basic plane.
+            // All of these characters are in the basic multilingual plane.
             true => drop(write!(escaped, "\\u{:04x}", u32::from(c))),
             false => escaped.push(c),
         }
@@ -68,13 +69,12 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     write(&(escaped + "\n"))
 }
 
-/// Whether a character is a control character, or one that changes the direction of text or ends a
-/// line.
+/// Whether a character is a control character, changes the direction of text, or ends a line.
 fn steers(c: char) -> bool {
     matches!(c, '\u{7F}'..='\u{9F}' | '\u{61C}' | '\u{200E}' | '\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The value with control characters in its texts escaped.
+/// Returns the value with control characters in its texts escaped.
 pub(crate) fn tamed<T: Serialize + DeserializeOwned + Clone>(value: &T) -> T {
     let mut json = serde_json::to_value(value).unwrap_or_default();
     tame(&mut json);
@@ -113,13 +113,14 @@ fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
     }
 }
 
-/// A file that a command writes. Every command writes its files by [`Self::replace`], so that what
-/// is followed is decided here.
+/// A file that a command writes. Every command writes its files by [`Self::replace`], so this type
+/// decides which links are followed.
 #[derive(Clone, Copy)]
 pub(crate) enum Written<'a> {
-    /// A file that the user named. A link is followed: the user may have named it for that.
+    /// A file that the user named. A link is followed, because the user may have named it for that
+    /// purpose.
     Named(&'a Path),
-    /// A file by a name of ours in a folder that the user named, also beside a file that the user
+    /// A file with a name of ours, in a folder that the user named or next to a file that the user
     /// named. Somebody else may have filled the folder, so no link in it is followed.
     Inside(&'a OwnFolder, &'a Path),
 }
@@ -132,7 +133,7 @@ impl Written<'_> {
         }
     }
 
-    /// Writes the file under a temporary name beside it and renames it.
+    /// Writes the file under a temporary name next to it, and renames it.
     pub(crate) fn replace(
         self,
         write: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -150,7 +151,7 @@ impl Written<'_> {
     }
 }
 
-/// Writes a file that the user named under a temporary name beside it and renames it.
+/// Writes a file that the user named, under a temporary name next to it, and renames it.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(Written::Named(path).write(bytes)?)
 }

@@ -1,7 +1,7 @@
 //! Protects a command's inputs from being overwritten by its outputs.
 //!
-//! Files are compared by device and inode before the command starts, so that another name of an
-//! input is recognised.
+//! Files are compared by device and inode before the command starts, so that an input is recognised
+//! under any other name.
 
 use std::fs::Metadata;
 use std::path::Path;
@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::failure::Failure;
 use crate::shown::shown;
 
-/// Refuses outputs that are inputs, or each other, under any name.
+/// Refuses outputs that are inputs, and outputs that are the same file, under any name.
 ///
 /// Inputs that do not exist are reported by the code that reads them.
 pub(crate) fn check_outputs<'a>(
@@ -36,8 +36,8 @@ pub(crate) fn check_outputs<'a>(
     Ok(())
 }
 
-/// Whether two paths lead to the same file, following links; for files that do not exist, whether
-/// they would.
+/// Whether two paths lead to the same file, following links. For files that do not exist yet,
+/// whether they would.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (std::fs::metadata(a), std::fs::metadata(b)) {
         (Ok(a_is), Ok(b_is)) => is_one_file((a, &a_is), (b, &b_is)),
@@ -49,7 +49,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
 #[cfg(unix)]
 fn is_one_file((_, a): (&Path, &Metadata), (_, b): (&Path, &Metadata)) -> bool {
     use std::os::unix::fs::MetadataExt;
-    // A terminal or /dev/null may be both.
+    // A terminal or /dev/null may be both an input and an output.
     let is_kept = a.is_file() || a.is_dir();
     is_kept && (a.dev(), a.ino()) == (b.dev(), b.ino())
 }
@@ -59,7 +59,7 @@ fn is_one_file((a, _): (&Path, &Metadata), (b, _): (&Path, &Metadata)) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-/// The canonical folder, and the name in it.
+/// Returns the canonical folder and the file name in it.
 fn place(path: &Path) -> Option<std::path::PathBuf> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

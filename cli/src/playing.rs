@@ -1,4 +1,4 @@
-//! From a renderer to a device, until the end or an interruption.
+//! Plays a renderer on a device until the end or an interruption.
 
 use std::path::Path;
 use std::process::Command;
@@ -14,16 +14,19 @@ use crate::invocation;
 use crate::scenes::Ready;
 use crate::signals;
 
-/// Longest wait for space in a device; one that takes nothing for this long is reported as stuck.
+/// Longest wait for space in a device. A device that takes nothing for this long is reported as
+/// stuck.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Time between two looks at whether an output is at zero.
+/// Polling interval while waiting until an output is at zero.
 const LOOK: Duration = Duration::from_millis(20);
 /// Longest block with a live motion, seconds.
 const LIVE_BLOCK_S: f64 = 0.005;
-/// Longest block on a display, seconds: it is played before the way to zero begins.
+/// Longest block on a display, seconds. A block is played to its end before the output goes to
+/// zero.
 const DISPLAY_BLOCK_S: f64 = 0.02;
 
-/// Frames in a block: the device's, or fewer with a live motion or on a display at a low rate.
+/// Returns the block size in frames: the device's, or less with a live motion or on a display at a
+/// low rate.
 fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
     let most_s = match ready.scene.scene.motion {
         Motion::Live => LIVE_BLOCK_S,
@@ -34,16 +37,16 @@ fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
     ready.capabilities.block_frames.clamp(1, most)
 }
 
-/// This program, as the one that holds a display's output.
+/// Returns the command that runs this program as a guardian, which holds a display's output.
 fn guardian() -> Result<Command, DeviceError> {
     let mut command = invocation::program().map_err(not_started)?.command();
     command.arg("guard");
     Ok(command)
 }
 
-/// Waits while the output of a display is not confirmed to be at zero. The guardian's crate goes on
-/// trying and prints every second that the amplifier is to be switched off. A signal ends the
-/// program.
+/// Waits while the output of a display is not confirmed to be at zero. Meanwhile, the guardian's
+/// crate keeps trying, and prints every second that the amplifier must be switched off. A signal
+/// ends the program.
 pub(crate) fn stay_until_zero() {
     if is_unconfirmed() && signals::handle().is_ok() {
         while is_unconfirmed() {
@@ -57,15 +60,15 @@ pub(crate) struct Output {
     pub(crate) device: Box<dyn Device>,
     block: Vec<f32>,
     rate_hz: f64,
-    /// When the first block was made, for a device without a clock in a scene without an end.
+    /// When the first block was made. Used for a device without a clock in a scene without an end.
     pace: Option<Instant>,
     frames: u64,
-    /// Frames of the block that was written last.
+    /// Number of frames in the last written block.
     #[cfg(feature = "lab")]
     last: usize,
-    /// The first error; the scene then fades to silence, and the error is reported.
+    /// The first error. After it, the scene fades to silence, and the error is reported.
     failed: Option<String>,
-    /// Whether the device has a clock of its own.
+    /// Whether the device has its own clock.
     clocked: bool,
 }
 
@@ -102,7 +105,7 @@ impl Output {
         }
     }
 
-    /// Takes blocks of at most 10 ms in real time, as a device with a clock would.
+    /// Uses blocks of at most 10 ms in real time, as a device with a clock would.
     pub(crate) fn paced(mut self) -> Self {
         let most = (self.rate_hz / 100.0).ceil().max(1.0) as usize;
         self.block.truncate(most);
@@ -110,7 +113,7 @@ impl Output {
         self
     }
 
-    /// Renders one block and writes it; false at the end.
+    /// Renders one block and writes it. Returns false at the end.
     pub(crate) fn step(&mut self, renderer: &mut Renderer) -> Result<bool, Failure> {
         let frames = renderer.render(&mut self.block);
         if let Some(error) = renderer.take_failure() {
@@ -143,20 +146,20 @@ impl Output {
         Ok(())
     }
 
-    /// Seconds from now until the first frame that was written is at the display, as far as the
+    /// Returns the time in seconds until the first written frame is at the display, as far as the
     /// device knows.
     #[cfg(feature = "lab")]
     pub(crate) fn lead_s(&self) -> f64 {
         self.device.status().latency_s - self.frames as f64 / self.rate_hz
     }
 
-    /// The block that [`Self::step`] wrote last.
+    /// Returns the block that [`Self::step`] wrote last.
     #[cfg(feature = "lab")]
     pub(crate) fn last_block(&self) -> &[f32] {
         &self.block[..self.last]
     }
 
-    /// Frames that were written.
+    /// Returns the number of frames written.
     pub(crate) fn frames(&self) -> u64 {
         self.frames
     }
@@ -164,7 +167,7 @@ impl Output {
     /// Plays what was written, and keeps the result unless there was an error.
     pub(crate) fn finish(mut self) -> Result<htex_device::Status, Failure> {
         if let Some(error) = self.failed.take() {
-            // The fade to zero still has to be played; a file is not kept.
+            // The fade to zero still has to be played on a device with a clock. A file is not kept.
             if self.clocked {
                 self.device.finish()?;
             }

@@ -1,4 +1,4 @@
-//! Arguments for the search of models, shared by the commands that use them.
+//! Arguments for finding models, shared by several commands.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::of_file::ResultOfFile;
 use crate::output::warn;
 use crate::wasm_limits::WasmLimit;
 
-/// Where models come from.
+/// Where to search for models.
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub(crate) struct PluginArgs {
@@ -34,17 +34,17 @@ pub(crate) struct PluginArgs {
 }
 
 impl PluginArgs {
-    /// The named plugins.
+    /// Returns the plugins that were named.
     pub(crate) fn files(&self) -> &[PathBuf] {
         &self.plugin
     }
 
-    /// The models that are found; those that shadow others are reported on standard error.
+    /// Returns the models that are found. Reports those that shadow others on standard error.
     pub(crate) fn registry(&self) -> Result<Registry, Failure> {
         self.registry_with(&[])
     }
 
-    /// As [`Self::registry`], with further plugins by their files.
+    /// Returns the models as [`Self::registry`] does, with additional plugin files.
     pub(crate) fn registry_with(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
         let registry = self.search(files)?;
         let notes: Vec<String> = registry.notes().iter().map(ToString::to_string).collect();
@@ -52,12 +52,12 @@ impl PluginArgs {
         Ok(registry)
     }
 
-    /// As [`Self::registry`], without reports.
+    /// Returns the models as [`Self::registry`] does, but without reports.
     pub(crate) fn registry_quietly(&self) -> Result<Registry, Failure> {
         self.search(&[])
     }
 
-    /// The models that are found without arguments, without reports.
+    /// Returns the models that are found without any arguments, without reports.
     pub(crate) fn installed() -> Result<Registry, Failure> {
         Ok(Registry::search(&Search::default().with_limits(WasmLimit::all(&[])))?)
     }
@@ -76,7 +76,7 @@ impl PluginArgs {
     }
 }
 
-/// Where models come from when an asset is played, which may embed its own.
+/// Where to search for models when an asset is played, which may embed its own.
 #[derive(Args)]
 pub(crate) struct PlayerArgs {
     #[command(flatten)]
@@ -88,7 +88,7 @@ pub(crate) struct PlayerArgs {
 }
 
 impl PlayerArgs {
-    /// The models that are found, without those that assets embed.
+    /// Returns the models that are found, without those embedded in assets.
     pub(crate) fn registry(&self) -> Result<Registry, Failure> {
         self.plugins.registry()
     }

@@ -1,8 +1,9 @@
-//! Progress on a terminal; nothing elsewhere.
+//! Shows progress on a terminal, and nothing elsewhere.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar over `steps` named steps on standard error, hidden unless that is a terminal.
+/// Returns a progress bar over `steps` named steps on standard error. It is hidden unless that is a
+/// terminal.
 pub(crate) fn bar(steps: u64) -> ProgressBar {
     let bar = ProgressBar::new(steps);
     if let Ok(style) = ProgressStyle::with_template("{bar:24} {pos}/{len} {msg}") {
@@ -11,7 +12,8 @@ pub(crate) fn bar(steps: u64) -> ProgressBar {
     bar
 }
 
-/// A bar over bytes on standard error, with rate and time left, hidden unless that is a terminal.
+/// Returns a progress bar over bytes on standard error, with the rate and the time left. It is
+/// hidden unless that is a terminal.
 #[cfg(feature = "build")]
 pub(crate) fn bytes(bytes: u64) -> ProgressBar {
     let bar = ProgressBar::new(bytes);

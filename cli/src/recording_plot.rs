@@ -1,18 +1,18 @@
-//! A picture of a recording: the segments that are read, and those left out.
+//! Draws a recording with the segments that are used and those that are left out.
 
 use std::ops::Range;
 
 use htex_author::{Recording, Segments};
 use htex_report::{Axis, Line, Plot, Series, series_color};
 
-/// Columns of the picture; each shows the lowest and the highest of its samples.
+/// Number of columns in the picture. Each shows the lowest and the highest of its samples.
 const COLUMNS: usize = 1000;
 const READ: &str = "#0072b2";
 const LEFT_OUT: &str = "#d55e00";
 const QUIET: &str = "#b5b5b5";
 
-/// The signal's magnitude over time, with the segments that are read, those that are left out, and
-/// the threshold that sweeps are found by.
+/// Draws the signal's magnitude over time, with the segments that are used, those that are left
+/// out, and the threshold by which sweeps are found.
 pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot {
     let values: Vec<f64> = (0..recording.samples()).map(|at| recording.magnitude_at(at)).collect();
     let draw = |name: String, color: &str, parts: &[Range<usize>]| {
@@ -46,7 +46,7 @@ pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot
     plot
 }
 
-/// Sweeps that are cut off, where sweeps are read, and segments off their target.
+/// Returns the incomplete sweeps, if sweeps are read, and the segments off their target.
 fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
     let cut_off = segments
         .sweeps
@@ -57,7 +57,8 @@ fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
     cut_off.chain(off_target).collect()
 }
 
-/// The lowest and highest value of each column of the picture, with a break behind each part.
+/// Returns the lowest and the highest value in each column of the picture, with a break after each
+/// part.
 fn envelope(recording: &Recording, values: &[f64], parts: &[Range<usize>]) -> Vec<(f64, f64)> {
     let column = values.len().div_ceil(COLUMNS);
     let mut points = Vec::new();

@@ -15,7 +15,7 @@ use crate::located;
 use crate::output::note;
 use crate::shown::shown;
 
-/// Options of reading recordings.
+/// Options for reading recordings.
 #[derive(Args)]
 #[command(
     next_help_heading = "Reading recordings",
@@ -25,17 +25,16 @@ pub(crate) struct RecordingArgs {
     #[command(flatten)]
     pub(crate) settings: ReadingSettings,
 
-    /// Scanning speed, mm/s, where the recording does not say, or instead of what it says
+    /// Scanning speed, mm/s, if the recording does not state it, or instead of the stated one
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force, N, where the recording does not say, or instead of what it says
+    /// Normal force, N, if the recording does not state it, or instead of the stated one
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 
-    /// Exploration condition of each recording, in their order, or one for all: speed=80,force=0.4.
-    /// Where the recording has the motion too, segments that leave this by more than 10 % are left
-    /// out
+    /// Exploration condition of each recording in order, or one for all: speed=80,force=0.4. If a
+    /// recording contains the motion, segments that differ from this by more than 10 % are left out
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 
@@ -47,7 +46,7 @@ pub(crate) struct RecordingArgs {
 }
 
 impl RecordingArgs {
-    /// The files that are read with the recordings: a response, trackers.
+    /// Returns the files that are read together with the recordings: a response and trackers.
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
         let trackers = self.settings.tracker.iter().flatten();
         let files = self.settings.response.iter().chain(trackers);
@@ -58,7 +57,7 @@ impl RecordingArgs {
         self.strict
     }
 
-    /// Reads recordings, each with the condition that was given for it.
+    /// Reads recordings, each with its given condition.
     pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
         self.read_with(files, &self.settings)
     }
@@ -81,15 +80,15 @@ impl RecordingArgs {
             .collect()
     }
 
-    /// Reads one recording, with its condition. A recording of `htex record` or of a study is read
-    /// as the JSON beside it says, unless flags say what its columns are.
+    /// Reads one recording with its condition. A recording made by `htex record` or a study is read
+    /// as its JSON file says, unless flags say what its columns are.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
         let own = known_take(file)?.filter(|_| !self.settings.says_columns());
         self.read_as(file, own)
     }
 
-    /// Reads one of several recordings, with its condition. One of `htex record` or of a study is
-    /// read as the JSON beside it says, also if flags say what the columns of the others are.
+    /// Reads one of several recordings with its condition. A recording made by `htex record` or a
+    /// study is read as its JSON file says, even if flags say what the columns of the others are.
     pub(crate) fn read_among(&self, file: &Path) -> Result<Take, Failure> {
         let own = known_take(file)?;
         if own.is_some() && self.settings.says_columns() {
@@ -113,7 +112,7 @@ impl RecordingArgs {
         takes?.pop().ok_or_else(missing)
     }
 
-    /// The findings in one recording.
+    /// Returns the findings in one recording.
     pub(crate) fn validate(&self, file: &Path) -> Result<Report, Failure> {
         let given = self.conditions(1)?.pop().unwrap_or_default();
         let settings = &self.settings;
@@ -121,7 +120,7 @@ impl RecordingArgs {
         Ok(validate_recording(file, &read, given, &settings.spectrum_options()?)?)
     }
 
-    /// Whether any option of reading recordings was given.
+    /// Whether any option for reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
         let bounded = self.settings.most_values.is_some_and(|most| most != MOST_VALUES);
@@ -132,7 +131,7 @@ impl RecordingArgs {
         Ok(self.settings.spectrum_options()?)
     }
 
-    /// A condition for each of `count` recordings.
+    /// Returns one condition for each of `count` recordings.
     fn conditions(&self, count: usize) -> Result<Vec<Exploration>, Failure> {
         let common = Exploration { speed_mm_s: self.speed, force_n: self.force };
         let given: Vec<Exploration> =
@@ -153,7 +152,7 @@ fn known_take(file: &Path) -> Result<Option<KnownTake>, Failure> {
     Ok(KnownTake::find(file)?)
 }
 
-/// The settings of recordings of experiments are not built in.
+/// Replaces the settings of recordings of experiments in a build without them.
 #[cfg(not(feature = "lab"))]
 struct KnownTake {
     recording: PathBuf,
@@ -171,7 +170,7 @@ fn known_take(_: &Path) -> Result<Option<KnownTake>, Failure> {
     Ok(None)
 }
 
-/// Reads `speed=80,force=0.4`; a quantity that is left out stays as it was.
+/// Parses `speed=80,force=0.4`. A quantity that is not given keeps its value.
 pub(crate) fn parse_condition(
     text: &str,
     mut condition: Exploration,

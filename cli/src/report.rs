@@ -1,4 +1,4 @@
-//! The parts of a report about a fitted asset.
+//! The parts of a report on a fitted asset.
 
 use htex_author::{FeltShare, FittedAsset};
 use htex_format::{By, Judged, Quality};
@@ -8,18 +8,18 @@ use htex_report::{Measure, ModelResult, Share, Texture, model_color};
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 use crate::columns::Column;
 
-/// A fitted asset with what its report needs.
+/// A fitted asset with the data needed for its report.
 pub(crate) struct Reported<'a> {
     pub(crate) fitted: &'a FittedAsset,
-    /// The asset with the models that play it.
+    /// The asset with the models that can play it.
     pub(crate) asset: &'a htex::Asset,
     pub(crate) summary: &'a AssetSummary,
-    /// Size of the recordings' files together, bytes.
+    /// Total size of the recordings' files, bytes.
     pub(crate) recording_bytes: u64,
 }
 
 impl Reported<'_> {
-    /// The texture at each of its recorded conditions.
+    /// Returns the texture at each of its recorded conditions.
     pub(crate) fn textures(&self) -> Result<Vec<Texture>, htex::Error> {
         let spectra = self.fitted.spectra.iter().enumerate();
         let recorded = spectra.filter(|(_, spectrum)| spectrum.is_recorded());
@@ -33,7 +33,7 @@ impl Reported<'_> {
                 texture.name = format!("{}, {condition}", texture.name);
             }
         }
-        // They are about the asset as a whole.
+        // These apply to the asset as a whole, so only the first condition shows them.
         for texture in textures.iter_mut().skip(1) {
             texture.warnings.clear();
         }
@@ -67,7 +67,7 @@ impl Reported<'_> {
         })
     }
 
-    /// A model's curve at a condition; `None` where it was not fitted there.
+    /// Returns a model's curve at a condition; `None` if the model was not fitted there.
     fn model(
         &self,
         representation: &RepresentationSummary,
@@ -100,7 +100,7 @@ impl Reported<'_> {
     }
 }
 
-/// The tables of the measures: what each has, and its caption.
+/// Returns the tables of the measures: the column and the measure of each.
 fn tables() -> Vec<(Column, Measure)> {
     let mut tables = Vec::new();
     for measure in htex_format::Measure::of_both() {
@@ -123,12 +123,12 @@ fn tables() -> Vec<(Column, Measure)> {
     tables
 }
 
-/// The measures of a texture report, as [`Reported::textures`] has them.
+/// Returns the measures of a texture report, as used in [`Reported::textures`].
 pub(crate) fn measures() -> Vec<Measure> {
     tables().into_iter().map(|(_, table)| table).collect()
 }
 
-/// Correlation and nine-band error, below a spectrum.
+/// Returns the correlation and nine-band error that are shown below a spectrum.
 fn note(quality: Option<&Quality>) -> String {
     let of = |measure, decimals| {
         let value = quality.and_then(|q| q.get(measure));
@@ -138,8 +138,8 @@ fn note(quality: Option<&Quality>) -> String {
     format!("r = {r}, error {} dB RMS", of(htex_format::Measure::NineBand, 1))
 }
 
-/// Of the textures at all their conditions, how many each model keeps below the difference
-/// threshold, and within what the recording varies.
+/// Counts, over the textures at all their conditions, how many each model keeps below the
+/// difference threshold and how many within the variation of the recording.
 pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) -> Vec<Share> {
     let mut shares: Vec<(String, FeltShare)> = Vec::new();
     for summary in summaries {

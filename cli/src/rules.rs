@@ -1,8 +1,8 @@
-//! The rules of all files, in one list.
+//! The rules for all kinds of files, in one list.
 
 use htex_finding::Rule;
 
-/// All rules of this program, by what they are about.
+/// All rules of this program, grouped by subject.
 const TABLES: &[&[Rule]] = &[
     htex_format::RULES,
     htex_library::RULES,

@@ -1,4 +1,4 @@
-//! What a scene plays, in the unit of its textures: what exports are made of.
+//! Renders a scene in the unit of its textures, for exports.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -17,20 +17,20 @@ use crate::plugins::PlayerArgs;
 use crate::scenes::{Loader, Ready, costs};
 use crate::shown::shown;
 
-/// The device whose samples are those of the textures: numbers in their unit.
+/// The device that takes a texture's samples unchanged, as numbers in their unit.
 const ADAPTER: &str = "org.htex.file";
-/// Length of a scene without an end, seconds.
+/// Duration of a scene without an end, seconds.
 const SECONDS: f64 = 2.0;
-/// Samples that are rendered at a time.
+/// Number of samples rendered at a time.
 const BLOCK: usize = 4096;
 
-/// A scene, and what is known of it before it plays.
+/// A scene and what is known about it before it plays.
 pub(crate) struct Scene {
     file: PathBuf,
     loader: Loader,
-    /// Warnings that were printed.
+    /// The warnings that have been printed.
     told: RefCell<BTreeSet<String>>,
-    /// Files that it reads.
+    /// The files that it reads.
     pub(crate) inputs: Vec<PathBuf>,
     rights: Rights,
     quantity: Quantity,
@@ -39,8 +39,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene, which plays for `seconds` if they are given, else for its own length, else
-    /// for two seconds.
+    /// Reads a scene. It plays for `seconds` if given, else for its own duration, else for two
+    /// seconds.
     pub(crate) fn open(
         file: &Path,
         player: &PlayerArgs,
@@ -76,7 +76,7 @@ impl Scene {
         })
     }
 
-    /// Calls a function with what it plays.
+    /// Calls a function with the scene's sound.
     pub(crate) fn with<T>(&self, call: impl FnOnce(&SceneSound<'_>) -> T) -> T {
         let name = self.file.file_name().unwrap_or_default().to_string_lossy();
         let name = name.split('.').next().unwrap_or_default();
@@ -111,19 +111,19 @@ impl Scene {
     }
 }
 
-/// The rights of all textures of a scene.
+/// Returns the rights of all textures in a scene.
 pub(crate) fn rights(ready: &Ready) -> Rights {
     let assets = ready.scene.assets.iter();
     Rights::of_all(assets.map(|asset| Rights::of(asset.manifest())))
 }
 
-/// Whether a file is a scene, by its name.
+/// Whether a file is a scene, judged by its name.
 pub(crate) fn is_scene(file: &Path) -> bool {
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
-/// The quantity of the first texture. A scene or a texture that cannot be read is an error of
-/// loading it.
+/// Returns the quantity of the first texture. If the scene or the texture cannot be read, loading
+/// it will report the error.
 fn quantity(scene: &Path) -> Option<Quantity> {
     let bytes = read_regular(scene, MOST_BYTES).ok()?;
     let read = read_scene(&bytes, &Limits::default(), &mut Default::default())?;
@@ -131,7 +131,7 @@ fn quantity(scene: &Path) -> Option<Quantity> {
     Some(htex_format::Asset::open(&first).ok()?.manifest.quantity)
 }
 
-/// A device that takes numbers, and is not opened.
+/// Returns a device that takes plain numbers and is not opened.
 fn numbers(quantity: Option<Quantity>, rate_hz: Option<f64>) -> DeviceOverride {
     let quantity = quantity.map(|quantity| ("quantity".to_owned(), quantity.name().to_owned()));
     DeviceOverride {

@@ -1,4 +1,4 @@
-//! Arguments for models and devices of scenes, shared by the commands that play scenes.
+//! Arguments for the models and devices of scenes, shared by the commands that play scenes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -33,21 +33,21 @@ pub(crate) struct SceneArgs {
 /// A device and its settings.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// The device, by short name or id, in place of the scene's; its settings are then the defaults
+    /// The device, by short name or id, instead of the scene's; its settings are then the defaults
     #[arg(long, value_name = "ID", help_heading = "Devices")]
     device: Option<String>,
 
     #[command(flatten)]
     settings: SettingArgs,
 
-    /// What one unit of the assets' quantity is in the device's unit, where they differ: 0.1 plays
-    /// an acceleration of 1 m/s2 as 0.1 N
+    /// Value of one unit of the assets' quantity in the device's unit, if they differ: 0.1 plays an
+    /// acceleration of 1 m/s2 as 0.1 N
     #[arg(long, value_name = "GAIN", help_heading = "Devices")]
     quantity_gain: Option<f64>,
 }
 
 impl ChoiceArgs {
-    /// The device and settings that were given; `output` is the default file. A rehearsal opens no
+    /// Returns the given device and settings. `output` is the default file. A rehearsal opens no
     /// device.
     pub(crate) fn to_override(
         &self,
@@ -66,13 +66,13 @@ impl ChoiceArgs {
         })
     }
 
-    /// Refuses a device that this build lacks.
+    /// Refuses a device that this build does not have.
     pub(crate) fn check_built(name: &str) -> Result<(), Failure> {
         DeviceArgs::missing(name).map_or(Ok(()), |why| Err(why.into()))
     }
 
-    /// Refuses to replace a file that was not named: the default, which is the scene's name with an
-    /// extension.
+    /// Refuses to replace an existing file that the user did not name. The default file has the
+    /// scene's name with another extension.
     pub(crate) fn check_unnamed(&self, ready: &Ready) -> Result<(), Failure> {
         let given = self.settings.given()?;
         let settings = ready.device.descriptor().settings.iter();
@@ -122,7 +122,7 @@ impl SceneArgs {
         self.load(file, |around| LoadedScene::open(file, around, device))
     }
 
-    /// Makes a scene of an asset.
+    /// Creates a scene from an asset.
     pub(crate) fn of_asset(
         &self,
         file: &Path,
@@ -141,7 +141,7 @@ impl SceneArgs {
         self.loader()?.load(file, &mut BTreeSet::new(), load)
     }
 
-    /// Models and devices, found once for several scenes.
+    /// Finds the models and devices once, for several scenes.
     pub(crate) fn loader(&self) -> Result<Loader, Failure> {
         Ok(Loader {
             models: self.models()?,
@@ -160,7 +160,7 @@ impl SceneArgs {
         htex_scene::validate(file, &around).of(file)
     }
 
-    /// The schema of the settings of a scene's device, if the device is known.
+    /// Returns the schema for the settings of a scene's device, if the device is known.
     pub(crate) fn settings_schema(scene: &Value) -> Result<Option<Named>, Failure> {
         let name = scene.pointer("/device/adapter").and_then(Value::as_str);
         let devices = DeviceArgs::default().devices_quietly()?;
@@ -170,7 +170,7 @@ impl SceneArgs {
     }
 }
 
-/// Models and devices with which scenes are loaded.
+/// The models and devices for loading scenes.
 pub(crate) struct Loader {
     models: Registry,
     devices: Devices,
@@ -178,7 +178,8 @@ pub(crate) struct Loader {
 }
 
 impl Loader {
-    /// With the devices of this program alone: what is played is not heard.
+    /// Creates a loader with only this program's own devices, for scenes that are rendered and not
+    /// heard.
     pub(crate) fn builtin(player: &PlayerArgs) -> Result<Self, Failure> {
         Ok(Self {
             models: player.registry()?,
@@ -191,8 +192,7 @@ impl Loader {
         Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices }
     }
 
-    /// Loads a scene, and prints those of its warnings that are not in `told`, to which they are
-    /// added.
+    /// Loads a scene and prints its warnings that are not yet in `told`. Adds them to `told`.
     pub(crate) fn load(
         &self,
         file: &Path,
@@ -220,7 +220,7 @@ impl Ready {
         htex_scene::plan(&self.scene, &self.capabilities, costs).of(&self.file)
     }
 
-    /// Refuses a device that is a file which the scene was read from.
+    /// Refuses an output file from which the scene was read.
     pub(crate) fn check_output(&self, output: &Path) -> Result<(), Failure> {
         let mut inputs = self.scene.inputs();
         inputs.push(self.file.clone());
@@ -232,8 +232,8 @@ impl Ready {
     }
 }
 
-/// The capabilities of a device. Those of a display that is not connected are derived from its
-/// settings, as far as a plan or a file needs them.
+/// Returns the capabilities of a device. For a display that is not connected, they are derived from
+/// its settings, as far as a plan or a file needs them.
 fn capabilities(
     device: &KnownDevice,
     settings: &Settings,
@@ -258,24 +258,24 @@ fn capabilities(
     Ok(able)
 }
 
-/// Whether a file is an asset, by its name; else it is a scene.
+/// Whether a file is an asset, judged by its name. Otherwise it is a scene.
 pub(crate) fn is_asset(file: &Path) -> bool {
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case("htex"))
 }
 
-/// The motion of an asset's default condition.
+/// Returns the motion of an asset's default condition.
 pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
     let asset = htex::Asset::new(htex_format::Asset::open(file).of(file)?);
     let htex::Motion { speed_mm_s, force_n, .. } = asset.motion(None, None, None).of(file)?;
     Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
 }
 
-/// Where measured costs are kept.
+/// Returns the file in which measured costs are stored.
 pub(crate) fn costs_file() -> Option<PathBuf> {
     htex_host::folders::cache().map(|folder| folder.join("costs.json"))
 }
 
-/// Costs measured on this machine, else the built-in ones.
+/// Returns the costs measured on this machine, else the built-in ones.
 pub(crate) fn costs() -> Costs {
     let kept = costs_file().and_then(|file| Costs::load(&file));
     kept.unwrap_or_else(Costs::embedded)

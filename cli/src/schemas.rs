@@ -1,4 +1,4 @@
-//! Violations of JSON Schemas, beside the findings of the rules.
+//! Adds violations of JSON Schemas to the findings of the rules.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use crate::failure::Failure;
 #[cfg(not(feature = "schemas"))]
 use crate::no_schemas::{Schema, Violation};
 
-/// What to say where documents cannot be held to schemas.
+/// The note for builds that cannot validate documents against schemas.
 pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
     None
 } else {
@@ -24,10 +24,10 @@ pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
     )
 };
 
-/// Most findings in a report.
+/// Maximum number of findings in a report.
 const KEPT: usize = 100;
 
-/// A schema of this project, by its file in `spec/schemas`.
+/// A schema of this project, named by its file in `spec/schemas`.
 pub(crate) struct Named {
     file: String,
     schema: Schema,
@@ -58,8 +58,8 @@ impl Named {
         Ok(Self { file, schema })
     }
 
-    /// Adds the schema's violations: each to the finding about the same place, else as a finding of
-    /// its own.
+    /// Adds the schema's violations. A violation is added to the finding about the same place, or
+    /// becomes its own finding.
     pub(crate) fn hold(&self, document: &Value, report: &mut Report) {
         for violation in self.schema.violations(document) {
             let rule = format!("{}#{}", self.file, violation.rule);
@@ -74,8 +74,8 @@ impl Named {
     }
 }
 
-/// Whether a finding and a violation are about the same place: equal pointers, or one inside the
-/// other.
+/// Whether a finding and a violation are about the same place: their pointers are equal, or one is
+/// inside the other.
 fn covers(finding: &str, violation: &str) -> bool {
     let inside = |inner: &str, outer: &str| {
         let rest = inner.strip_prefix(outer);
@@ -84,7 +84,7 @@ fn covers(finding: &str, violation: &str) -> bool {
     inside(finding, violation) || (!finding.is_empty() && inside(violation, finding))
 }
 
-/// Adds a violation, while there are not a hundred findings yet.
+/// Adds a violation, unless there are already a hundred findings.
 fn add(report: &mut Report, broken: &Rule, violation: Violation, rule: String, at: &str) {
     report.valid = false;
     let shown = report.findings.len();
@@ -101,7 +101,7 @@ fn add(report: &mut Report, broken: &Rule, violation: Violation, rule: String, a
     }
 }
 
-/// The schema of an extension's author: `com.vendor.NAME/REVISION=FILE`.
+/// A schema from an extension's author: `com.vendor.NAME/REVISION=FILE`.
 pub(crate) struct ExtensionSchema {
     name: String,
     file: PathBuf,
@@ -127,7 +127,7 @@ impl ExtensionSchema {
         Ok(Self { name, file, schema })
     }
 
-    /// Adds a finding for each rule that the manifest's extension breaks.
+    /// Adds a finding for each rule that the extension in the manifest breaks.
     pub(crate) fn hold(&self, manifest: &Value, report: &mut Report) {
         let Some(extension) = manifest.get("extensions").and_then(|all| all.get(&self.name)) else {
             return;
@@ -145,7 +145,7 @@ fn file_name(file: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// The schema of a device's settings in a scene: strings, numbers and booleans.
+/// Returns the schema for a device's settings in a scene: strings, numbers and booleans.
 pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<Named, Failure> {
     let mut properties = Map::new();
     for setting in &device.settings {

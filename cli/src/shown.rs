@@ -4,7 +4,7 @@ use std::path::Path;
 
 use htex_finding::plain;
 
-/// A path with control characters escaped.
+/// Returns a path with control characters escaped.
 pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string()).into_owned()
 }

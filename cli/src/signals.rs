@@ -1,7 +1,7 @@
-//! Handling of Ctrl-C, of a closed terminal, and of a request to end.
+//! Handles Ctrl-C, a closed terminal, and a request to end.
 //!
-//! A signal has one meaning at a time: it ends the program and removes unfinished files, or makes a
-//! player ramp to zero, or is ignored by a guardian.
+//! A signal has one of three meanings at a time. It ends the program and removes unfinished files,
+//! it makes a player ramp to zero, or a guardian ignores it.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
@@ -10,14 +10,14 @@ use crate::failure::Failure;
 use crate::located;
 use crate::output::tell;
 
-/// Exit status of an interrupted program, by convention.
+/// Exit status of an interrupted program, as is customary.
 const INTERRUPTED: i32 = 130;
 
-/// Ends the program at once and removes unfinished files.
+/// End the program at once and remove unfinished files.
 const ENDS: u8 = 0;
-/// Sets the flag that [`interrupted`] returns: playback goes to zero first.
+/// Set the flag that [`interrupted`] returns, so that playback can go to zero first.
 const IS_ASKED_FOR: u8 = 1;
-/// Ignored: only the end of its pipe ends a guardian.
+/// Ignore the signal: only the end of its pipe ends a guardian.
 const IGNORED: u8 = 2;
 
 static MEANING: AtomicU8 = AtomicU8::new(ENDS);
@@ -25,7 +25,7 @@ static SIGNALS: AtomicUsize = AtomicUsize::new(0);
 /// The result of installing the handler.
 static HANDLED: OnceLock<Result<(), String>> = OnceLock::new();
 
-/// From now on signals end the program and remove unfinished files.
+/// From now on, signals end the program and remove unfinished files.
 pub(crate) fn handle() -> Result<(), Failure> {
     MEANING.store(ENDS, Ordering::Relaxed);
     SIGNALS.store(0, Ordering::Relaxed);
@@ -33,7 +33,7 @@ pub(crate) fn handle() -> Result<(), Failure> {
     handled.map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
 }
 
-/// Installs the handler, once in a process.
+/// Installs the handler once per process.
 fn install() -> Result<(), String> {
     let handler = || match MEANING.load(Ordering::Relaxed) {
         ENDS => {
@@ -54,18 +54,18 @@ fn install() -> Result<(), String> {
     ctrlc::set_handler(handler).map_err(|error| error.to_string())
 }
 
-/// From now on a signal sets [`interrupted`]. The ramp to zero is never cut short: a second signal
-/// prints that the ramp is running, and each further one which voltage may remain.
+/// From now on, a signal sets [`interrupted`]. The ramp to zero is never cut short. A second signal
+/// prints that the ramp is running, and each further one prints which voltage may remain.
 pub(crate) fn ask() {
     MEANING.store(IS_ASKED_FOR, Ordering::Relaxed);
 }
 
-/// From now on signals are ignored.
+/// From now on, signals are ignored.
 pub(crate) fn ignore() {
     MEANING.store(IGNORED, Ordering::Relaxed);
 }
 
-/// Whether a signal has asked for the end.
+/// Whether a signal has asked the program to end.
 pub(crate) fn interrupted() -> bool {
     SIGNALS.load(Ordering::Relaxed) > 0
 }

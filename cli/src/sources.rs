@@ -1,4 +1,4 @@
-//! Arguments that say where sources come from, shared by the commands that use them.
+//! Arguments for finding sources, shared by several commands.
 
 #[cfg(feature = "lab")]
 use std::collections::BTreeMap;
@@ -17,8 +17,7 @@ use crate::adapters;
 use crate::devices::left_out;
 use crate::failure::Failure;
 
-/// The sources of this program, in the order in which they are shown: recordings, and those that
-/// are built in.
+/// Returns the sources of this program in display order: recordings first, then the built-in ones.
 fn builtin() -> Vec<Arc<dyn SourceAdapter>> {
     let recordings: Vec<Arc<dyn SourceAdapter>> = vec![
         #[cfg(feature = "lab")]
@@ -27,7 +26,7 @@ fn builtin() -> Vec<Arc<dyn SourceAdapter>> {
     recordings.into_iter().chain(htex_device_builtin::sources()).collect()
 }
 
-/// Where sources come from.
+/// Where to search for sources.
 #[derive(Args, Default)]
 #[command(next_help_heading = "Sources")]
 pub(crate) struct SourceArgs {
@@ -42,12 +41,12 @@ pub(crate) struct SourceArgs {
 }
 
 impl SourceArgs {
-    /// The sources that are found; those that shadow others are reported on standard error.
+    /// Returns the sources that are found. Reports those that shadow others on standard error.
     pub(crate) fn sources(&self) -> Result<Sources, Failure> {
         Ok(adapters::reported(self.sources_quietly()?))
     }
 
-    /// As [`Self::sources`], without reports.
+    /// Returns the sources as [`Self::sources`] does, but without reports.
     pub(crate) fn sources_quietly(&self) -> Result<Sources, Failure> {
         let search = adapters::search(&self.source_file, &self.source_dir);
         Ok(Sources::search(builtin(), &search)?)
@@ -66,17 +65,18 @@ impl SourceArgs {
         opened.map_err(|error| sounding(name, error.into()))
     }
 
-    /// The source in the file of this name if there is one, else that of this short name or id.
+    /// Returns the source in the file of this name if the file exists, else the source with this
+    /// short name or id.
     pub(crate) fn named(&self, name: &str) -> Result<KnownSource, Failure> {
         adapters::named(name, || self.sources()).map_err(|error| sounding(name, error))
     }
 
-    /// As [`Self::named`], for a checker, which loads a library itself.
+    /// Returns the source as [`Self::named`] does, but for a checker, which loads a library itself.
     pub(crate) fn subject(&self, name: &str) -> Result<Subject<dyn SourceAdapter>, Failure> {
         adapters::subject(name, || self.sources_quietly())
     }
 
-    /// These arguments, for another run of this program.
+    /// Returns these arguments for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.source_file.iter().map(|path| ("--source-file", path));
         let dirs = self.source_dir.iter().map(|path| ("--source-dir", path));
@@ -84,7 +84,7 @@ impl SourceArgs {
     }
 }
 
-/// The error, or the reason why a source of this name is not in this build.
+/// Returns the error, or the reason why this build does not have a source of this name.
 fn sounding(name: &str, error: Failure) -> Failure {
     match left_out(name, "`htex device list` shows the sources that it has") {
         Some(why) if error.is_unknown_name() => why.into(),
@@ -92,7 +92,7 @@ fn sounding(name: &str, error: Failure) -> Failure {
     }
 }
 
-/// A source in a list, with its target.
+/// Describes a source with its target, for a list.
 pub(crate) fn source_json(known: &KnownSource) -> Value {
     let mut listed = adapters::listed_json(known);
     if let Some(listed) = listed.as_object_mut() {

@@ -1,4 +1,4 @@
-//! Downloads of what a command reads by URI, and uploads of what it writes.
+//! Downloads the inputs that a command reads by URI, and uploads its outputs.
 
 use std::fs::File;
 use std::path::Path;
@@ -10,11 +10,11 @@ use htex_storage::{Storage, StorageError};
 use crate::failure::Failure;
 use crate::located::{Role, keep, taken};
 
-/// Most bytes of a recording that is downloaded. Those of its numbers that are kept are bounded by
-/// `--most-numbers`.
+/// Maximum size of a downloaded recording, bytes. `--most-numbers` limits how many of its values
+/// are kept.
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
-/// Downloads what is read, and checks that what will be written can be, as far as that is known
+/// Downloads the inputs, and checks that the outputs can be written, as far as that is possible
 /// without a request.
 #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
 pub(crate) fn fetch() -> Result<(), Failure> {
@@ -40,8 +40,7 @@ pub(crate) fn fetch() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes the outputs of a command that has succeeded. What cannot be written stays in its local
-/// copy.
+/// Uploads the outputs of a command that has succeeded. If that fails, the local copy is kept.
 pub(crate) fn put() -> Result<(), Failure> {
     let outputs = taken(|role| role == Role::Output);
     if outputs.is_empty() {
@@ -55,7 +54,7 @@ pub(crate) fn put() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The error of an output, whose local copy outlives the command.
+/// Returns the error for an output, whose local copy is kept after the command.
 fn kept(copy: &Path, error: StorageError) -> Failure {
     keep();
     Failure::Other(format!("{error}; the result is kept in {}", copy.display()))

@@ -1,4 +1,4 @@
-//! Reports of validation on standard output.
+//! Prints validation reports on standard output.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::hints::with_hint;
 use crate::output::{print, print_json};
 use crate::shown::shown;
 
-/// Prints reports as they come, or all of them as JSON; exit status 1 if one is not valid.
+/// Prints reports as they come, or all of them as JSON. The exit status is 1 if one is not valid.
 pub(crate) fn report<'a>(
     reports: impl Iterator<Item = Result<(&'a Path, Report), Failure>>,
     is_json: bool,

@@ -1,7 +1,7 @@
-//! What `htex --version` says; `htex -V` says the version alone.
+//! The output of `htex --version`. `htex -V` prints only the version.
 
-/// Version, and a line each for the commit of the sources, the target and the features of this
-/// build.
+/// The version, followed by one line each for the commit of the sources, the target and the
+/// features of this build.
 pub(crate) const LONG: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\ncommit: ",

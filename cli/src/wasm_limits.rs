@@ -1,4 +1,4 @@
-//! Limits of WASM models by name, for the command line.
+//! Limits of WASM models, by name on the command line.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,20 +7,20 @@ use htex_host::{WasmCompiler, WasmLimits};
 
 use crate::invocation;
 
-/// One limit and its value.
+/// One limit with its value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WasmLimit {
     set: Set,
     value: u64,
 }
 
-/// The subcommand that compiles.
+/// The subcommand that compiles modules.
 const COMPILE: &str = "compile-module";
 
 /// Sets a limit to a value.
 type Set = fn(&mut WasmLimits, u64);
 
-/// Name, largest value, and the limit that is set.
+/// The name, the largest value, and the function that sets the limit.
 const LIMITS: [(&str, u64, Set); 16] = [
     ("module-mib", 1024, |l, n| l.module_bytes = (n as usize) << 20),
     ("memory-mib", 4096, |l, n| l.memory_bytes = (n as usize) << 20),
@@ -41,7 +41,7 @@ const LIMITS: [(&str, u64, Set); 16] = [
 ];
 
 impl WasmLimit {
-    /// Reads `NAME=VALUE`. A build without the engine knows no limits.
+    /// Parses `NAME=VALUE`. A build without the engine knows no limits.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         if cfg!(not(feature = "wasm")) {
             return Err(
@@ -61,8 +61,8 @@ impl WasmLimit {
         }
     }
 
-    /// The default limits with these changed; modules are compiled by another process of this
-    /// program.
+    /// Returns the default limits with these changes. Modules are compiled by another process of
+    /// this program.
     pub(crate) fn all(given: &[Self]) -> WasmLimits {
         let mut limits = WasmLimits::default();
         if let Some((program, arguments)) = compiler() {
@@ -73,8 +73,8 @@ impl WasmLimit {
     }
 }
 
-/// The program that compiles modules, and its arguments; `None` if it is not known, or has
-/// arguments that are not Unicode.
+/// Returns the program that compiles modules, and its arguments. `None` if the program is unknown
+/// or has arguments that are not Unicode.
 fn compiler() -> Option<(PathBuf, Vec<String>)> {
     let program = invocation::program().ok()?;
     let words = program.arguments.into_iter().map(|word| word.into_string().ok());

@@ -11,11 +11,11 @@ use crate::output::{Written, warn};
 use crate::shown::shown;
 use htex_format::Rights;
 
-/// Most bytes of samples a WAV file can hold.
+/// Maximum number of frames in a WAV file.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
-/// Writes `frames` samples of one channel with the rights of what is played, which `render` makes
-/// block by block. Warns if all are 0.
+/// Writes `frames` samples of one channel, with the rights of the textures that are played.
+/// `render` produces them block by block. Warns if all samples are 0.
 pub(crate) fn write_wav(
     wav: Written<'_>,
     rate_hz: u32,
@@ -68,7 +68,7 @@ pub(crate) fn write_wav(
     }
 }
 
-/// The warning of a file whose samples are all 0.
+/// Returns the warning for a file whose samples are all 0.
 pub(crate) fn silence(path: &Path) -> String {
     format!(
         "{}: all samples are 0: nothing is felt at this motion; `htex info` lists the speeds and the forces at which a texture plays",

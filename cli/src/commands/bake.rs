@@ -14,7 +14,7 @@ use crate::plugins::PlayerArgs;
 use crate::shown::shown;
 use htex_files::AtFile;
 
-/// Range of the coefficients of a filter.
+/// Range of the number of coefficients in a filter.
 const FEWEST: i64 = BakeLimits::FEWEST as i64;
 const MOST: i64 = BakeLimits::MOST as i64;
 
@@ -34,35 +34,36 @@ pub(crate) struct Bake {
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// A condition: speed=80,force=0.4; may be given several times, for all combinations of some
-    /// speeds and forces [default: the asset's first condition, or the strongest if the first is
-    /// silent]
+    /// A condition, e.g. speed=80,force=0.4; may be given several times, as all combinations of
+    /// some speeds and forces [default: the asset's first condition, or the strongest if the first
+    /// is silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 
-    /// A grid of conditions, each axis FIRST:LAST:COUNT or one number:
+    /// A grid of conditions, where each axis is FIRST:LAST:COUNT or one number:
     /// speed=40:160:3,force=0.2:0.6:3
     #[arg(long, value_name = "GRID")]
     grid: Option<String>,
 
-    /// Sampling rate of the player, Hz
+    /// Sample rate of the player, Hz
     #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Largest error of nine bands between conditions, dB; conditions are inserted until it is
-    /// reached, to at most 64
+    /// Largest nine-band error between conditions, dB; conditions are added until it is reached, up
+    /// to 64
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 
-    /// Most coefficients of a filter, 65 to 641, which bound what a sample costs [default: 641]
+    /// Maximum number of filter coefficients, 65 to 641; more cost more time per sample [default:
+    /// 641]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin)
-    /// the bytes. Source states licence and author in comments; for bytes, FILE.license states them
+    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). Source files
+    /// state licence and author in comments; for bytes, FILE.license states them
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
@@ -124,7 +125,7 @@ impl Bake {
         Ok(Exit::SUCCESS)
     }
 
-    /// The conditions of the command line.
+    /// Reads the conditions from the command line.
     fn given(&self) -> Result<Option<Grid>, Failure> {
         if let Some(text) = &self.grid {
             let [speeds, forces] = axes("--grid", text, span)?;
@@ -143,8 +144,8 @@ impl Bake {
     }
 }
 
-/// Warns where the grid is narrower than the recorded speeds, or has one speed, though the law
-/// moves frequencies: a filter does not follow beyond the grid.
+/// Warns if the law moves frequencies, but the grid is narrower than the recorded speeds or has
+/// only one speed. A filter does not follow the speed beyond the grid.
 fn warn_of_frequencies(baked: &Baked) {
     let speeds = baked.grid.speeds_mm_s();
     let (Some(beyond_db), [lowest, .., highest] | [lowest @ highest]) = (baked.beyond_db, speeds)
@@ -184,8 +185,8 @@ enum Format {
     Rust,
 }
 
-/// The name of the array, and the format. A name that is given is checked; else it is that of the
-/// file.
+/// Returns the name of the array and the format. A given name is checked; otherwise the file's name
+/// is used.
 fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure> {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|p| p.to_str()).map(str::to_owned);
     let stem = text(output.file_stem()).unwrap_or_default();

@@ -25,9 +25,9 @@ use crate::shown::shown;
 ///
 /// Measures each representation of the asset, or another recording, against a recording.
 ///
-/// The asset plays at the recording's speed and force where both are known, else at its first
-/// condition. `felt` is the part of the difference that is above the detection threshold of a
-/// fingertip, in third octaves.
+/// The asset plays at the recording's speed and force if both are known, else at its first
+/// condition. `felt` is the part of the difference above the detection threshold of a fingertip, in
+/// third octaves.
 #[derive(Args)]
 pub(crate) struct Compare {
     #[arg(help = format!("The recording: {}", format_names()))]
@@ -63,7 +63,7 @@ struct Comparison {
     warnings: Vec<Notice>,
 }
 
-/// A recording that is compared with the first.
+/// A recording that is compared with the first one.
 #[derive(Serialize)]
 struct OtherRecording {
     recording: String,
@@ -108,7 +108,7 @@ impl Compare {
         Ok(Exit::SUCCESS)
     }
 
-    /// Says what to do with files of other kinds.
+    /// Refuses files of other kinds, and says what to do with them.
     fn check_kinds(&self) -> Result<(), Failure> {
         let advice = match (kind(&self.recording), kind(&self.other)) {
             (Kind::Asset, Kind::Asset) => {
@@ -144,7 +144,7 @@ impl Compare {
         })
     }
 
-    /// Compares another recording, which is read as the first.
+    /// Compares another recording, which is read in the same way as the first.
     fn other_recording(
         &self,
         spectrum: &TextureSpectrum,
@@ -215,7 +215,7 @@ impl Comparison {
 }
 
 impl OtherRecording {
-    /// A measure: `nine bands 1.20 dB`.
+    /// Formats a measure, e.g. `nine bands 1.20 dB`.
     fn measured(&self, measure: Measure) -> String {
         let (row, value) = (measure.row(), self.difference.quality.get(measure));
         let value = value.map_or("-".to_owned(), |x| format!("{x:.*}", row.decimals));

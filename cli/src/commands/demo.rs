@@ -29,21 +29,21 @@ use crate::wav::write_wav;
 
 const WAV_RATE_HZ: u32 = 20_000;
 const WAV_SECONDS: u64 = 5;
-/// The models in the picture of all spectra.
+/// The models shown in the picture of all spectra.
 const PICTURED: [&str; 2] = ["bands", "ar"];
-/// The simulated rig's response.
+/// File name of the simulated rig's response.
 const RIG: &str = "rig.csv";
 const REPORT: &str = "report.html";
-/// The condition the surfaces are explored at (paper, Texture recording).
+/// The condition at which the surfaces are explored (paper, Texture recording).
 const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
 
 /// Try everything on five simulated surfaces
 ///
 /// Simulates recordings, fits all models, plays the assets and writes a report.
 ///
-/// Needs nothing but this program. Writes NAME.csv (the simulated recording), NAME.htex,
-/// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided),
-/// report.html and spectra.svg (all recordings, with Bands and AR over them) into DIR.
+/// Needs nothing but this program. Writes these files to DIR: NAME.csv (the simulated recording),
+/// NAME.htex, NAME-MODEL.wav, rig.csv (the response of the simulated rig, which is divided out of
+/// the recordings), report.html and spectra.svg (all recordings with the Bands and AR models).
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder to write to; created if it does not exist
@@ -163,7 +163,7 @@ struct Row {
     felt: Option<FeltError>,
     #[serde(flatten)]
     by_samples: Keyed,
-    /// The measures as cells of the table.
+    /// The measures, formatted as table cells.
     #[serde(skip)]
     cells: String,
     repeatability_rms_db: Option<f64>,
@@ -214,7 +214,7 @@ fn play(asset: &htex::Asset, model: &str, file: &Path, wav: Written<'_>) -> Resu
     write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).of(file))
 }
 
-/// The measures of the table.
+/// Returns the measures shown in the table.
 fn shown() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().stored)
 }

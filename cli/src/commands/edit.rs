@@ -1,5 +1,5 @@
-//! Metadata are edited by writing the asset again. An asset with parts that this version would not
-//! write again, such as entries that nothing refers to, is refused.
+//! Edits metadata by writing the asset again. An asset is refused if this version would not write
+//! all of its parts again, such as entries that nothing refers to.
 
 use std::path::PathBuf;
 
@@ -21,9 +21,9 @@ use crate::shown::shown;
 
 /// Change an asset's metadata
 ///
-/// Metadata that is not given is kept; an empty text (--author "") removes the entry, and --tag
-/// replaces all tags. Parameters, recorded spectra and embedded models, with their signatures, are
-/// kept byte by byte.
+/// Metadata that you do not give stays. An empty text (--author "") removes the entry, and --tag
+/// replaces all tags. Parameters, recorded spectra and embedded models with their signatures stay
+/// the same byte for byte.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset

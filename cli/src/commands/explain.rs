@@ -11,7 +11,7 @@ use crate::rules::rules;
 /// Prints what it means and what to do.
 #[derive(Args)]
 pub(crate) struct Explain {
-    /// The code, as `htex validate` prints it; without one, all codes are listed
+    /// The code, as `htex validate` prints it; without a code, all codes are listed
     code: Option<String>,
 }
 

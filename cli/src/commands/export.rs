@@ -23,12 +23,12 @@ use crate::shown::shown;
 
 /// Write a texture in another haptic format
 ///
-/// Writes a texture at a condition or along a stroke, or what a scene plays, as a file that phones,
-/// controllers and engines play.
+/// Writes a texture at a condition or along a stroke, or a whole scene, as a file that phones,
+/// controllers and engines can play.
 ///
-/// The profile of an actuator decides what of the spectrum it can do. The file is read again,
-/// played through the profile, and compared with the asset's own samples: that difference is
-/// printed.
+/// The profile of an actuator decides how much of the spectrum it can reproduce. The written file
+/// is read again, played through the profile, and compared with the asset's own samples. The
+/// difference is printed.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The asset, or a scene, which has its own motion and models
@@ -55,7 +55,7 @@ pub(crate) struct Export {
     json: bool,
 }
 
-/// Settings of which each format takes its own.
+/// Settings, of which each format uses some.
 #[derive(Args)]
 struct Settings {
     #[command(flatten)]
@@ -70,15 +70,15 @@ struct Settings {
     #[arg(long, value_name = "NAME", value_parser = profile_names())]
     profile: Option<String>,
 
-    /// Length of a condition, or of a scene in place of its own, s [default: 2, or the scene's]
+    /// Duration, s [default: 2 for a condition; for a scene its own]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
-    /// Sampling rate of WAV, Hz [default: 8000]
+    /// Sample rate of WAV, Hz [default: 8000]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(100..=192_000))]
     rate: Option<u32>,
 
-    /// How hjif codes a texture [default: vectorial]
+    /// How hjif encodes a texture [default: vectorial]
     #[arg(long, value_enum, value_name = "CODING")]
     coding: Option<CodingArg>,
 
@@ -158,7 +158,7 @@ impl Export {
         Ok(export)
     }
 
-    /// The asset's file, where the export holds it.
+    /// Reads the asset's file if the export contains it.
     fn file(&self, format: &Format) -> Result<Option<Vec<u8>>, Failure> {
         match format.writes {
             Some(Writes::Asset(_)) => {
@@ -179,7 +179,7 @@ impl Export {
         Ok(Path::Condition(settings.choice.motion(asset).of(&self.asset)?))
     }
 
-    /// An error of playing names the asset.
+    /// Converts an error. An error of playing names the asset.
     fn failure(&self, error: ExchangeError) -> Failure {
         match error {
             ExchangeError::Play(error) => error.of(&self.asset),
@@ -217,7 +217,7 @@ fn limited(played: &Played) -> String {
     format!("; the actuator is too weak in {:.0} % of the time", 100.0 * played.limited)
 }
 
-/// What is lost, in words.
+/// Says in words what is lost.
 fn lost(lost: &Loss) -> String {
     let felt = &lost.difference.felt.error;
     let threshold = if felt.below_difference_threshold { "below" } else { "above" };

@@ -28,7 +28,7 @@ use crate::report::{Reported, measures, shares};
 /// Writes an asset (.htex) with the models and the measured error of each.
 ///
 /// Recordings whose speed and force differ by less than 5 % are averaged as one exploration
-/// condition; others become further conditions of the same texture.
+/// condition. Other recordings become further conditions of the same texture.
 #[derive(Args)]
 pub(crate) struct Fit {
     #[arg(help = format!("Recordings of one texture: {}", format_names()))]
@@ -46,8 +46,8 @@ pub(crate) struct Fit {
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT, display_order = 3)]
     output: PathBuf,
 
-    /// A model's WASM module to fit with and to bring along in the asset, so that any player can
-    /// play it; may be given several times
+    /// A model's WASM module to fit with and to embed in the asset, so that any player can play it;
+    /// may be given several times
     #[arg(long, value_name = "WASM", display_order = 5)]
     embed_plugin: Vec<PathBuf>,
 
@@ -150,7 +150,7 @@ impl Fit {
         write_file(file, texture_report(&page).as_bytes())
     }
 
-    /// Puts the modules of fitted models into the asset.
+    /// Embeds the modules of fitted models in the asset.
     fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<(), Failure> {
         let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
         let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
@@ -176,7 +176,8 @@ impl Fit {
     }
 }
 
-/// An error if a model that the user named could not be fitted; what was written has the others.
+/// Returns an error if a model that the user named could not be fitted. The written asset has the
+/// other models.
 pub(crate) fn all_named_were_fitted(
     fit: &FitSettings,
     skipped: &[(String, String)],
@@ -192,7 +193,7 @@ pub(crate) fn all_named_were_fitted(
     }
 }
 
-/// This run's command line; words with other characters than a path has are quoted.
+/// Returns this run's command line. Words with characters that are unusual in a path are quoted.
 fn command_line() -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
     let quoted = |word: std::ffi::OsString| match word.to_string_lossy() {

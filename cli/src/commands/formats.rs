@@ -48,7 +48,7 @@ fn text() -> String {
     text
 }
 
-/// How its files come in and go out, in words.
+/// Says in words how files of this format are imported and exported.
 fn ways(format: &Format) -> String {
     let import = format.reads.as_ref().map(|reads| match reads {
         Reads::Asset(_) => "import",

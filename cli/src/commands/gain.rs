@@ -17,28 +17,28 @@ use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::shown::shown;
 use crate::signals::{self, interrupted};
 
-/// Steps of the level, decibels.
+/// Step of the level, decibels.
 const STEP_DB: f64 = 1.0;
 const LARGE_STEP_DB: f64 = 4.0;
 
 /// Find a participant's preferred gain
 ///
-/// The participant adjusts the gain of a surface on a display; the result is kept.
+/// The participant adjusts the gain of a surface on a display. The result is stored.
 ///
-/// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker,
-/// `++` and `--` 4 dB, and Enter alone accepts it. It starts weak, 20 dB below the device's limit,
-/// where the paper starts at the limit: a finger feels nothing stronger than the person asked for.
-/// `htex play --person` then uses what was found. Ctrl-C keeps nothing.
+/// The surface plays without end. `+` and `-`, each followed by Enter, make it 1 dB stronger or
+/// weaker, `++` and `--` 4 dB. Enter alone accepts the gain. It starts 20 dB below the device's
+/// limit, so a finger feels nothing stronger than the participant asked for. (The paper starts at
+/// the limit.) `htex play --person` then uses the stored gain. Ctrl-C stores nothing.
 ///
-/// A gain is kept for a person, a texture and a device. All representations share it, and so do
-/// assets that are fitted again: a texture is identified by its name and author. The paper finds it
-/// with `--model ar` and plays all models with it.
+/// A gain is stored for a person, a texture and a device. All representations share it, and so do
+/// assets that are fitted again, because a texture is identified by its name and author. The paper
+/// finds the gain with `--model ar` and plays all models with it.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
     file: PathBuf,
 
-    /// Whose gain it is
+    /// The person whose gain it is
     #[arg(long, value_name = "NAME")]
     person: String,
 
@@ -46,7 +46,7 @@ pub(crate) struct Gain {
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
-    /// What the texture is called, where another one has the same name and author
+    /// Name of the texture, if another one has the same name and author
     #[arg(long, value_name = "NAME")]
     texture: Option<String>,
 
@@ -60,13 +60,13 @@ pub(crate) struct Gain {
     with: SceneArgs,
 }
 
-/// A drive, volts, and the RMS that had it, in the assets' unit.
+/// A drive, volts, and the RMS that was played with it, in the assets' unit.
 struct Found {
     drive_v: f64,
     reference_rms: f64,
 }
 
-/// The request of an input line.
+/// What an input line asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Wish {
     Change(f64),
@@ -128,7 +128,7 @@ fn limit(ready: &Ready) -> Result<f64, Failure> {
     }
 }
 
-/// Plays until the person accepts the gain; `None` when the input ends or is interrupted before.
+/// Plays until the participant accepts the gain; `None` if the input ends or is interrupted before.
 fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>, Failure> {
     signals::ask();
     let wishes = wishes();
@@ -165,7 +165,7 @@ fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output, Failure> {
     Ok(if ready.capabilities.paced { output } else { output.paced() })
 }
 
-/// Plays until there is a request, then fades to silence.
+/// Plays until a line asks for something, then fades to silence.
 fn play_until_wish(
     renderer: &mut Renderer,
     output: &mut Output,
@@ -187,7 +187,7 @@ fn play_until_wish(
     Ok(answer)
 }
 
-/// Requests from the lines of standard input; an invalid line is reported.
+/// Reads requests from the lines of standard input. An invalid line is reported.
 fn wishes() -> Receiver<Wish> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
@@ -214,7 +214,7 @@ fn wish(line: &str) -> Option<Wish> {
     })
 }
 
-/// The drive as text: its largest voltage, and V_g.
+/// Formats the drive: its largest voltage, and V_g.
 fn volts(drive_v: f64) -> String {
     format!("{drive_v:.1} V at most, V_g {:.2} V", drive_v / std::f64::consts::SQRT_2)
 }

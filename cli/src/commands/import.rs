@@ -23,11 +23,11 @@ use crate::shown::shown;
 /// Read another haptic format as a texture
 ///
 /// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a
-/// texture as it is; a glTF file gives out the texture that its material carries, bit for bit. The
-/// others are signals that know none of it, and are fitted as a recording is: say how strong 1 is
-/// (--full-scale), and at which speed and force the file is felt. Licence and author are taken from
-/// the file, or from FILE.license beside it, unless they are given. `htex formats` lists what is
-/// kept and lost.
+/// texture directly. A glTF file returns the texture embedded in its material, bit for bit. Files
+/// of the other formats are signals without this information, and are fitted like a recording. Give
+/// the strength of 1 (--full-scale), and the speed and force at which the file is felt. Licence and
+/// author are taken from the file or from FILE.license next to it, unless they are given.
+/// `htex formats` lists what is kept and lost.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -52,13 +52,13 @@ pub(crate) struct Import {
     json: bool,
 }
 
-/// Settings of which each format takes its own.
+/// Settings, of which each format uses some.
 #[derive(Args)]
 struct Settings {
     #[command(flatten)]
     signal: SignalSettings,
 
-    /// What the full scale is of
+    /// Quantity of the full scale
     #[arg(long, value_enum, default_value_t, display_order = 1)]
     quantity: Quantity,
 

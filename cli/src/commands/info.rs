@@ -14,8 +14,8 @@ use crate::output::{print, print_json};
 /// Show what an asset holds, and its errors
 ///
 /// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS
-/// over nine critical bands of the energy difference, from the model's magnitudes and from samples
-/// it played; bytes of parameters.
+/// energy difference over nine critical bands, from the model's magnitudes and from samples that it
+/// played; bytes of parameters.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The asset

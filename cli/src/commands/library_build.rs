@@ -26,26 +26,26 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
 ///
-/// Fits the recordings that the recipe names, imports the files that `htex import` takes, and
-/// writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the catalogue DIR/index.html. A
-/// build that fails writes its error into the report. What has been fitted stays in
-/// DIR/.htex-build: a build that was killed goes on where it was, and one that is run again fits
-/// what changed. Recordings and other files of a recipe may be URIs, too.
+/// Fits the recordings that the recipe names, imports files as `htex import` does, and writes
+/// DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the catalogue DIR/index.html. If a
+/// build fails, the report contains its error. Finished fits stay in DIR/.htex-build: a killed
+/// build continues where it was, and a repeated build fits only what changed. Recordings and other
+/// files of a recipe may also be URIs.
 ///
-/// Exit status: 0 when every texture was made, 1 when none was, 3 when some were made and others
-/// left out (they miss a gate, or with --keep-going cannot be made), 2 for wrong usage.
+/// Exit status: 0 if every texture was made, 1 if none was, 3 if some were made and others left out
+/// (they miss a gate, or with --keep-going cannot be made), 2 for wrong usage.
 #[derive(Args)]
 pub(crate) struct Build {
     /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
     recipe: Anywhere,
 
-    /// The folder of the results, or the URI of one (s3://, gs://, az://), to which they are copied
-    /// when they are complete
+    /// The folder for the results, or its URI (s3://, gs://, az://), to which complete results are
+    /// copied
     #[arg(short, long, value_name = "DIR|URI")]
     output: OsString,
 
     /// The folder in which results for a URI are made; it keeps what the next build needs [default:
-    /// one of the user's cache]
+    /// a folder in the user's cache]
     #[arg(long, value_name = "DIR")]
     work: Option<PathBuf>,
 
@@ -53,7 +53,7 @@ pub(crate) struct Build {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
 
-    /// Go on after a texture that cannot be made, and leave it out
+    /// Continue after a texture that cannot be made, and leave it out
     #[arg(long)]
     keep_going: bool,
 
@@ -62,24 +62,24 @@ pub(crate) struct Build {
     #[arg(long)]
     no_removals: bool,
 
-    /// Check the recipe, its files, plugins, options and gates, say what would be fitted and why,
-    /// and fit nothing
+    /// Check the recipe with its files, plugins, options and gates, print what would be fitted and
+    /// why, and fit nothing
     #[arg(long)]
     dry_run: bool,
 
     /// A plugin to fit with: a WASM module (sandboxed) or a native library (it runs with all your
-    /// rights: load only what you trust); may be given several times. A recipe names WASM modules
-    /// alone
+    /// rights: load only what you trust); may be given several times. A recipe itself can name only
+    /// WASM modules
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// Remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days,
-    /// so that a setting that is taken back fits nothing again
+    /// Remove unused fits at once; otherwise they stay for 30 days, so that undoing a change of a
+    /// setting needs no new fit
     #[arg(long)]
     prune: bool,
 
-    /// Folder of the browser package: the catalogue plays textures with a copy of it instead of
-    /// short sounds
+    /// Folder of the browser package: the catalogue then plays textures with a copy of it instead
+    /// of short sounds
     #[arg(long, value_name = "DIR")]
     browser_package: Option<PathBuf>,
 
@@ -105,24 +105,25 @@ struct Summary<'a> {
     seconds: f64,
     felt_shares: &'a BTreeMap<String, FeltShare>,
     findings: &'a BTreeMap<String, FindingShare>,
-    /// Textures with a warning that is no finding of a recording.
+    /// Number of textures with a warning that is not a finding about a recording.
     other_warnings: usize,
     left_out: Vec<&'a TextureReport>,
-    /// Names of textures that the library before had and the recipe no longer asks for.
+    /// Names of textures in the previous library that the recipe no longer asks for.
     removed: &'a [String],
 }
 
-/// What is fitted by a build.
+/// The fits that a build has to do.
 struct Work {
     textures: usize,
-    /// Textures of the recipe that are as an earlier build left them.
+    /// Number of textures that an earlier build has already made in the same way.
     unchanged: usize,
     recordings: usize,
     bytes: u64,
 }
 
 impl Build {
-    /// Builds; an error is in the report, too, and JSON on standard output, for who reads those.
+    /// Runs the build. An error is also written to the report, and as JSON to standard output, for
+    /// programs that read those.
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let built = self.build();
         if let Err(failure) = &built {
@@ -131,14 +132,14 @@ impl Build {
         built
     }
 
-    /// Writes an error into the report, but for a build that changes nothing.
+    /// Writes an error to the report, except for a build that changes nothing.
     fn failed(&self, failure: &Failure) -> Result<(), Failure> {
         let lines = failure.to_lines();
         let to = Destination::parse(&self.output, self.work.as_deref());
         let changes_nothing = self.dry_run
             || matches!(failure, Failure::Build { error: BuildError::Removes { .. }, .. });
         if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit_code()) {
-            // A folder in which not even that can be written is what `failure` is about.
+            // If the report cannot be written, the reason is the one in `failure`.
             let _ = report_failure(to.folder(), &tool(), &lines);
         }
         if self.json {
@@ -261,7 +262,7 @@ impl Work {
     }
 }
 
-/// Does the pending jobs, under a bar.
+/// Runs the pending fits with a progress bar.
 fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
     let bar = progress::bytes(work.bytes);
     let (count, all) = (AtomicUsize::new(0), work.textures);
@@ -275,7 +276,7 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
     ended
 }
 
-/// A line with the textures that are removed, if there are any.
+/// Returns a line with the removed textures, if there are any.
 fn removed(names: &[String]) -> String {
     match names.len() {
         0 => String::new(),
@@ -287,14 +288,14 @@ fn removed(names: &[String]) -> String {
     }
 }
 
-/// Counts the textures with a warning that is no finding of a recording.
+/// Counts the textures with a warning that is not a finding about a recording.
 fn other_warnings(report: &Report) -> usize {
     let assets = report.textures.iter().flat_map(|texture| &texture.asset);
     assets.filter(|asset| asset.has_other_warnings()).count()
 }
 
 impl Summary<'_> {
-    /// A line for each code of a finding that is an error or a warning, errors first.
+    /// Returns one line for each code of an error or a warning, errors first.
     fn findings(&self) -> String {
         let mut all: Vec<(&String, &FindingShare)> = self.findings.iter().collect();
         all.retain(|(_, share)| share.severity != Severity::Info);

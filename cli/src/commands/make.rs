@@ -28,7 +28,7 @@ pub(crate) struct Make {
     #[arg(long, value_name = "ID")]
     model: String,
 
-    /// Parameters; a list has commas, such as cepstrum=-12,3.1,0.4
+    /// Parameters; a list has commas, e.g. cepstrum=-12,3.1,0.4
     #[arg(long, value_name = "NAME=NUMBER", num_args = 1.., required = true)]
     set: Vec<String>,
 
@@ -36,11 +36,11 @@ pub(crate) struct Make {
     #[arg(long, value_name = "RMS")]
     level: f64,
 
-    /// Speed and force at which it is this texture: speed=80,force=0.4 [default: unknown]
+    /// Speed and force of this texture, e.g. speed=80,force=0.4 [default: unknown]
     #[arg(long, value_name = "speed=MM_S,force=N")]
     at: Option<String>,
 
-    /// Quantity of its samples
+    /// Quantity of the samples
     #[arg(long, default_value = "lateral_force", value_parser = quantity)]
     quantity: Quantity,
 
@@ -95,7 +95,7 @@ impl Make {
     }
 }
 
-/// Writes a made asset, and prints its summary.
+/// Writes an asset made by hand, and prints its summary.
 pub(super) fn write(
     output: &std::path::Path,
     asset: &htex_format::Asset,

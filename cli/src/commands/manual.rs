@@ -12,10 +12,10 @@ use crate::failure::Failure;
 ///
 /// Writes one page for each subcommand.
 ///
-/// `man -l DIR/htex-fit.1` shows one; in a man1 folder of MANPATH, `man htex-fit` finds it.
+/// `man -l DIR/htex-fit.1` shows a page. In a man1 folder of MANPATH, `man htex-fit` finds it.
 #[derive(Args)]
 pub(crate) struct Manual {
-    /// The folder to write to; it is made
+    /// The folder to write to; it is created
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
@@ -29,7 +29,7 @@ impl Manual {
     }
 }
 
-/// The page of a command, and those of its subcommands.
+/// Writes the page of a command and the pages of its subcommands.
 fn write_pages(command: &Command, folder: &OwnFolder) -> Result<(), Failure> {
     let page = Man::new(command.clone());
     let name = PathBuf::from(page.get_filename());

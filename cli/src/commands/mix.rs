@@ -17,8 +17,8 @@ use crate::plugins::PlayerArgs;
 
 /// Make a texture between two others
 ///
-/// Each model that describes both interpolates between their parameters, as between the conditions
-/// of one texture. The asset states what it was mixed of.
+/// Each model that describes both textures interpolates between their parameters, as it does
+/// between the conditions of one texture. The asset states its two origins.
 #[derive(Args)]
 pub(crate) struct Mix {
     /// A texture
@@ -29,7 +29,7 @@ pub(crate) struct Mix {
     #[arg(value_parser = located::ASSET)]
     b: PathBuf,
 
-    /// Part of the second texture, from 0 to 1
+    /// Weight of the second texture, from 0 to 1
     #[arg(long, value_name = "PART")]
     weight: f64,
 
@@ -68,7 +68,7 @@ impl Mix {
         write(&self.output, &asset, self.json)
     }
 
-    /// Opens a texture, and hashes its file.
+    /// Opens a texture and computes the hash of its file.
     fn open(&self, path: &Path) -> Result<(htex::Asset, String), Failure> {
         let asset = self.player.open(path)?;
         let bytes = read_asset(path)?;

@@ -1,4 +1,4 @@
-//! The subcommands, one file each: arguments and execution.
+//! The subcommands, one file each, with their arguments and execution.
 
 mod bake;
 mod compare;

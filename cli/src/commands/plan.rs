@@ -14,7 +14,7 @@ use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
 /// Show which stages a scene needs, and why
 ///
-/// Nothing is played. Costs are nanoseconds for a sample of the device.
+/// Nothing is played. Costs are in nanoseconds per sample of the device.
 #[derive(Args)]
 pub(crate) struct Plan {
     /// The scene
@@ -68,7 +68,7 @@ impl Plan {
     }
 }
 
-/// A stage's name, with the index of its surface if it belongs to one.
+/// Returns a stage's name, with the index of its surface if it belongs to one.
 fn name(name: &str, surface: Option<usize>) -> String {
     surface.map_or_else(|| name.to_owned(), |i| format!("{name} [{i}]"))
 }

@@ -23,8 +23,8 @@ use crate::signals::{self, interrupted};
 ///
 /// Plays until its end or Ctrl-C.
 ///
-/// An asset is played at the speed and force of its first condition (of the strongest, if the first
-/// is silent), as sound when no device is named.
+/// An asset is played at the speed and force of its first condition (or of the strongest, if the
+/// first is silent). It is played as sound if no device is named.
 #[derive(Args)]
 #[command(after_help = without_sound())]
 pub(crate) struct Play {
@@ -32,12 +32,13 @@ pub(crate) struct Play {
     #[arg(value_parser = located::ASSET)]
     file: PathBuf,
 
-    /// Read the motion from standard input while it plays: lines `speed_mm_s force_n [x_mm y_mm]`,
-    /// a negative speed on the back stroke; the end of input is the end
+    /// Read the motion from standard input during playback, as lines
+    /// `speed_mm_s force_n [x_mm y_mm]` with a negative speed on the back stroke; playback stops at
+    /// the end of the input
     #[arg(long, value_name = "-", value_parser = ["-"])]
     motion: Option<String>,
 
-    /// Length, s, in place of the scene's
+    /// Duration, s, instead of the scene's
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
@@ -45,7 +46,7 @@ pub(crate) struct Play {
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
 
-    /// Name under which the gain was found, if not the texture's own
+    /// Name under which the gain is stored, if it is not the texture's own
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
 
@@ -115,7 +116,8 @@ impl Play {
     }
 }
 
-/// Opens a scene, or makes one of an asset, which is played as sound when no device is named.
+/// Opens a scene. An asset is opened as a scene of its own, and played as sound if no device is
+/// named.
 pub(crate) fn open(
     with: &SceneArgs,
     file: &std::path::Path,
@@ -135,11 +137,12 @@ pub(crate) fn open(
     with.of_asset(file, motion, None, &device)
 }
 
-/// Applies the newest motion; true when the input has ended.
+/// Applies the newest motion. Returns true when the input has ended.
 fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
     match motions.look() {
         Moved::To(finger) => {
-            // A failed reading is held, and then no contact; the next one may be good.
+            // After a failed reading, the last motion is held for a while and then becomes no
+            // contact. The next reading may be valid.
             let _ = renderer.set_motion(finger);
             false
         }

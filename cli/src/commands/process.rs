@@ -15,9 +15,9 @@ use crate::recordings::RecordingArgs;
 
 /// Show the texture spectrum of a recording
 ///
-/// Segments of 0.2 s, Hann-windowed, two axes folded into one (DFT321), divided by the setup's
-/// response if there is one, averaged, 20 to 1000 Hz in steps of 5 Hz. A sinusoid of amplitude A on
-/// that grid reads A.
+/// The spectrum is computed from Hann-windowed segments of 0.2 s. Two axes are combined into one
+/// (DFT321), divided by the setup's response if there is one, and averaged. The result has steps of
+/// 5 Hz from 20 to 1000 Hz. A sinusoid of amplitude A on that grid reads A.
 #[derive(Args)]
 pub(crate) struct Process {
     #[arg(help = format!("The recording: {}", format_names()))]
@@ -27,7 +27,7 @@ pub(crate) struct Process {
     #[command(flatten)]
     reading: RecordingArgs,
 
-    /// Draw the recording with the segments that are read, and those left out, as an SVG picture
+    /// Draw the recording with the used and the skipped segments as an SVG picture
     #[arg(long, value_name = "SVG", value_parser = located::OUTPUT)]
     svg: Option<PathBuf>,
 
@@ -64,18 +64,19 @@ impl Process {
     }
 }
 
-/// The source of the segments.
+/// Says where the segments come from.
 fn origin(reading: &Reading) -> &'static str {
     if reading.part.segments.from_sweeps { "sweeps" } else { "windows" }
 }
 
-/// The segments that are read, seconds in the file.
+/// Returns the segments that are used, in seconds of the file.
 fn stretches_s(recording: &Recording, reading: &Reading) -> Vec<[f64; 2]> {
     let stretches = reading.part.segments.stretches().into_iter();
     stretches.map(|part| [part.start, part.end].map(|at| recording.second(at))).collect()
 }
 
-/// Number and place of the segments that are read, and the spread of the motion over them.
+/// Describes the number and position of the segments that are used, and the spread of the motion in
+/// them.
 fn seconds_read(recording: &Recording, reading: &Reading) -> String {
     let stretches = stretches_s(recording, reading);
     let named: Vec<String> = stretches.iter().map(|[a, b]| format!("{a:.2}-{b:.2}")).collect();

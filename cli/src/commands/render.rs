@@ -22,7 +22,7 @@ use crate::shown::shown;
 use crate::signals::{self, interrupted};
 use crate::wav::silence;
 
-/// Frames in a block.
+/// Block size, frames.
 const BLOCK: usize = 4096;
 
 /// Render a scene to a file
@@ -30,20 +30,19 @@ const BLOCK: usize = 4096;
 /// Writes exactly the samples that the scene's device would get, faster than real time where
 /// possible.
 ///
-/// WAV, CSV, NPY or raw samples, by the file's extension, in the unit of the scene's device:
-/// newtons, the volts a display is driven with, or sound.
+/// The file's extension selects WAV, CSV, NPY or raw samples. They are in the unit of the scene's
+/// device: newtons, the drive voltage of a display, or sound.
 #[derive(Args)]
 pub(crate) struct Render {
     /// The scene
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// The file to write, or to replace [default: the scene's name with .wav, if there is no such
-    /// file]
+    /// The file to write or replace [default: the scene's name with .wav, if no such file exists]
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
-    /// Length, s, in place of the scene's
+    /// Duration, s, instead of the scene's
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
@@ -163,23 +162,23 @@ impl Render {
     }
 }
 
-/// The file that is rendered to.
+/// The file that receives the samples.
 struct Opened {
     path: PathBuf,
     aside: Option<Aside>,
     output: Output,
 }
 
-/// A temporary file in place of one whose name is not Unicode: devices take their settings as text.
-/// It lies in a folder of its own, which only this user may write to.
+/// A temporary file for an output whose name is not Unicode, because devices take their settings as
+/// text. It is in its own folder, which only this user may write to.
 struct Aside {
     path: PathBuf,
     _folder: tempfile::TempDir,
 }
 
 impl Aside {
-    /// A temporary place for a file of this name, if it needs one; it keeps the extension, which
-    /// determines the format.
+    /// Creates a temporary file for an output of this name, if it needs one. The file keeps the
+    /// extension, which determines the format.
     fn of(path: &Path) -> Result<Option<Self>, Failure> {
         if path.to_str().is_some() {
             return Ok(None);
@@ -196,7 +195,7 @@ impl Aside {
     }
 }
 
-/// Settings of a file that holds what a device of these capabilities would get.
+/// Returns settings for a file that receives the same samples as a device with these capabilities.
 fn like(able: &Capabilities, scene: &Path) -> BTreeMap<String, String> {
     let mut given = vec![("path", output_name(scene, "wav"))];
     match able.quantity {

@@ -23,10 +23,10 @@ use crate::outputs::check_outputs;
 ///
 /// Measures the frequency response of a recording rig or a finger display.
 ///
-/// From recordings of its input and output: hits of an impact hammer (each is one average; double
-/// hits, overloads and hits that are cut off are thrown out and listed), or with --continuous a
-/// drive such as noise. Writes the CSV that --frf of the commands for recordings and the `response`
-/// of a scene's device take.
+/// The response is computed from recordings of input and output. With an impact hammer, each hit is
+/// one average; double hits, overloads and incomplete hits are discarded and listed. With
+/// --continuous, the input is a drive such as noise. Writes a CSV for --frf of the commands for
+/// recordings, and for the `response` of a scene's device.
 #[derive(Args)]
 pub(crate) struct Response {
     #[arg(help = format!("The recordings, all of one rate: {}", format_names()))]
@@ -34,31 +34,31 @@ pub(crate) struct Response {
     recordings: Vec<PathBuf>,
 
     /// The force of the hammer, or the drive of the display: a column by name, number (#1) or path,
-    /// COLUMN:SCALE, or an expression. Without a scale in the unit of the file
+    /// COLUMN:SCALE, or an expression. Without a scale, the unit is the file's
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     input: String,
 
-    /// What the rig or the display makes of it: a column as for --input
+    /// The output of the rig or the display: a column as for --input
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     output: String,
 
-    /// Names and scales the time column, if it has no known name: time=stamp_ms:0.001
+    /// Name and scale of the time column, if its name is not known: time=stamp_ms:0.001
     #[arg(long, value_name = "MAP")]
     map: Option<String>,
 
-    /// Sampling rate; needed where the file does not say (NPY, CSV without a time column)
+    /// Sample rate; needed if the file does not state it (NPY, CSV without a time column)
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
 
-    /// Reads the recordings from this time on, s
+    /// Read the recordings from this time on, s
     #[arg(long, value_name = "S")]
     from: Option<f64>,
 
-    /// Reads the recordings up to this time, s
+    /// Read the recordings up to this time, s
     #[arg(long, value_name = "S")]
     to: Option<f64>,
 
-    /// Most numbers of a recording that are kept in memory
+    /// Maximum number of values of a recording that are kept in memory
     #[arg(long, value_name = "N", default_value_t = MOST_VALUES)]
     most_numbers: usize,
 
@@ -104,7 +104,7 @@ impl Response {
         Ok(Exit::SUCCESS)
     }
 
-    /// The records, and what was noticed while reading them, each once.
+    /// Reads the records. Also returns each notice about them once.
     fn read(&self) -> Result<(Vec<Record>, Vec<Notice>), Failure> {
         let others = self.map.as_deref().map(str::parse::<ColumnMap>).transpose()?;
         let map = column_map(&self.input, &self.output, others.as_ref())?;
@@ -136,7 +136,7 @@ impl Response {
         format!("{} over {}", self.output, self.input)
     }
 
-    /// The response, with the settings that it was measured by.
+    /// Summarises the response and the settings of the measurement.
     fn summary(&self, measured: &MeasuredResponse, remarks: &[Notice]) -> Result<Value, Failure> {
         let mut summary = serde_json::to_value(measured)?;
         summary["input"] = json!(self.input);
@@ -147,7 +147,8 @@ impl Response {
     }
 }
 
-/// An error of the columns names the flags for them, which differ from those of other commands.
+/// Converts an error about columns so that it names the flags of this command, which differ from
+/// other commands' flags.
 fn read_failure(error: ReadError) -> Failure {
     match error.problem {
         ReadProblem::Columns { .. } => {
@@ -158,10 +159,10 @@ fn read_failure(error: ReadError) -> Failure {
     }
 }
 
-/// Most windows of a continuous drive that are listed.
+/// Maximum number of windows of a continuous drive that are listed.
 const MOST_LISTED: usize = 40;
 
-/// What was used and thrown out, and the result in a few lines.
+/// Summarises in a few lines what was used, what was discarded, and the result.
 fn text(measured: &MeasuredResponse) -> String {
     let is_listed =
         |piece: &&Piece| measured.pieces.len() <= MOST_LISTED || piece.thrown_out.is_some();

@@ -16,9 +16,9 @@ use crate::outputs::check_outputs;
 
 /// Simulate a recording of a surface
 ///
-/// A physically motivated signal for experiments: to-and-fro sweeps, friction, a texture read at
-/// the finger's position, setup resonance, sensor noise. It is not a measurement, and is labelled
-/// so.
+/// The signal is physically motivated and meant for experiments. It consists of back-and-forth
+/// sweeps, friction, a texture read at the finger's position, setup resonance and sensor noise. It
+/// is not a measurement, and is labelled as simulated.
 #[derive(Args)]
 pub(crate) struct Simulate {
     /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl
@@ -33,42 +33,42 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "CSV", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// Where to write the simulated rig's response as well: CSV with columns
+    /// Where to write the simulated rig's response: CSV with columns
     /// frequency_hz,magnitude,phase_rad, for `htex fit --frf`
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     frf: Option<PathBuf>,
 
-    /// Length, s
+    /// Duration, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
     seconds: f64,
 
-    /// Sampling rate, Hz
+    /// Sample rate, Hz
     #[arg(long, default_value_t = 20_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// How the finger moves: to-and-fro sweeps at one speed and force, or freely, in strokes of
+    /// How the finger moves: back-and-forth sweeps at one speed and force, or freely, in strokes of
     /// random speed and force
     #[arg(long, value_enum, default_value = "sweeps")]
     motion: MotionArg,
 
-    /// Scanning speed, mm/s; of a free motion the lowest and the highest, 36:280 unless given
+    /// Scanning speed, mm/s; for a free motion the lowest and highest [default there: 36:280]
     #[arg(long, value_name = "MM_S")]
     speed: Option<Range>,
 
-    /// Normal force, N; of a free motion the lowest and the highest, 0.15:3.8 unless given
+    /// Normal force, N; for a free motion the lowest and highest [default there: 0.15:3.8]
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
     /// How the texture follows the motion, as exponents relative to 80 mm/s and 0.4 N:
-    /// frequency-speed=X,level-speed=X,level-force=X; those of a relief are 1, 0 and 1
+    /// frequency-speed=X,level-speed=X,level-force=X; a relief has 1, 0 and 1
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 
-    /// Change of the texture's level in the course of the recording, dB per minute
+    /// Change of the texture's level during the recording, dB per minute
     #[arg(long, value_name = "DB", default_value_t = 0.0, allow_negative_numbers = true)]
     drift: f64,
 
-    /// Part of the time that the finger is off the surface, for 50 to 250 ms each, 0 to 0.8
+    /// Fraction of time that the finger is off the surface, for 50 to 250 ms each, 0 to 0.8
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     lifted: f64,
 
@@ -109,7 +109,7 @@ impl Simulate {
             .chain(self.truth.as_deref());
         check_outputs(outputs, [])?;
         let options = self.options()?;
-        // Known to be there before anything is written.
+        // Computed first, so that its errors are found before anything is written.
         let truth =
             self.truth.as_ref().map(|file| Ok::<_, Failure>((file, options.truth().or_usage()?)));
         let truth = truth.transpose()?;

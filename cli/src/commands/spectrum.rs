@@ -14,9 +14,9 @@ use crate::plugins::PlayerArgs;
 ///
 /// Prints one representation, 20 to 1000 Hz in steps of 5 Hz.
 ///
-/// Magnitudes are in the measure of `htex process`: what a long recording of the voice reads when
-/// segments are averaged by power. Outside the recorded speeds and forces they follow the law of
-/// the asset, as a voice does.
+/// Magnitudes are comparable with `htex process`: they are what a long recording of the voice would
+/// measure if segments are averaged by power. Outside the recorded speeds and forces they follow
+/// the law of the asset, as a voice does.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
@@ -38,7 +38,7 @@ pub(crate) struct Spectrum {
     json: bool,
 }
 
-/// A representation and a motion.
+/// A choice of a representation and a motion.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
     /// The representation, by its model's short name or id [default: least nine-band error]
@@ -55,8 +55,8 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// The requested motion; what is missing comes from the asset's default condition, else is the
-    /// paper's default.
+    /// Returns the requested motion. Missing values come from the asset's default condition, or
+    /// else from the paper's default.
     pub(crate) fn motion(&self, asset: &htex::Asset) -> Result<Option<htex::Motion>, htex::Error> {
         if self.speed.is_none() && self.force.is_none() {
             return Ok(None);
@@ -66,7 +66,7 @@ impl ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// A note on how a motion that was not recorded is played.
+    /// Returns a note on how a motion that was not recorded is played.
     pub(crate) fn beyond(
         &self,
         asset: &htex::Asset,

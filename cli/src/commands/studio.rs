@@ -10,36 +10,36 @@ use crate::failure::Failure;
 use crate::output::{print, warn};
 use crate::signals;
 
-/// Where the page is served unless another port is given. It stays the same, so that the browser
-/// finds one's own textures again.
+/// The port of the page, unless another one is given. It is fixed, so that the browser finds the
+/// user's textures again.
 const PORT: u16 = 8420;
-/// How often it is looked whether the command shall end.
+/// How often to check whether the command should end.
 const NOTICED: Duration = Duration::from_millis(100);
-/// The environment's variable that names the folder.
+/// The environment variable that names the folder.
 const VARIABLE: &str = "HTEX_STUDIO";
-/// Where an installation has the page, from the folder of the command.
+/// Where an installation keeps the page, relative to the folder of the command.
 const SHARED: &str = "../share/htex/studio";
-/// The part of a build that a server gives.
+/// The part of a build that a server serves.
 const STATIC: &str = "static";
-/// The file of the key, in the user's folder of settings.
+/// Name of the key file in the user's configuration folder.
 const KEY: &str = "studio.key";
 
 /// Touch and shape textures in the browser
 ///
-/// Serves the studio on this machine alone, until Ctrl-C, at an address that only you know:
-/// `http://NAME.localhost:8420/`, where NAME belongs to you and to the folder. Chromium, Edge and
+/// Serves the studio only on this machine, until Ctrl-C, at an address that only you know:
+/// `http://NAME.localhost:8420/`, where NAME depends on you and on the folder. Chromium, Edge and
 /// Firefox find it. For a browser that does not, such as Safari, add the line
-/// `127.0.0.1 NAME.localhost` to /etc/hosts. The page is built by `cargo xtask studio --out DIR`;
-/// it asks for nothing beyond this address.
+/// `127.0.0.1 NAME.localhost` to /etc/hosts. `cargo xtask studio --out DIR` builds the page, which
+/// makes no requests beyond this address.
 #[derive(Args)]
 pub(crate) struct Studio {
-    /// Folder of the page, as `cargo xtask studio` writes it [default: $HTEX_STUDIO, or
-    /// ../share/htex/studio beside the command]
+    /// Folder of the page, as written by `cargo xtask studio` [default: $HTEX_STUDIO, or
+    /// ../share/htex/studio relative to the command]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 
-    /// Port of the address; 0 is any that is free, at which the browser does not find textures of
-    /// another time
+    /// Port of the address; 0 is any free port, but the browser does not find your earlier textures
+    /// there
     #[arg(long, default_value_t = PORT, value_name = "PORT")]
     port: u16,
 }
@@ -57,7 +57,7 @@ impl Studio {
         Ok(Exit::SUCCESS)
     }
 
-    /// The folder that has the page.
+    /// Returns the folder that contains the page.
     fn page(&self) -> Result<PathBuf, Failure> {
         let given = self.folder.clone().or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
         let looked = match given {
@@ -75,8 +75,8 @@ impl Studio {
     }
 }
 
-/// The key that makes the address one that only this user knows. Without a folder for it the
-/// address is another one the next time.
+/// Returns the key for the address that only this user knows. Without a folder to store it, the
+/// address changes every time.
 fn key() -> Result<Key, Failure> {
     let config = htex_host::folders::config();
     if let Some(key) = config.and_then(|folder| Key::of(&folder, KEY).ok()) {
@@ -86,13 +86,13 @@ fn key() -> Result<Key, Failure> {
     Key::passing().map_err(|error| Failure::Other(format!("there are no random numbers: {error}")))
 }
 
-/// The folder of an installation.
+/// Returns the folder of an installation.
 fn shared() -> Option<PathBuf> {
     let command = std::env::current_exe().ok()?;
     Some(command.parent()?.join(SHARED))
 }
 
-/// The page of a folder: of a build, or of its part for servers, which is no link.
+/// Returns the page in a folder: in a build, or in its part for servers, which must not be a link.
 fn page_in(folder: &Path) -> Option<PathBuf> {
     let own = OwnFolder::new(folder);
     let has_page = |place: &&str| {

@@ -30,22 +30,22 @@ pub(crate) struct Synth {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Play the texture as it was recorded, whatever the speed and force. Without it, frequencies
-    /// and level follow the law of the asset outside the recorded motions, and a resting finger
-    /// feels nothing
+    /// Play the texture as it was recorded, at any speed and force. Without this, frequencies and
+    /// level follow the law of the asset outside the recorded motions, and a resting finger feels
+    /// nothing
     #[arg(long)]
     as_recorded: bool,
 
-    /// Highest level that a motion outside the recorded ones has, over the strongest recorded
+    /// Highest level at a motion outside the recorded ones, as a multiple of the strongest recorded
     /// level: above 0 and finite
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
 
-    /// Length, s
+    /// Duration, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
     seconds: f64,
 
-    /// Sampling rate, Hz
+    /// Sample rate, Hz
     #[arg(long, default_value_t = 20_000, value_name = "HZ",
           value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
     rate: u32,
@@ -54,9 +54,9 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// How samples are made: `streamed` (the model's voice), `loop[:SECONDS]` (a piece of it again
-    /// and again) or `filter[:TAPS]` (white noise through a filter); loop and filter are cheaper
-    /// and keep to one spectrum
+    /// How samples are made: `streamed` (the model's voice), `loop[:SECONDS]` (a repeated piece of
+    /// it) or `filter[:TAPS]` (white noise through a filter); loop and filter need less
+    /// computation, but their spectrum is constant
     #[arg(long, default_value_t = Synthesis::Streamed, value_name = "WAY")]
     quality: Synthesis,
 

@@ -30,16 +30,16 @@ use crate::shown::shown;
 ///
 /// Sweeps models and their options over your recordings.
 ///
-/// Measures each recording and the medians of all. Writes a page with pictures,
-/// and beside it the same points as CSV and JSON. An interrupted sweep continues
-/// when the same command is given again.
+/// Measures each recording and the medians over all. Writes a page with pictures, and the same
+/// points as CSV and JSON next to it. An interrupted sweep continues when the same command is given
+/// again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
     #[arg(help = format!("Recordings: {}", format_names()))]
     #[arg(required_unless_present = "simulated")]
     recordings: Vec<PathBuf>,
 
-    /// Measure on the five simulated surfaces of `htex demo` too
+    /// Also measure on the five simulated surfaces of `htex demo`
     #[arg(long)]
     simulated: bool,
 
@@ -47,19 +47,19 @@ pub(crate) struct Tradeoff {
     #[arg(long, value_delimiter = ',', value_name = "ID,…")]
     only: Vec<String>,
 
-    /// Turn one knob at a time and only to its ends and middle, with fewer turns of timing
+    /// Vary one option at a time, only at its ends and middle, with fewer timing runs
     #[arg(long)]
     quick: bool,
 
     /// The error that pictures, fronts and knees use
     ///
-    /// held-out: fitted to the odd blocks of a recording, played, and compared with the even ones
-    /// in third octaves, where 1 is as good as a second recording; the others compare with what was
-    /// fitted to [default: held-out; third-octave if a recording is too short]
+    /// held-out: fit to the odd blocks of a recording, play, and compare with the even blocks in
+    /// third octaves, where 1 is as good as a second recording. The other errors compare with the
+    /// data of the fit [default: held-out; third-octave if a recording is too short]
     #[arg(long, value_parser = error_axis())]
     error: Option<ErrorAxis>,
 
-    /// The page to write; points go beside it as .csv and .json
+    /// The page to write; the points are written next to it as .csv and .json
     #[arg(short, long, value_name = "HTML", value_parser = located::LOCAL_OUTPUT)]
     output: PathBuf,
 
@@ -74,7 +74,7 @@ pub(crate) struct Tradeoff {
     json: bool,
 }
 
-/// The errors by the first words of their names: `third-octave`.
+/// Parses an error by the first words of its name, e.g. `third-octave`.
 fn error_axis() -> impl TypedValueParser<Value = ErrorAxis> {
     let name = |error: ErrorAxis| error.name().split(' ').next().unwrap_or_default();
     let named = move |given: String| ErrorAxis::ALL.into_iter().find(|e| name(*e) == given);
@@ -101,7 +101,7 @@ impl Tradeoff {
             models: self.models()?,
             quick: self.quick,
             error: self.error,
-            // Without its path, a journal is continued by every build.
+            // If the path is unknown, a journal is continued by every build.
             program: std::env::current_exe().unwrap_or_default(),
         };
         let subjects = self.subjects()?;
@@ -115,7 +115,7 @@ impl Tradeoff {
         bar.finish_and_clear();
         let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
         let json = serde_json::to_vec(&tradeoff)?;
-        // Their names are ours: no link is followed.
+        // Their names are ours, so no link is followed.
         for (file, bytes) in [(&csv_file, csv(&tradeoff).as_bytes()), (&json_file, &json[..])] {
             let (own, name) = OwnFolder::of_file(file).writing(file)?;
             Written::Inside(&own, &name).write(bytes)?;
@@ -131,7 +131,7 @@ impl Tradeoff {
         Ok(Exit::SUCCESS)
     }
 
-    /// The models asked for, each with all ways in which it was found.
+    /// Returns the requested models, each with all the ways in which it was found.
     fn models(&self) -> Result<Vec<Model>, Failure> {
         let registry = self.plugins.registry_quietly()?;
         let mut models: Vec<Model> = Vec::new();
@@ -169,7 +169,7 @@ impl Tradeoff {
         let mut subjects: Vec<Subject> = Vec::new();
         for take in &takes {
             let mut subject = Subject::new(take, &options, self.reading.strict())?;
-            // Files of the same name in several folders.
+            // Several folders contain files of the same name.
             let same = |s: &&Subject| s.name.split(" #").next() == Some(&subject.name);
             let before = subjects.iter().filter(same).count();
             if before > 0 {
@@ -181,7 +181,7 @@ impl Tradeoff {
     }
 }
 
-/// The five surfaces, as `htex demo` simulates them.
+/// Simulates the five surfaces as `htex demo` does.
 fn simulated() -> Result<Vec<Take>, Failure> {
     let take = |surface: Surface| {
         let options = SimulationOptions::new(surface);
@@ -194,7 +194,7 @@ fn simulated() -> Result<Vec<Take>, Failure> {
     Surface::ALL.into_iter().map(take).collect()
 }
 
-/// Order and name of a way to load a model.
+/// Returns the order and the name of a way to load a model.
 fn way(origin: &Origin) -> (u8, &'static str) {
     match origin {
         Origin::Builtin => (0, "built in"),
@@ -203,7 +203,7 @@ fn way(origin: &Origin) -> (u8, &'static str) {
     }
 }
 
-/// The command as it was given.
+/// Returns the command as the user gave it.
 fn command() -> String {
     let arguments =
         invocation::arguments().into_iter().map(|argument| argument.to_string_lossy().into_owned());

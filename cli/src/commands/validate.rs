@@ -27,23 +27,23 @@ use crate::wasm_limits::WasmLimit;
 /// Checks assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes
 /// (*.toml) and recordings against their formats and JSON Schemas. Exit status 1 if one is invalid.
 ///
-/// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
-/// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields
-/// of models that this program has are compared with the models'. Of a recipe its keys, files,
-/// plugins, options and gates are checked. A file that is neither called *.htex, *.htexlib, *.json
-/// or *.toml nor begins as a ZIP archive or a library is read as a recording.
+/// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer into the
+/// document or the recording. If a JSON Schema has the same rule, the finding names it. If this
+/// program has the model, the model's fields are compared with it. For a recipe, the keys, files,
+/// plugins, options and gates are checked. A file is read as a recording if it is not called
+/// *.htex, *.htexlib, *.json or *.toml and does not begin as a ZIP archive or a library.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
     #[arg(required = true, value_parser = located::RECORDING)]
     files: Vec<PathBuf>,
 
-    /// Validate the extension of this name against a JSON Schema (draft 2020-12); nothing is
-    /// fetched. May be given several times
+    /// Validate the extension with this name against a JSON Schema (draft 2020-12), without
+    /// downloading anything. May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models that assets embed, in their sandbox, and compare them with the asset's
+    /// Also load the models embedded in assets, in their sandbox, and compare them with the asset's
     /// fields. Without this, nothing embedded in an asset is run
     #[arg(long)]
     embedded_plugins: bool,
@@ -113,13 +113,13 @@ pub(crate) enum Kind {
     Recording,
 }
 
-/// The kind of a file, by its name, else by its first bytes.
+/// Returns the kind of a file by its name, or else by its first bytes.
 pub(crate) fn kind(path: &Path) -> Kind {
     let called = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
     let mut first = Vec::new();
     let most = MAGIC.len() as u64;
-    // A file that cannot be read is an error where its contents are read.
-    // The first bytes of a pipe are those of its contents, and are not taken here.
+    // A file that cannot be read causes an error later, where its contents are read. The first
+    // bytes of a pipe are part of its contents and must not be consumed here.
     let _ = open_regular(path).and_then(|file| file.take(most).read_to_end(&mut first));
     let begins = |start: &[u8]| first.starts_with(start);
     match () {
@@ -131,7 +131,7 @@ pub(crate) fn kind(path: &Path) -> Kind {
     }
 }
 
-/// Refuses a library where one asset is meant, and says what to do.
+/// Refuses a library where a single asset is needed, and says what to do.
 pub(crate) fn refuse_library(path: &Path) -> Result<(), Failure> {
     if kind(path) != Kind::Library {
         return Ok(());
@@ -142,7 +142,7 @@ pub(crate) fn refuse_library(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Says what to do with further assets of a command that takes one.
+/// Says what to do with additional assets, for a command that takes only one.
 pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<(), Failure> {
     let Some(second) = more.first() else {
         return Ok(());
@@ -158,7 +158,7 @@ fn is_clean(report: &Report) -> bool {
     report.findings.iter().all(|f| f.severity == Severity::Info)
 }
 
-/// Validates an asset; one that is too large is not read to its end.
+/// Validates an asset. If it is too large, it is not read to its end.
 fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report, Failure> {
     let limits = Limits::default();
     let bytes = read_asset(path)?;
@@ -179,7 +179,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
     Ok(report)
 }
 
-/// Loads the embedded models of an asset; one that cannot be loaded is a finding.
+/// Loads the embedded models of an asset. A model that cannot be loaded is a finding.
 fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
     let data = htex_format::Asset::open(path).of(path)?;
     let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
@@ -195,17 +195,17 @@ fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result
     Ok(())
 }
 
-/// Whether the rules of this version apply to the document: its version is this one.
+/// Whether the document has this version, so that the rules of this version apply.
 fn is_of_major_1(document: &Value, key: &str) -> bool {
     let version = document.get(key).and_then(Value::as_str);
     version.is_some_and(|version| version.starts_with("1."))
 }
 
-/// Most bytes of a TOML file whose kind is looked for: those of a recipe.
+/// Maximum size of a TOML file whose kind is detected, bytes; it is the maximum size of a recipe.
 #[cfg(feature = "build")]
 const MOST_TOML_BYTES: u64 = 1 << 20;
 
-/// Validates a recipe; what is wrong with it first is a finding.
+/// Validates a recipe. Its first fault becomes a finding.
 #[cfg(feature = "build")]
 fn validate_recipe(path: &Path) -> Result<Report, Failure> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
@@ -239,7 +239,7 @@ fn validate_recipe(path: &Path) -> Result<Report, Failure> {
     Err(Failure::Usage(format!("{file}: {words}")))
 }
 
-/// Validates a scene or a descriptor, told apart by their keys.
+/// Validates a scene or a descriptor. Their keys tell them apart.
 fn validate_json(path: &Path) -> Result<Report, Failure> {
     let bytes = read_asset(path)?;
     let document = htex_format::parse_json(&bytes).unwrap_or_default();

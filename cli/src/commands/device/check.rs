@@ -9,9 +9,9 @@ use crate::failure::Failure;
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
 ///
-/// Each check runs in a process of its own, so that a crash or an endless loop ends only that
-/// check. The device is driven at a hundredth of its limit, and offered samples beyond it, which it
-/// must refuse: do not touch what is connected.
+/// Each check runs in its own process, so that a crash or an endless loop ends only that check. The
+/// checks drive the device at a hundredth of its limit, and offer it samples beyond the limit,
+/// which it must refuse. Do not touch what is connected.
 #[derive(Args)]
 pub(crate) struct Check {
     #[command(flatten)]

@@ -54,7 +54,7 @@ impl Info {
     }
 }
 
-/// What becomes of the samples.
+/// Describes how the device transforms the samples.
 fn mapping_text(mapping: Option<&Mapping>) -> String {
     match mapping {
         Some(Mapping { plays, loses }) => format!("  plays: {plays}\n  lost: {loses}\n"),

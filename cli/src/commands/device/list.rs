@@ -14,8 +14,8 @@ use crate::sources::{SourceArgs, source_json};
 /// used.
 ///
 /// Search order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the user's folder,
-/// built in; for sources --source-file, --source-dir, HTEX_SOURCE_PATH and so on. Of two adapters
-/// with one id the earlier is used.
+/// built in; for sources --source-file, --source-dir, HTEX_SOURCE_PATH and so on. If two adapters
+/// have the same id, the first one found is used.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]
@@ -29,8 +29,8 @@ pub(crate) struct List {
     json: bool,
 }
 
-/// Tells the OpenXR loader what to print. Without it, the loader prints errors of its own on a
-/// machine without a runtime.
+/// The environment variable that sets how much the OpenXR loader prints. Without it, the loader
+/// prints its own errors on a machine without a runtime.
 const LOADER_PRINTS: &str = "XR_LOADER_DEBUG";
 
 impl List {
@@ -58,8 +58,9 @@ impl List {
     }
 }
 
-/// Lists in a second process, in which the OpenXR loader prints nothing: a process cannot change
-/// its own environment safely. `None` where the user decided what it prints, or in that process.
+/// Lists in a second process in which the OpenXR loader prints nothing, because a process cannot
+/// safely change its own environment. `None` if the user has set what it prints, or in the second
+/// process.
 fn listed_quietly() -> Option<Exit> {
     if std::env::var_os(LOADER_PRINTS).is_some() {
         return None;

@@ -1,4 +1,4 @@
-//! `htex device`: the output devices.
+//! The subcommand `htex device` for output devices.
 
 mod check;
 mod info;

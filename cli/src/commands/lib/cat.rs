@@ -18,7 +18,7 @@ pub(crate) struct Cat {
     #[arg(value_parser = Given::parser())]
     library: Given,
 
-    /// Name of the texture, as `htex lib ls` prints it
+    /// Name of the texture, as printed by `htex lib ls`
     name: String,
 
     /// The file to write [default: standard output]

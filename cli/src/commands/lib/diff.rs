@@ -26,7 +26,7 @@ pub(crate) struct Diff {
     json: bool,
 }
 
-/// Names of textures that differ.
+/// The names of textures that differ.
 #[derive(Default, Serialize)]
 struct Differences {
     only_in_a: Vec<String>,
@@ -34,7 +34,7 @@ struct Differences {
     changed: Vec<String>,
 }
 
-/// The entries of a library, the next of which is known.
+/// An iterator over a library's entries that knows the next one.
 struct Walk<'a> {
     given: &'a Given,
     entries: htex_library::Entries<'a, Located>,
@@ -69,7 +69,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Walks through both libraries in the order of names.
+/// Walks through both libraries in the order of the names.
 fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Differences, Failure> {
     let mut differences = Differences::default();
     loop {

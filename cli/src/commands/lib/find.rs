@@ -15,18 +15,18 @@ pub(crate) struct Find {
     #[arg(value_parser = Given::parser())]
     library: Given,
 
-    /// Parts of names or tags, without case
+    /// Parts of names or tags, case-insensitive
     words: Vec<String>,
 
-    /// A tag, whole, without case; may be given several times
+    /// A whole tag, case-insensitive; may be given several times
     #[arg(long)]
     tag: Vec<String>,
 
-    /// A speed that the texture was recorded at, or between two of its, mm/s
+    /// A speed at which the texture was recorded, or between two such speeds, mm/s
     #[arg(long, value_name = "MM_S", value_parser = not_negative)]
     speed: Option<f64>,
 
-    /// A force that the texture was recorded at, or between two of its, newtons
+    /// A force at which the texture was recorded, or between two such forces, newtons
     #[arg(long, value_name = "N", value_parser = not_negative)]
     force: Option<f64>,
 

@@ -1,4 +1,4 @@
-//! A library as an argument: a path, or a URI of which only the needed ranges are read.
+//! A library argument: a path, or a URI from which only the needed ranges are read.
 
 use std::path::{Path, PathBuf};
 
@@ -9,12 +9,12 @@ use htex_storage::{Location, Storage};
 use crate::failure::Failure;
 use crate::of_file::ResultOfFile;
 
-/// A library by path or URI.
+/// A library given by a path or URI.
 #[derive(Clone, Debug)]
 pub(crate) struct Given(Location);
 
 impl Given {
-    /// The parser of the argument.
+    /// Returns the parser of the argument.
     pub(crate) fn parser() -> impl TypedValueParser<Value = Self> {
         OsStringValueParser::new().try_map(|text| Location::parse(&text).map(Self))
     }
@@ -23,12 +23,12 @@ impl Given {
         Library::open_located(&storage()?, &self.0).of(&self.shown())
     }
 
-    /// The file, if it is one of this machine.
+    /// Returns the file if it is on this machine.
     pub(crate) fn local(&self) -> Option<&Path> {
         self.0.local()
     }
 
-    /// The path or URI for texts.
+    /// Returns the path or URI for messages.
     pub(crate) fn shown(&self) -> PathBuf {
         PathBuf::from(self.0.to_string())
     }

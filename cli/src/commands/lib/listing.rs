@@ -1,4 +1,4 @@
-//! Lists of entries: lines of a table, or a JSON array, written while the index is read.
+//! Prints lists of entries as table lines or a JSON array, while the index is still being read.
 
 use htex_finding::plain;
 use htex_library::{Entry, IndexedLaw, Interval};
@@ -7,7 +7,7 @@ use crate::assets::short_name;
 use crate::failure::Failure;
 use crate::output::{print, write};
 
-/// Bytes that are gathered before they are written.
+/// Number of bytes that are buffered before they are written.
 const BUFFER_BYTES: usize = 64 << 10;
 
 /// A list that is being printed.
@@ -67,7 +67,8 @@ fn row(entry: &Entry) -> String {
     )
 }
 
-/// The exponents of the law, of frequencies over the speed and of the level over speed and force.
+/// Formats the law as exponents: of frequencies over the speed, and of the level over speed and
+/// force.
 fn law(law: &IndexedLaw) -> String {
     let [a, b, c] = [law.frequency_speed, law.level_speed, law.level_force]
         .map(|exponent| number(exponent.exponent));

@@ -9,8 +9,8 @@ use crate::output::note;
 
 /// List the textures of a library: name, bytes, recorded speeds and forces, law, models, tags.
 ///
-/// The law is three exponents, as in `f^1 v^0 F^1`: of frequencies over the speed, of the level
-/// over the speed, and of the level over the force. Only the index is read.
+/// The law is three exponents, e.g. `f^1 v^0 F^1`: of frequencies over the speed, of the level over
+/// the speed, and of the level over the force. Only the index is read.
 #[derive(Args)]
 pub(crate) struct Ls {
     /// The library, a path or URI

@@ -1,4 +1,4 @@
-//! `htex lib`: libraries of textures.
+//! The subcommand `htex lib` for libraries of textures.
 
 mod cat;
 mod diff;
@@ -22,8 +22,8 @@ use crate::failure::Failure;
 ///
 /// A library is one file (.htexlib) with any number of textures.
 ///
-/// A library is opened one texture at a time, also over a network (https://, s3://, gs://, az://),
-/// where only the needed parts of the file are read; what textures embed in common is in it once.
+/// Textures are read one at a time, also over a network (https://, s3://, gs://, az://), where only
+/// the needed parts of the file are downloaded. Parts that textures have in common are stored once.
 #[derive(Args)]
 pub(crate) struct Lib {
     #[command(subcommand)]

@@ -18,9 +18,10 @@ use crate::shown::shown;
 
 /// Pack textures into a library.
 ///
-/// A texture is called as its file without `.htex`; one of a folder as its path in that folder,
-/// such as wood/oak. The same textures give the same file, in any order, on any machine. Each
-/// states a licence (`htex edit --license`), since a library is passed on.
+/// A texture is named after its file, without `.htex`. A texture in a folder is named after its
+/// path in that folder, e.g. wood/oak. The same textures give the same file, in any order and on
+/// any machine. Each texture must state a licence (`htex edit --license`), because a library is
+/// passed on.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
@@ -35,7 +36,7 @@ pub(crate) struct Pack {
     #[arg(long)]
     name: Option<String>,
 
-    /// Pack textures that state no licence, too, which nobody but who made them may pass on
+    /// Also pack textures without a licence, which only their author may pass on
     #[arg(long)]
     unlicensed: bool,
 
@@ -77,7 +78,7 @@ impl Pack {
         Ok(Exit::SUCCESS)
     }
 
-    /// The error of writing, with what to do here.
+    /// Converts an error of writing, and says what to do here.
     fn failure(&self, error: LibraryError, sources: &BTreeMap<String, PathBuf>) -> Failure {
         match &error {
             LibraryError::Unlicensed { name, .. } => {
@@ -89,7 +90,7 @@ impl Pack {
     }
 }
 
-/// The error of adding a texture, with its file.
+/// Summarises the library that was written, as JSON.
 fn summary(path: &Path, name: &str, packed: &Packed) -> Value {
     json!({
         "file": path.display().to_string(),

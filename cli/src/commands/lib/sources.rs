@@ -1,4 +1,4 @@
-//! The files that are packed, and their names in the library.
+//! The files to pack and their names in the library.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,8 +10,8 @@ use crate::shown::shown;
 
 const EXTENSION: &str = "htex";
 
-/// Returns the `.htex` files of the inputs by their names in the library: of a file its own, of a
-/// folder the paths in it, both without `.htex`.
+/// Returns the `.htex` files of the inputs by their names in the library. A file is named after
+/// itself, and a file in a folder after its path in the folder, both without `.htex`.
 pub(super) fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>, Failure> {
     let mut found = BTreeMap::new();
     for input in inputs {
@@ -32,8 +32,8 @@ pub(super) fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>, F
     Ok(found)
 }
 
-/// Adds the files of a folder and of the folders in it. Links to folders are not followed, since
-/// they may lead back.
+/// Adds the files of a folder and its subfolders. Links to folders are not followed, because they
+/// may form a loop.
 fn search(
     folder: &Path,
     inside: &Path,

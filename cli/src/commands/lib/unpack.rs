@@ -14,7 +14,7 @@ use crate::shown::shown;
 
 /// Write the textures of a library as files: NAME.htex in a folder.
 ///
-/// Files that are there are kept, and are an error, unless --force is given.
+/// An existing file is kept and is an error, unless --force is given.
 #[derive(Args)]
 pub(crate) struct Unpack {
     /// The library, a path or URI
@@ -24,11 +24,11 @@ pub(crate) struct Unpack {
     /// Names of textures [default: all]
     names: Vec<String>,
 
-    /// The folder; it is made if it does not exist
+    /// The folder; it is created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
 
-    /// Write over files that are there
+    /// Overwrite existing files
     #[arg(long)]
     force: bool,
 }
@@ -39,7 +39,8 @@ impl Unpack {
         let library = self.library.open()?;
         let count = if self.names.is_empty() { library.len() } else { self.names.len() as u64 };
         let bar = bar(count);
-        // The index says how large all are and which files they become, before anything is written.
+        // The index states all sizes and names, so the limits are checked before anything is
+        // written.
         let (mut ratio, mut names) = (library.ratio(), Names::default());
         if self.names.is_empty() {
             for entry in library.entries() {
@@ -71,7 +72,7 @@ impl Unpack {
         Ok(Exit::SUCCESS)
     }
 
-    /// Writes a texture. Its name was checked by the reader: it leads to a file inside the folder,
+    /// Writes a texture. The reader has checked its name, so it leads to a file inside the folder,
     /// where no link is followed.
     fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         let (own, inside) = (OwnFolder::new(&self.output), PathBuf::from(format!("{name}.htex")));
@@ -95,7 +96,8 @@ impl Unpack {
     }
 }
 
-/// Refuses a name that is the same file as one before on some system, so that neither is lost.
+/// Refuses a name that would be the same file as an earlier one on some system, so that neither is
+/// lost.
 fn check_alike(names: &mut Names, name: &str) -> Result<(), Failure> {
     if names.insert(name) {
         Ok(())

@@ -13,12 +13,12 @@ use crate::plugins::PluginArgs;
 
 /// Measure what models cost: nanoseconds a sample, built in, as native plugins and as WASM.
 ///
-/// Each model is timed in every way in which it can be loaded, at its own rate, in one interleaved
-/// run, so that other load on the machine affects all alike. WASM modules are timed under the
-/// default limits, which hold time by deadlines, and with instructions counted too.
+/// Each model is timed in every way in which it can be loaded, at its own rate. All runs are
+/// interleaved, so that other load on the machine affects all of them equally. WASM modules are
+/// timed twice: with the default limits, which use deadlines, and with counted instructions.
 #[derive(Args)]
 pub(crate) struct Bench {
-    /// Models by short name, id or file [default: all that are built in]
+    /// Models by short name, id or file [default: all built-in models]
     #[arg(value_name = "FILE|ID")]
     models: Vec<String>,
 
@@ -67,7 +67,7 @@ impl Bench {
     }
 }
 
-/// The built-in model first: the others are compared with it.
+/// Sorts the built-in model first, because the others are compared with it.
 fn order(origin: &Origin) -> u8 {
     match origin {
         Origin::Builtin => 0,
@@ -76,7 +76,7 @@ fn order(origin: &Origin) -> u8 {
     }
 }
 
-/// Adds a model, and a WASM module a second time with its instructions counted.
+/// Adds a model. A WASM module is added a second time with counted instructions.
 fn add(
     subjects: &mut Vec<Subject>,
     loaded: &LoadedModel,

@@ -12,8 +12,8 @@ use crate::output::print_json;
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
 ///
-/// Each check runs in a process of its own, so that a crash or an endless loop ends only that
-/// check. `spec/model-checks.md` explains them.
+/// Each check runs in its own process, so that a crash or an endless loop ends only that check.
+/// `spec/model-checks.md` explains the checks.
 #[derive(Args)]
 pub(crate) struct Check {
     /// The model: a native library or a WASM module
@@ -22,19 +22,19 @@ pub(crate) struct Check {
     #[command(flatten)]
     checking: CheckArgs,
 
-    /// Seed of the voices, of drawn parameters, and of the first sequence of `fuzz`
+    /// Seed of the voices, of random parameters, and of the first sequence of `fuzz`
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
 
-    /// Time of the check `fuzz`, s [default: 16 sequences]
+    /// Duration of the check `fuzz`, s [default: 16 sequences]
     #[arg(long, value_name = "SECONDS", value_parser = fuzz_time)]
     fuzz: Option<Duration>,
 
-    /// Checks to run, comma-separated, with those that they need [default: all]
+    /// Names of checks to run, comma-separated; checks that they need run too [default: all]
     #[arg(long, value_delimiter = ',', value_name = "NAME,…", conflicts_with = "reproduce")]
     only: Option<Vec<String>>,
 
-    /// The same model as a file of the other kind [default: the one beside it, if there is one]
+    /// The same model as a file of the other kind [default: the one next to it, if it exists]
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
 }
@@ -52,7 +52,7 @@ pub(crate) struct CheckOne {
     fuzz: Option<Duration>,
 }
 
-/// A time of at most a week.
+/// Parses a duration of at most a week.
 fn fuzz_time(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "seconds are a number")?;
     if (0.0..=604_800.0).contains(&seconds) {
@@ -62,7 +62,8 @@ fn fuzz_time(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// A file that cannot be read is an error of reading; a check that does not exist one of usage.
+/// Converts an error. A file that cannot be read is a reading error, and an unknown check is wrong
+/// usage.
 fn failed(error: CheckError) -> Failure {
     match error {
         CheckError::File { path, error } => FileError::reading(path, error).into(),
@@ -70,7 +71,7 @@ fn failed(error: CheckError) -> Failure {
     }
 }
 
-/// The seed that fails: of a sequence, its own.
+/// Returns the seed that fails. For a sequence, it is the sequence's own seed.
 fn seed_of(report: &Report, name: &str) -> u64 {
     let failed = report.checks.iter().find(|check| check.check == name);
     let own = failed.and_then(|check| check.finding.numbers.get("seed"));

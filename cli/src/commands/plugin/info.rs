@@ -63,7 +63,7 @@ fn option(option: &FitOption) -> String {
     format!("  {name}: {values}\n      {}\n", option.description)
 }
 
-/// A range with its unit; a pure number has none.
+/// Formats a range with its unit. A plain number has no unit.
 fn range(min: f64, max: f64, unit: &str) -> String {
     match unit {
         "1" => format!("{min} to {max}"),

@@ -11,8 +11,8 @@ use crate::plugins::PluginArgs;
 /// List all models found, and what was found but is not used.
 ///
 /// Search order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH, the user's folder, built
-/// in. Of two models with one id the first one given by --plugin is used, else the newest of its
-/// major version, else the earlier.
+/// in. If two models have the same id, the first one given by --plugin is used, else the newest of
+/// its major version, else the first one found.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `htex plugin`: commands for authors and users of models.
+//! The subcommand `htex plugin` for authors and users of models.
 
 mod bench;
 mod check;

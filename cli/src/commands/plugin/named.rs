@@ -1,4 +1,4 @@
-//! A model by name or file.
+//! Finds a model by its name or file.
 
 use std::path::Path;
 
@@ -7,7 +7,8 @@ use htex_host::LoadedModel;
 use crate::failure::Failure;
 use crate::plugins::PluginArgs;
 
-/// The model in the file of this name if there is one, else the model of this short name or id.
+/// Returns the model in the file of this name if the file exists, else the model with this short
+/// name or id.
 pub(crate) fn named(name: &str, plugins: &PluginArgs) -> Result<LoadedModel, Failure> {
     let file = Path::new(name);
     if file.is_file() {

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::output::print;
 use htex_files::{AtFile, OwnFolder};
 
-/// The folder `sdk` of the sources this program was built from; a released one knows none.
+/// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
 
 /// Write the project of a new model, which builds with one command and passes `check`.
@@ -26,8 +26,8 @@ pub(crate) struct New {
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 
-    /// Folder of the htex sources' `sdk`, for Rust [default: of those this program was built from,
-    /// if it was not released]
+    /// Folder `sdk` of the htex sources, for Rust [default: the sources from which this program was
+    /// built, if it was not released]
     #[arg(long, value_name = "DIR")]
     sdk: Option<PathBuf>,
 }
@@ -39,7 +39,7 @@ enum Lang {
 }
 
 impl Lang {
-    /// The files of a project, and their templates.
+    /// Returns the files of a project with their templates.
     fn files(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Rust => templates::RUST,
@@ -72,7 +72,7 @@ impl New {
         Ok(Exit::SUCCESS)
     }
 
-    /// Refuses an invalid name, and a folder that exists.
+    /// Refuses an invalid name and an existing folder.
     fn check(&self, dir: &Path) -> Result<(), Failure> {
         let name = &self.name;
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
@@ -87,7 +87,8 @@ impl New {
         Ok(())
     }
 
-    /// The placeholders of the templates (`sdk/check/templates/README.md`), and their values.
+    /// Returns the placeholders of the templates (`sdk/check/templates/README.md`) with their
+    /// values.
     fn values(&self, sdk: &str) -> [(&'static str, String); 7] {
         let name = &self.name;
         let crate_name = name.replace('-', "_");
@@ -104,7 +105,7 @@ impl New {
         ]
     }
 
-    /// The folder `sdk`, from which a project in Rust takes its dependencies.
+    /// Returns the folder `sdk` that a Rust project depends on.
     fn sdk(&self) -> Result<PathBuf, Failure> {
         let sdk = self.sdk.as_deref().or(SDK.map(Path::new));
         let sdk = sdk.ok_or_else(|| {
@@ -118,20 +119,20 @@ impl New {
     }
 }
 
-/// The word with a capital first letter.
+/// Capitalises the first letter of a word.
 fn capital(word: &str) -> String {
     let (first, rest) = word.split_at(word.len().min(1));
     first.to_uppercase() + rest
 }
 
-/// The path from a project to the SDK, relative as long as both are on one drive; empty where none
-/// is needed.
+/// Returns the path from a project to the SDK. It is relative if both are on the same drive, and
+/// empty if the project does not need the SDK.
 fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
     let Some(sdk) = sdk else {
         return Ok(String::new());
     };
     let dir = dir.canonicalize().reading(dir)?;
     let path = pathdiff::diff_paths(&sdk, dir).unwrap_or(sdk);
-    // Cargo takes slashes on every system; a backslash would begin an escape.
+    // Cargo accepts slashes on every system. A backslash would begin an escape sequence.
     Ok(path.display().to_string().replace('\\', "/"))
 }

@@ -1,4 +1,4 @@
-//! Where the person who records is guided: in the terminal or on a page.
+//! Guidance for the person who records, in the terminal or on a web page.
 
 use std::time::Duration;
 
@@ -10,19 +10,19 @@ use crate::failure::Failure;
 use crate::output::tell;
 use crate::signals;
 
-/// Time between two looks at whether the page was asked to start.
+/// Polling interval for the start request of the page.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What the guidance shows, and where.
+/// What the guidance shows and where.
 #[derive(Args)]
 #[command(next_help_heading = "Guidance")]
 pub(super) struct GuideArgs {
-    /// Guide on a page in a browser of this machine, whose address is printed, not in the terminal;
-    /// the session begins when it is started there
+    /// Guide on a web page of this machine instead of the terminal; its address is printed, and the
+    /// session starts there
     #[arg(long)]
     page: bool,
 
-    /// Port of the page [default: any that is free]
+    /// Port of the page [default: any free port]
     #[arg(
         long,
         value_name = "PORT",
@@ -32,13 +32,13 @@ pub(super) struct GuideArgs {
     )]
     port: u16,
 
-    /// Length of the strokes that the guidance shows
+    /// Length of the strokes in the guidance
     #[arg(long, value_name = "MM", default_value_t = 80.0)]
     stroke: f64,
 }
 
 impl GuideArgs {
-    /// The target that is shown.
+    /// Returns the target to show.
     pub(super) fn guidance(&self, setup: &Setup) -> Result<Guidance, Failure> {
         if !(self.stroke > 0.0 && self.stroke <= 1e4) {
             let sentence = format!("--stroke {}: above 0 and at most 10,000 mm", self.stroke);
@@ -72,14 +72,14 @@ impl GuideArgs {
     }
 }
 
-/// What guides.
+/// The place where guidance is shown.
 pub(super) enum Guide {
     Screen(Box<Screen>),
     Page(GuidePage),
 }
 
 impl Guide {
-    /// Waits for the start of the session on a page.
+    /// Waits until the session is started on the page.
     pub(super) fn wait_for_start(&self) -> Next {
         let Self::Page(page) = self else {
             return Next::Go;
@@ -93,7 +93,7 @@ impl Guide {
         Next::Go
     }
 
-    /// Shows a moment, and returns whether the session goes on.
+    /// Shows a moment of the session. Returns whether the session continues.
     pub(super) fn show(&mut self, moment: &Moment<'_>) -> Next {
         match self {
             Self::Screen(screen) => screen.show(moment),
@@ -110,7 +110,7 @@ impl Guide {
         is_stopped || signals::interrupted()
     }
 
-    /// Shows a take that is complete.
+    /// Shows a complete take.
     pub(super) fn told(&mut self, take: &Recorded) {
         match self {
             Self::Screen(screen) => screen.end(),
@@ -118,7 +118,7 @@ impl Guide {
         }
     }
 
-    /// Shows how the session has ended.
+    /// Shows how the session ended.
     pub(super) fn end(&mut self, recorded: &Result<Recorded, RecordError>) {
         match self {
             Self::Screen(screen) => screen.end(),

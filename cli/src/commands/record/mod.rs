@@ -26,17 +26,17 @@ use guide::{Guide, GuideArgs};
 
 /// Record a finger on a surface, with guidance
 ///
-/// Takes that leave the target speed or force, or in which the finger slides too little, are set
-/// aside and repeated.
+/// A take is set aside and repeated if it leaves the target speed or force, or if the finger slides
+/// too little.
 ///
-/// Takes are DIR/NAME-001.csv and so on, with all settings in JSON beside them and the tracker's
-/// rows in DIR/tracker; takes that left their target are in DIR/rejected, those that were cut short
-/// in DIR/incomplete. Each second is on disk before the next: a take that a crash cut short is
-/// recovered when the command is run again.
+/// Takes are stored as DIR/NAME-001.csv and so on, with all settings in a JSON file next to each,
+/// and the tracker's rows in DIR/tracker. Takes that left their target are in DIR/rejected, and
+/// incomplete ones in DIR/incomplete. Each second is written to disk before the next, so a take
+/// that a crash interrupted is recovered when the command runs again.
 #[derive(Args)]
 pub(crate) struct Record {
-    /// Where the signals come from: a recording that is replayed (file:rec.csv), analog inputs of a
-    /// National Instruments card (daq:Dev1/ai0:5), or another source of `htex device list`
+    /// Source of the signals: a recording to replay (file:rec.csv), analog inputs of a National
+    /// Instruments card (daq:Dev1/ai0:5), or another source in `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
     source: String,
 
@@ -54,16 +54,16 @@ pub(crate) struct Record {
     #[arg(long, value_name = "NAME", default_value = "take")]
     take: String,
 
-    /// Length of a take
+    /// Duration of a take
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     seconds: f64,
 
-    /// Time before each take, to find the motion [default: 3, with --fast 0]
+    /// Time before each take, to get into the motion [default: 3, with --fast 0]
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract the means of the forces over a second without a finger on the surface: before the
-    /// first take, or before each
+    /// Subtract the mean forces of one second without a finger on the surface, measured before the
+    /// first take or before each take
     #[arg(
         long,
         value_enum,
@@ -82,30 +82,30 @@ pub(crate) struct Record {
     target_force: Option<f64>,
 
     /// How far mean, minimum and maximum of a sweep's speed and force may be from the target, as a
-    /// part of it
+    /// fraction of the target
     #[arg(long, value_name = "PART", default_value_t = 0.1)]
     tolerance: f64,
 
-    /// Least part of a take in which the finger slides, at half of its target speed or more and
-    /// with its target force, where there are targets: a take with less is recorded again; 0 asks
-    /// for nothing. The finger turns between sweeps
+    /// Minimum fraction of a take in which the finger slides; with targets, at half of the target
+    /// speed or more and with the target force. A take below it is recorded again; 0 disables the
+    /// test. The rest of the time the finger turns between sweeps
     #[arg(long, value_name = "PART", default_value_t = Required::USUAL_ON_TARGET)]
     min_on_target: f64,
 
-    /// Fewest complete sweeps of a take: one with fewer is recorded again; 0 asks for none
-    /// [default: half of the strokes that the target makes in a take but for the first and the last
-    /// one, 4 in 10 s at 80 mm/s; without a target speed 0]
+    /// Minimum number of complete sweeps in a take; a take with fewer is recorded again, and 0
+    /// disables the test [default: half of the strokes that the target makes in a take, not
+    /// counting the first and the last, e.g. 4 in 10 s at 80 mm/s; without a target speed 0]
     #[arg(long, value_name = "N")]
     min_sweeps: Option<u32>,
 
-    /// Most takes that are tried until one keeps to its target
+    /// Maximum number of takes until one keeps to its target
     #[arg(long, value_name = "N", default_value_t = 10)]
     attempts: u32,
 
     #[command(flatten)]
     guide: GuideArgs,
 
-    /// The folder of the takes
+    /// The folder for the takes
     #[arg(short, long, value_name = "DIR", default_value = "recordings")]
     output: PathBuf,
 
@@ -192,7 +192,7 @@ impl Record {
     }
 }
 
-/// Records under guidance until a take is kept; `takes` gets all that are complete.
+/// Records with guidance until a take is accepted. `takes` collects all complete ones.
 fn record(
     session: &mut Session,
     guide: &mut Guide,
@@ -210,7 +210,7 @@ fn record(
     })
 }
 
-/// A take in a line, and its findings in a line each.
+/// Describes a take in one line, and each of its findings in another line.
 fn said(take: &Recorded) -> String {
     let file = shown(&take.file);
     let what = match take.outcome {

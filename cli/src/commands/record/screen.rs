@@ -1,5 +1,5 @@
-//! Guidance in a terminal: the target and the finger as two squares, the force by its colour, a
-//! metronome by the bell, and the spectrum of what is recorded.
+//! Guidance in a terminal. Two squares show the target and the finger, whose colour shows the
+//! force. The bell is a metronome. Bars show the spectrum of the recording.
 
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -9,18 +9,18 @@ use htex_lab::record::{Force, Guidance, LiveSignal, LiveSpectrum, Moment, Phase,
 
 use crate::output::tell;
 
-/// Width of the way that the squares move on, characters.
+/// Width of the path on which the squares move, characters.
 const WAY: usize = 24;
 /// Shortest time between two drawings.
 const PERIOD: Duration = Duration::from_millis(33);
-/// Heights of a band's bar, each a step of [`STEP_DB`].
+/// The heights of a band's bar. Each is one step of [`STEP_DB`].
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 /// Difference of level between two heights of a bar, decibels.
 const STEP_DB: f64 = 6.0;
-/// Characters of a band's bar.
+/// Width of a band's bar, characters.
 const BAR_WIDTH: usize = 2;
 
-/// Draws on standard error if that is a terminal; elsewhere tells only what begins.
+/// Draws on standard error if that is a terminal. Otherwise prints only what begins.
 pub(super) struct Screen {
     guidance: Guidance,
     required: Required,
@@ -77,7 +77,7 @@ impl Screen {
         self.has_lines = true;
     }
 
-    /// Ends the lines that are redrawn.
+    /// Leaves the lines that are redrawn.
     pub(super) fn end(&mut self) {
         if std::mem::take(&mut self.has_lines) {
             tell!("\n");
@@ -95,7 +95,7 @@ fn beginning(moment: &Moment<'_>, required: Required) -> String {
     }
 }
 
-/// What a take must have to be kept.
+/// Says what a take needs to be accepted.
 fn asked(required: Required) -> String {
     let Required { on_target, sweeps } = required;
     let share = (on_target > 0.0).then(|| format!("on target {:.0} % or more", 100.0 * on_target));
@@ -104,13 +104,13 @@ fn asked(required: Required) -> String {
     if all.is_empty() { String::new() } else { format!("; it needs: {}", all.join(", ")) }
 }
 
-/// Two lines: the seconds left, the target as a square on its way and the finger as one in the
-/// colour of its force; the force and the spectrum.
+/// Returns two lines. The first has the seconds left, the target as a square on its path, and the
+/// finger as a square in the colour of its force. The second has the force and the spectrum.
 fn drawn(guidance: &Guidance, moment: &Moment<'_>, spectrum: Option<&LiveSpectrum>) -> [String; 2] {
     let left_s = (moment.of_s - moment.elapsed_s).max(0.0);
     let motion_s = moment.phase.motion_s(moment.elapsed_s, moment.of_s);
     let target = motion_s.and_then(|at_s| guidance.target_mm(at_s));
-    // Without a motion there is no finger.
+    // Without a motion, there is no finger to show.
     let force_n = moment.force_n.filter(|_| motion_s.is_some());
     let colour = match guidance.force(force_n) {
         Force::Unknown => "",
@@ -133,7 +133,7 @@ fn drawn(guidance: &Guidance, moment: &Moment<'_>, spectrum: Option<&LiveSpectru
     ]
 }
 
-/// A way with a square at a position; without one if that is not known.
+/// Draws a path with a square at a position, or without a square if the position is unknown.
 fn way(at_mm: Option<f64>, stroke_mm: f64) -> String {
     let place =
         at_mm.map(|mm| ((mm / stroke_mm).clamp(0.0, 1.0) * (WAY - 1) as f64).round() as usize);
@@ -141,7 +141,7 @@ fn way(at_mm: Option<f64>, stroke_mm: f64) -> String {
     (0..WAY).map(cell).collect()
 }
 
-/// A bar for the level of each band; the loudest has the full height.
+/// Draws a bar for the level of each band. The loudest band has the full height.
 fn bars(band_db: &[f64]) -> String {
     let top_db = band_db.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let full = (BARS.len() - 1) as f64;
@@ -181,7 +181,7 @@ mod tests {
         assert!(felt.starts_with("  force \x1b[33m 0.300 N\x1b[0m "), "{felt}");
         let [ways, _] = lines(Phase::Take, 1.0, 0.4);
         assert_eq!(ways, format!("  9.0 s  target {end}  finger \x1b[32m{begin}\x1b[0m"));
-        // A countdown of 10 s has 10 strokes and ends where the take begins.
+        // A countdown of 10 s has 10 strokes and ends at the position where the take begins.
         let [ways, felt] = lines(Phase::Countdown, 9.0, 0.45);
         assert!(ways.contains(&end) && felt.contains("\x1b[31m"), "{ways} {felt}");
     }

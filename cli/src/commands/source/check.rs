@@ -10,8 +10,7 @@ use crate::sources::SourceArgs;
 
 /// Check that a source keeps every promise of the source ABI; exit status 1 if it does not.
 ///
-/// Each check runs in a process of its own, so that a crash or an endless loop ends only that
-/// check.
+/// Each check runs in its own process, so that a crash or an endless loop ends only that check.
 #[derive(Args)]
 pub(crate) struct Check {
     #[command(flatten)]

@@ -12,7 +12,7 @@ use crate::sources::{SourceArgs, source_json};
 /// Show a source's settings and profiles, what is connected, and its rate and channels with these
 /// settings.
 ///
-/// The source is opened for its rate and channels, and does not sample.
+/// The source is opened to read its rate and channels. It does not sample.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The source, by short name, id or library file

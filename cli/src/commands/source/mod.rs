@@ -1,4 +1,4 @@
-//! `htex source`: inputs that deliver samples.
+//! The subcommand `htex source` for inputs that deliver samples.
 
 mod check;
 mod info;

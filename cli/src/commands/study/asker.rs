@@ -1,4 +1,4 @@
-//! Where participants are asked, and where their finger's motion comes from.
+//! How participants are asked, and the source of their finger's motion.
 
 use clap::Args;
 use htex_lab::study::{Asker, Key, Page, PageOptions, Study, View};
@@ -9,18 +9,18 @@ use crate::failure::Failure;
 use crate::motions::Motions;
 use crate::output::tell;
 
-/// Millimetres of a pixel of a page, by the definition of CSS; screens differ.
+/// Size of a page's pixel by the definition of CSS, millimetres. Real screens differ.
 const CSS_PIXEL_MM: &str = "0.2646";
 
-/// How a session asks, and where the motion of a study comes from whose motion is live.
+/// How a session asks, and the source of the motion if the study's motion is live.
 #[derive(Args)]
 #[command(next_help_heading = "Asking")]
 pub(super) struct AskingArgs {
-    /// Ask on a page in a browser of this machine, whose address is printed, not in the terminal
+    /// Ask on a web page of this machine instead of the terminal; its address is printed
     #[arg(long)]
     page: bool,
 
-    /// Port of the page [default: any that is free]
+    /// Port of the page [default: any free port]
     #[arg(
         long,
         value_name = "PORT",
@@ -30,9 +30,8 @@ pub(super) struct AskingArgs {
     )]
     port: u16,
 
-    /// The motion of the finger, for a study whose motion is live: `-` reads lines
-    /// `speed_mm_s force_n [x_mm y_mm]` from standard input, `page` takes it from a finger on the
-    /// page
+    /// Source of the finger's motion, for a study with live motion: `-` reads lines
+    /// `speed_mm_s force_n [x_mm y_mm]` from standard input, `page` follows a finger on the page
     #[arg(long, value_name = "SOURCE", value_parser = ["-", "page"])]
     motion: Option<String>,
 
@@ -40,12 +39,12 @@ pub(super) struct AskingArgs {
     #[arg(long, value_name = "MM", default_value = CSS_PIXEL_MM, value_parser = positive)]
     touch_mm_per_px: f64,
 
-    /// Normal force of a finger on the page, N, for --motion page: a page does not measure it
+    /// Normal force of a finger on the page, N, for --motion page; a page cannot measure it
     #[arg(long, value_name = "N", default_value = "0.4", value_parser = positive)]
     touch_force: f64,
 }
 
-/// What asks, and the queue of live motions.
+/// The asker and the queue of live motions.
 pub(super) struct Asking {
     pub(super) asker: Box<dyn Asker>,
     pub(super) motions: Option<Motions>,
@@ -83,17 +82,17 @@ impl AskingArgs {
         Err(Failure::Usage(problem.to_owned()))
     }
 
-    /// Whether answers of a person or the motion come from standard input.
+    /// Whether standard input provides a person's answers or the motion.
     pub(super) fn reads_stdin(&self, is_simulated: bool) -> bool {
         self.motion.as_deref() == Some("-") || !(self.page || is_simulated)
     }
 
-    /// Asks nobody: for a simulated participant.
+    /// Asks nobody, for a simulated participant.
     pub(super) fn of_nobody(&self) -> Asking {
         Asking { asker: Box::new(Nobody), motions: self.motion.is_some().then(Motions::from_stdin) }
     }
 
-    /// Asks a person.
+    /// Asks a real participant.
     pub(super) fn open(&self, study: &Study, participant: &str) -> Result<Asking, Failure> {
         if !self.page {
             return Ok(Asking { asker: Box::new(Terminal::new()), motions: None });
@@ -120,7 +119,7 @@ impl AskingArgs {
     }
 }
 
-/// A simulated participant is asked nothing.
+/// A simulated participant is not asked anything.
 struct Nobody;
 
 impl Asker for Nobody {

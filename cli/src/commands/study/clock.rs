@@ -1,11 +1,12 @@
-//! Clocks of a session.
+//! The clocks of a session.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use htex_lab::study::{Clock, utc};
 
-/// Milliseconds since 1970 when it was made, and then by the monotonic clock: the system's may be
-/// set while a participant answers, and a response would take less than no time, or a rest an hour.
+/// Milliseconds since 1970: the system's time when it was created, continued by the monotonic
+/// clock. The system's clock may be set while a participant answers. A response would then take
+/// less than no time, or a rest an hour.
 pub(super) struct WallClock {
     made_ms: u64,
     made: Instant,
@@ -41,14 +42,15 @@ impl Clock for WallClock {
         Some(utc(system_ms()))
     }
 
-    /// The system's clock may have been set back since the last answer.
+    /// Continues at a time, because the system's clock may have been set back since the last
+    /// answer.
     fn go_on_at(&mut self, ms: u64) {
         let now = self.now_ms().max(ms);
         *self = Self::made_at(now);
     }
 }
 
-/// A simulated clock, which does not wait: its times depend on what was done alone.
+/// A simulated clock that does not wait. Its times depend only on what was done.
 #[derive(Default)]
 pub(super) struct FastClock {
     now: Duration,
@@ -80,7 +82,7 @@ impl Clock for FastClock {
 mod tests {
     use super::*;
 
-    /// A session that was left at three o'clock goes on after the clock was set to two.
+    /// A session that was left at three o'clock continues correctly after the clock was set to two.
     #[test]
     fn time_never_goes_back() {
         let hour_ms = 3_600_000;
@@ -92,7 +94,7 @@ mod tests {
         assert!(first >= 3 * hour_ms && (5..60_000).contains(&passed), "{first}, {passed}");
         clock.go_on_at(hour_ms);
         assert!(clock.now_ms() >= first + 5);
-        // The date is the system's.
+        // The date comes from the system.
         assert!(clock.date().is_some_and(|date| !date.starts_with("1970")));
     }
 }

@@ -5,7 +5,7 @@ use clap::Args;
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// A subcommand that the `htex` command of the Python package answers.
+/// A subcommand that is implemented in the `htex` command of the Python package.
 #[derive(Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct Elsewhere {

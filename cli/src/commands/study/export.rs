@@ -14,20 +14,20 @@ use super::spectra::SpectraArgs;
 
 /// Write the ratings of all participants as a table, and the spectra of what they felt as another.
 ///
-/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference,
-/// response_ms, gain_db, simulated and off_target (whether speed or force left the study's by more
-/// than 10 %; empty if neither was measured); of the spectra participant, texture, model, and a
-/// magnitude for 20, 25, …, 1000 Hz.
+/// The columns of the table are participant, texture, model, repetition, rating, attribute,
+/// hidden_reference, response_ms, gain_db, simulated and off_target (whether speed or force left
+/// the study's target by more than 10 %; empty if neither was measured). The columns of the spectra
+/// are participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(super) struct Export {
-    /// The folder of answers that `htex study run` wrote
+    /// The folder of answers, written by `htex study run`
     folder: PathBuf,
 
     /// The table to write, CSV
     #[arg(short, long, value_name = "CSV", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// The attribute whose ratings are written, where there are several
+    /// The attribute whose ratings are written, if there are several
     #[arg(long, value_name = "NAME")]
     attribute: Option<String>,
 
@@ -43,7 +43,7 @@ impl Export {
     pub(super) fn run(self) -> Result<Exit, Failure> {
         let table = export(&self.folder, self.attribute.as_deref())?;
         warn(&table.warnings);
-        // No problem of a recording costs the ratings.
+        // The ratings are written first, so that a problem with a recording does not lose them.
         write_file(&self.output, table.csv.as_bytes())?;
         let spectra = self.spectra.table(&self.folder)?;
         if let Some((file, spectra)) = &spectra {

@@ -1,4 +1,4 @@
-//! Recording of what is felt during the trials of a study.
+//! Records what is felt during the trials of a study.
 
 use std::path::Path;
 
@@ -15,16 +15,16 @@ use crate::inputs::{InputArgs, paced};
 use crate::models::tool;
 use crate::output::warn;
 
-/// Where what is felt comes from.
+/// The source of what is felt.
 #[derive(Args)]
 pub(super) struct FeltArgs {
     /// Record what is felt during each trial: from analog inputs of a National Instruments card
-    /// (daq:Dev1/ai0:5), from a recording that is replayed for each trial (file:rec.csv), or from
-    /// another source of `htex device list`
+    /// (daq:Dev1/ai0:5), from a recording that is replayed in each trial (file:rec.csv), or from
+    /// another source in `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
     source: Option<String>,
 
-    /// A setting of the source, such as rate_hz=20000; may be given several times
+    /// A setting of the source, e.g. rate_hz=20000; may be given several times
     #[arg(
         long = "source-set",
         value_name = "NAME=VALUE",
@@ -50,7 +50,7 @@ impl FeltArgs {
         Err(Failure::Usage(problem.to_owned()))
     }
 
-    /// A recorder for a participant, if there is a source.
+    /// Opens a recorder for a participant, if there is a source.
     pub(super) fn open(
         &self,
         study: &Study,
@@ -87,7 +87,7 @@ impl FeltArgs {
     }
 }
 
-/// Speed and force of a motion that has only one of each.
+/// Returns the study's speed and force if its motion has only one of each.
 pub(super) fn target(study: &Study) -> Exploration {
     match &study.motion {
         Motion::Constant(motion) => {

@@ -1,4 +1,4 @@
-//! Single keys of a terminal, without Enter.
+//! Reads single keys from a terminal, without Enter.
 
 use std::io::Read;
 use std::sync::mpsc::{Receiver, channel};
@@ -10,7 +10,7 @@ use rustix::termios::{
     LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcsetattr,
 };
 
-/// A key that comes again within this time is held.
+/// A key that repeats within this time is considered held down.
 const HELD: Duration = Duration::from_millis(700);
 
 /// A key of a keyboard.
@@ -28,7 +28,7 @@ pub(super) enum Press {
 }
 
 impl Press {
-    /// Its name in messages.
+    /// Returns its name for messages.
     pub(super) fn name(self) -> String {
         match self {
             Self::Char(key) => key.to_string(),
@@ -41,18 +41,18 @@ impl Press {
     }
 }
 
-/// Keys of the terminal at standard input, whose settings are restored when this is dropped. Ctrl-C
+/// The keys of the terminal on standard input. Dropping it restores the terminal's settings. Ctrl-C
 /// stays a signal.
 pub(super) struct Keys {
     before: Termios,
     presses: Receiver<Press>,
-    /// The key that came last, and when.
+    /// The most recent key and when it came.
     last: Option<(Press, Instant)>,
     shown: Instant,
 }
 
 impl Keys {
-    /// Takes single keys from now on; `None` if standard input does not have such settings.
+    /// Starts reading single keys; `None` if standard input is not a terminal.
     pub(super) fn begin() -> Option<Self> {
         let before = tcgetattr(stdin()).ok()?;
         let mut single = before.clone();
@@ -77,7 +77,7 @@ impl Keys {
         Some(Self { before, presses, last: None, shown: Instant::now() })
     }
 
-    /// Forgets the keys before something is shown.
+    /// Discards the keys pressed before something is shown.
     pub(super) fn forget(&mut self) {
         while let Some(press) = self.pressed() {
             if press == Press::End {
@@ -88,7 +88,7 @@ impl Keys {
         self.shown = Instant::now();
     }
 
-    /// The next key that is not held.
+    /// Returns the next key that is not a held one.
     pub(super) fn next(&mut self, view: &View) -> Option<Press> {
         if matches!(self.last, Some((Press::End, _))) {
             return Some(Press::End);
@@ -113,12 +113,12 @@ impl Keys {
 
 impl Drop for Keys {
     fn drop(&mut self) {
-        // Nothing can be done about a terminal that is gone.
+        // If the terminal is gone, nothing can be done about it.
         let _ = tcsetattr(stdin(), OptionalActions::Flush, &self.before);
     }
 }
 
-/// The keys of the bytes that a terminal sent at once.
+/// Decodes the keys in bytes that a terminal sent at once.
 fn presses_of(bytes: &[u8]) -> Vec<Press> {
     let mut presses = Vec::new();
     let mut rest = bytes;
@@ -137,12 +137,12 @@ fn presses_of(bytes: &[u8]) -> Vec<Press> {
             continue;
         }
         presses.push(match first {
-            // Ctrl-D
+            // Ctrl-D.
             4 => Press::End,
             b' '..=b'~' | b'\r' | b'\n' => Press::Char(char::from(*first)),
             _ => Press::Other,
         });
-        // What follows an escape that is not known belongs to it.
+        // After an unknown escape, the following bytes belong to it.
         rest = match first {
             0x1b => &[],
             _ => &rest[1..],

@@ -1,4 +1,4 @@
-//! `htex study`: people rate textures.
+//! The subcommand `htex study` for studies in which people rate textures.
 
 mod asker;
 mod clock;
@@ -27,8 +27,8 @@ use crate::shown::shown;
 
 /// Plan, run and analyse rating studies
 ///
-/// A study is described by study.toml (its JSON Schema: `htex schema study`); its defaults are
-/// those of the paper's study.
+/// study.toml describes a study (its JSON Schema: `htex schema study`). The defaults are those of
+/// the paper's study.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]
@@ -61,10 +61,10 @@ impl Study {
     }
 }
 
-/// What findings of a study mean.
+/// The message for findings that prevent a study from running.
 const CANNOT_RUN: &str = "this study cannot be run";
 
-/// Reads a study that must be valid, without the files that it names.
+/// Reads a study, which must be valid. Does not read the files that it names.
 fn open(file: &Path) -> Result<File, Failure> {
     let bytes = std::fs::read(file).reading(file)?;
     let mut findings = Findings::default();

@@ -13,7 +13,7 @@ use crate::shown::shown;
 
 /// Write the order of every participant.
 ///
-/// The order follows from the study alone: the same seed gives the same order on every machine, and
+/// The order depends only on the study: the same seed gives the same order on every machine.
 /// `htex study run` follows it.
 #[derive(Args)]
 pub(super) struct Plan {

@@ -1,4 +1,4 @@
-//! A renderer and a device that play the trials of a study.
+//! The renderer and the device that play the trials of a study.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,37 +23,37 @@ use crate::playing::Output;
 use crate::scenes::{Loader, Ready, costs};
 use crate::signals::interrupted;
 
-/// The setting of devices for how long samples wait before they are output.
+/// The device setting for how long samples wait before they are output.
 const BUFFER: &str = "buffer_ms";
 
-/// What plays a study.
+/// Plays the trials of a study.
 pub(super) struct StudyRig<'a> {
     pub(super) study: &'a Study,
     pub(super) path: PathBuf,
     pub(super) loader: Loader,
     pub(super) device: DeviceOverride,
-    /// Format of files that are played to.
+    /// Format of the files, if trials are played to files.
     pub(super) format: String,
-    /// Folder, inside the folder of answers, of the files that are played to.
+    /// Folder of these files, inside the folder of answers.
     pub(super) folder: PathBuf,
-    /// That of the answers, if a trial is played to a file.
+    /// The folder of answers, if a trial is played to a file.
     pub(super) answers: Option<OwnFolder>,
-    /// The finger, if its motion is live.
+    /// The finger's motion, if it is live.
     pub(super) motions: Option<Motions>,
-    /// Whether trials are played as fast as the device takes them.
+    /// Whether trials are played as fast as the device accepts samples.
     pub(super) is_fast: bool,
     pub(super) told: RefCell<BTreeSet<String>>,
     pub(super) errors_db: RefCell<BTreeMap<(String, String), Option<f64>>>,
     pub(super) ended: bool,
     /// Records what is felt.
     pub(super) felt: Option<Felt>,
-    /// Drive of a display, volts, and levels of what plays or played last; `None` before a device
+    /// Drive of a display (volts) and levels of the current or last trial; `None` before a device
     /// is opened.
     pub(super) playing: Option<(Option<f64>, Meter)>,
 }
 
 impl StudyRig<'_> {
-    /// Loads a texture in a model with the device.
+    /// Loads a texture with a model and the device.
     fn load(&self, texture: &str, model: &str, file: &str) -> Result<Ready, Failure> {
         let listed = self.study.textures.iter().find(|t| t.name() == texture);
         let Some(listed) = listed else {
@@ -71,18 +71,18 @@ impl StudyRig<'_> {
         })
     }
 
-    /// The device that will be used.
+    /// Describes the device that will be used.
     pub(super) fn device_used(&self) -> Result<DeviceUsed, Failure> {
         let (first, model) = (&self.study.textures[0], &self.study.models[0]);
         let ready = self.load(&first.name(), model, "device")?;
         let descriptor = ready.device.descriptor();
-        // A file's name is another one in each trial.
+        // The name of a file is left out, because it is different in each trial.
         let is_file = |name: &str| {
             let mut settings = descriptor.settings.iter();
             settings.any(|setting| setting.name == name && setting.kind == SettingKind::Path)
         };
-        // How long samples wait is felt only as the delay of a live motion; a buffer that ran dry
-        // can be made longer in a session.
+        // How long samples wait is felt only as the delay of a live motion. Otherwise the buffer
+        // may be made longer during a session, e.g. if it ran dry.
         let is_live = matches!(self.study.motion, Motion::Live);
         let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
         let settings = ready.settings().iter().filter(|(name, _)| !is_unfelt(name));
@@ -131,14 +131,15 @@ impl StudyRig<'_> {
         Ok((ready, drive_v))
     }
 
-    /// Applies the newest motion; false when the input has ended.
+    /// Applies the newest motion. Returns false when the input has ended.
     fn follow(&mut self, renderer: &mut Renderer) -> bool {
         let Some(motions) = &mut self.motions else {
             return true;
         };
         match motions.look() {
             Moved::To(finger) => {
-                // A failed reading is held, and then no contact; the next one may be good.
+                // After a failed reading, the last motion is held for a while and then becomes no
+                // contact. The next reading may be valid.
                 let _ = renderer.set_motion(finger);
                 true
             }
@@ -200,7 +201,7 @@ impl Rig for StudyRig<'_> {
 }
 
 impl StudyRig<'_> {
-    /// Plays, and records what is felt.
+    /// Plays a trial and records what is felt.
     fn play_with(
         &mut self,
         mut felt: Option<&mut Felt>,
@@ -264,7 +265,7 @@ impl StudyRig<'_> {
     }
 }
 
-/// The error of a device that went on after it ran dry.
+/// Returns the error for a device that continued after it ran dry.
 fn ran_dry(ready: &Ready) -> DeviceError {
     DeviceError::Underflow {
         device: ready.device.descriptor().name.clone(),

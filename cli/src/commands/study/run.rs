@@ -25,31 +25,30 @@ use crate::signals;
 
 /// Run the session of a participant: play each trial on the device, ask, and keep each answer.
 ///
-/// Answers are lines of DIR/PARTICIPANT.jsonl, each of which is on disk before the next trial. A
-/// session that was left (q, Ctrl-C) or killed goes on where it was when the same command is run
-/// again. Answers of two versions of a study, of its assets or of its device are not mixed.
+/// Answers are lines of DIR/PARTICIPANT.jsonl. Each is written to disk before the next trial. If a
+/// session was left (q, Ctrl-C) or killed, the same command continues it. Answers to different
+/// versions of a study, its assets or its device are not mixed.
 #[derive(Args)]
 pub(super) struct Run {
     /// The study: study.toml
     study: PathBuf,
 
-    /// The participant; with --simulated, all of them when absent
+    /// The participant; with --simulated, all of them by default
     #[arg(long, value_name = "NAME", required_unless_present = "simulated")]
     participant: Option<String>,
 
-    /// The folder of answers
+    /// The folder for the answers
     #[arg(short, long, value_name = "DIR", default_value = "answers")]
     output: PathBuf,
 
     #[command(flatten)]
     asking: AskingArgs,
 
-    /// A simulated participant of this seed answers; every file says so
+    /// Let a simulated participant with this seed answer; every file says so
     #[arg(long, value_name = "SEED")]
     simulated: Option<u64>,
 
-    /// Do not wait: rests end at once, and devices without a clock get trials as fast as they take
-    /// them
+    /// Do not wait: rests end at once, and devices without a clock play trials as fast as they can
     #[arg(long, requires = "simulated")]
     fast: bool,
 
@@ -141,7 +140,7 @@ impl Run {
             .with_source(rig.felt.as_ref().and_then(Felt::used))
             .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
         let mut session = Session::open(study, own, &self.output, &header)?;
-        // A page is opened when the session is known to be the right one.
+        // The page is opened only once the session is known to be the right one.
         let mut asking = match self.simulated {
             Some(_) => self.asking.of_nobody(),
             None => self.asking.open(study, participant)?,

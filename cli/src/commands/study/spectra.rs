@@ -1,4 +1,4 @@
-//! The table of spectra of what was felt.
+//! The table of the spectra that were felt.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,31 +13,32 @@ use crate::failure::Failure;
 use crate::located;
 use crate::recordings::RecordingArgs;
 
-/// What was felt, and the real textures.
+/// What was felt, and the real textures to compare it with.
 #[derive(Args)]
 #[command(next_help_heading = "Spectra")]
 pub(super) struct SpectraArgs {
     /// The table of spectra to write, CSV: what each participant felt of each texture and model,
-    /// averaged over its trials, and the spectrum of each real texture;
-    /// `htex study analyse --spectra` reads it
+    /// averaged over the trials, and the spectrum of each real texture; for
+    /// `htex study analyse --spectra`
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     spectra: Option<PathBuf>,
 
-    /// The study, whose assets have the spectra of the real textures
+    /// The study, whose assets contain the spectra of the real textures
     #[arg(long, value_name = "FILE", requires = "spectra")]
     study: Option<PathBuf>,
 
-    /// What becomes of recordings of trials whose speed or force was off the study's by more than
-    /// 10 %: that is the rule for recordings of textures, not for participants
+    /// What to do with recordings of trials whose speed or force left the study's target by more
+    /// than 10 %; the limit is a rule for recordings of textures, not for participants
     #[arg(long, value_enum, value_name = "WHAT", requires = "spectra", default_value = "keep")]
     off_target: OffTarget,
 
-    /// Response of the sensor during the study to divide out of what was felt: CSV as that of --frf
+    /// Response of the sensor during the study, which is divided out of what was felt: a CSV as for
+    /// --frf
     #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
     felt_frf: Option<PathBuf>,
 
-    /// The recording of a real texture, in place of the asset's spectrum; may be given several
-    /// times. The options of reading recordings are about these
+    /// The recording of a real texture, instead of the asset's spectrum; may be given several
+    /// times. The options for reading recordings apply to these
     #[arg(long, value_name = "TEXTURE=FILE", requires = "spectra")]
     recorded: Vec<String>,
 
@@ -46,7 +47,7 @@ pub(super) struct SpectraArgs {
 }
 
 impl SpectraArgs {
-    /// The table and its file, if one is asked for.
+    /// Returns the table and its file, if one is asked for.
     pub(super) fn table(&self, folder: &Path) -> Result<Option<(&Path, FeltSpectra)>, Failure> {
         if self.recorded.is_empty() && self.reading.is_given() {
             let sentence =
@@ -74,7 +75,7 @@ impl SpectraArgs {
         Ok(Some((file, spectra)))
     }
 
-    /// The spectra that the study's assets have, of the textures whose recording was not given.
+    /// Returns the spectra in the study's assets, for textures whose recording was not given.
     fn of_assets(&self) -> Result<BTreeMap<String, Reference>, Failure> {
         let Some(path) = &self.study else {
             return Ok(BTreeMap::new());

@@ -1,4 +1,4 @@
-//! Questions and answers in a terminal: single keys of a keyboard, lines of a pipe.
+//! Questions and answers in a terminal, with single keys from a keyboard or lines from a pipe.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -10,11 +10,11 @@ use htex_lab::study::{Asker, GainKey, GainMethod, Key, View};
 use super::keys::{Keys, meaning};
 use crate::output::tell;
 
-/// Asks on standard error and reads standard input.
+/// Asks on standard error and reads answers from standard input.
 pub(super) struct Terminal {
     input: Input,
     view: View,
-    /// When it was shown.
+    /// When the current view was shown.
     shown: Instant,
 }
 
@@ -22,7 +22,7 @@ enum Input {
     /// Keys of a terminal.
     #[cfg(unix)]
     Keys(Keys),
-    /// Lines; those that were typed before a question are forgotten, those of a pipe are not.
+    /// Lines. Lines typed before a question are discarded; lines from a pipe are not.
     Lines { lines: Receiver<String>, is_typed: bool },
 }
 
@@ -41,7 +41,7 @@ impl Terminal {
     }
 }
 
-/// Keys if standard input is a terminal, else its lines.
+/// Reads keys if standard input is a terminal, else lines.
 fn input() -> Input {
     let is_typed = std::io::stdin().is_terminal();
     #[cfg(unix)]
@@ -87,7 +87,7 @@ impl Asker for Terminal {
                 }
                 return key;
             }
-            // The lines of a pipe wait for the question.
+            // Lines from a pipe wait for the question.
             Input::Lines { is_typed: false, .. } if matches!(self.view, View::Playing { .. }) => {
                 return None;
             }
@@ -106,7 +106,7 @@ impl Asker for Terminal {
     }
 }
 
-/// The meaning of a line.
+/// Returns the meaning of a line.
 fn key(line: &str, view: &View) -> Option<Key> {
     let is_matching = matches!(view, View::Matching { .. });
     Some(match line {
@@ -128,7 +128,7 @@ fn key(line: &str, view: &View) -> Option<Key> {
     })
 }
 
-/// What is asked, and which keys or lines answer.
+/// Returns the question, and which keys or lines answer it.
 fn text(view: &View, is_line: bool) -> String {
     match view {
         View::Ready { texture, .. } => format!("{texture}: Enter to begin, q to leave"),

@@ -1,6 +1,6 @@
 //! Alternatives to streaming a model's voice, which need less computation per sample.
 //!
-//! They work with every model.
+//! Models do not depend on these methods.
 
 use std::fmt;
 use std::str::FromStr;

@@ -33,7 +33,7 @@ pub(super) struct Cache {
 
 impl Cache {
     /// Opens the cache, and creates its folder and key if they do not exist. `None` if the cache is
-    /// off, or others than this user can write to it.
+    /// off, or if its folder belongs to another user or others may write to it.
     pub(super) fn of(cache: &WasmCache) -> Option<Self> {
         let folder = match cache {
             WasmCache::User => folders::cache()?.join("wasm"),

@@ -122,10 +122,12 @@ impl Card {
     ) -> Result<(StreamConfig, SampleFormat), DeviceError> {
         let fits = |c: &&SupportedStreamConfigRange| {
             let rates = c.min_sample_rate()..=c.max_sample_rate();
+            // cpal has only whole rates.
             rate_hz.fract() == 0.0 && rates.contains(&(rate_hz as u32))
         };
         let rank = |c: &&SupportedStreamConfigRange| {
             let format = FORMATS.iter().position(|f| *f == c.sample_format());
+            // The format matters more than the number of channels.
             (format, c.channels().abs_diff(channels))
         };
         let best =

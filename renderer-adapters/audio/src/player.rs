@@ -93,6 +93,7 @@ impl Player {
 
     fn next(&mut self, wish: u8) -> f32 {
         let wanted = wish != Wish::Stop as u8;
+        // After a stop, samples are discarded, and the last one fades out.
         match self.ring.pop().ok().filter(|_| wanted) {
             Some(sample) => {
                 self.shared.taken.fetch_add(1, Ordering::Relaxed);
@@ -100,6 +101,7 @@ impl Player {
                 self.gain = (self.gain + self.step).min(1.0);
             }
             None => {
+                // A run of missing samples counts as one underrun.
                 if !self.dry && wish == Wish::Play as u8 {
                     self.shared.underruns.fetch_add(1, Ordering::Relaxed);
                 }

@@ -165,6 +165,7 @@ impl Session {
                 }
             })
             .map_err(|fault| self.fail(&fault))?;
+        // The call may have hung so long that the emergency has written zero in the meantime.
         self.still_holds()?;
         self.given += given as u64;
         self.direct.take(&volts[..given]);

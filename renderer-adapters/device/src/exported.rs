@@ -166,6 +166,7 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
 /// Runs a call of a device or source (`kind`). An error or a panic becomes a code, and its text
 /// becomes the last error.
 fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
+    // A panic must not leave the library.
     let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
         let text = panic
             .downcast_ref::<&str>()

@@ -34,6 +34,8 @@ impl<T: ?Sized> Handles<T> {
     /// Calls a function with the device or source behind a handle. Returns `None` if the handle was
     /// closed or never existed.
     pub(crate) fn with<R>(&self, handle: i64, call: impl FnOnce(&mut T) -> R) -> Option<R> {
+        // The table's lock is released before the call, so that a call that blocks does not block
+        // the other handles.
         let shared = {
             let open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             open.shared.get(&handle).cloned()?

@@ -96,6 +96,7 @@ impl<T: Table> Library<T> {
         check_marker::<T>(abi_version()).map_err(&error)?;
         // SAFETY: a library with this marker exports these names with these types.
         let table = unsafe { T::of_symbols(&symbols)? };
+        // Leaked, because a library is never unloaded.
         let table: &'static T = Box::leak(Box::new(table));
         Ok(Self { name, table })
     }

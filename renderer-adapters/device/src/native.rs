@@ -154,6 +154,7 @@ impl NativeDevice {
     /// # Errors
     /// When the device returns too few numbers, or one that is negative or not finite.
     pub fn checked_status(&self) -> Result<Status, DeviceError> {
+        // NaN, so that a number that the device does not write is noticed.
         let mut numbers = [f64::NAN; STATUS_NUMBERS];
         let (adapter, handle) = (&self.opened.adapter, self.opened.handle);
         let status = self.opened.table().status;
@@ -191,6 +192,7 @@ impl NativeDevice {
             mean_v: excess.mean_v,
             limit_v: direct.limit_v(),
         };
+        // Closing is what takes the output of a library's device to zero.
         self.opened.close()?;
         Err(error)
     }

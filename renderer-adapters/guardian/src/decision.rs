@@ -285,6 +285,8 @@ impl Player {
             }
             State::Rescuing(rescue) => {
                 if let Step::Killing { until } = &mut rescue.step {
+                    // The guardian no longer holds the output, so the first attempt may begin at
+                    // once.
                     *until = now;
                 }
                 vec![]
@@ -308,6 +310,7 @@ impl Player {
         let State::Rescuing(rescue) = &self.state else {
             return vec![];
         };
+        // After a warning the caller already has its error, so the good news is printed instead.
         let action = if rescue.has_said { Action::SayZero } else { Action::GiveZero };
         self.state = State::Closed;
         vec![action]
@@ -355,6 +358,7 @@ impl Player {
             }
             self.attempt = number;
             self.last = by;
+            // Nothing can end a thread, so its number stays in use until it reports.
             if by == By::Player {
                 self.own = Some(number);
             }
@@ -380,6 +384,7 @@ impl Player {
 
     fn next_by(&self) -> By {
         match self.last {
+            // No second thread while one may still hang.
             By::Process if self.own.is_none() => By::Player,
             _ => By::Process,
         }

@@ -43,6 +43,7 @@ pub(crate) fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
 pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     let energy = |m: &[f64]| m.iter().map(|m| m * m).sum::<f64>();
     let total = energy(reference);
+    // Matches the levels.
     let gain = (total / energy(measured)).sqrt();
     let mut order: Vec<usize> = (0..reference.len()).collect();
     order.sort_by(|&a, &b| reference[b].total_cmp(&reference[a]));

@@ -257,6 +257,7 @@ impl LoadedModel {
             return Err(self.error(call, Status::InvalidArgument, what));
         }
         let raw = RawFit::of(request, condition);
+        // NaN, so that a level that the model does not write is an error.
         let mut level_rms = f64::NAN;
         let parameters = self.numbers(call, |out| self.raw.fit(&raw, out, &mut level_rms))?;
         if !level_rms.is_finite() || level_rms < 0.0 {
@@ -278,6 +279,7 @@ impl LoadedModel {
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, HostError> {
         let call = "magnitude";
+        // NaN, so that magnitudes that the model does not write are an error.
         let mut magnitude = vec![f64::NAN; frequency_hz.len()];
         let (raw, band) = (&self.raw, band);
         let answer = raw.magnitude(parameters, band, frequency_hz, &mut magnitude);

@@ -88,6 +88,8 @@ fn by_precedence(all: &mut [Candidate]) {
     let mut keyed: Vec<_> = places.into_iter().zip(all.iter().cloned()).collect();
     keyed.sort_by_cached_key(|(place, one)| {
         if one.rank.is_chosen() {
+            // The sort is stable, so chosen models of one rank keep the order in which they were
+            // added.
             (one.rank, None, Reverse(None), one.rank)
         } else {
             (Rank::Folder, *place, Reverse(one.version()), one.rank)

@@ -121,6 +121,7 @@ impl Budget {
             let (used, most) = count(budget);
             let add = |used: usize| used.checked_add(n).filter(|sum| *sum <= most);
             if used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).is_err() {
+                // An outer budget is full, so what the inner ones counted is taken back.
                 for other in self.all().take(taken) {
                     count(other).0.fetch_sub(n, Ordering::Relaxed);
                 }

@@ -45,6 +45,8 @@ pub fn render_together<'a>(
             break;
         }
         rows -= 1;
+        // This voice belongs to another model, or the call is full: render the collected ones
+        // first.
         if !run.takes(voice) {
             result = result.and(run.render(frames, &mut rest));
         }

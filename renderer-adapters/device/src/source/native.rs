@@ -152,6 +152,7 @@ impl NativeSource {
     /// # Errors
     /// The error of the source. A second call must return that the handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
+        // Later reads must reach the library, because it is the one to refuse them.
         self.failed = false;
         self.opened.close()
     }

@@ -89,7 +89,7 @@ pub(crate) fn level(case: &Case) -> Found {
         let magnitude = case.magnitude(&fitted.parameters)?;
         let sound = listen(case, &fitted)?;
         let (told, read) = (level_rms(&magnitude), level_rms(&measured_spectrum(&sound)));
-        // The condition is negated so that NaN fails.
+        // The sound in total or in the band's bins, whichever is nearer to 1.
         let in_all = rms(&sound);
         let is_nearer = (read - 1.0).abs() < (in_all - 1.0).abs();
         let heard = if is_nearer { read } else { in_all };

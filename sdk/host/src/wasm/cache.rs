@@ -72,6 +72,8 @@ impl Cache {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         let file = self.folder.join(name);
+        // The name is unique, so that processes and threads that compile the same module do not
+        // collide.
         let beside = file.with_extension(format!("{}-{count}.part", std::process::id()));
         let content = [&self.key.tag(name, artifact)[..], artifact].concat();
         let written =

@@ -27,8 +27,8 @@ pub(crate) struct Stream {
     waiting: Vec<Point>,
     /// Duration of the samples that were passed to the runtime, seconds.
     sent_s: f64,
-    /// Minimum duration of the first frame, seconds. It is one block longer than the other frames,
-    /// because each frame comes one block before the runtime needs it.
+    /// Minimum duration of the first frame, seconds. It is at least one block longer than the other
+    /// frames, because each frame comes one block before the runtime needs it.
     first_s: f64,
     /// Minimum duration of every other frame, seconds.
     frame_s: f64,

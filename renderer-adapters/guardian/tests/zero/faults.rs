@@ -67,7 +67,7 @@ impl Fault {
         Self::AllHelpers(Helpers::Slow),
     ];
 
-    /// Whether the player is unable to act for so long that the output waits for it.
+    /// Whether it keeps the player from acting for so long that the output waits for the player.
     pub fn is_of_player(self) -> bool {
         matches!(self, Self::PlayerKilled | Self::PlayerStopped(_))
     }

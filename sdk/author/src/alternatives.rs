@@ -1,5 +1,5 @@
-//! Search for other options and models that fit a recording better than a representation with a
-//! large band error.
+//! Search for a better fit when a representation has a large band error: other options of its
+//! model, and other models.
 
 use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};
@@ -12,19 +12,20 @@ use crate::{agreement, read_spectrum};
 
 /// Nine-band RMS error above which a warning is given, decibels.
 const LIMIT_DB: f64 = 12.0;
-/// Error of one of the nine bands above which it is given, decibels. `sbeta.error=magnitude` with
-/// bins beside the peaks follows the strongest bins alone: on a spectrum that falls steeply it is
-/// 26 dB off in the highest band at an RMS of 10 dB, and there is no better fit of its kind.
+/// Error of a single band (of the nine) above which a warning is given, decibels.
+/// `sbeta.error=magnitude` with bins beside the peaks follows only the strongest bins: on a
+/// spectrum that falls steeply it is 26 dB off in the highest band at an RMS of 10 dB, and there is
+/// no better fit of its kind.
 const BAND_LIMIT_DB: f64 = 24.0;
 
-/// A fit that was tried, and its nine-band RMS error, decibels.
+/// A fit that was tried, with its nine-band RMS error in decibels.
 struct Tried {
     name: String,
     error_db: f64,
 }
 
 /// Returns a warning if a representation exceeds an error limit at one of its `measured`
-/// conditions. `models` are tried beside the model's own options.
+/// conditions. Besides the model's own options it tries each of `models` at its default options.
 pub(crate) fn warning(
     choice: &ModelRequest,
     measured: &[(&Quality, &Group)],
@@ -32,7 +33,7 @@ pub(crate) fn warning(
     level: Level,
 ) -> Option<String> {
     let error_db = |quality: &Quality| quality.get(Measure::NineBand).unwrap_or(0.0);
-    // A band that is far off is a fault also where the others hide it in the RMS.
+    // One band that is far off is a fault even where the other bands hide it in the RMS.
     let excess = |quality: &Quality| {
         (error_db(quality) / LIMIT_DB).max(worst_band_db(quality) / BAND_LIMIT_DB)
     };
@@ -74,7 +75,7 @@ pub(crate) fn warning(
     })
 }
 
-/// Largest error of a band, decibels, without its sign.
+/// Largest absolute error of a band, decibels.
 fn worst_band_db(quality: &Quality) -> f64 {
     let bands = quality.band_error_db.iter();
     bands.fold(0.0, |worst, error| worst.max(error.abs()))
@@ -84,8 +85,8 @@ fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 
-/// Returns the request's options with one of them set to another choice or to an end of its range,
-/// each with its name, `model.option=value`.
+/// Returns variants of the request's options, each named `model.option=value`. In each variant one
+/// option has another of its choices, or one end of its range.
 fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     let mut others = Vec::new();
     let model = &choice.model;
@@ -111,8 +112,8 @@ fn other_values(option: &FitOption) -> Vec<f64> {
     }
 }
 
-/// Returns the nine-band RMS error of a model's stored fit, from its magnitudes as they are read;
-/// `None` when it cannot be fitted.
+/// Returns the nine-band RMS error of a model's stored fit, measured on the magnitudes that a
+/// recording of the voice would read. `None` if the model cannot be fitted.
 fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
     let reference = group.spectrum.as_ref();
     let request = group.spectrum.fit_request(options);

@@ -14,15 +14,16 @@ pub enum Averaging {
     /// Root of the mean power: the RMS of noise and tones.
     #[default]
     Rms,
-    /// Magnitude of the mean of the complex spectra: keeps only what is in phase in all segments.
+    /// Magnitude of the mean of the complex spectra: keeps only what has the same phase in all
+    /// segments.
     Complex,
 }
 
 impl Averaging {
-    /// All methods, in the order of the command's help.
+    /// All methods, in the order of the command line's help.
     pub const ALL: &[Self] = &[Self::Magnitude, Self::Rms, Self::Complex];
 
-    /// Returns the name in a recipe and on the command line.
+    /// Returns the name used in recipes and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Magnitude => "magnitude",

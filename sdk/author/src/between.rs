@@ -1,14 +1,15 @@
-//! Conditions between recorded speeds, computed by the law.
+//! Extra conditions between recorded speeds, computed by the texture's law.
 //!
-//! A player mixes the parameters of neighbours. Where frequencies follow the speed, as on a relief
-//! with lines, mixing lets lines of one speed fade into those of the next instead of moving. So
-//! between two recorded speeds further conditions are computed: both spectra are moved by the law
-//! to the speed between, and then mixed. In the middle of octaves of speed, Bands meets the true
-//! third octaves of corrugated paper within 1.2 and 0.8 dB so, and within 4.3 and 5.5 dB by mixing
-//! what is not moved; on the other simulated reliefs within 0.3 to 1.6 dB, and 0.6 to 3.4 dB. One
-//! of ten is less near: vinyl, 1.6 for 0.9 dB, which has hardly any lines. It is done only where
-//! the recordings themselves told that frequencies follow the speed; recorded strokes of others
-//! never did.
+//! A player mixes the parameters of neighbouring conditions. Where frequencies follow the speed, as
+//! on a relief with lines, mixing makes the lines of one speed fade into those of the next speed
+//! instead of moving. So further conditions are computed between two recorded speeds: the law moves
+//! both spectra to the speed between them, and the moved spectra are mixed. Halfway between
+//! recorded speeds an octave apart, Bands then matches the true third octaves of corrugated paper
+//! within 1.2 and 0.8 dB; mixing without moving is off by 4.3 and 5.5 dB. On the other simulated
+//! reliefs the errors are 0.3 to 1.6 dB with moving and 0.6 to 3.4 dB without. One of the ten gets
+//! worse: vinyl, which has hardly any lines (1.6 dB instead of 0.9 dB). Conditions are added only
+//! where the recordings themselves showed that frequencies follow the speed; recorded strokes by
+//! third parties never did.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Exponent, ExponentSource, Law};
@@ -18,14 +19,15 @@ use htex_play::Mesh;
 use crate::TextureSpectrum;
 use crate::conditions::{Group, Grouped, four_digits};
 
-/// Least exponent of frequencies at which lines move enough.
+/// Smallest frequency exponent at which lines move enough to need conditions in between.
 const LEAST_EXPONENT: f64 = 0.5;
-/// Largest ratio of neighbouring speeds: frequencies that move by a fifth.
+/// Largest ratio of neighbouring speeds once conditions are added: frequencies move by a fifth at
+/// most.
 const RATIO: f64 = 1.2;
-/// Most conditions that are added.
+/// Largest number of conditions that are added.
 const MOST: usize = 64;
 
-/// Adds conditions between recorded ones of the same force, if the law was measured to move
+/// Adds conditions between recorded conditions of the same force, if the measured law moves
 /// frequencies.
 pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
     let Exponent { exponent, source, .. } = law.frequency_speed;
@@ -53,7 +55,7 @@ pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
     }
 }
 
-/// The pairs of conditions of one force between whose speeds no third one lies, the slower first.
+/// Pairs of conditions at one force with no third speed between them, the slower one first.
 fn neighbours(conditions: &[Condition]) -> Vec<[usize; 2]> {
     let known = |i: usize| conditions[i].speed_mm_s.zip(conditions[i].force_n);
     let mut order: Vec<usize> = (0..conditions.len()).filter(|i| known(*i).is_some()).collect();
@@ -70,7 +72,8 @@ fn neighbours(conditions: &[Condition]) -> Vec<[usize; 2]> {
     (0..order.len()).filter_map(next).collect()
 }
 
-/// The motions between two conditions, (speed, force), whose speeds divide the ratio equally.
+/// Motions (speed, force) between two conditions. Their speeds divide the ratio of the two speeds
+/// into equal factors.
 fn inner(conditions: &[Condition], [slow, fast]: [usize; 2]) -> Vec<[f64; 2]> {
     let at = |of: fn(&Condition) -> Option<f64>| {
         [slow, fast].map(|i| of(&conditions[i]).filter(|x| *x > 0.0))
@@ -101,9 +104,9 @@ impl<'a> Recorded<'a> {
         Self { spectrum: &group.spectrum, motion: known }
     }
 
-    /// Returns the spectrum at a motion between this and another: both moved, and mixed by the
-    /// weights by which a player mixes, with the level that it would have. Where one of them has
-    /// moved out of the band, the other stands alone.
+    /// Returns the spectrum at a motion between this one and another. Both spectra are moved there
+    /// and mixed with the weights and the level that a player would use. Where one of them has
+    /// moved out of the band, only the other one counts.
     fn mixed(&self, other: &Self, motion: [f64; 2], exponent: f64) -> TextureSpectrum {
         let mesh = Mesh::new(&[self.motion, other.motion]);
         let mut weights = [0.0; 2];
@@ -139,7 +142,7 @@ impl<'a> Recorded<'a> {
         }
     }
 
-    /// Returns the power in each bin with all frequencies multiplied by a factor; `None` where
+    /// Returns the power in each bin after all frequencies are multiplied by `factor`; `None` where
     /// nothing was recorded.
     fn moved(&self, factor: f64) -> Vec<Option<f64>> {
         let (grid, magnitude) = (&self.spectrum.frequency_hz, &self.spectrum.magnitude);
@@ -161,7 +164,7 @@ impl<'a> Recorded<'a> {
     }
 }
 
-/// Returns a signal played faster by a factor, by straight lines between its samples.
+/// Returns a signal played faster by `factor`, with linear interpolation between samples.
 fn faster(signal: &[f64], factor: f64) -> Vec<f64> {
     let samples = (signal.len() as f64 / factor) as usize;
     let at = |i: usize| {

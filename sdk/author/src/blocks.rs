@@ -1,9 +1,9 @@
-//! Repeatability: the difference between blocks of time of what is read of a texture.
+//! Repeatability: how much the spectra of different blocks of time differ within one texture.
 //!
-//! Windows that overlap share samples, and so would halves made of every second window: their
-//! difference would be several times too small. Blocks share none. Each of them lasts up to a
-//! second, so that a difference between them contains how the texture, the finger and the motion
-//! drift, as far as it shows within a second.
+//! Overlapping windows share samples, and so would two halves made of every second window: their
+//! difference would be several times too small. Blocks share no samples. Each block lasts up to a
+//! second, so that the difference between blocks includes the drift of texture, finger and motion,
+//! as far as it shows within a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -18,8 +18,8 @@ const FEWEST: usize = 4;
 /// Tolerance of times, in segments.
 const TOLERANCE: f64 = 1e-9;
 
-/// The part of a recording from which a spectrum was taken, in segments of 0.2 s from the
-/// recording's beginning.
+/// The part of a recording from which one spectrum was taken, in segments of 0.2 s from the
+/// beginning of the recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     /// Index of the recording.
@@ -28,11 +28,12 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// Returns the RMS over nine bands of the difference between the spectra of odd and of even blocks,
-/// over √2, decibels: by as much two readings like this one differ. `None` if fewer than four
-/// blocks are read, or half of them are silent.
+/// Returns how much two readings like this one differ, in decibels: the RMS over nine bands of the
+/// difference between the spectra of odd and even blocks, divided by √2. `None` if there are fewer
+/// than four blocks, or half of them are silent.
 ///
-/// Halves of n/2 blocks each have √2 times the deviation of all n blocks; the root takes that out.
+/// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks; dividing
+/// by √2 takes that out.
 pub(crate) fn repeatability_rms_db(
     band: Band,
     spectra: &[&[Complex<f64>]],
@@ -49,16 +50,17 @@ pub(crate) fn repeatability_rms_db(
         bank.energies(&average(&half, grid.len(), averaging))
     };
     let difference_db = rms(&band_error_db(&energies(0), &energies(1)));
-    // If half of the blocks are silent, it is not finite.
+    // The difference is not finite if half of the blocks are silent.
     Some(difference_db / std::f64::consts::SQRT_2).filter(|db| db.is_finite())
 }
 
-/// Returns the block of each span, counted from 0; `None` for a span that shares samples with two
-/// blocks, and for all if there are fewer than four blocks. Spans are in the order of their
-/// recordings and times.
+/// Returns the block of each span, counted from 0. A span that shares samples with two blocks gets
+/// `None`; with fewer than four blocks, the whole result is `None`. Spans must be in the order of
+/// their recordings and times.
 ///
-/// Each stretch of overlapping spans is cut into equal blocks of a quarter of what is read, but of
-/// 0.2 to 1 s. Sweeps, of which one segment is read, are a block each.
+/// Each stretch of overlapping spans is cut into equal blocks. A block is a quarter of what is
+/// read, but at least 0.2 s and at most 1 s. A sweep, of which only one segment is read, is one
+/// block.
 pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
     let stretches = stretches(spans);
     let read: f64 = stretches.iter().map(|stretch| length(stretch)).sum();
@@ -71,13 +73,13 @@ pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
     (count >= FEWEST).then_some(blocks)
 }
 
-/// Appends the blocks of a stretch, counted from `count`, and returns the next number. A span
-/// belongs to the block that its middle is in, unless it shares samples with an earlier block.
+/// Appends the blocks of a stretch, numbered from `count`, and returns the next number. A span
+/// belongs to the block that contains its middle, unless it shares samples with an earlier block.
 fn cut(stretch: &[Span], longest: f64, mut count: usize, blocks: &mut Vec<Option<usize>>) -> usize {
     let (start, length) = (earliest(stretch), length(stretch));
     let most = libm::floor(length + TOLERANCE);
     let parts = libm::ceil(length / longest - TOLERANCE).min(most).max(1.0);
-    // The part of the block that is open, and the ends of what is in it and in those before it.
+    // The part of the open block, the end of its spans so far, and the end of all earlier blocks.
     let (mut open, mut end, mut closed) = (None, start, f64::NEG_INFINITY);
     for span in stretch {
         let middle = 0.5 * (span.from + span.to) - start;
@@ -97,7 +99,7 @@ fn cut(stretch: &[Span], longest: f64, mut count: usize, blocks: &mut Vec<Option
     count
 }
 
-/// Returns the stretches of spans that overlap.
+/// Returns the stretches of overlapping spans.
 fn stretches(spans: &[Span]) -> Vec<&[Span]> {
     let overlap =
         |a: &Span, b: &Span| a.take == b.take && b.from < a.to - TOLERANCE && a.from < b.to;
@@ -127,7 +129,7 @@ mod tests {
         })
     }
 
-    /// The windows of each block of some spans.
+    /// Number of windows in each block.
     fn counts(spans: &[Span]) -> Option<Vec<usize>> {
         let blocks = blocks(spans)?;
         for (a, block) in spans.iter().zip(&blocks) {
@@ -158,7 +160,7 @@ mod tests {
         let sweeps: Vec<Span> = (0..5).flat_map(|i| windows(0, 6.1 * f64::from(i), 1)).collect();
         assert_eq!(counts(&sweeps), Some(vec![1; 5]));
         assert_eq!(counts(&sweeps[..3]), None);
-        // Two recordings, and a part between them that is not read.
+        // Two recordings; part of the first one is not read.
         let takes: Vec<Span> =
             windows(0, 0.0, 9).chain(windows(0, 40.0, 9)).chain(windows(1, 0.0, 9)).collect();
         assert_eq!(counts(&takes), Some(vec![4; 6]));

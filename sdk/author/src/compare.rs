@@ -1,5 +1,5 @@
-//! How spectra differ from that of a recording: those of an asset's representations, and that of
-//! another recording.
+//! How spectra differ from the spectrum of a recording: the spectra of an asset's representations,
+//! or of another recording.
 
 use htex_dsp::vibrotactile::Listener;
 use htex_format::{Measure, Quality, Quantity};
@@ -9,26 +9,26 @@ use serde::Serialize;
 use crate::fit::read_and_measure;
 use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt};
 
-/// How a spectrum differs from that of a recording.
+/// How a spectrum differs from a recording's spectrum.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement; those of samples for representations alone.
+    /// The measures of agreement. Measures on samples exist only for representations.
     #[serde(flatten)]
     pub quality: Quality,
-    /// What is felt of the difference.
+    /// How much of the difference can be felt.
     pub felt: FeltDifference,
 }
 
-/// What is felt of a difference.
+/// How much of a difference can be felt, band by band and in summary.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FeltDifference {
     /// Centre frequencies of third-octave bands, hertz.
     pub centre_hz: Vec<f64>,
-    /// Difference of what is above the detection threshold in each band, decibels.
+    /// Difference of the levels above the detection threshold in each band, decibels.
     pub error_db: Vec<f64>,
-    /// The same in a few numbers.
+    /// The same as a few summary numbers.
     #[serde(flatten)]
     pub error: FeltError,
 }
@@ -46,12 +46,12 @@ pub struct ComparedModel {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// They hold different quantities.
+    /// The asset and the recording hold different quantities.
     #[error("the asset holds {held}, the recording is read as {recorded}")]
     Quantities {
-        /// The asset's.
+        /// The asset's quantity.
         held: Quantity,
-        /// The recording's.
+        /// The recording's quantity.
         recorded: Quantity,
     },
     /// A representation cannot be read.
@@ -60,7 +60,7 @@ pub enum CompareError {
     /// A model refuses the parameters.
     #[error(transparent)]
     Model(#[from] HostError),
-    /// The samples of a model cannot be measured.
+    /// A model's rendered samples cannot be measured.
     #[error(transparent)]
     Measure(#[from] AuthorError),
 }
@@ -97,8 +97,8 @@ impl Difference {
     }
 }
 
-/// Compares each representation of an asset with a recording: at the recording's speed and force
-/// where both are known, else at the asset's default condition.
+/// Compares each representation of an asset with a recording. The comparison is at the recording's
+/// speed and force if both are known, otherwise at the asset's default condition.
 ///
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.

@@ -15,7 +15,7 @@ use crate::{AuthorError, Exploration, SpectrumOptions, TextureSpectrum};
 /// The spectrum of one condition.
 pub(crate) struct Group {
     pub(crate) spectrum: TextureSpectrum,
-    /// The motion it was recorded at, as far as it is known.
+    /// The motion at which it was recorded, as far as it is known.
     pub(crate) condition: FitCondition,
 }
 
@@ -37,7 +37,7 @@ struct Gathering {
 }
 
 impl Gathering {
-    /// Recordings whose levels differ from the level of the others, with what is found.
+    /// Recordings whose level differs from the others' level, with the findings.
     fn differing(&self) -> impl Iterator<Item = (&str, Vec<Finding>)> {
         let levels: Vec<f64> = self.parts.iter().map(level_of).collect();
         let found = differing(&levels).into_iter().map(Findings::into_list);
@@ -124,7 +124,7 @@ fn same(a: Exploration, b: Exploration) -> bool {
     near(a.speed_mm_s, b.speed_mm_s) && near(a.force_n, b.force_n)
 }
 
-/// Checks that speed and force are known for all conditions if there are several.
+/// Checks that, if there are several conditions, all of them have a known speed and force.
 fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
     let known = gatherings
         .iter()

@@ -1,4 +1,4 @@
-//! Other metadata for an asset, without a new fit.
+//! Editing an asset's metadata without a new fit.
 
 use htex_format::{Asset, Limits, ReadError};
 use serde_json::Value;
@@ -9,20 +9,20 @@ use crate::settings::Metadata;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EditError {
-    /// It is not a valid asset.
+    /// The bytes are not a valid asset.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Writing it again would lose entries that its manifest does not name, or keys inside it that
-    /// this program does not know.
+    /// Saving would lose entries that the manifest does not name, or manifest keys that this
+    /// program does not know.
     #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
     Lost { lost: Vec<String> },
 }
 
-/// Reads an asset and changes its metadata. Parameters, recorded spectra and embedded models, with
-/// their signatures, are kept.
+/// Reads an asset and changes its metadata. Parameters, recorded spectra, embedded models and their
+/// signatures are kept.
 ///
 /// # Errors
-/// When the bytes are not a valid asset, or it would lose data.
+/// When the bytes are not a valid asset, or saving it would lose data.
 pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, EditError> {
     let mut asset = Asset::from_bytes(bytes)?;
     let lost = lost(bytes, &asset);
@@ -39,7 +39,7 @@ fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
     let report = htex_format::validate(bytes, &limits);
     let unnamed = report.findings.iter().filter(|finding| finding.code == "ENTRY_UNREFERENCED");
     let mut lost: Vec<String> = unnamed.map(|finding| finding.message.clone()).collect();
-    // By way of the text, as the file has it.
+    // Converted through JSON text, as it would be written to the file.
     let written = serde_json::to_vec(&asset.manifest).unwrap_or_default();
     let written = htex_format::parse_json(&written).unwrap_or_default();
     if let Some(read) = htex_format::manifest_json(bytes, &limits) {
@@ -48,8 +48,8 @@ fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
     lost
 }
 
-/// Adds the pointers of keys that were read and are not written. Empty values and defaults are left
-/// out on purpose.
+/// Collects the JSON pointers of keys that were read but would not be written. Empty values and
+/// defaults are left out on purpose.
 fn lost_keys(read: &Value, written: &Value, pointer: &str, lost: &mut Vec<String>) {
     match (read, written) {
         (Value::Object(read), Value::Object(written)) => {

@@ -1,15 +1,15 @@
-//! Models' modules that travel in an asset.
+//! Embedding of models' WASM modules into an asset.
 
 use std::path::{Path, PathBuf};
 
 use htex_format::{Asset, Plugin};
 use htex_host::{LoadedModel, Origin, Registry};
 
-/// An error of putting modules into an asset.
+/// Why modules cannot be embedded into an asset.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmbedError {
-    /// The file is no WASM module.
+    /// The file is not a WASM module.
     #[error("{file}: only WASM modules can be embedded")]
     NoModule { file: PathBuf },
     /// The module's model is not fitted.
@@ -20,11 +20,11 @@ pub enum EmbedError {
     Read { file: PathBuf, error: std::io::Error },
 }
 
-/// Puts the modules of fitted models into an asset, signed with an ed25519 secret key if there is
-/// one. `registry` has loaded the models from these files.
+/// Embeds the modules of fitted models into an asset, and signs them with an ed25519 secret key if
+/// one is given. `registry` must have loaded the models from these files.
 ///
 /// # Errors
-/// See [`EmbedError`].
+/// All variants of [`EmbedError`].
 pub fn embed_plugins(
     asset: &mut Asset,
     registry: &Registry,
@@ -49,7 +49,7 @@ pub fn embed_plugins(
     Ok(())
 }
 
-/// Returns the model that was loaded from a module.
+/// Returns the model that was loaded from a module file.
 fn model_of<'a>(registry: &'a Registry, file: &Path) -> Result<&'a LoadedModel, EmbedError> {
     let of_file = |m: &&LoadedModel| matches!(m.origin(), Origin::Wasm(path) if path == file);
     let model = registry.models().iter().find(of_file);

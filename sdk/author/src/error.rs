@@ -35,19 +35,19 @@ pub enum AuthorError {
         /// Samples of a segment.
         needed: usize,
     },
-    /// No sweep is long enough for a segment.
+    /// No sweep is long enough to hold a segment.
     #[error(
         "{source_name}: no complete sweep of 0.2 s or more (a sweep cut off by the beginning or the end does not count); \
          choose windows for a recording without back-and-forth sweeps"
     )]
     NoSegments { source_name: String },
-    /// The setup response is zero or not finite, so nothing can be divided by it.
+    /// The setup's response is zero or not finite in the band, so spectra cannot be divided by it.
     #[error(
         "setup response: its largest magnitude in the band is {largest:e}; a finite value above 0 is \
          needed at every frequency that is to be divided by it: measure the setup again"
     )]
     Response {
-        /// Its largest magnitude in the band; NaN if one is not a number.
+        /// Its largest magnitude in the band; NaN if any magnitude is not a number.
         largest: f64,
     },
     /// The recordings of one condition have different bands.
@@ -71,11 +71,11 @@ pub enum AuthorError {
         /// The measured and the requested values.
         comparison: String,
     },
-    /// The recording has findings that are errors or warnings, and these were to be refused.
+    /// The recording has errors or warnings, and the caller asked to refuse such recordings.
     #[error("{source_name}: refused because of findings that are errors or warnings:{}", listed(.findings))]
     Strict {
         source_name: String,
-        /// Errors and warnings.
+        /// The errors and warnings.
         findings: Vec<Finding>,
     },
     /// A speed or a force is out of range.
@@ -86,7 +86,7 @@ pub enum AuthorError {
         value: f64,
         allowed: &'static str,
     },
-    /// The text of a grid is not valid.
+    /// The text of a grid is invalid.
     #[error(
         "grid {text}: {problem}; it looks like auto, speed=40,80,160 (mm/s) or force=0.3,0.6 (N)"
     )]
@@ -95,7 +95,7 @@ pub enum AuthorError {
         text: String,
         problem: String,
     },
-    /// The recording does not say how the finger moves, which a grid of conditions needs.
+    /// The recording lacks the finger's speed or force, which a grid of conditions needs.
     #[error(
         "{source_name}: the {what} is not in the file, and a grid of conditions needs it at every sample: name the column of \
          {columns}, or give one {what} for the whole recording, or fit without a grid"
@@ -104,10 +104,10 @@ pub enum AuthorError {
         source_name: String,
         /// Speed or force.
         what: &'static str,
-        /// Columns that have it.
+        /// Columns that would supply it.
         columns: &'static str,
     },
-    /// In no window are speed and force steady.
+    /// Speed and force are not steady in any window.
     #[error(
         "{source_name}: in none of {windows} windows of 0.2 s do speed and force stay within 10 % of their means while the \
          finger slides; stroke more evenly, or correct the columns of position, speed and normal force"
@@ -128,7 +128,7 @@ pub enum AuthorError {
         /// Range of the force, newtons.
         force_n: [f64; 2],
     },
-    /// There are too few steady windows for a single condition.
+    /// There are too few steady windows even for a single condition.
     #[error(
         "only {segments} windows of 0.2 s are steady, and a condition needs {needed}; record for longer: one or two minutes of \
          strokes at all speeds and forces"
@@ -136,10 +136,10 @@ pub enum AuthorError {
     GridFew {
         /// Number of steady windows.
         segments: usize,
-        /// Fewest for one condition.
+        /// Fewest windows for one condition.
         needed: usize,
     },
-    /// No cell of the grid has enough windows.
+    /// No cell of the grid has enough steady windows.
     #[error(
         "no cell of the grid has {needed} steady windows; {segments} are at {motion}: choose lines there, fewer lines, or \
          record for longer"
@@ -147,12 +147,12 @@ pub enum AuthorError {
     GridEmpty {
         /// Number of steady windows.
         segments: usize,
-        /// Fewest for one condition.
+        /// Fewest windows for one condition.
         needed: usize,
         /// The ranges of speed and force.
         motion: String,
     },
-    /// A recording cannot be played at this rate.
+    /// The recording cannot be played at this rate.
     #[error(
         "{rate_hz} Hz: a loop has a rate above {least_hz} Hz, up to {most_hz} Hz, in steps of 10 Hz"
     )]
@@ -163,21 +163,21 @@ pub enum AuthorError {
     /// The samples are not a valid recording.
     #[error(transparent)]
     Recording(#[from] htex_recording::RecordingError),
-    /// Some recordings have a condition and others do not.
+    /// Only some conditions have both speed and force.
     #[error(
         "scanning speed and normal force are both known for only {known} of {all} conditions; \
          give both for each recording, in their order"
     )]
     UnknownConditions {
-        /// Number of conditions with speed and force.
+        /// Number of conditions that have both speed and force.
         known: usize,
         /// Number of conditions.
         all: usize,
     },
-    /// No model could be fitted.
+    /// None of the models could be fitted.
     #[error("no model could be fitted: {reasons}")]
     NothingFitted {
-        /// The reasons, model by model.
+        /// The reasons, one for each model.
         reasons: String,
     },
     /// A recording could not be read.

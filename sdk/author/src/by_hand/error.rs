@@ -6,22 +6,22 @@ use htex_host::HostError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ByHandError {
-    /// The model has no such field.
+    /// The model has no field of this name.
     #[error("{model} has no parameter {name:?}; it has {there}")]
     Unknown {
         model: String,
         name: String,
-        /// Its fields, with units and ranges.
+        /// The model's fields, with units and ranges.
         there: String,
     },
     /// A field has no value.
     #[error("{model} needs a value for {missing}")]
     Missing {
         model: String,
-        /// The fields, with units and ranges.
+        /// The fields without a value, with units and ranges.
         missing: String,
     },
-    /// A value is out of its field's range, or there are too many.
+    /// A value is outside its field's range, or the field has too many values.
     #[error("{name} = {value}: {problem}")]
     Value {
         name: String,
@@ -29,29 +29,29 @@ pub enum ByHandError {
         /// What is allowed.
         problem: String,
     },
-    /// The level is not one.
+    /// The level is not a valid number for its quantity.
     #[error("a level of {level_rms} {unit}: it is from 0 to {most}")]
     Level {
         /// The level, in the quantity's unit.
         level_rms: f64,
         unit: &'static str,
-        /// The largest level of the quantity.
+        /// The largest level allowed for the quantity.
         most: f64,
     },
-    /// A model's parameters are not the level, and no level is given.
+    /// The model's parameters do not include the level, and no level is given.
     #[error(
         "{model} needs a level: the RMS of the texture in the band, in the unit of its quantity"
     )]
     NoLevel { model: String },
-    /// The band is not one.
+    /// The band is invalid.
     #[error("the band is {low_hz} to {high_hz} Hz; its edges ascend, above 0 and up to 20,000 Hz")]
     Band { low_hz: f64, high_hz: f64 },
-    /// There is no model, or no condition.
+    /// The texture has no model, or a model has no condition.
     #[error(
         "the texture has no model, or none has parameters at a condition; give one of each at least"
     )]
     Empty,
-    /// Speed or force is known of some conditions alone.
+    /// Only some conditions have a speed or a force.
     #[error(
         "the speed or the force of some conditions alone is known; give both of all, or of none"
     )]
@@ -64,7 +64,7 @@ pub enum ByHandError {
         /// What differs.
         problem: String,
     },
-    /// The weight is not one.
+    /// The weight is not between 0 and 1.
     #[error(
         "a weight of {weight}: it is from 0, all of the first texture, to 1, all of the second"
     )]

@@ -1,4 +1,4 @@
-//! A texture between two others.
+//! Mixing two textures into one between them.
 
 use htex_format::{
     Asset, AtCondition, Condition, How, Ingredient, Made, Manifest, Representation, Triangle,
@@ -10,7 +10,7 @@ use htex_play::Motion;
 use super::{ByHandError, Frame};
 use crate::stored::stored_fields;
 
-/// A texture that is mixed, and the hash of its file.
+/// A texture to mix, with the hash of its file.
 #[derive(Debug, Clone, Copy)]
 pub struct MixedAsset<'a> {
     /// The texture, with the models that play it.
@@ -25,16 +25,19 @@ impl MixedAsset<'_> {
     }
 }
 
-/// Mixes two textures: each model that describes both interpolates between their parameters, as it
-/// does between the conditions of one texture, and their levels are interpolated linearly. The
-/// conditions are those of both; at a condition of one alone, the other is what a player plays
-/// there. The law is that of the larger weight, of `a` if they are equal, and so are the triangles
-/// that it stores, if the conditions of its representation are all of them; else they are left out,
-/// with a warning. `weight` is the part of `b`, from 0 to 1.
+/// Mixes two textures. `weight` is the share of `b`, from 0 to 1. Each model that is in both
+/// textures interpolates between their parameters, as it does between the conditions of one
+/// texture; levels are interpolated linearly.
+///
+/// The result has the conditions of both textures. At a condition that only one of them has, the
+/// other contributes what a player would play there. The law comes from the texture with the larger
+/// weight, or from `a` if the weights are equal. That texture's stored triangles are kept if its
+/// representation has exactly the conditions of the result; otherwise they are left out with a
+/// warning.
 ///
 /// # Errors
-/// When no model describes both, their quantity or band differs, or a model cannot mix its
-/// parameters.
+/// When the weight is out of range, the textures have no model in common, their quantity or band
+/// differs, or a model cannot mix its parameters.
 pub fn mix(
     a: MixedAsset<'_>,
     b: MixedAsset<'_>,
@@ -123,7 +126,7 @@ fn check(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The conditions of both, without measurements of the recordings; those that are the same once.
+/// The conditions of both textures, equal ones only once, without measurements of the recordings.
 fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, String> {
     let mut all: Vec<Condition> = Vec::new();
     for condition in [a, b].iter().flat_map(|part| &part.asset.manifest().conditions) {
@@ -138,7 +141,7 @@ fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, St
     Ok(all)
 }
 
-/// Whether both are the same condition, as far as they are known.
+/// Whether two conditions agree in speed and force, as far as these are known.
 pub(super) fn is_same(a: &Condition, b: &Condition) -> bool {
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Condition::is_same(a, b),
@@ -154,8 +157,8 @@ fn of_model<'a>(manifest: &'a Manifest, model: &str) -> &'a [Triangle] {
     own.map_or(&[], |own| &own.triangles)
 }
 
-/// Returns the triangles that a texture stores for a mixed model, by the elements of the mixed
-/// `at`; none where the conditions are others than its own.
+/// Returns the triangles that `from` stores for a mixed model, as indices into the mixed model's
+/// `at`. Empty if the mixed conditions are not the texture's own.
 fn triangles(from: &Manifest, mixed: &Representation, conditions: &[Condition]) -> Vec<Triangle> {
     let own = from.representations.iter().find(|r| r.model == mixed.model);
     let Some(own) = own.filter(|own| own.at.len() == mixed.at.len()) else {

@@ -1,9 +1,9 @@
-//! Textures from no recording: of parameters that a person writes, and between other textures. The
-//! paper names both as what a representation by few numbers makes possible (Balasubramanian &
-//! Vardar 2026, Discussion).
+//! Textures made without a recording: from parameters written by hand, or by mixing two textures.
+//! The paper names both as uses of a representation by few numbers (Balasubramanian & Vardar 2026,
+//! Discussion).
 //!
-//! Such an asset says how it was made ([`htex_format::Made`]); it has no quality, since there is
-//! nothing to compare it with.
+//! Such an asset stores how it was made ([`htex_format::Made`]). It has no quality, since there is
+//! no recording to compare it with.
 
 mod error;
 mod mix;
@@ -18,7 +18,7 @@ use htex_format::{
 };
 use htex_host::Band;
 
-/// What does not depend on the models of a made asset.
+/// The parts of a made asset that do not depend on its models.
 struct Frame {
     name: String,
     quantity: Quantity,

@@ -1,4 +1,4 @@
-//! Textures of parameters.
+//! Textures from parameters written by hand.
 
 use std::collections::BTreeMap;
 
@@ -14,25 +14,25 @@ use crate::stored::stored_fields;
 /// Highest frequency of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
 
-/// A texture to be made of one model's parameters.
+/// A texture to make from the parameters of one model.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ByHand {
     pub name: String,
-    /// Values by name of the field; of a list, all of them.
+    /// Values by field name; for a list, all of its values.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// Speed and force at which it is this one.
+    /// Speed and force at which the texture feels like this.
     pub condition: Condition,
     pub quantity: Quantity,
     pub band: Band,
-    /// Program and version, for the provenance.
+    /// Program and version, stored in the provenance.
     pub tool: String,
 }
 
 impl ByHand {
-    /// A lateral force in the band of textures, at an unknown speed and force.
+    /// Starts a texture of lateral force in the tactile band, with unknown speed and force.
     pub fn new(name: impl Into<String>, level_rms: f64, tool: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -45,7 +45,7 @@ impl ByHand {
         }
     }
 
-    /// Sets a parameter; of a list, all values.
+    /// Sets a parameter; for a list, all of its values.
     #[must_use]
     pub fn with(mut self, name: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
         self.values.insert(name.into(), values.into());
@@ -66,8 +66,8 @@ impl ByHand {
     }
 }
 
-/// Makes an asset of parameters. The model computes its spectrum once, so that parameters that it
-/// cannot play are an error here.
+/// Makes an asset from parameters. The model computes its spectrum once, so that parameters it
+/// cannot play are reported here.
 ///
 /// ```
 /// use htex_author::by_hand::{ByHand, make};
@@ -82,8 +82,8 @@ impl ByHand {
 /// ```
 ///
 /// # Errors
-/// A parameter that is unknown, absent or out of its range, a level out of its quantity's, or what
-/// the model refuses.
+/// When a parameter is unknown, missing or out of range, the level is out of the quantity's range,
+/// or the model refuses the parameters.
 pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError> {
     let at = ByHandAt {
         condition: texture.condition,
@@ -99,16 +99,15 @@ pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError>
     })
 }
 
-/// A texture to be made of the parameters of one or several models, each at one or several
-/// conditions.
+/// A texture to make from the parameters of one or more models, each at one or more conditions.
 #[derive(Debug, Clone)]
 pub struct ByHandModels {
     pub name: String,
-    /// In the order of the representations.
+    /// The models, in the order of the representations.
     pub models: Vec<ByHandModel>,
     pub quantity: Quantity,
     pub band: Band,
-    /// Program and version, for the provenance.
+    /// Program and version, stored in the provenance.
     pub tool: String,
 }
 
@@ -119,23 +118,23 @@ pub struct ByHandModel {
     pub at: Vec<ByHandAt>,
 }
 
-/// The parameters of a model at a condition.
+/// A model's parameters at one condition.
 #[derive(Debug, Clone)]
 pub struct ByHandAt {
     pub condition: Condition,
-    /// Values by name of the field; of a list, all of them.
+    /// Values by field name; for a list, all of its values.
     pub values: BTreeMap<String, Vec<f64>>,
-    /// RMS of the texture in the band, in the quantity's unit. It may be absent of a model whose
-    /// parameters are the level ([`htex_host::Descriptor::keeps_level`]).
+    /// RMS of the texture in the band, in the quantity's unit. Optional for a model whose
+    /// parameters contain the level ([`htex_host::Descriptor::keeps_level`]).
     pub level_rms: Option<f64>,
 }
 
-/// As [`make`], of several models and conditions. Conditions within 5 % of each other are one
-/// ([`htex_format::SAME_CONDITION`]).
+/// Makes an asset from the parameters of several models and conditions, as [`make`] does for one.
+/// Conditions within 5 % of each other count as one ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// As [`make`]; and without a model or a condition, or when the speed or the force of some
-/// conditions alone is known.
+/// As [`make`]. Also when there is no model or no condition, or when only some conditions have a
+/// speed or a force.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {
@@ -161,7 +160,7 @@ pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
     Ok(frame.asset(made))
 }
 
-/// The conditions, of which those that are the same are one.
+/// The conditions, with equal ones merged into one.
 fn distinct(all: impl Iterator<Item = Condition>) -> Result<Vec<Condition>, ByHandError> {
     let mut distinct: Vec<Condition> = Vec::new();
     for condition in all {
@@ -226,7 +225,7 @@ fn check_level(level_rms: f64, quantity: Quantity) -> Result<(), ByHandError> {
     Err(ByHandError::Level { level_rms, unit: quantity.unit(), most })
 }
 
-/// Returns the model's flat array of named values.
+/// Flattens named values into the model's parameter array.
 fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<f64>, ByHandError> {
     let fields = &model.descriptor().fields;
     let named = || model.short_name().to_owned();
@@ -251,7 +250,7 @@ fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<
     Ok(flat)
 }
 
-/// Adds the values of a field that are within its range.
+/// Appends a field's values after checking its range.
 fn push(field: &Field, given: &[f64], flat: &mut Vec<f64>) -> Result<(), ByHandError> {
     let wrong = |problem: String| ByHandError::Value {
         name: field.name.clone(),
@@ -273,7 +272,7 @@ fn push(field: &Field, given: &[f64], flat: &mut Vec<f64>) -> Result<(), ByHandE
     Ok(())
 }
 
-/// Fields with units and ranges.
+/// Describes fields with their units and ranges.
 fn words<'a>(fields: impl Iterator<Item = &'a Field>) -> String {
     let all = fields.map(|field| match field.kind {
         Kind::Scalar => format!("{} ({})", field.name, range(field)),

@@ -7,11 +7,11 @@ use crate::segments::Segments;
 use crate::{AuthorError, Recording};
 use htex_recording::Sums;
 
-/// Allowed relative deviation of speed and force from their target (paper: recordings beyond it
-/// were discarded and repeated).
+/// Allowed relative deviation of speed and force from their target (the paper discarded and
+/// repeated recordings beyond it).
 const TOLERANCE: f64 = 0.10;
-/// Half the length of the average in which speed and force are compared with the target, seconds.
-/// Faster changes are caused by the texture, not by the hand.
+/// Half the length of the moving average of speed and force that is compared with the target,
+/// seconds. Faster changes come from the texture, not from the hand.
 const HALF_AVERAGE_S: f64 = 0.025;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -24,7 +24,7 @@ pub(crate) fn definition() -> String {
     )
 }
 
-/// An exploration condition; an unknown value is `None`.
+/// An exploration condition: speed and force of the finger. An unknown value is `None`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Exploration {
     /// Scanning speed, mm/s.
@@ -34,15 +34,15 @@ pub struct Exploration {
 }
 
 impl Exploration {
-    /// Greatest speed, mm/s.
+    /// Largest allowed speed, mm/s.
     pub const MOST_SPEED_MM_S: f64 = 1e4;
-    /// Greatest force, newtons.
+    /// Largest allowed force, newtons.
     pub const MOST_FORCE_N: f64 = 100.0;
 
     /// Checks the ranges of the known values.
     ///
     /// # Errors
-    /// When a speed or force is negative or not finite, or beyond 10 m/s or 100 N.
+    /// When a speed or force is negative, not finite, or above 10 m/s or 100 N.
     pub fn check(&self) -> Result<(), AuthorError> {
         let bad = |value: Option<f64>, max: f64| value.filter(|v| !(0.0..=max).contains(v));
         if let Some(value) = bad(self.speed_mm_s, Self::MOST_SPEED_MM_S) {
@@ -63,8 +63,8 @@ impl Exploration {
     }
 }
 
-/// Lowest and highest value over the segments that are read, averaged over 50 ms; `None` if the
-/// signal is not known.
+/// Lowest and highest speed and force over the segments that are read, averaged over 50 ms; `None`
+/// if the signal is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     /// Range of the scanning speed, mm/s.
@@ -73,7 +73,7 @@ pub struct Spread {
     pub force_n: Option<[f64; 2]>,
 }
 
-/// A known signal of the motion: its name, unit, samples and target.
+/// A motion signal that the recording contains: its name, unit, samples and target.
 pub(crate) struct Known<'a> {
     what: &'static str,
     signal: &'static str,
@@ -84,7 +84,7 @@ pub(crate) struct Known<'a> {
     half: usize,
 }
 
-/// Returns the recording's speed and normal force, where they are known.
+/// Returns the recording's speed and normal force, each if the recording contains it.
 pub(crate) fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
     let make = |what, signal, unit, values, target| Known {
@@ -105,7 +105,7 @@ pub(crate) fn known(recording: &Recording, target: Exploration) -> [Option<Known
 }
 
 impl Known<'_> {
-    /// Returns the lowest and the highest average over a segment.
+    /// Returns the lowest and the highest of the averages within a segment.
     fn range(&self, start: usize, len: usize) -> [f64; 2] {
         let averages = (start..start + len).map(|at| self.average.mean_around(at, self.half));
         averages.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
@@ -113,7 +113,7 @@ impl Known<'_> {
         })
     }
 
-    /// Returns the mean over a segment, if the averages stay within `part` of it.
+    /// Returns the mean over a segment, if the averages stay within the fraction `part` of it.
     pub(crate) fn steady_mean(&self, start: usize, len: usize, part: f64) -> Option<f64> {
         let mean = self.average.mean(start, start + len);
         let [low, high] = self.range(start, len);
@@ -126,7 +126,7 @@ impl Known<'_> {
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
-    /// Returns the median over the samples of all segments, which a few outliers do not change.
+    /// Returns the median over the samples of all segments; a few outliers do not change it.
     fn median(&self, segments: &Segments) -> Option<f64> {
         let (starts, len) = (&segments.starts, segments.len);
         quantile(0.5, starts.len() * len, |at| self.values[starts[at / len] + at % len])
@@ -143,7 +143,7 @@ impl Known<'_> {
     }
 }
 
-/// Removes the segments in which a known motion differs from its target by more than 10 %.
+/// Removes the segments in which the speed or force differs from its target by more than 10 %.
 ///
 /// # Errors
 /// When the target is out of range, or no segment remains.
@@ -189,9 +189,9 @@ pub(crate) fn keep_on_target(
     Ok(())
 }
 
-/// Returns speed and force over the segments, which are the given values or else the medians of the
-/// measured ones, and the range of the measured ones. A deviation of more than 10 % from a median
-/// is a finding.
+/// Returns speed and force over the segments, and the range of the measured ones. Given values take
+/// precedence; otherwise these are the medians of the measured signals. A deviation of more than 10
+/// % from a median is a finding.
 ///
 /// # Errors
 /// When a value is out of range.
@@ -216,8 +216,8 @@ pub(crate) fn exploration(
 }
 
 impl Known<'_> {
-    /// Returns the target, or else the median; adds a finding when the motion is not steady about
-    /// the median.
+    /// Returns the target, or else the median. Adds a finding if the motion is not steady about the
+    /// median.
     fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
         if self.target.is_some() {
             return self.target;

@@ -1,5 +1,6 @@
-//! How much of a difference between two spectra is above what a fingertip detects: a listener that
-//! shares nothing with the measures that models are fitted and compared by.
+//! How much of the difference between two spectra a fingertip can feel: the part above the
+//! detection threshold. It shares nothing with the measures by which models are fitted and
+//! compared, so it judges them independently.
 
 use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
 use htex_dsp::vibrotactile::{Listener, Skin};
@@ -10,13 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::spectrum::{SpectrumRef, TextureSpectrum};
 
-/// Smallest difference of a level that people notice, decibels: 20 % (the smallest median of Forta,
-/// Griffin & Morioka 2012, *Experimental Brain Research* 220, whose conditions have 20 % to 58 %).
+/// Smallest difference in level that people notice, decibels: 20 %. This is the smallest median
+/// reported by Forta, Griffin & Morioka 2012, *Experimental Brain Research* 220, whose conditions
+/// range from 20 % to 58 %.
 pub const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 
 /// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands,
-/// and their difference. Below the threshold there is nothing to feel, so that a difference counts
-/// from 0 dB on.
+/// and the difference between them. Below the threshold nothing can be felt, so a level below 0 dB
+/// counts as 0 dB in a difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Felt {
     /// Centre frequencies of the bands, hertz.
@@ -25,14 +27,14 @@ pub struct Felt {
     pub reference_db: Vec<f64>,
     /// Sensation level of the other spectrum in each band, decibels.
     pub level_db: Vec<f64>,
-    /// Difference of what is above the threshold in each band, decibels.
+    /// Difference of the levels above the threshold in each band, decibels.
     pub error_db: Vec<f64>,
-    /// RMS of these differences over the bands in which one of both is above the threshold,
-    /// decibels; 0 if there is none.
+    /// RMS of these differences over the bands in which at least one spectrum is above the
+    /// threshold, decibels; 0 if there is no such band.
     pub error_rms_db: f64,
-    /// The largest of them without its sign, decibels.
+    /// The largest absolute difference of a band, decibels.
     pub largest_error_db: f64,
-    /// Difference of the sensation levels of all bands together, decibels.
+    /// Difference of the sensation levels over all bands together, decibels.
     pub total_error_db: f64,
 }
 
@@ -44,27 +46,29 @@ impl Felt {
     }
 }
 
-/// What is felt of a difference, in a few numbers.
+/// How much of a difference can be felt, in a few numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltError {
-    /// RMS difference of what is above the detection threshold, over third-octave bands, decibels.
+    /// RMS difference of the levels above the detection threshold, over third-octave bands,
+    /// decibels.
     pub error_rms_db: f64,
-    /// The largest difference of a band without its sign, decibels.
+    /// The largest absolute difference of a band, decibels.
     pub largest_error_db: f64,
-    /// Difference of the sensation levels of all bands together, decibels.
+    /// Difference of the sensation levels over all bands together, decibels.
     pub total_error_db: f64,
-    /// Whether every band's difference and that of all together are below the difference threshold.
+    /// Whether the difference in every band and over all bands together is below the difference
+    /// threshold.
     pub below_difference_threshold: bool,
-    /// The same for a person with a sensitive finger and a soft skin ([`Listener::sensitive`]).
+    /// The same for a person with a sensitive finger and soft skin ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
-    /// Whether the nine-band error is at or below the recording's own repeatability; false if that
-    /// is not known.
+    /// Whether the nine-band error is at or below the recording's own repeatability; false if the
+    /// repeatability is not known.
     pub within_repeatability: bool,
 }
 
 impl FeltError {
-    /// Measures the difference of magnitudes from a recorded spectrum; their nine-band error
-    /// ([`htex_format::Measure::NineBand`]) is given.
+    /// Measures the difference between magnitudes and a recorded spectrum. The caller gives their
+    /// nine-band error ([`htex_format::Measure::NineBand`]).
     pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], nine_band_db: Option<f64>) -> Self {
         let by =
             |listener: &Listener| felt(recorded.as_ref(), magnitude, recorded.quantity, listener);
@@ -81,7 +85,7 @@ impl FeltError {
         }
     }
 
-    /// The worse of two: of each number the one that is further from 0.
+    /// Combines two results into the worse one: for each number, the value further from 0.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
@@ -97,19 +101,18 @@ impl FeltError {
     }
 }
 
-/// Of some textures, how many a model keeps below the difference threshold of a listener; and,
-/// apart from that, how many within what the recording itself varies, which says nothing about what
-/// is felt: the worse a recording repeats, the more is within it.
+/// How many of some textures a model keeps below a listener's difference threshold. Counted
+/// separately: how many it keeps within the recording's own variation. That second count says
+/// nothing about what can be felt: the worse a recording repeats, the more textures are within it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
-    /// Those whose difference is below the difference threshold.
+    /// Textures whose difference is below the difference threshold.
     pub below_difference_threshold: usize,
-    /// Those of them for which that holds for a person with a sensitive finger and a soft skin,
-    /// too.
+    /// Textures for which that also holds for a person with a sensitive finger and soft skin.
     pub below_if_sensitive: usize,
-    /// Those whose nine-band error is at or below the recording's own repeatability.
+    /// Textures whose nine-band error is at or below the recording's own repeatability.
     pub within_repeatability: usize,
 }
 
@@ -123,8 +126,9 @@ impl FeltShare {
     }
 }
 
-/// Compares what is felt of a spectrum with what is felt of a reference on the same grid. Forces
-/// become displacements of the skin by its impedance; accelerations and velocities by integration.
+/// Compares what can be felt of a spectrum with what can be felt of a reference on the same grid.
+/// Forces are converted to displacements of the skin through its impedance, accelerations and
+/// velocities by integration.
 ///
 /// ```
 /// use htex_author::{SpectrumRef, felt};
@@ -172,7 +176,7 @@ pub fn felt(
     }
 }
 
-/// Energies relative to the threshold, by third-octave band; `None` of a band without a bin.
+/// Energies relative to the threshold, by third-octave band; `None` for a band without a bin.
 fn energies(
     frequency_hz: &[f64],
     magnitude: &[f64],
@@ -186,13 +190,14 @@ fn energies(
         };
         let peak_m = magnitude * displacement_m(hertz, quantity, &listener.skin);
         let ratio = peak_m / listener.threshold_m(hertz);
-        // Magnitudes are peaks of sinusoids as a Hann window shows them, in 1.5 bins of energy.
+        // Magnitudes are the peaks that sinusoids have under a Hann window, which spreads their
+        // energy over 1.5 bins.
         *energies[band].get_or_insert(0.0) += ratio * ratio / 1.5;
     }
     energies
 }
 
-/// Displacement of the skin by a sample of 1, metres.
+/// Displacement of the skin, in metres, caused by a sample of value 1.
 fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
     let omega = 2.0 * std::f64::consts::PI * hertz;
     match quantity {
@@ -203,7 +208,7 @@ fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
     }
 }
 
-/// Returns the magnitude of a sinusoid that is at a listener's detection threshold, in the
+/// Returns the magnitude of a sinusoid exactly at a listener's detection threshold, in the
 /// quantity's unit, at a frequency in hertz above 0.
 ///
 /// ```
@@ -218,7 +223,7 @@ pub fn threshold_magnitude(hertz: f64, quantity: Quantity, listener: &Listener) 
     listener.threshold_m(hertz) / displacement_m(hertz, quantity, &listener.skin)
 }
 
-/// Level of an energy relative to the threshold; of none, one that is far below.
+/// Level of an energy relative to the threshold; for zero energy, a level far below it.
 fn level_db(energy: f64) -> f64 {
     10.0 * libm::log10(energy.max(1e-30))
 }
@@ -246,7 +251,7 @@ mod tests {
         felt(reference, &spectra(b).1, quantity, &Listener::default())
     }
 
-    /// A sinusoid at the threshold has a level of 0 dB, in each quantity.
+    /// A sinusoid at the threshold has a level of 0 dB, for every quantity.
     #[test]
     fn the_threshold_is_at_0_db() {
         let line = |peak: f64| {
@@ -273,7 +278,7 @@ mod tests {
         }
     }
 
-    /// A person who is more sensitive feels no smaller difference in any band.
+    /// For a more sensitive person, no band's felt difference is smaller.
     #[test]
     fn a_sensitive_person_feels_no_less() {
         let (hertz, recorded) = spectra(|f| 2e-3 / (1.0 + f / 100.0));
@@ -295,8 +300,8 @@ mod tests {
         }
     }
 
-    /// What differs below the threshold alone is not felt; a difference of 6 dB far above it is, in
-    /// every band.
+    /// A difference that lies entirely below the threshold is not felt; a difference of 6 dB far
+    /// above it is felt, in every band.
     #[test]
     fn only_what_is_felt_counts() {
         let below = compared(|_| 1e-9, |_| 1e-8, Quantity::LateralForce);

@@ -1,4 +1,4 @@
-//! From recordings to a fitted and measured asset.
+//! Fitting: from recordings to a fitted and measured asset.
 
 use std::collections::BTreeMap;
 
@@ -25,41 +25,42 @@ use crate::stored::stored_fields;
 use crate::take::Take;
 use crate::{AuthorError, TextureSpectrum, agreement, read_spectrum, rendered_spectrum};
 
-/// A fitted asset with the results that its file does not hold.
+/// A fitted asset, with results that its file does not store.
 #[derive(Debug, Clone)]
 pub struct FittedAsset {
     pub asset: Asset,
-    /// Time of each representation's fits, milliseconds.
+    /// Time taken by each representation's fits, milliseconds.
     pub fit_ms: Vec<f64>,
     /// Models that could not be fitted, with the reasons.
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// What is felt of the difference from them, of each representation at each of its conditions;
-    /// `None` at a condition that was computed between recorded ones, where there is no recording
-    /// to differ from.
+    /// How much of the difference from these spectra can be felt, for each representation at each
+    /// of its conditions. `None` at a condition that was computed between recorded ones, where
+    /// there is no recording to compare with.
     pub felt: Vec<Vec<Option<FeltError>>>,
-    /// The warnings that the asset's provenance has, with what helps.
+    /// The warnings in the asset's provenance, each with settings that help.
     pub warnings: Vec<Notice>,
-    /// Findings of the recordings below a warning: what was left out, and why.
+    /// Findings of the recordings that are less severe than a warning: what was left out, and why.
     pub notes: Vec<Notice>,
     /// All findings of the recordings, recording by recording.
     pub findings: Vec<RecordingFinding>,
-    /// The grid of the conditions, if one was requested.
+    /// The grid of conditions, if one was requested.
     pub grid: Option<GridReport>,
 }
 
-/// Fits every model at every condition, measures the parameters as stored, and returns the asset.
+/// Fits every model at every condition, measures the parameters as they are stored, and returns the
+/// asset.
 ///
 /// A model that cannot be fitted is left out and listed in `skipped`.
 ///
 /// # Errors
-/// When a recording is not usable, or no model could be fitted.
+/// When a recording cannot be used, or no model could be fitted.
 pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
     fit_asset_watched(takes, request, &mut |_| {})
 }
 
-/// As [`fit_asset`]; `begins` is called with each model before it is fitted.
+/// As [`fit_asset`], but calls `begins` with each model before it is fitted.
 ///
 /// # Errors
 /// As [`fit_asset`].
@@ -129,7 +130,8 @@ pub fn fit_asset_watched(
     Ok(FittedAsset { asset, fit_ms, skipped, spectra, felt, warnings, notes, findings, grid })
 }
 
-/// What slid over the surface, as far as recordings tell: the simulator has a finger.
+/// What slid over the surface, as far as the recordings show it: the simulator always uses a
+/// finger.
 fn contact(takes: &[Take]) -> Contact {
     if takes.iter().all(|take| take.recording.simulated) {
         Contact::Finger
@@ -146,7 +148,7 @@ struct FittedModel {
 }
 
 impl FittedModel {
-    /// Adds the errors of blocks of time that were left out.
+    /// Adds the errors on blocks of time that were left out of the fit.
     fn leave_out(&mut self, choice: &ModelRequest, blocks: &[LeftOutBlock], level: Level) {
         let at = &mut self.representation.at;
         let fit = |group: &Group| {
@@ -196,7 +198,7 @@ fn fit_model(
         fit_ms += own_ms;
         let (magnitude, measured) = read_and_measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fitted, &stored, reference)?;
-        // Nothing was recorded at a condition that was computed.
+        // Nothing was recorded at a computed condition, so there is nothing to compare with.
         let quality = group
             .spectrum
             .is_recorded()
@@ -218,7 +220,7 @@ fn fit_model(
     Ok(FittedModel { representation, parameters, felt, fit_ms })
 }
 
-/// Returns the warning of a representation whose model no other program can load.
+/// Returns a warning if no other program can load the representation's model.
 fn origin_warning(model: &LoadedModel) -> Option<String> {
     let Origin::Runtime(origin) = model.origin() else {
         return None;
@@ -229,7 +231,7 @@ fn origin_warning(model: &LoadedModel) -> Option<String> {
     ))
 }
 
-/// Returns the warning of a representation with a large band error.
+/// Returns a warning if a representation has a large band error.
 fn band_error_warning(
     choice: &ModelRequest,
     fitted: &FittedModel,
@@ -249,8 +251,8 @@ fn band_error_warning(
     warning(choice, &measured, &models, request.level)
 }
 
-/// Measures the agreement of parameters and level with a recorded spectrum: by magnitude, as a
-/// recording of the voice reads it, and by samples.
+/// Measures how well parameters at a level agree with a recorded spectrum: by magnitude, as a
+/// recording of the voice would read it, and by rendered samples.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -263,7 +265,8 @@ pub fn measure(
     Ok(read_and_measure(model, parameters, level_rms, reference)?.1)
 }
 
-/// As [`measure`], with the magnitudes as a recording of the voice reads them ([`read_spectrum`]).
+/// As [`measure`], but also returns the magnitudes as a recording of the voice would read them
+/// ([`read_spectrum`]).
 pub(crate) fn read_and_measure(
     model: &LoadedModel,
     parameters: &[f64],

@@ -1,12 +1,12 @@
-//! Detection of recordings without a texture in the band: what their spectra show leaks from below
-//! it, or is far weaker than what is above it.
+//! Detection of recordings without a texture in the band: what their spectra show there leaks from
+//! below the band, or is far weaker than what is above it.
 //!
-//! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, nor a drift from noise. A
-//! window of a second whose side lobes are 92 dB down can (four-term Blackman-Harris; Harris 1978).
-//! Of 240 recordings of fingers, tools and microphones by third parties the segments show at most
-//! 4.3 dB more power in the band than the long windows do. Normal forces and positions of such
-//! fingers, read as a texture, show 32 dB more and above. Noise of 1 to 15 Hz shows 11 dB more and
-//! above.
+//! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, or a drift from noise. A
+//! window of one second whose side lobes are 92 dB down can (four-term Blackman-Harris; Harris
+//! 1978). In 240 third-party recordings of fingers, tools and microphones, the segments show at
+//! most 4.3 dB more power in the band than the long windows do. Normal forces and positions of such
+//! fingers, when read as a texture, show 32 dB more or above. Noise of 1 to 15 Hz shows 11 dB more
+//! or above.
 
 use std::f64::consts::TAU;
 
@@ -20,19 +20,20 @@ use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};
 use crate::spectrum::without_line;
 use htex_recording::rules::{RECORDING_ABOVE_BAND, RECORDING_BELOW_BAND};
 
-/// Least ratio of the power that segments show in the band to that of long windows: 7 dB, so that
-/// four fifths of it leak.
+/// Power in the band as segments show it, divided by the power that long windows show, from which
+/// there is a finding: 7 dB, so that four fifths of the power leak.
 const LEAKS: f64 = 5.0;
-/// Least ratio of the power above the band to that in it: 30 dB. White noise at 192 kHz has 20 dB;
-/// the microphones that were tried have up to 3.3 dB, and the current of a motor 5.1 dB.
+/// Power above the band, divided by the power in it, from which there is a finding: 30 dB. White
+/// noise at 192 kHz has 20 dB; the microphones that were tried have up to 3.3 dB, and the current
+/// of a motor 5.1 dB.
 const ABOVE: f64 = 1000.0;
 /// Segments in a long window: one second.
 const LONG: usize = SEGMENTS_PER_S as usize;
-/// Least power in the band that leaks, of a recording whose largest value is 1; below it is what
-/// rounding leaves of a constant.
+/// Smallest power in the band that is judged, for a recording whose largest value is 1. A smaller
+/// power is only the rounding error of a constant signal.
 const LEAST: f64 = 1e-24;
-/// Most samples of a long window, for memory; at a rate at which a segment has more than half of
-/// it, nothing is checked.
+/// Longest long window, samples, which limits memory. Nothing is checked at rates at which a
+/// segment has more than half as many samples.
 const MOST: usize = 1 << 22;
 /// Four-term Blackman-Harris window.
 const COSINES: [f64; 4] = [0.35875, -0.48829, 0.14128, -0.01168];
@@ -51,7 +52,7 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Compares the power in the band with what leaks into it and with what is above it.
+/// Compares the power in the band with the power that leaks into it and with the power above it.
 pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(Powers { shown, long }) = Powers::of(recording) else {
         return;
@@ -91,7 +92,7 @@ struct Powers {
 }
 
 impl Powers {
-    /// `None` of a recording without a segment, or with one that is too long.
+    /// `None` if the recording has no segment, or its segments are too long.
     fn of(recording: &Recording) -> Option<Self> {
         let segments = choose_segments(recording, SegmentChoice::Auto);
         let (len, samples) = (segments.len, recording.samples());
@@ -125,13 +126,14 @@ fn blackman_harris(len: usize) -> Vec<f64> {
     (0..len).map(value).collect()
 }
 
-/// Reads powers of stretches of a recording under a window.
+/// Reads the powers of windowed stretches of a recording.
 struct Reader<'a> {
     recording: &'a Recording,
     window: Vec<f64>,
-    /// Magnitude of the recording's largest value, by which all are divided: no square overflows.
+    /// Magnitude of the recording's largest value. All values are divided by it, so that no square
+    /// overflows.
     largest: f64,
-    /// Whether a line is removed; else the mean.
+    /// Whether a straight line is removed; otherwise the mean is.
     is_level: bool,
 }
 
@@ -141,7 +143,7 @@ impl<'a> Reader<'a> {
         Self { recording, window, largest: values.fold(0.0, |most, x| most.max(x.abs())), is_level }
     }
 
-    /// Returns the mean powers of the stretches that begin at these samples.
+    /// Returns the mean powers of the stretches that begin at the given samples.
     fn mean(&self, starts: impl Iterator<Item = usize>) -> Power {
         let len = self.window.len();
         let mut fft = RealFft::new(len);

@@ -1,4 +1,4 @@
-//! Detection of a friction coefficient that is read as a force.
+//! Detection of friction coefficients that are read as forces.
 
 use htex_finding::Findings;
 
@@ -7,15 +7,16 @@ use crate::segments::{segment_len, sliding};
 use htex_recording::Sums;
 use htex_recording::rules::RECORDING_FRICTION_COEFFICIENT;
 
-/// Fewest windows of 0.2 s of sliding from which the dependence on the force is told.
+/// Fewest 0.2 s windows of sliding needed to judge how the lateral force depends on the normal
+/// force.
 const FEWEST: usize = 20;
-/// Least standard deviation of the logarithm of the normal force: 5 %. Of recordings in which a
-/// finger keeps to a force it is 2 to 3 %.
+/// Smallest standard deviation of the logarithm of the normal force: 5 %. In recordings in which a
+/// finger keeps to one force it is 2 to 3 %.
 const LEAST_SPREAD: f64 = 0.05;
-/// Largest exponent of the normal force, with two standard errors, at which the lateral force does
-/// not change with it. Of forces it is 0.97 to 1.03 on simulated surfaces and on three free motions
-/// of a finger, of their coefficients -0.03 to 0.03; a finger whose friction is its area of contact
-/// has 2/3.
+/// Largest exponent of the normal force, plus two standard errors, at which the lateral force
+/// counts as independent of it. For forces the exponent is 0.97 to 1.03 on simulated surfaces and
+/// in three free motions of a finger; for their coefficients it is -0.03 to 0.03. A finger whose
+/// friction follows its area of contact has 2/3.
 const LARGEST_EXPONENT: f64 = 0.25;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.
@@ -28,8 +29,8 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Regresses the logarithm of the lateral force on that of the normal force, over windows in which
-/// the finger slides.
+/// Fits the logarithm of the lateral force against the logarithm of the normal force, over windows
+/// in which the finger slides.
 pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {
         return;
@@ -47,7 +48,7 @@ pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     ));
 }
 
-/// Returns the logarithms of normal and lateral force, of each window of sliding.
+/// Returns the logarithms of normal and lateral force for each window of sliding.
 fn logarithms(recording: &Recording) -> Option<Vec<[f64; 2]>> {
     let normal = recording.normal_n.as_ref()?;
     let slides = sliding(recording);
@@ -61,17 +62,18 @@ fn logarithms(recording: &Recording) -> Option<Vec<[f64; 2]>> {
     Some(positive.map(|means| means.map(libm::log)).collect())
 }
 
-/// A line of least squares.
+/// A least-squares line.
 struct Line {
     slope: f64,
     /// Standard error of the slope.
     error: f64,
-    /// Standard deviation of the abscissae.
+    /// Standard deviation of the x values.
     spread: f64,
 }
 
 impl Line {
-    /// Returns the line through points; `None` if they are too few or too near to each other.
+    /// Returns the least-squares line through points; `None` if there are too few points or they
+    /// are too close together.
     fn through(points: &[[f64; 2]]) -> Option<Self> {
         let count = points.len() as f64;
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| points.iter().map(of).sum::<f64>() / count;

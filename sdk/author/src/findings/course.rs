@@ -1,5 +1,5 @@
-//! Detection of signals whose course no finger causes: a straight line, and values that alternate
-//! from sample to sample.
+//! Detection of signals that no finger produces: a straight line, and values that alternate from
+//! sample to sample.
 
 use htex_finding::Findings;
 
@@ -7,17 +7,17 @@ use super::axis_words;
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
 
-/// Fewest segments of a recording that is checked: 1 s. The friction of a finger may rise along a
-/// line for less.
+/// Fewest segments that a recording needs to be checked: 1 s. The friction of a finger may rise
+/// along a line for a shorter time.
 const FEWEST_SEGMENTS: usize = 5;
-/// Least part of the variance along a line: a ramp. Of 240 recordings of fingers, tools and
-/// microphones by third parties, which last 0.8 to 19 s, none has more than 0.80, and the normal
-/// force of a finger no more than 0.84.
+/// Fraction of the variance along a line from which a signal counts as a ramp. In 240 third-party
+/// recordings of fingers, tools and microphones, which last 0.8 to 19 s, it is at most 0.80, and
+/// for the normal force of a finger at most 0.84.
 const ALONG_LINE: f64 = 0.99;
-/// Longest alternation, samples: four channels in one column.
+/// Longest alternation that is detected, samples: four channels interleaved in one column.
 const LONGEST: usize = 4;
-/// Least part of the variance that depends only on the number of the sample within such a period.
-/// The recordings by third parties have at most 0.0005.
+/// Fraction of the variance explained by the sample's place within such a period, from which a
+/// signal counts as alternating. The third-party recordings have at most 0.0005.
 const BY_PLACE: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -59,7 +59,7 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     true
 }
 
-/// An axis less its mean, relative to its largest value, so that no square overflows.
+/// An axis minus its mean, relative to its largest value, so that no square overflows.
 struct Centred {
     values: Vec<f64>,
     /// Sum of the squares.
@@ -67,7 +67,7 @@ struct Centred {
 }
 
 impl Centred {
-    /// `None` of an axis of one value.
+    /// `None` if all values of the axis are the same.
     fn of(values: &[f64]) -> Option<Self> {
         let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         if largest == 0.0 || values.iter().all(|x| *x == values[0]) {
@@ -79,7 +79,7 @@ impl Centred {
         (squares > 0.0).then_some(Self { values, squares })
     }
 
-    /// Squared correlation with the number of the sample.
+    /// Squared correlation of the values with the sample index.
     fn along_line(&self) -> f64 {
         let count = self.values.len() as f64;
         let middle = 0.5 * (count - 1.0);
@@ -89,7 +89,7 @@ impl Centred {
         both * both / (own * self.squares)
     }
 
-    /// Part of the variance that the place within a period explains.
+    /// Fraction of the variance that the place within a period explains.
     fn by_place(&self, period: usize) -> f64 {
         let of_place = |place: usize| {
             let own = || self.values.iter().skip(place).step_by(period);

@@ -1,4 +1,4 @@
-//! Detection of recordings of one condition whose levels differ.
+//! Detection of recordings whose level differs from others at the same condition.
 
 use htex_finding::Findings;
 
@@ -6,9 +6,10 @@ use super::quantile::median;
 use crate::SegmentSpectra;
 use htex_recording::rules::RECORDING_LEVELS_DIFFER;
 
-/// Ratio of a recording's level to the median of its condition from which it differs: 8 dB. Of ten
-/// slides over each of 20 materials by a robot, none is further than 5.0 dB from its material's
-/// median; the two furthest slides of a material differ by 6.2 dB.
+/// Ratio of a recording's level to the median of its condition from which the recording is
+/// reported: 8 dB. In ten slides over each of 20 materials by a robot, no slide is further than 5.0
+/// dB from its material's median; the two slides of a material that are furthest apart differ by
+/// 6.2 dB.
 const DIFFERS: f64 = 2.511_886_431_509_58;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.
@@ -18,7 +19,7 @@ pub(super) fn definition() -> String {
         .to_owned()
 }
 
-/// Level of what is read of a recording: RMS over its segments, in its unit but for a constant
+/// Level of what is read of a recording: RMS over its segments, in its unit up to a constant
 /// factor.
 pub(crate) fn level_of(part: &SegmentSpectra) -> f64 {
     let bins = part.spectra.iter().flatten();
@@ -26,7 +27,7 @@ pub(crate) fn level_of(part: &SegmentSpectra) -> f64 {
     (sum / part.spectra.len().max(1) as f64).sqrt()
 }
 
-/// Returns the findings of each of the recordings of one condition, by their levels.
+/// Returns the findings for each recording of one condition, given the levels.
 pub(crate) fn differing(levels: &[f64]) -> Vec<Findings> {
     let usual = median(levels).unwrap_or(0.0);
     let judge = |level: &f64| {

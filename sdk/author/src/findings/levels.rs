@@ -6,25 +6,26 @@ use super::{axis_words, pointer};
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 
-/// Number of different values below which a signal counts as coarsely quantised: at 4 bits the
+/// A signal with fewer different values than this counts as coarsely quantised. At 4 bits the
 /// quantisation noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the
 /// spectrum itself.
 const FEWEST_LEVELS: usize = 16;
-/// Part of all samples on an extreme value that counts as clipping. Noise clipped at 2.3 times its
-/// RMS, which is this often, has a distortion of -24 dB; less clipping does not justify another
-/// recording.
+/// Fraction of all samples at an extreme value from which a signal counts as clipped. Noise clipped
+/// at 2.3 times its RMS reaches this fraction, and its distortion is -24 dB; less clipping does not
+/// justify another recording.
 const CLIPPED: f64 = 0.01;
-/// Least ratio of the samples on the extreme value to those in the range next to it ([`BESIDE`]).
-/// At the top of a quantised sine the ratio is two.
+/// Smallest ratio of the number of samples at the extreme value to the number in the range next to
+/// it ([`BESIDE`]). At the top of a quantised sine the ratio is two.
 const OVER_BESIDE: usize = 4;
-/// Width of that range relative to the whole range, at least one step of the converter. A texture
-/// on a plateau covers a few percent of the whole range densely and must not count as one value.
+/// Width of the range next to the extreme value, relative to the whole range; at least one step of
+/// the converter. A texture on a plateau fills a few percent of the whole range densely and must
+/// not count as one value.
 const BESIDE: f64 = 0.001;
-/// Least number of separate visits to the limit; a signal that reaches it once or twice is stuck
+/// Fewest separate visits to the limit; a signal that reaches it only once or twice is stuck
 /// instead.
 const FEWEST_VISITS: usize = 3;
-/// Least distance of a limit from zero, as a part of the mean magnitude; values closer to zero are
-/// rest.
+/// Smallest distance of a limit from zero, relative to the mean magnitude; at values closer to zero
+/// the finger is at rest.
 const REST: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -40,11 +41,11 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Result of the check of an axis' values.
+/// Result of checking the values of an axis.
 pub(super) enum Levels {
-    /// Too few different values for any other check.
+    /// There are too few different values for any other check.
     Coarse,
-    /// Enough different values; the signal is clipped at these.
+    /// There are enough different values; the signal is clipped at these values, if any.
     ClippedAt(Vec<f64>),
 }
 
@@ -109,7 +110,7 @@ struct Clip {
     first: usize,
 }
 
-/// Finds clipping at the highest value (`side` 1) or the lowest (-1).
+/// Finds clipping at the highest value (`side` = 1) or at the lowest value (`side` = -1).
 fn clip(values: &[f64], side: f64) -> Option<Clip> {
     let (mut top, mut second, mut bottom) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY);
     let mut magnitude = 0.0;

@@ -1,4 +1,4 @@
-//! Findings of recordings, with stable codes.
+//! Findings: problems of recordings, with stable codes.
 
 mod band;
 mod coefficient;
@@ -28,9 +28,9 @@ pub use page::findings_page;
 pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;
 
-/// Checks a recording's signals: clipping, stuck sensors, spikes, ramps, alternation, signals
-/// without a texture in the band, and forces and speeds that a finger cannot have. Findings of the
-/// time column are included.
+/// Checks a recording's signals for clipping, stuck sensors, spikes, ramps, alternating values,
+/// signals without a texture in the band, and forces and speeds that a finger cannot have. The
+/// result includes the findings of the time column.
 ///
 /// ```
 /// use htex_author::{Recording, recording_findings};
@@ -67,7 +67,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     recording.clock_findings.iter().cloned().chain(found).collect()
 }
 
-/// Names an axis in running text: `lateral_x force`, `signal_z`.
+/// Names an axis for use in a sentence: `lateral_x force`, `signal_z`.
 fn axis_words(recording: &Recording, axis: usize) -> String {
     let name = recording.axis_name(axis);
     match recording.quantity {
@@ -76,7 +76,7 @@ fn axis_words(recording: &Recording, axis: usize) -> String {
     }
 }
 
-/// Returns a JSON pointer to a sample of a signal, counted from the start of the file.
+/// Returns a JSON pointer to a sample of a signal. Samples are counted from the start of the file.
 fn pointer(recording: &Recording, signal: &str, sample: usize) -> String {
     format!("/{signal}/{}", recording.first_sample + sample)
 }

@@ -38,7 +38,7 @@ the first other line names the columns. `t_s` is the time in seconds, `lateral_n
 speed in mm/s; other columns are not used.
 ";
 
-/// Generates the page of all rules for recordings: `spec/recording-findings.md`.
+/// Generates `spec/recording-findings.md`: the page of all rules for recordings.
 pub fn findings_page() -> String {
     let definitions = [
         chosen(),

@@ -8,16 +8,16 @@ use htex_recording::rules::{
     RECORDING_FRICTION_IMPLAUSIBLE, RECORDING_SPEED_IMPLAUSIBLE, RECORDING_SPEED_ZERO,
 };
 
-/// Largest ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at light
-/// touch, where adhesion dominates; twice that allows for offsets of the sensors.
+/// Largest plausible ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at
+/// a light touch, where adhesion dominates; twice that allows for offsets of the sensors.
 const LARGEST_FRICTION: f64 = 10.0;
-/// Speed below which the finger stands still, mm/s: at this speed it takes a quarter of an hour to
-/// stretch the skin by the millimetre that it yields.
+/// Speed below which the finger counts as standing still, mm/s. The skin yields by a millimetre,
+/// and at this speed it takes a quarter of an hour to stretch that far.
 const STILL_MM_S: f64 = 1e-3;
 /// Range of exploration speeds, mm/s: the slowest tribometers for fingers run at 1; a fully
 /// swinging arm reaches 2 m/s.
 const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
-/// Quantile of the speed that is checked; slower samples may be turns and pauses.
+/// Quantile of the speed that is checked; slower samples may belong to turns and pauses.
 const SLIDING: f64 = 0.75;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -31,7 +31,7 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Compares the medians of lateral and normal force.
+/// Checks the ratio of the medians of lateral and normal force.
 pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
     let Some(normal) = recording.normal_n.as_deref().and_then(median) else {
         return;

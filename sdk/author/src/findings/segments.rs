@@ -1,4 +1,4 @@
-//! Findings of the chosen segments and of the sweeps that are left out.
+//! Findings about the chosen segments and about sweeps that are left out.
 
 use htex_finding::Findings;
 
@@ -8,12 +8,12 @@ use htex_recording::rules::{
     RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN,
 };
 
-/// Ratio to the median level of all segments above which a segment is too loud: 12 dB. Force and
-/// speed within 10 % cause about 1 dB, seams and knots of a material a few.
+/// A segment this many times louder than the median of all segments is reported: 12 dB. Changes of
+/// force and speed within 10 % cause about 1 dB, seams and knots of a material a few dB.
 const LOUD: f64 = 4.0;
-/// Loud segments are reported only if they are at most one in this many.
+/// Loud segments are reported only if they are rare: at most one segment in this many.
 const EXCEPTION: usize = 4;
-/// Most places in a message.
+/// Largest number of places named in a message.
 const NAMED: usize = 5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -25,7 +25,8 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Reports left-out sweeps, the use of windows instead, and segments that are too loud.
+/// Reports sweeps that are left out, windows that are used instead of sweeps, and segments that are
+/// too loud.
 pub(crate) fn judge_segments(
     recording: &Recording,
     part: &SegmentSpectra,

@@ -1,9 +1,9 @@
-//! Detection of single outliers: a few far ones of any form, and many that are one sample each.
+//! Detection of outliers: a few large ones of any shape, or many that last one sample each.
 //!
-//! A texture has sharp corners of its own (stick and slip), so many corners say nothing. But its
-//! corners last several samples, and repairing one sample does not remove them. Of 240 recordings
-//! by third parties, none has more than four samples that a repair removes at 12 times the usual
-//! corner, and at five times no more than 0.1 % (the current of a motor: 0.62 %).
+//! A texture has sharp corners of its own (stick and slip), so many corners say nothing. But a
+//! texture's corners last several samples, and repairing one sample does not remove them. In 240
+//! third-party recordings, at most four samples are removed by a repair at 12 times the usual
+//! corner, and no more than 0.1 % at five times (0.62 % in the current of a motor).
 
 use htex_finding::Findings;
 use htex_format::Quantity;
@@ -13,35 +13,37 @@ use super::{axis_words, pointer};
 use crate::Recording;
 use htex_recording::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 
-/// Length of the blocks in which the largest second difference is searched, seconds.
+/// Length of the blocks in which the largest second difference is found, seconds.
 const BLOCK_S: f64 = 0.1;
-/// Ratio to the usual second difference above which a sample is a spike. With 100 times the usual
-/// energy, one sample raises the highest bands of a segment by about 1.5 dB at 20 kHz and by 7 dB
-/// at 1 kHz.
+/// A sample is a spike if its second difference is this many times the usual one. With 100 times
+/// the usual energy, one sample raises the highest bands of a segment by about 1.5 dB at 20 kHz and
+/// by 7 dB at 1 kHz.
 const SPIKE: f64 = 10.0;
-/// Quantile of the blocks that counts as usual: three quarters of a recording may be rest.
+/// Quantile over the blocks that counts as usual. It is high because three quarters of a recording
+/// may be rest.
 const USUAL: f64 = 0.75;
-/// Largest part of blocks with spikes; more are the texture's own (stick and slip).
+/// Largest fraction of blocks with spikes; if there are more, they belong to the texture (stick and
+/// slip).
 const RARE: f64 = 0.1;
-/// Number of spikes that are always reported.
+/// This many spikes or fewer are always reported.
 const FEW: usize = 3;
-/// Step of a normal force, relative to its median, below which it is not a spike: quantised forces
-/// are often constant except for single steps.
+/// A step of the normal force smaller than this, relative to its median, is not a spike: quantised
+/// forces are often constant except for single steps.
 const FORCE_STEP: f64 = 0.05;
-/// Distance in samples within which spikes count as one.
+/// Spikes within this many samples of each other count as one.
 const NEIGHBOURS: usize = 2;
-/// Ratio of a corner to the corners that stay after the sample is repaired, from which the sample
-/// is an outlier by itself.
+/// A sample is a single-sample outlier if its corner is at least this many times the corners that
+/// remain after the sample is repaired.
 const REPAIRED: f64 = 2.0;
 /// Standard deviation of normal numbers over the median of their magnitudes.
 const NORMAL: f64 = 1.4826;
-/// Samples that are outliers by themselves, of which there are too many: how many standard
-/// deviations their corners have, and their least part of all samples. At six standard deviations
-/// of white noise, which make a corner of five, 0.75 % raise its level by 1 dB.
+/// Small single-sample outliers: how many standard deviations their corners have, and the fraction
+/// of all samples from which there are too many. At six standard deviations of white noise, which
+/// make a corner of five, 0.75 % of samples raise its level by 1 dB.
 const SMALL: (f64, f64) = (5.0, 0.0075);
-/// As [`SMALL`], with a number of samples.
+/// Large single-sample outliers: as [`SMALL`], with a number of samples instead of a fraction.
 const LARGE: (f64, usize) = (12.0, 6);
-/// Most places in a message.
+/// Largest number of places named in a message.
 const NAMED: usize = 5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -92,8 +94,9 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Returns the sample with the largest second difference of each block that exceeds both the usual
-/// one and a floor, or single samples if they are more.
+/// Returns the spikes: in each block, the sample with the largest second difference, if it exceeds
+/// both the usual one and a floor. If there are more single-sample outliers than such spikes,
+/// returns the outliers instead.
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
     let sharpest: Vec<(usize, f64)> = (0..values.len())
@@ -104,7 +107,8 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     let limit = SPIKE * usual.max(floor);
     let mut found: Vec<(usize, f64)> = sharpest;
     found.retain(|(_, corner)| limit > 0.0 && *corner > limit);
-    // At the edge of a block, a spike's neighbour is the largest of the next block.
+    // At the edge of a block, the next block's largest sample may be the neighbour of the same
+    // spike.
     found.dedup_by(|next, one| {
         let is_one = next.0 - one.0 <= NEIGHBOURS;
         if is_one && next.1 > one.1 {
@@ -120,7 +124,7 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     if many.len() > found.len() { many } else { found.into_iter().map(|(at, _)| at).collect() }
 }
 
-/// Returns the samples that are outliers by themselves, if there are too many of them.
+/// Returns the single-sample outliers, if there are too many of them.
 fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
     let corners: Vec<f64> = values.windows(3).map(corner).collect();
     let medians: Vec<f64> = corners.chunks_exact(block).filter_map(median).collect();
@@ -144,7 +148,8 @@ fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
     }
 }
 
-/// Whether repairing the sample, which has three on either side, removes its corner.
+/// Whether repairing the sample removes its corner. The sample must have three others on either
+/// side.
 fn is_single(values: &[f64], at: usize) -> bool {
     let corner_at = |at: usize| corner(&values[at - 1..=at + 1]);
     let own = corner_at(at);
@@ -156,12 +161,12 @@ fn is_single(values: &[f64], at: usize) -> bool {
     around.windows(3).all(|w| REPAIRED * corner(w) < own)
 }
 
-/// Magnitude of the difference of a sample from the mean of its neighbours.
+/// Absolute difference between a sample and the mean of its neighbours.
 fn corner(w: &[f64]) -> f64 {
     (w[1] - 0.5 * (w[0] + w[2])).abs()
 }
 
-/// Returns the sample of a block that differs most from the mean of its neighbours, and the
+/// Returns the sample of a block that differs most from the mean of its neighbours, and that
 /// difference.
 fn sharpest(values: &[f64], start: usize, block: usize) -> Option<(usize, f64)> {
     let from = start.saturating_sub(1);

@@ -9,18 +9,19 @@ use super::{axis_words, pointer};
 use crate::Recording;
 use htex_recording::rules::{RECORDING_SILENT, RECORDING_STUCK};
 
-/// Shortest stretch of one value that counts as a stuck sensor, seconds: longer than a turn of the
-/// hand (0.1 to 0.3 s), and two and a half segments.
+/// Shortest constant stretch that counts as a stuck sensor, seconds: longer than a turn of the hand
+/// (0.1 to 0.3 s), and two and a half segments.
 const STUCK_S: f64 = 0.5;
-/// Shortest reported stretch of one value near zero, seconds: pauses between sweeps are shorter.
+/// Shortest constant stretch near zero that is reported, seconds: pauses between sweeps are
+/// shorter.
 const SILENT_S: f64 = 1.0;
-/// Distance from zero, as a part of the mean magnitude, above which a value is friction; smaller
-/// values are rest.
+/// A value further from zero than this fraction of the mean magnitude is friction; smaller values
+/// are rest.
 const FRICTION: f64 = 0.5;
-/// Part of the mean speed below which the finger is at rest.
+/// The finger is at rest below this fraction of the mean speed.
 const RESTS: f64 = 0.1;
-/// Part of the samples at which a normal force must change for its sensor to resolve noise.
-/// Coarsely quantised forces and set points may stay constant.
+/// Fraction of samples at which a normal force must change before its sensor is taken to resolve
+/// noise. Coarsely quantised forces and set points may stay constant.
 const LIVELY: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -68,7 +69,7 @@ pub(super) fn judge_axis(
     }
 }
 
-/// Finds stretches in which an otherwise varying normal force is constant.
+/// Finds constant stretches of a normal force that otherwise varies.
 pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     let Some(values) = &recording.normal_n else {
         return;
@@ -85,11 +86,11 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// State of the finger in a stretch of a recording.
+/// What the finger does in a stretch of a recording.
 enum Finger {
     Moves,
     Rests,
-    /// Its speed is not known, or 0 in the whole recording.
+    /// The speed is not known, or 0 in the whole recording.
     Unknown,
 }
 
@@ -106,12 +107,12 @@ fn finger(recording: &Recording, run: &Range<usize>) -> Finger {
     }
 }
 
-/// Returns the mean of the magnitudes.
+/// Returns the mean absolute value.
 fn mean_size(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum::<f64>() / values.len() as f64
 }
 
-/// Returns the stretches of one value that have at least the given number of samples.
+/// Returns the constant stretches that have at least `shortest` samples.
 fn runs(values: &[f64], shortest: usize) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;

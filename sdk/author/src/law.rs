@@ -1,15 +1,16 @@
-//! The law of a texture that was recorded at several motions: exponents with their standard errors.
+//! The law of a texture recorded at several motions: exponents with their standard errors.
 //!
-//! Levels: least squares of `ln L = k + b ln v + c ln F` over the conditions. A level of one
-//! recording is taken to be known within [`LEVEL_ERROR_DB`] at best, so that two conditions do not
-//! count as a sure exponent.
+//! Levels: a least-squares fit of `ln L = k + b ln v + c ln F` over the conditions. The level of
+//! one recording is assumed to be known within [`LEVEL_ERROR_DB`] at best, so that two conditions
+//! alone do not give a certain exponent.
 //!
-//! Frequencies: the exponent at which the spectra, each shifted by `(v / v0)^a` on a logarithmic
-//! axis and without its level, differ least. Spectra change with the speed for other reasons, too:
-//! without lines that move, the best shift of recorded strokes was anywhere between -0.5 and 1.5,
-//! and lowered the squared difference to 0.25 to 0.9 of that without a shift. So an exponent is
-//! measured only where the difference falls to a quarter of that without a shift, or of that at the
-//! exponent that is assumed.
+//! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, its level is
+//! removed, and the exponent `a` is the one at which the spectra differ least. Spectra also change
+//! with the speed for other reasons: without lines that move, the best shift of recorded strokes
+//! was anywhere between -0.5 and 1.5, and it lowered the squared difference only to 0.25 to 0.9 of
+//! the difference without a shift. So an exponent counts as measured only if the squared difference
+//! falls to a quarter of the difference without a shift, or of the difference at the assumed
+//! exponent.
 
 use std::borrow::Borrow;
 
@@ -17,21 +18,22 @@ use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 
 use crate::spectrum::TextureSpectrum;
 
-/// Least error of a recorded level, decibels.
+/// Smallest error assumed for a recorded level, decibels.
 const LEVEL_ERROR_DB: f64 = 2.0;
-/// Most of the difference without a shift, or at the assumed exponent, that is left at a measured
-/// one.
+/// An exponent counts as measured only if at most this fraction of the squared difference without a
+/// shift, or at the assumed exponent, is left.
 const MOST_LEFT: f64 = 0.25;
 /// Points per octave at which spectra are compared, and half the width over which each is read,
 /// octaves.
 const POINTS: f64 = 24.0;
 const HALF_WIDTH: f64 = 1.0 / 12.0;
-/// Exponents of frequency that are tried, in hundredths.
+/// Frequency exponents that are tried, in hundredths.
 const TRIED: std::ops::RangeInclusive<i32> = -30..=130;
-/// Least length of the common axis, octaves.
+/// Smallest length of the common frequency axis, octaves.
 const LEAST_OCTAVES: f64 = 1.0;
 
-/// Estimates the law of conditions from their spectra; what they do not tell is assumed.
+/// Estimates the law of conditions from their spectra. Exponents that the spectra do not determine
+/// keep their assumed values.
 pub(crate) fn law<S: Borrow<TextureSpectrum>>(
     conditions: &[Condition],
     spectra: &[S],
@@ -56,7 +58,7 @@ pub(crate) fn law<S: Borrow<TextureSpectrum>>(
     law.reassumed(quantity, contact)
 }
 
-/// Keeps an estimate and its standard error.
+/// Stores an estimate and its standard error.
 fn measured(exponent: &mut Exponent, estimate: Option<[f64; 2]>) {
     if let Some([estimate, error]) = estimate {
         exponent.source = ExponentSource::Measured;
@@ -72,7 +74,7 @@ fn force(condition: &Condition) -> Option<f64> {
     condition.force_n
 }
 
-/// Returns the logarithms of all speeds or forces, if all are known and not all are the same.
+/// Returns the logarithms of all speeds or forces, if all are known and they are not all the same.
 fn logarithms(conditions: &[Condition], of: fn(&Condition) -> Option<f64>) -> Option<Vec<f64>> {
     let known = |condition| of(condition).filter(|x| *x > 0.0);
     let all: Option<Vec<f64>> = conditions.iter().map(known).collect();
@@ -85,8 +87,8 @@ fn logarithms(conditions: &[Condition], of: fn(&Condition) -> Option<f64>) -> Op
     varies.then(|| all.iter().map(|x| libm::log(*x)).collect())
 }
 
-/// Returns the exponents of the level over speed and force with their standard errors, as far as
-/// they can be told.
+/// Returns the exponents of the level over speed and force with their standard errors, where the
+/// levels determine them.
 fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2]>; 2] {
     let n = levels.len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
@@ -103,13 +105,13 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
     let (vv, ff, vf) = (product(&v, &v), product(&f, &f), product(&v, &f));
     let (vy, fy) = (product(&v, &y), product(&f, &y));
     let varies = axes.map(|axis| axis.is_some());
-    // The inverse of the normal equations; one unknown of a constant axis is left out.
+    // The inverse of the normal equations, without the unknown of an axis that is constant.
     let determinant = vv * ff - vf * vf;
     let inverse = match varies {
         [true, true] if determinant > 1e-6 * vv * ff => {
             [ff / determinant, -vf / determinant, vv / determinant]
         }
-        // Speed and force change together: neither can be told.
+        // Speed and force change together, so neither exponent can be determined.
         [true, true] | [false, false] => return [None; 2],
         [true, false] => [1.0 / vv, 0.0, 0.0],
         [false, true] => [0.0, 0.0, 1.0 / ff],
@@ -125,8 +127,8 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
     [varies[0].then(|| [b, error(inverse[0])]), varies[1].then(|| [c, error(inverse[2])])]
 }
 
-/// Returns the exponent of frequencies over the speed with its standard error, if the spectra tell
-/// it.
+/// Returns the exponent of frequencies over the speed with its standard error, if the spectra
+/// determine it.
 fn frequency_exponent(
     spectra: &[&TextureSpectrum],
     speeds: &[f64],
@@ -147,7 +149,7 @@ fn frequency_exponent(
     if !inside || least.mean_square > MOST_LEFT * still.max(usual) {
         return None;
     }
-    // The curvature over a tenth on both sides.
+    // The curvature, from differences one tenth to either side.
     let step = 0.1;
     let around = differ(best - step)?.mean_square + differ(best + step)?.mean_square;
     let curvature = (around - 2.0 * least.mean_square) / (step * step);
@@ -155,7 +157,7 @@ fn frequency_exponent(
     error.is_finite().then_some([*best, error])
 }
 
-/// A spectrum's logarithmic power over octaves, without its level.
+/// A spectrum's logarithmic power over octaves.
 struct Curve {
     low: f64,
     values: Vec<f64>,
@@ -186,7 +188,7 @@ impl Curve {
         self.low + (self.values.len() - 1) as f64 / POINTS
     }
 
-    /// Linear interpolation at an octave inside the curve.
+    /// Interpolates linearly at an octave inside the curve.
     fn at(&self, octave: f64) -> f64 {
         let place = ((octave - self.low) * POINTS).max(0.0);
         let i = (place as usize).min(self.values.len().saturating_sub(2));
@@ -195,7 +197,7 @@ impl Curve {
     }
 }
 
-/// How much shifted curves differ.
+/// How much the shifted curves differ.
 struct Difference {
     /// Mean square, in squared natural logarithms of power.
     mean_square: f64,
@@ -203,8 +205,8 @@ struct Difference {
     count: f64,
 }
 
-/// Returns the difference of curves shifted by `a` times their octaves of speed, over the octaves
-/// that all have.
+/// Returns how much the curves differ after each is shifted by `a` times its speed in octaves. Only
+/// octaves that all curves cover are compared.
 fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
     let shifted = || curves.iter().zip(octaves).map(|(curve, o)| (curve, -a * o));
     let low = shifted().map(|(c, s)| c.low + s).fold(f64::MIN, f64::max);
@@ -238,7 +240,7 @@ fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
 mod tests {
     use super::*;
 
-    /// A level that rises with the speed to the power of 0.6, and with the force to that of 0.9.
+    /// The level rises with the speed to the power of 0.6 and with the force to the power of 0.9.
     #[test]
     fn exponents_of_levels_are_found_with_their_errors() {
         let motions = [(20.0, 0.3), (40.0, 0.6), (80.0, 0.3), (160.0, 0.9)];
@@ -249,9 +251,9 @@ mod tests {
         let [b, c] = level_exponents(&levels, [Some(&speeds), Some(&forces)]);
         let ([b, of_b], [c, of_c]) = (b.unwrap_or_default(), c.unwrap_or_default());
         assert!((b - 0.6).abs() < 1e-9 && (c - 0.9).abs() < 1e-9);
-        // Two decibels in a level are a fifth of three octaves of speed.
+        // Two decibels of level error are a fifth over three octaves of speed.
         assert!((0.1..0.3).contains(&of_b) && of_c > of_b, "{of_b}, {of_c}");
-        // Of speed and force that change together neither is told.
+        // If speed and force change together, neither exponent can be determined.
         assert_eq!(level_exponents(&levels, [Some(&speeds), Some(&speeds)]), [None; 2]);
     }
 }

@@ -1,15 +1,16 @@
-//! The level of stored representations.
+//! The level (RMS) stored with each representation.
 //!
-//! The level is the recording's, for the shape as stored. The levels of the models' own fits
-//! (`--level fitted`) differ by up to 6 dB from the recording on simulated surfaces: sBeta is
-//! fitted to the ten largest peaks, among other bins, and sSlope to the largest bin, which are too
-//! high in a noisy estimate, and MFCC averages logarithms, which is too low. A model whose level is
-//! one of the energies that it stores says so ([`htex_host::Descriptor::keeps_level`], Bands) and
-//! keeps it. sBeta and sSlope round their parameters as files do before they compute the level.
+//! By default a representation has the level of its recording, for the shape as stored. With
+//! `--level fitted` it has the level of the model's own fit, which differs from the recording by up
+//! to 6 dB on simulated surfaces. sBeta is fitted to the ten largest peaks, among other bins, and
+//! sSlope to the largest bin: these are too high in a noisy estimate. MFCC averages logarithms,
+//! which is too low. A model whose level is one of the energies that it stores (Bands) declares
+//! this ([`htex_host::Descriptor::keeps_level`]) and keeps that level. sBeta and sSlope round their
+//! parameters as files do before they compute the level.
 //!
-//! A model with a rate of its own plays too weak where its spectrum reaches up to half that rate,
-//! since a conversion to the player's rate takes up to half the power away there: AR at its Nyquist
-//! frequency of 1000 Hz by up to 3.0 dB. The stored level makes up for it
+//! A model with its own sample rate plays too weakly where its spectrum reaches up to half that
+//! rate, because the conversion to the player's rate takes away up to half the power there: AR by
+//! up to 3.0 dB at its Nyquist frequency of 1000 Hz. The stored level makes up for this
 //! ([`LoadedModel::played_part`]), so that what is played has the level of the recording.
 
 use htex_dsp::grid::level_rms;
@@ -19,25 +20,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::SpectrumRef;
 
-/// The source of a representation's level.
+/// Where a representation's level comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
     /// The recording's RMS in the band: the asset plays at the level of its recording, and a copy
-    /// of a copy at the level of the first. A model whose level is a part of its parameters
-    /// ([`htex_host::Descriptor::keeps_level`]) keeps that of its fit.
+    /// of a copy at the level of the first. A model whose parameters contain the level
+    /// ([`htex_host::Descriptor::keeps_level`]) keeps the level of its fit.
     #[default]
     Recording,
-    /// The level of the model's fit, for the parameters as stored. (The paper gives no rule for
-    /// levels.)
+    /// The level of the model's fit, for the parameters as stored. The paper gives no rule for
+    /// levels.
     Fitted,
 }
 
 impl Level {
-    /// Both, in the order of the command's help.
+    /// Both sources, in the order of the command line's help.
     pub const ALL: &[Self] = &[Self::Fitted, Self::Recording];
 
-    /// Returns the name in a recipe and on the command line.
+    /// Returns the name used in recipes and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Recording => "recording",
@@ -84,7 +85,8 @@ fn fitted_level(
     Ok(fit.level_rms * (both / own))
 }
 
-/// Returns the RMS of magnitudes, computed relative to the largest to avoid overflow and underflow.
+/// Returns the RMS of magnitudes. It is computed relative to the largest one to avoid overflow and
+/// underflow.
 pub(crate) fn recorded_level(magnitude: &[f64]) -> f64 {
     let largest = magnitude.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {

@@ -1,26 +1,26 @@
-//! Authoring: from recordings to fitted and measured texture assets.
+//! Authoring: makes fitted and measured texture assets from recordings.
 //!
 //! The pipeline is [`recording::read_recording`], [`segment_spectra`],
 //! [`TextureSpectrum::average`], [`fit_asset`]. Definitions follow the paper's section Texture
-//! processing; where it is silent, the option's documentation states what is done.
+//! processing. Where the paper is silent, the documentation of the option says what is done.
 //!
 //! From a recording to an asset:
 //!
-//! 1. `segments`: complete sweeps by mean threshold, or half-overlapping windows, of 0.2 s.
-//!    `findings`: problems of the signals, with stable codes (`spec/recording-findings.md`).
-//!    `reading` combines both.
-//! 2. `spectrum`: mean removed, Hann window, FFT, two axes folded into one, divided by the response
-//!    of the setup, averaged. `blocks`: the odd and the even blocks of time, two readings that
-//!    share no sample.
-//! 3. `conditions`: recordings with the same speed and force are averaged, others become further
+//! 1. `segments` finds segments of 0.2 s: one in each complete sweep (by mean threshold), or
+//!    half-overlapping windows. `findings` reports problems of the signals, with stable codes
+//!    (`spec/recording-findings.md`). `reading` combines both.
+//! 2. `spectrum` removes the mean, applies a Hann window and an FFT, folds two axes into one,
+//!    divides by the setup's response and averages. `blocks` separates odd from even blocks of
+//!    time: two readings that share no sample.
+//! 3. `conditions` averages recordings with the same speed and force; others become further
 //!    conditions. `grid`, on request, takes many conditions from a free motion: windows of `steady`
-//!    motion, `lines` of speed and force, `cells` around their crossings, spectra over equal
+//!    motion, `lines` of speed and force, `cells` around their crossings, and spectra over equal
 //!    `paths`, corrected by `slopes`.
-//! 4. `fit`: each model at each condition. Parameters are rounded as the file stores them; the
-//!    *rounded* ones get a `level` and are measured, by magnitude (`metrics`) and by samples
-//!    (`rendered`). Where the errors of bands are large, other options and models are tried and
-//!    listed (`alternatives`). In a grid each condition is also predicted from its neighbours, by
-//!    the mesh of the player.
+//! 4. `fit` fits each model at each condition. Parameters are rounded as the file stores them. The
+//!    *rounded* parameters get a `level` and are measured, by magnitude (`metrics`) and by samples
+//!    (`rendered`). Where band errors are large, other options and models are tried and listed
+//!    (`alternatives`). In a grid, each condition is also predicted from its neighbours, by the
+//!    player's mesh.
 //!
 //! ```
 //! use htex_simulate::{SimulationOptions, Surface, simulate};

@@ -1,4 +1,4 @@
-//! Measures of agreement between a spectrum and a reference: the function of each row of
+//! Measures of agreement between a spectrum and a reference: the function behind each row of
 //! [`Measure`].
 
 use htex_dsp::bands::{
@@ -10,15 +10,15 @@ use htex_format::{Measure, Measures, Quality};
 
 use crate::spectrum::SpectrumRef;
 
-/// Agreement of a spectrum with a reference: every measure that needs no more than magnitudes (all
-/// but [`Measure::Felt`]), and the errors in the nine bands of the paper's regression (which uses
+/// Agreement of a spectrum with a reference: every measure that needs only magnitudes (all but
+/// [`Measure::Felt`]), and the errors in the nine bands of the paper's regression (which uses
 /// standardised absolute differences).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub measures: Measures,
-    /// Energy relative to the reference's in each of the nine bands, decibels.
+    /// Energy in each of the nine bands relative to the reference, decibels.
     pub band_error_db: Vec<f64>,
-    /// The gain that equalises total energy, decibels.
+    /// The gain at which the total energies are equal, decibels.
     pub matching_gain_db: f64,
 }
 
@@ -30,7 +30,7 @@ impl Agreement {
 }
 
 impl From<Agreement> for Quality {
-    /// Of magnitudes, without rendered samples.
+    /// Quality from magnitudes only, without rendered samples.
     fn from(agreement: Agreement) -> Self {
         Self {
             by_magnitude: agreement.measures.only(Measure::stored()),

@@ -1,5 +1,4 @@
-//! Odd and even blocks of time of what is read of recordings: two readings of a texture that share
-//! no sample.
+//! Odd and even blocks of time in recordings: two readings of a texture that share no sample.
 
 use htex_dsp::spectrum::Complex;
 
@@ -8,23 +7,24 @@ use crate::segments::SEGMENTS_PER_S;
 use crate::spectrum::spans_of;
 use crate::{Averaging, SegmentSpectra, TextureSpectrum};
 
-/// The spectra of the odd and of the even blocks.
+/// The spectra of the odd blocks and of the even blocks.
 #[derive(Debug, Clone)]
 pub struct OddAndEven {
-    /// The average over the first, the third, … block.
+    /// The average over the first, third, … block.
     pub odd: TextureSpectrum,
-    /// The average over the second, the fourth, … block.
+    /// The average over the second, fourth, … block.
     pub even: TextureSpectrum,
-    /// Number of blocks of both together.
+    /// Number of odd and even blocks together.
     pub blocks: usize,
     /// Length of the longest block, 0.2 to 1 s.
     pub block_s: f64,
 }
 
-/// Cuts what is read of recordings at one condition into the equal blocks of repeatability
-/// ([`TextureSpectrum::repeatability_rms_db`]), and averages the odd and the even ones.
+/// Cuts what is read of recordings at one condition into equal blocks, as for repeatability
+/// ([`TextureSpectrum::repeatability_rms_db`]), and averages the odd and the even blocks
+/// separately.
 ///
-/// `None` if there are fewer than four blocks, or quantities or bands differ.
+/// `None` if there are fewer than four blocks, or if quantities or bands differ.
 pub fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<OddAndEven> {
     let first = parts.first()?;
     let differs =
@@ -96,8 +96,8 @@ mod tests {
         }
     }
 
-    /// Each half averages its own segments: the mean power of both together is that of all that are
-    /// read.
+    /// Each half averages its own segments, so the mean power of both halves is the mean power of
+    /// all segments that are read.
     #[test]
     fn odd_and_even_are_two_readings() {
         let part = read(0.8).unwrap_or_else(|e| panic!("{e}"));
@@ -106,7 +106,7 @@ mod tests {
         assert_eq!((odd.segments, even.segments), (2, 2));
         let power = |segment: usize, k: usize| part.spectra[segment][k].norm_sqr();
         for k in 0..odd.magnitude.len() {
-            // Windows of 0.2 s begin every 0.1 s: every second one is a block.
+            // Windows of 0.2 s begin every 0.1 s, and every second window is one block.
             let expected = [0.5 * (power(0, k) + power(4, k)), 0.5 * (power(2, k) + power(6, k))];
             let found = [&odd, &even].map(|half| half.magnitude[k].powi(2));
             for (a, b) in found.iter().zip(expected) {

@@ -17,7 +17,8 @@ use htex_recording::{ReadError, ReadOptions, ReadProblem, read_recording, record
 #[derive(Debug, Clone)]
 pub struct Reading {
     pub part: SegmentSpectra,
-    /// Speed and force: the given values, else the medians of the measured ones over the segments.
+    /// Speed and force: the given values, or else the medians of the measured ones over the
+    /// segments.
     pub condition: Exploration,
     /// Ranges of speed and force over the segments.
     pub spread: Spread,
@@ -29,13 +30,13 @@ pub struct Reading {
     pub notes: Vec<Notice>,
 }
 
-/// Reads the texture of a recording: checks its signals, chooses its segments, removes those that
-/// differ from the given condition by more than 10 %, and takes their spectra.
+/// Reads the texture of a recording: checks its signals, chooses its segments, removes segments
+/// whose motion differs from the given condition by more than 10 %, and computes their spectra.
 ///
 /// # Errors
-/// When the recording is too short, its rate too low, no segment remains, the response cannot be
-/// divided by, or a speed or force is out of range; with `strict`, when a finding is an error or a
-/// warning.
+/// When the recording is too short, its sample rate is too low, no segment remains, the setup's
+/// response cannot be divided by, or a speed or force is out of range. With `strict`, also when a
+/// finding is an error or a warning.
 pub fn read_take(
     take: &Take,
     options: &SpectrumOptions,
@@ -65,7 +66,7 @@ pub fn read_take(
     })
 }
 
-/// Returns the findings of severity info, or those above it, as sentences.
+/// Returns findings as sentences: those of severity info, or those above it.
 pub(crate) fn sentences(
     source: &str,
     findings: &[Finding],
@@ -92,8 +93,8 @@ pub(crate) fn refuse(source: &str, findings: &[Finding]) -> Result<(), AuthorErr
 /// Validates a recording and returns all findings; it is valid when none is an error.
 ///
 /// # Errors
-/// When the file cannot be opened, or an option does not apply. A file that is not a recording is a
-/// finding.
+/// When the file cannot be opened, or an option does not apply. A file that is not a recording is
+/// reported as a finding.
 pub fn validate_recording(
     path: &Path,
     read: &ReadOptions,
@@ -103,7 +104,7 @@ pub fn validate_recording(
     validated(read_recording(path, read), given, options)
 }
 
-/// As [`validate_recording`], of bytes; `path` is not opened.
+/// Validates a recording given as bytes, as [`validate_recording`] does; `path` is not opened.
 ///
 /// # Errors
 /// When an option does not apply.
@@ -136,7 +137,7 @@ fn validated(
     Ok(Report::new(findings))
 }
 
-/// Returns the findings and the reader's warnings of a readable recording.
+/// Returns the findings and the reader's warnings for a readable recording.
 fn all_findings(take: Take, options: &SpectrumOptions) -> Vec<Finding> {
     let mut rest = Findings::default();
     let mut noticed = take.recording.warnings.clone();

@@ -1,12 +1,12 @@
-//! A recording as sound: what is read of it, in the band, as a loop.
+//! Playback of a recording: the segments that are read, limited to the band, joined into a loop.
 //!
-//! The segments of a spectrum are windowed (Hann), and half overlap. They are windowed once more
-//! and added, since the frequencies outside of the band, which they have no more, were what made
-//! their ends zero: without it there is a step every 0.1 s. The sum is divided by that of the
-//! squared windows, which gives the recorded signal back. Two segments of different stretches share
-//! no signal: where one fades to the other, the sum is divided by the root of the sum of the fourth
-//! powers, which keeps the power. The last segment fades to the first one in this way, so that the
-//! loop has no seam.
+//! The segments of a spectrum are windowed (Hann) and overlap by half. After the frequencies
+//! outside of the band are removed, a segment's ends are no longer zero, and adding the segments
+//! would leave a step every 0.1 s. So each segment is windowed once more before it is added, and
+//! the sum is divided by the sum of the squared windows, which gives back the recorded signal. Two
+//! segments from different stretches share no signal. Where one fades into the other, the sum is
+//! divided by the root of the sum of the fourth powers instead, which keeps the power. The last
+//! segment fades into the first one in this way, so that the loop has no seam.
 
 use htex_dsp::bands::rms;
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -19,34 +19,35 @@ use crate::spectrum::each_frame;
 use crate::take::Take;
 use crate::{AuthorError, Exploration, SegmentSpectra, SpectrumOptions, TextureSpectrum};
 
-/// Highest rate of a loop, hertz.
+/// Highest sample rate of a loop, hertz.
 const MOST_RATE_HZ: f64 = 192_000.0;
-/// Most segments of a loop: those of 30 s.
+/// Largest number of segments in a loop: 30 s.
 const MOST_SEGMENTS: usize = 300;
 
-/// What is read of a recording, as samples that are played again and again.
+/// A recording as a loop of samples, to be played again and again.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RecordedLoop {
-    /// Speed and force: the given values, else the medians of the measured ones.
+    /// Speed and force: the given values, or else the medians of the measured ones.
     pub condition: Exploration,
-    /// The recorded quantity, which has the unit of the samples.
+    /// The recorded quantity; the samples are in its unit.
     pub quantity: Quantity,
-    /// The samples, in the band of the spectrum; compensated and of one axis, as it is.
+    /// The samples in the band of the spectrum, compensated for the setup's response. A recording
+    /// of one axis keeps its signal.
     pub samples: Vec<f64>,
     pub rate_hz: f64,
     /// RMS of the samples: the level of models that are fitted to the recording.
     pub level_rms: f64,
-    /// Number of segments in the loop: those of the first 30 s that are read.
+    /// Number of segments in the loop; only the first 30 s that are read are used.
     pub segments: usize,
 }
 
 impl RecordedLoop {
-    /// Reads a recording and makes its loop at a rate.
+    /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// As [`read_take`], and for a rate that is no multiple of 10 Hz, that is not above twice the
-    /// band's highest frequency, or above 192 kHz.
+    /// As [`read_take`]. Also when the rate is not a multiple of 10 Hz, is not above twice the
+    /// band's highest frequency, or is above 192 kHz.
     pub fn of(
         take: &Take,
         options: &SpectrumOptions,
@@ -71,7 +72,8 @@ impl RecordedLoop {
     }
 }
 
-/// Samples of a segment at a rate: an even number, since half of it is a step.
+/// Number of samples of a segment at a rate: an even number, since segments begin half a segment
+/// apart.
 fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
     let len = rate_hz / GRID_HZ;
     let is_whole = len % 2.0 == 0.0 && rate_hz <= MOST_RATE_HZ;
@@ -86,8 +88,8 @@ fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
     }
 }
 
-/// Adds the segments, of `len` samples each, around the loop, which has a step of half a segment
-/// for each of them.
+/// Adds the segments, of `len` samples each, around the loop. The segments begin half a segment
+/// apart.
 fn joined(part: &SegmentSpectra, len: usize) -> Vec<f64> {
     let half = len / 2;
     let spectra = part.spectra.iter().take(MOST_SEGMENTS);
@@ -108,7 +110,7 @@ fn joined(part: &SegmentSpectra, len: usize) -> Vec<f64> {
     samples
 }
 
-/// The window of segments.
+/// The window of a segment.
 fn hann(k: usize, len: usize) -> f64 {
     0.5 - 0.5 * libm::cos(std::f64::consts::TAU * k as f64 / len as f64)
 }
@@ -120,7 +122,7 @@ fn add(samples: &mut [f64], at: usize, half: &[f64], window: &[f64]) {
     place.zip(windowed).for_each(|(s, x)| *s += x);
 }
 
-/// Whether a segment overlaps with the one before it, so that both have the same signal there.
+/// Whether a segment overlaps the one before it, so that both contain the same signal there.
 fn follows(segments: &Segments, i: usize) -> bool {
     let step = segments.len.div_ceil(2);
     let before = i.checked_sub(1).and_then(|k| segments.starts.get(k));

@@ -1,11 +1,11 @@
-//! Findings of the recordings of an asset, each with its recording.
+//! Findings of an asset's recordings, each with the recording's name.
 
 use htex_finding::Finding;
 
 /// A finding of one of several recordings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordingFinding {
-    /// The recording, as its warnings name it.
+    /// The recording's name, as in its warnings.
     pub recording: String,
     pub finding: Finding,
 }

@@ -9,14 +9,14 @@ use crate::{
     segment_spectra,
 };
 
-/// Length of the rendering that is measured, seconds: its band energies scatter by about 0.2 dB.
+/// Length of the rendering that is measured, seconds. Its band energies scatter by about 0.2 dB.
 const SECONDS: f64 = 20.0;
 const SEED: u64 = 1;
 
-/// Returns the magnitudes, on the reference's grid, that a recording of the voice reads: those of
-/// the model as a Hann window reads them ([`LoadedModel::read_magnitude`]), without chance. Lines
-/// state what is read for the window's main lobe alone, so that their samples are read
-/// ([`rendered_spectrum`]).
+/// Returns the magnitudes, on the reference's grid, that a recording of the voice would read. For
+/// most models these are computed without chance: the model's magnitudes as a Hann window reads
+/// them ([`LoadedModel::read_magnitude`]). For a model with lines, that covers only the window's
+/// main lobe, so samples are rendered and measured instead ([`rendered_spectrum`]).
 ///
 /// # Errors
 /// When the model refuses the parameters, or renders samples that are not finite.
@@ -33,8 +33,8 @@ pub fn read_spectrum(
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Renders parameters at a level and measures the samples as a recording, RMS-averaged, because
-/// the magnitudes of a model are RMS values.
+/// Renders parameters at a level and measures the samples like a recording. The average is an RMS,
+/// because a model's magnitudes are RMS values.
 ///
 /// # Errors
 /// When the model cannot render, or renders samples that are not finite.
@@ -44,15 +44,15 @@ pub fn rendered_spectrum(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
-    // Four times the band's top: an integer number of samples per segment.
+    // Four times the band's upper end: a whole number of samples per segment.
     let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
     let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
     Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
     spectrum_of_samples(&samples, rate_hz, level_rms, reference)
 }
 
-/// Returns the magnitudes of samples of unit RMS at a level, in its unit, on the reference's grid,
-/// RMS-averaged; zero above the samples' Nyquist frequency.
+/// Returns the magnitudes of unit-RMS samples scaled to a level, in the level's unit, on the
+/// reference's grid, RMS-averaged. Zero above the samples' Nyquist frequency.
 ///
 /// # Errors
 /// When there are too few samples, or they are not finite.

@@ -1,4 +1,4 @@
-//! Options of fitting: the models and the asset.
+//! Options of a fit: the models, and the asset to make.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::level::Level;
 #[non_exhaustive]
 pub struct ModelRequest {
     pub model: LoadedModel,
-    /// Its option values ([`LoadedModel::options`]).
+    /// The model's option values ([`LoadedModel::options`]).
     pub options: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ impl ModelRequest {
     }
 }
 
-/// Options of an asset to be fitted.
+/// Options of an asset to fit.
 ///
 /// ```
 /// use htex_author::{AssetRequest, ModelRequest};
@@ -52,7 +52,7 @@ pub struct AssetRequest {
     pub author: Option<String>,
     /// Search terms.
     pub tags: Vec<String>,
-    /// Models, in the order of the representations.
+    /// The models, in the order of the representations.
     pub models: Vec<ModelRequest>,
     pub spectrum: SpectrumOptions,
     pub level: Level,
@@ -61,19 +61,19 @@ pub struct AssetRequest {
     pub alternatives: Vec<LoadedModel>,
     /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
-    /// A grid of conditions from recordings of a free motion; without it, each recording has one
+    /// Grid of conditions, for recordings of a free motion. Without it, each recording has one
     /// condition.
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
-    /// Options that differ from their defaults, for the provenance.
+    /// Options that differ from their defaults, stored in the provenance.
     pub recorded_options: BTreeMap<String, String>,
-    /// Program and version, for the provenance.
+    /// Program and version, stored in the provenance.
     pub tool: String,
 }
 
 impl AssetRequest {
-    /// Requests an asset of this name, without models.
+    /// Requests an asset with this name and no models yet.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
@@ -116,7 +116,7 @@ impl AssetRequest {
         self
     }
 
-    /// Sets models to try when a representation has a large band error.
+    /// Sets the models to try when a representation has a large band error.
     #[must_use]
     pub fn with_alternatives(mut self, alternatives: Vec<LoadedModel>) -> Self {
         self.alternatives = alternatives;
@@ -130,7 +130,7 @@ impl AssetRequest {
         self
     }
 
-    /// Sets a grid of conditions, for recordings of a free motion.
+    /// Sets the grid of conditions, for recordings of a free motion.
     #[must_use]
     pub fn with_grid(mut self, grid: impl Into<Option<Grid>>) -> Self {
         self.grid = grid.into();
@@ -144,14 +144,14 @@ impl AssetRequest {
         self
     }
 
-    /// Sets the options that differ from their defaults, for the provenance.
+    /// Sets the options that differ from their defaults, stored in the provenance.
     #[must_use]
     pub fn with_recorded_options(mut self, recorded_options: BTreeMap<String, String>) -> Self {
         self.recorded_options = recorded_options;
         self
     }
 
-    /// Sets program and version, for the provenance.
+    /// Sets program and version, stored in the provenance.
     #[must_use]
     pub fn with_tool(mut self, tool: impl Into<String>) -> Self {
         self.tool = tool.into();

@@ -1,4 +1,4 @@
-//! Choice of the segments of a recording: middles of sweeps, or evenly spaced windows.
+//! Choice of a recording's segments: the middles of sweeps, or evenly spaced windows.
 
 use std::ops::Range;
 
@@ -9,21 +9,21 @@ use serde::{Deserialize, Serialize};
 use crate::Recording;
 use htex_recording::Sums;
 
-/// Segments per second: texture spectra have a resolution of 5 Hz.
+/// Segments per second. A segment of 0.2 s gives texture spectra a resolution of 5 Hz.
 pub(crate) const SEGMENTS_PER_S: f64 = 5.0;
-/// Half the length of the moving average in which sweeps are detected (50 ms in all), seconds.
+/// Half the length of the moving average used to detect sweeps (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
-/// A recording has sweeps if its friction falls below this part of the threshold between them;
+/// A recording has sweeps if its friction falls below this fraction of the threshold between them;
 /// above it the finger slides.
 const REST_LEVEL: f64 = 0.5;
-/// Longest sliding that a sweep's one segment represents, seconds: ten segments. A sweep across
-/// the paper's samples, 100 mm at 80 mm/s, lasts 1.25 s at most.
+/// Longest sliding that a sweep's single segment can represent, seconds: ten segments. A sweep
+/// across the paper's samples, 100 mm at 80 mm/s, lasts at most 1.25 s.
 const REPRESENTED_S: f64 = 2.0;
-/// Least part of the sliding that the segments of sweeps must represent; otherwise windows are
-/// used.
+/// Smallest fraction of the sliding that the segments of sweeps must represent; otherwise windows
+/// are used.
 const REPRESENTED: f64 = 0.5;
 
-/// Defines what is read of a recording, for `spec/recording-findings.md`.
+/// Defines which parts of a recording are read, for `spec/recording-findings.md`.
 pub(crate) fn definition() -> String {
     format!(
         "The *length* of a sample is the magnitude of the signal's vector over its axes; of quantities other than the lateral force, each axis' mean is taken from \
@@ -38,30 +38,30 @@ pub(crate) fn definition() -> String {
     )
 }
 
-/// Method of choosing segments.
+/// How segments are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentChoice {
-    /// Sweeps if the recording has them and their segments represent at least half of its sliding,
-    /// else windows.
+    /// Sweeps, if the recording has them and their segments represent at least half of its sliding;
+    /// otherwise windows.
     ///
     /// A segment represents its sweep, but at most 2 s of it.
     #[default]
     Auto,
-    /// One segment in the middle of each complete sweep (paper, Texture
-    /// processing). The middle of a sweep cut off by the beginning or the end is not known.
+    /// One segment in the middle of each complete sweep (paper, Texture processing). A sweep cut
+    /// off by the recording's beginning or end is left out, because its middle is not known.
     Sweeps,
-    /// Windows over the whole recording, each overlapping the previous by half (Welch 1967).
-    /// Without overlap, Hann windows leave half of it unused, and the level of 10 s of noise is
-    /// uncertain by 0.2 dB.
+    /// Windows over the whole recording, each overlapping the previous one by half (Welch 1967).
+    /// Without overlap, Hann windows leave half of the recording unused, and the level of 10 s of
+    /// noise is uncertain by 0.2 dB.
     Windows,
 }
 
 impl SegmentChoice {
-    /// All methods, in the order of the command's help.
+    /// All methods, in the order of the command line's help.
     pub const ALL: &[Self] = &[Self::Auto, Self::Sweeps, Self::Windows];
 
-    /// Returns the name in a recipe and on the command line.
+    /// Returns the name used in recipes and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -80,7 +80,7 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// The part of the sliding that the segments of sweeps would represent.
+/// How much of the sliding the segments of sweeps would represent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
     /// Sliding that the segments represent, seconds.
@@ -91,26 +91,26 @@ pub struct Unread {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segments {
-    /// Samples of each segment.
+    /// Number of samples in each segment.
     pub len: usize,
     /// First sample of each segment.
     pub starts: Vec<usize>,
-    /// Whether the segments are in sweeps (else evenly spaced windows).
+    /// Whether the segments are in sweeps; otherwise they are evenly spaced windows.
     pub from_sweeps: bool,
-    /// The detected sweeps, also if windows are used.
+    /// The detected sweeps, also when windows are used.
     pub sweeps: Vec<Sweep>,
     /// Number of sweeps cut off by the recording's beginning or end, which are not read.
     pub cut_off: usize,
-    /// First samples of the segments left out because the motion differs from its target.
+    /// First samples of the segments that are left out because the motion differs from its target.
     pub off_target: Vec<usize>,
-    /// Why `auto` uses windows although there are sweeps.
+    /// Set if `auto` uses windows although there are sweeps: how little the sweeps would represent.
     pub unread: Option<Unread>,
-    /// Mean length of the signal's vector, in its unit: the threshold of sweeps.
+    /// Mean length of the signal vector, in the signal's unit: the threshold that separates sweeps.
     pub threshold: f64,
 }
 
 impl Segments {
-    /// Returns the stretches that are read, in samples; adjoining segments are joined.
+    /// Returns the stretches that are read, in samples; adjoining segments are merged.
     pub fn stretches(&self) -> Vec<Range<usize>> {
         let mut stretches: Vec<Range<usize>> = Vec::new();
         for &start in &self.starts {
@@ -166,22 +166,22 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     }
 }
 
-/// Returns for each sample whether the finger slides: the length of the signal's vector, averaged
-/// over 50 ms, is at least half of its mean over the recording.
+/// Returns for each sample whether the finger slides there: the length of the signal vector,
+/// averaged over 50 ms, is at least half of its mean over the recording.
 pub fn sliding(recording: &Recording) -> Vec<bool> {
     let friction = Friction::of(recording);
     let slides = |at| friction.slides(friction.smooth(at));
     (0..friction.samples()).map(slides).collect()
 }
 
-/// Returns the samples of a segment at a rate: 4000 at 20 kHz.
+/// Returns the number of samples in a segment at a sample rate: 4000 at 20 kHz.
 pub fn segment_len(rate_hz: f64) -> usize {
     (rate_hz / SEGMENTS_PER_S).round().max(1.0) as usize
 }
 
-/// Computes the length of the signal's vector, sample by sample. The mean of a friction force
-/// separates sliding from rest; the mean of any other quantity (gravity, position, weight) is an
-/// offset and is removed.
+/// Computes the length of the signal vector, sample by sample. The mean of a friction force
+/// separates sliding from rest. The mean of any other quantity is an offset (gravity, position,
+/// weight) and is removed.
 fn resultant(recording: &Recording) -> Sums {
     let mean = |axis: &Vec<f64>| match recording.quantity {
         Quantity::LateralForce => 0.0,
@@ -195,7 +195,7 @@ fn resultant(recording: &Recording) -> Sums {
     Sums::of((0..recording.samples()).map(length))
 }
 
-/// The length of the signal's vector, and its mean, which separates sweeps.
+/// The length of the signal vector, and its mean, which is the threshold that separates sweeps.
 struct Friction {
     resultant: Sums,
     threshold: f64,
@@ -222,7 +222,7 @@ impl Friction {
         self.resultant.mean_around(at, self.half)
     }
 
-    /// Whether the finger slides at an average.
+    /// Whether the finger slides, given a smoothed value.
     fn slides(&self, smooth: f64) -> bool {
         smooth >= REST_LEVEL * self.threshold
     }
@@ -255,7 +255,8 @@ fn scan(friction: &Friction, shortest: usize) -> Scan {
     Scan { sweeps, sliding }
 }
 
-/// Returns the start of the segment around a sweep's middle, if it is inside the recording.
+/// Returns the start of the segment around a sweep's middle, if the segment lies inside the
+/// recording.
 fn middle(sweep: Sweep, len: usize, samples: usize) -> Option<usize> {
     let start = ((sweep.start + sweep.end) / 2).checked_sub(len / 2)?;
     (start + len <= samples).then_some(start)

@@ -15,9 +15,9 @@ use crate::{AuthorError, Recording, SetupResponse};
 use htex_recording::hertz;
 use htex_recording::raised;
 
-/// Floor of the setup's response, relative to its largest value in the band: -40 dB.
+/// Floor of the setup's response relative to its largest value in the band: -40 dB.
 const RESPONSE_FLOOR: f64 = 0.01;
-/// Smallest valid maximum of a response in the band; the inverse of a smaller one overflows.
+/// Smallest valid maximum of a response in the band. The inverse of a smaller one would overflow.
 const SMALLEST_RESPONSE: f64 = 1e-200;
 /// Fewest bins of a texture spectrum.
 const FEWEST_BINS: usize = 3;
@@ -29,7 +29,7 @@ const GRID_TOLERANCE: f64 = 1e-3;
 pub struct SpectrumOptions {
     pub segments: SegmentChoice,
     pub averaging: Averaging,
-    /// Response of the recording setup, which spectra are divided by.
+    /// Response of the recording setup, by which spectra are divided.
     pub response: Option<SetupResponse>,
 }
 
@@ -54,14 +54,15 @@ impl SpectrumOptions {
     }
 }
 
-/// The compensated spectra of a recording's segments, folded into one axis, in the band.
+/// The spectra of a recording's segments in the band, compensated for the setup and folded into one
+/// axis.
 #[derive(Debug, Clone)]
 pub struct SegmentSpectra {
     pub quantity: Quantity,
-    /// The band: 20 to 1000 Hz, or up to half the rate.
+    /// The band: 20 to 1000 Hz, or up to half the sample rate.
     pub band: Band,
-    /// One spectrum per segment on the band's grid; a sinusoid of amplitude A on the grid has
-    /// magnitude A.
+    /// One spectrum per segment on the band's grid. A sinusoid of amplitude A at a grid frequency
+    /// has magnitude A.
     pub spectra: Vec<Vec<Complex<f64>>>,
     pub segments: Segments,
     /// Warnings, as sentences.
@@ -76,25 +77,25 @@ pub struct TextureSpectrum {
     pub band: Band,
     /// The band's grid, hertz.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude at each frequency of the grid.
+    /// Magnitude at each frequency of the grid, in the quantity's unit.
     pub magnitude: Vec<f64>,
-    /// Number of averaged segments; 0 if it was computed between two recorded speeds.
+    /// Number of averaged segments; 0 if the spectrum was computed between two recorded speeds.
     pub segments: usize,
-    /// Repeatability, decibels: the RMS over nine bands of the difference between the spectra of
-    /// odd and even blocks of time, over √2.
+    /// Repeatability, decibels: how much two recordings like this one differ. It is the RMS over
+    /// nine bands of the difference between the spectra of odd and even blocks of time, divided by
+    /// √2.
     ///
-    /// It is by how much two recordings like this one differ. What is read is cut into at least
-    /// four equal blocks of 0.2 to 1 s that share no sample; a segment in the middle of a sweep is
-    /// a block. `None` if less is read than four segments that share none, or when half of the
-    /// blocks are silent.
+    /// What is read is cut into at least four equal blocks of 0.2 to 1 s that share no sample. A
+    /// segment in the middle of a sweep is a block. `None` if fewer than four segments without
+    /// common samples are read, or if half of the blocks are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
-    /// Rate of that signal, hertz.
+    /// Sample rate of that signal, hertz.
     pub signal_rate_hz: f64,
 }
 
-/// Band and magnitudes of a spectrum, for fits and measures.
+/// Band and magnitudes of a spectrum, as fits and measures need them.
 #[derive(Debug, Clone, Copy)]
 pub struct SpectrumRef<'a> {
     pub band: Band,
@@ -103,12 +104,13 @@ pub struct SpectrumRef<'a> {
 }
 
 impl TextureSpectrum {
-    /// Whether it is of a recording; else it was computed between two by the law of the texture.
+    /// Whether the spectrum was recorded. Otherwise it was computed between two recorded ones by
+    /// the texture's law.
     pub fn is_recorded(&self) -> bool {
         self.segments > 0
     }
 
-    /// Averages segment spectra of one texture at one condition, from one or more recordings.
+    /// Averages the segment spectra of one texture at one condition, from one or more recordings.
     ///
     /// # Errors
     /// When there are no segments, or the quantities or bands differ.
@@ -127,7 +129,8 @@ impl TextureSpectrum {
         Ok(Self::of(quantity, band, &all, &spans, averaging))
     }
 
-    /// Averages spectra on the grid of a band; `spans` says where each of them is from.
+    /// Averages spectra on the grid of a band; `spans` says which part of a recording each of them
+    /// comes from.
     pub(crate) fn of(
         quantity: Quantity,
         band: Band,
@@ -149,7 +152,8 @@ impl TextureSpectrum {
         }
     }
 
-    /// Returns the request to fit a model, with one value for each of its options.
+    /// Returns the request to fit a model to this spectrum. `options` has one value for each of the
+    /// model's options.
     pub fn fit_request<'a>(&'a self, options: &'a [f64]) -> FitRequest<'a> {
         FitRequest {
             band: self.band,
@@ -171,7 +175,7 @@ impl TextureSpectrum {
     }
 }
 
-/// Returns the places of the segments of a recording, which is the `take`th.
+/// Returns where each segment lies in its recording. The recording's index is `take`.
 pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<Item = Span> {
     let len = part.segments.len as f64;
     let starts = part.segments.starts.iter().take(part.spectra.len());
@@ -181,8 +185,8 @@ pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<
 /// Cuts a recording into segments and computes their spectra.
 ///
 /// # Errors
-/// When the rate leaves no useful band, no segment is found, or the setup's response cannot be
-/// divided by.
+/// When the sample rate leaves no useful band, no segment is found, or the setup's response cannot
+/// be divided by.
 pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
@@ -190,11 +194,11 @@ pub fn segment_spectra(
     spectra_of(recording, options, Trend::Mean, |_| Ok(()))
 }
 
-/// What is removed from a segment before it is windowed.
+/// The trend removed from a segment before it is windowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Trend {
     Mean,
-    /// The straight line of least squares.
+    /// The least-squares straight line.
     Linear,
 }
 
@@ -310,7 +314,7 @@ fn inverse_response(
     Ok(values.iter().map(|h| inverse(*h, floor)).collect())
 }
 
-/// Returns `1 / H` at frequencies in hertz, with `|H|` limited by the floor of the band.
+/// Returns `1 / H` at frequencies in hertz, with `|H|` limited by its floor in the band.
 pub(crate) fn inverse_at(
     response: &SetupResponse,
     band: Band,
@@ -371,8 +375,7 @@ impl SegmentReader {
     }
 }
 
-/// Subtracts the straight line of least squares through equally spaced samples, except for its
-/// mean.
+/// Subtracts the slope of the least-squares line through equally spaced samples; the mean stays.
 pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
     let middle = 0.5 * (segment.len() as f64 - 1.0);
     let place = |i: usize| i as f64 - middle;
@@ -383,7 +386,8 @@ pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
     samples().map(|(i, x)| x - slope * place(i)).collect()
 }
 
-/// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.
+/// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's upper
+/// end.
 fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
     let len = 4 * band.last_bin();
     let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
@@ -406,7 +410,7 @@ pub(crate) fn each_frame(
     for (i, spectrum) in all.iter().enumerate() {
         bins.fill(Complex::new(0.0, 0.0));
         for (bin, x) in bins[band.first_bin()..].iter_mut().zip(*spectrum) {
-            // The windowed sinusoid of amplitude A has magnitude A; the mean of its window is a
+            // The windowed sinusoid of amplitude A must have magnitude A; the window's mean is one
             // half.
             *bin = x * 0.25;
         }

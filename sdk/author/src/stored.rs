@@ -1,4 +1,4 @@
-//! Conversion of a model's parameter fields to those of an asset.
+//! Conversion of a model's parameter fields to the fields that an asset stores.
 
 use htex_format::{Steps, StoredAs, StoredField, stored_unit};
 use htex_host::{Descriptor, Kind};

@@ -4,11 +4,11 @@ use htex_format::Source;
 
 use crate::{Exploration, Recording};
 
-/// A recording and its condition as far as it is given.
+/// A recording, with its condition as far as it is given.
 #[derive(Debug, Clone)]
 pub struct Take {
     pub recording: Recording,
-    /// Given speed and force; they take precedence over measured ones.
+    /// Speed and force given by the user; they take precedence over measured ones.
     pub given: Exploration,
 }
 

@@ -1,14 +1,14 @@
-//! Warnings of several recordings: equal warnings become one sentence with the recordings' names.
+//! Warnings of several recordings. Equal warnings become one sentence that names the recordings.
 
 use htex_finding::Notice;
 
-/// Warnings in the order of their first occurrence, each with its recordings.
+/// Warnings in the order in which they first occurred, each with its recordings.
 #[derive(Debug, Default)]
 pub(crate) struct Warnings(Vec<Warning>);
 
 #[derive(Debug)]
 struct Warning {
-    /// As first given.
+    /// The warning as it was first given.
     notice: Notice,
     /// The sentence without the recording's name.
     text: String,

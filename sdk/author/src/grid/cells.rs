@@ -4,34 +4,35 @@ use htex_dsp::order;
 
 use super::lines::{FEWEST, Lines};
 
-/// Windows from which a cell is not widened. In third octaves the power of as many windows of noise
-/// scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
+/// Number of windows from which a cell is not widened. In third octaves the power of this many
+/// windows of noise scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
 const ENOUGH: usize = 32;
-/// Ratio of speeds up to which a cell may be widened, and factor by which it may be for speeds and
-/// forces.
+/// Limits of widening a cell: the ratio of speeds up to which it is always allowed, and the factors
+/// by which it is allowed for speeds and forces.
 const WIDENED_RATIO: f64 = 1.19;
 const WIDENED: [f64; 2] = [2.0, 1.5];
-/// Distance up to which windows tell how the texture changes around a crossing, relative to that of
-/// the widest cell.
+/// Distance up to which windows are used to judge how the texture changes around a crossing,
+/// relative to the widest cell.
 const SURROUNDINGS: f64 = 2.0;
 
-/// The windows around a crossing of two lines.
+/// The windows around the crossing of two grid lines.
 #[derive(Debug)]
 pub(super) struct Cell {
-    /// The crossing: logarithms of mm/s and newtons.
+    /// The crossing: logarithms of its speed in mm/s and force in newtons.
     pub(super) at: [f64; 2],
-    /// Indices of the windows inside the cell, in their order.
+    /// Indices of the windows inside the cell, ascending.
     pub(super) own: Vec<usize>,
-    /// Indices of the nearest windows outside, in their order, as many as complete [`ENOUGH`].
+    /// Indices of the nearest windows outside the cell, ascending; as many as are missing to
+    /// [`ENOUGH`].
     pub(super) borrowed: Vec<usize>,
-    /// Indices of the windows of a wider neighbourhood, the cell's included.
+    /// Indices of the windows in a wider neighbourhood, including the cell's own.
     pub(super) around: Vec<usize>,
-    /// Whether there are windows inside, or borrowed ones at lower and at higher speeds.
+    /// Whether there are windows inside, or borrowed ones at both lower and higher speeds.
     surrounded: bool,
 }
 
 impl Cell {
-    /// Returns the windows that are averaged; `None` if they are too few.
+    /// Returns the windows to average; `None` if there are too few.
     pub(super) fn used(&self) -> Option<Vec<usize>> {
         let all = self.own.len() + self.borrowed.len();
         if !self.surrounded || all < FEWEST {
@@ -43,7 +44,8 @@ impl Cell {
     }
 }
 
-/// Makes the cells of all crossings, by speed and then by force, of the windows `among` all.
+/// Makes the cells of all crossings, ordered by speed and then by force, from the windows whose
+/// indices are in `among`.
 pub(super) fn gather(lines: &Lines, motions: &[[f64; 2]], among: &[usize]) -> Vec<Cell> {
     let [speeds, forces] = &lines.axes;
     let mut cells = Vec::with_capacity(speeds.len() * forces.len());
@@ -85,7 +87,8 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usiz
     }
 }
 
-/// Returns whether the median cell has windows for a denser grid: half of [`ENOUGH`].
+/// Returns whether there are enough windows for a denser grid: the median cell must have half of
+/// [`ENOUGH`].
 pub(super) fn are_full(cells: &[Cell]) -> bool {
     let mut counts: Vec<usize> =
         cells.iter().map(|cell| cell.own.len() + cell.borrowed.len()).collect();
@@ -93,13 +96,13 @@ pub(super) fn are_full(cells: &[Cell]) -> bool {
     counts.get(counts.len() / 2).is_some_and(|count| 2 * count >= ENOUGH)
 }
 
-/// Returns the larger of a motion's two distances from a crossing, in halves of the spacing: below
-/// 1 inside the cell.
+/// Returns how far a motion is from a crossing, in units of the cell's half width: the larger of
+/// the distances in speed and force. Below 1 it is inside the cell.
 fn distance(at: [f64; 2], halves: [[f64; 2]; 2], motion: [f64; 2]) -> f64 {
     let along = |axis: usize| {
         let difference = motion[axis] - at[axis];
         let [below, above] = halves[axis];
-        // The lower edge belongs to the cell, the upper one to the next.
+        // The lower edge belongs to this cell, the upper edge to the next one.
         if difference < 0.0 { -difference / below * (1.0 - 1e-12) } else { difference / above }
     };
     along(0).max(along(1))

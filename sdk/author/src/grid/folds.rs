@@ -1,30 +1,30 @@
-//! Blocks of time that are left out in turn: each quarter of the recordings is predicted from the
-//! other three.
+//! Cross-validation over time: each quarter of the recordings is left out in turn and predicted
+//! from the other three.
 //!
-//! Neighbouring cells share windows, and windows overlap, so a condition that is predicted from its
-//! neighbours is predicted from samples that it is compared with. Blocks of time share none. They
-//! are long, because a finger and its motion drift: what was felt a second before and after tells
-//! more of a block than a recording tells of what will be played.
+//! Neighbouring cells share windows, and windows overlap. A condition predicted from its neighbours
+//! would therefore be predicted from samples that it is compared with. Blocks of time share no
+//! samples. They are long, because a finger and its motion drift: what was measured a second before
+//! and after a block says more about the block than a recording can say about what will be played.
 
 use std::ops::Range;
 
 use super::paths::{MOST, Window};
 use crate::Take;
 
-/// Number of blocks of each recording.
+/// Number of blocks in each recording.
 pub(super) const FOLDS: usize = 4;
 
-/// Windows by what they are in one prediction: indices in ascending order.
+/// The role of each window in one prediction; indices in ascending order.
 #[derive(Debug)]
 pub(super) struct Fold {
-    /// Windows that share no sample with the block that is left out.
+    /// Windows that share no sample with the left-out block.
     pub(super) known: Vec<usize>,
-    /// Windows inside that block.
+    /// Windows inside the left-out block.
     pub(super) held: Vec<usize>,
 }
 
-/// Leaves out the quarters of all recordings in turn. A window that reaches over the edge of a
-/// block, as far as it may be lengthened ([`super::paths`]), is on neither side of it.
+/// Leaves out each quarter of all recordings in turn. A window that crosses the edge of a block,
+/// counting the length that it may grow to ([`super::paths`]), belongs to neither side.
 pub(super) fn folds(takes: &[Take], windows: &[Window]) -> [Fold; FOLDS] {
     std::array::from_fn(|block| {
         let of = |window: &Window| {
@@ -46,7 +46,7 @@ pub(super) fn folds(takes: &[Take], windows: &[Window]) -> [Fold; FOLDS] {
     })
 }
 
-/// Returns the samples that may be read of a window.
+/// Returns all samples that may be read for a window.
 fn reach(window: &Window) -> Range<usize> {
     let middle = window.start + window.len / 2;
     let half = (0.5 * MOST * window.len as f64) as usize + 1;

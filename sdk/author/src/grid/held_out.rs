@@ -1,4 +1,5 @@
-//! Prediction of blocks of time that were left out: what a grid costs, known without a truth.
+//! Prediction of left-out blocks of time: an error of the grid that can be measured without knowing
+//! the true texture.
 
 use htex_dsp::Band;
 use htex_dsp::bands::rms;
@@ -15,7 +16,7 @@ use crate::{AuthorError, Averaging, TextureSpectrum};
 /// Fewest windows of a block that are compared with a prediction.
 const FEWEST: usize = 4;
 
-/// What all spectra of a grid share.
+/// What all spectra of a grid have in common.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     pub(super) quantity: Quantity,
@@ -24,18 +25,18 @@ pub(super) struct Kind {
     pub(super) contact: Contact,
 }
 
-/// The windows of a left-out block inside one cell.
+/// The windows of a left-out block that lie inside one cell.
 pub(crate) struct Held {
-    /// Index of the cell; in a [`LeftOutBlock`], of its condition.
+    /// Index of the cell; in a [`LeftOutBlock`], index of its condition.
     pub(crate) cell: usize,
-    /// Their mean speed, mm/s, and force, N.
+    /// Mean speed in mm/s and mean force in N of these windows.
     pub(crate) motion: [f64; 2],
     pub(crate) spectrum: TextureSpectrum,
 }
 
-/// A grid without one block of time, and that block.
+/// A grid fitted without one block of time, with the windows of that block.
 pub(crate) struct LeftOutBlock {
-    /// The conditions that the rest of the time gives, with their cells.
+    /// The conditions fitted to the rest of the time, in the order of `groups`.
     pub(crate) conditions: Vec<Condition>,
     pub(crate) groups: Vec<Group>,
     pub(crate) held: Vec<Held>,
@@ -43,7 +44,7 @@ pub(crate) struct LeftOutBlock {
     pub(crate) law: Law,
 }
 
-/// Averages the windows of a block that was left out, cell by cell.
+/// Averages the windows of a left-out block, cell by cell.
 pub(super) fn held(
     paths: &mut Paths<'_>,
     windows: &[Window],
@@ -71,8 +72,8 @@ pub(super) fn held(
     Ok(all)
 }
 
-/// Averages windows over the path of 0.2 s at one speed, given by its logarithm, or each over its
-/// own 0.2 s.
+/// Averages windows. Given the logarithm of a speed, each window is read over the path of 0.2 s at
+/// that speed; otherwise over its own 0.2 s.
 pub(super) fn averaged(
     paths: &mut Paths<'_>,
     windows: &[Window],
@@ -91,8 +92,7 @@ pub(super) fn averaged(
     Ok(TextureSpectrum::of(quantity, band, &spectra, &spans, averaging))
 }
 
-/// Returns the differences in decibels, in third octaves, between blocks that were left out and
-/// what is played there.
+/// Returns, in third octaves, how far the played spectra are from the left-out blocks, decibels.
 pub(super) fn errors_db(played: &PlayedSpectra, held: &[Held]) -> Vec<f64> {
     let mut errors = Vec::new();
     for one in held {

@@ -1,4 +1,5 @@
-//! Left-out error: each block of time against what a player makes of the rest with a model.
+//! Held-out error of a model: each block of time is compared with what a player makes of the rest
+//! of the recording.
 
 use htex_dsp::bands::rms;
 use htex_format::{AtCondition, LeftOut, Measure, Measures};
@@ -11,10 +12,11 @@ use super::played::motion;
 use crate::conditions::Group;
 use crate::{AuthorError, agreement, read_spectrum};
 
-/// Returns for each of `conditions` conditions the error of what a player makes, at the motions
-/// near it and without a block of time, of that block: RMS over the blocks. `None` where no block
-/// has windows enough near the condition, or the rest does not reach there. `fit` returns the
-/// stored parameters and the level of a group.
+/// Returns the held-out error at each of `conditions` conditions. A block of time is left out, the
+/// model is fitted to the rest, and what a player makes near the condition is compared with the
+/// block; the error is the RMS over the blocks. `None` if no block has enough windows near the
+/// condition, or the rest does not reach it. `fit` returns the stored parameters and the level of a
+/// group.
 pub(crate) fn left_out(
     model: &LoadedModel,
     conditions: usize,
@@ -24,7 +26,7 @@ pub(crate) fn left_out(
     let mut errors: Vec<Vec<Measures>> = vec![Vec::new(); conditions];
     for block in blocks {
         let fits: Result<Vec<_>, _> = block.groups.iter().map(&mut fit).collect();
-        // A model that cannot be fitted to less of the recording has no error of this block.
+        // If the model cannot be fitted to the rest of the recording, this block gives no error.
         let Some(played) = fits.ok().and_then(|fits| Played::new(model, block, fits)) else {
             continue;
         };
@@ -47,7 +49,7 @@ pub(crate) fn left_out(
     errors.iter().map(of_blocks).collect()
 }
 
-/// The conditions of a grid without a block of time, as a player plays them.
+/// The conditions of a grid fitted without a block of time, as a player plays them.
 struct Played<'a> {
     model: &'a LoadedModel,
     mesh: Mesh,
@@ -77,8 +79,8 @@ impl<'a> Played<'a> {
         })
     }
 
-    /// Returns the measures of what is played at the motion of left-out windows, against their
-    /// spectrum.
+    /// Compares what is played at the motion of left-out windows with the spectrum of those
+    /// windows.
     fn error(&self, held: &Held) -> Option<Measures> {
         let reference = held.spectrum.as_ref();
         let magnitude = self.magnitude(held.motion, reference).ok()?;
@@ -87,8 +89,8 @@ impl<'a> Played<'a> {
         is_finite.then_some(error.measures)
     }
 
-    /// Returns the magnitudes at a motion, as a recording of the voice reads them; where
-    /// frequencies are scaled, as [`htex_play::Asset::magnitude`] states them.
+    /// Returns the magnitudes at a motion, as a recording of the voice would read them. Where
+    /// frequencies are scaled, it returns the same magnitudes as [`htex_play::Asset::magnitude`].
     fn magnitude(
         &self,
         [speed, force]: [f64; 2],

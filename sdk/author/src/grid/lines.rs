@@ -1,32 +1,32 @@
-//! The lines of a grid: given, or chosen from the motions of the steady windows.
+//! The lines of a grid: given by the user, or chosen from the motions of the steady windows.
 
 use super::request::Grid;
 use crate::AuthorError;
 use crate::findings::quantile;
 
-/// Fewest windows of a condition, with those of a widened cell.
+/// Fewest windows of a condition, including those borrowed by widening its cell.
 pub(super) const FEWEST: usize = 8;
-/// Parts of the windows whose speeds, and forces, a chosen grid covers.
+/// Quantiles of the windows' speeds and forces between which a chosen grid lies.
 const COVERED: [f64; 2] = [0.01, 0.99];
-/// Largest ratio of neighbouring forces that is chosen. The level changes smoothly with the force,
-/// and players interpolate it linearly.
+/// Largest ratio of neighbouring forces in a chosen grid. The level changes smoothly with the
+/// force, and players interpolate it linearly.
 const FORCE_RATIO: f64 = 4.0;
-/// Ratio of the highest to the lowest speed or force up to which it counts as constant.
+/// A speed or force counts as constant if its highest value is at most this many times the lowest.
 const CONSTANT: f64 = 1.15;
-/// Distance of the outermost lines from the ends of the covered range, in spacings.
+/// Distance of the outermost lines from the ends of the covered range, in line spacings.
 const MARGIN: f64 = 0.25;
 /// Half the width of the cells of a single line, as a ratio.
 const SINGLE: f64 = 1.25;
 
-/// The lines of both axes, in logarithms of mm/s and of newtons, ascending.
+/// The lines of both axes, as logarithms of mm/s and of newtons, ascending.
 pub(super) struct Lines {
     pub(super) axes: [Vec<f64>; 2],
 }
 
 impl Lines {
-    /// Returns the given lines, and those of axes without: equally spaced in the logarithm, over
-    /// the range of 98 % of the windows, as few as a ratio of at most `speed_ratio` between speeds
-    /// and 4 between forces allows.
+    /// Returns the given lines, and chooses lines for axes without any. Chosen lines are equally
+    /// spaced in the logarithm over the range of 98 % of the windows. There are as few as possible
+    /// with a ratio of at most `speed_ratio` between speeds and 4 between forces.
     pub(super) fn choose(
         grid: &Grid,
         motions: &[[f64; 2]],
@@ -55,8 +55,8 @@ impl Lines {
         })
     }
 
-    /// Returns half the distance to the neighbours of a line, below and above; outside the
-    /// outermost lines as far as inside.
+    /// Returns half the distance from a line to its neighbours below and above. The outermost lines
+    /// reach as far outwards as inwards.
     pub(super) fn halves(lines: &[f64], i: usize) -> [f64; 2] {
         let half = |a: Option<&f64>, b: Option<&f64>| Some(0.5 * (b? - a?));
         let below = half(i.checked_sub(1).and_then(|k| lines.get(k)), lines.get(i));
@@ -66,7 +66,7 @@ impl Lines {
     }
 }
 
-/// The range of a speed or force that a chosen grid covers, in the logarithm.
+/// The range of speed or force that a chosen grid covers, as logarithms.
 struct Covered {
     low: f64,
     high: f64,
@@ -83,7 +83,7 @@ impl Covered {
         self.high - self.low < libm::log(CONSTANT)
     }
 
-    /// Returns the fewest lines with ratios of at most `ratio` between neighbours.
+    /// Returns as few lines as possible with ratios of at most `ratio` between neighbours.
     fn at_most(&self, ratio: f64) -> Vec<f64> {
         if self.is_constant() {
             return self.lines(1);
@@ -93,7 +93,7 @@ impl Covered {
         self.lines((count as usize).max(2))
     }
 
-    /// Returns equally spaced lines; a single one is in the middle.
+    /// Returns equally spaced lines; a single line is in the middle.
     fn lines(&self, count: usize) -> Vec<f64> {
         if count < 2 {
             return vec![0.5 * (self.low + self.high)];

@@ -1,15 +1,15 @@
-//! A grid of conditions from recordings in which speed and force change freely.
+//! A grid of conditions, from recordings in which speed and force change freely.
 //!
-//! Recordings are cut into windows of 0.2 s; those with nearly constant speed and force (`steady`)
-//! are gathered in cells around the crossings of grid lines (`lines`, `cells`), and each cell with
-//! enough windows becomes a condition. Small differences between the windows' motions and the
-//! crossing are corrected: windows are read over equal paths (`paths`), and their energies by the
-//! texture's own dependence on speed and force (`slopes`). There are as many lines of speed as
-//! predict blocks of time best that were left out (`folds`, `held_out`, `search`). A player
-//! interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic Texture Toolkit
-//! (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly constant motion and
-//! places the models in the plane of speed and force. `leave_out` measures, without a known truth,
-//! what a player makes of the conditions with a model.
+//! Recordings are cut into windows of 0.2 s. Windows with nearly constant speed and force
+//! (`steady`) are gathered in cells around the crossings of grid lines (`lines`, `cells`), and each
+//! cell with enough windows becomes a condition. Small differences between a window's motion and
+//! the crossing are corrected: windows are read over equal paths (`paths`), and their energies are
+//! corrected by the texture's own dependence on speed and force (`slopes`). The number of speed
+//! lines is the one that best predicts blocks of time that were left out (`folds`, `held_out`,
+//! `search`). A player interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic
+//! Texture Toolkit (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly
+//! constant motion and places the models in the plane of speed and force. `leave_out` measures the
+//! error of what a player makes of the conditions with a model, without knowing the true texture.
 
 mod cells;
 mod folds;
@@ -50,11 +50,11 @@ use steady::{Steady, read_steady};
 pub(crate) struct Gridded {
     pub(crate) grouped: Grouped,
     pub(crate) report: GridReport,
-    /// The grid without each block of time, for the errors of models.
+    /// The grid fitted without each block of time, for the models' held-out errors.
     pub(crate) left_out: Vec<LeftOutBlock>,
 }
 
-/// Takes the spectra of the recordings' steady windows and averages those of each cell.
+/// Computes the spectra of the recordings' steady windows and averages them cell by cell.
 pub(crate) fn group_grid(
     takes: &[Take],
     grid: &Grid,
@@ -116,7 +116,7 @@ pub(crate) fn group_grid(
     Ok(Gridded { grouped, report, left_out })
 }
 
-/// Adds a finding where one condition predicts what was left out as well as the grid does.
+/// Adds a finding if a single condition predicts the left-out blocks as well as the grid does.
 fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
     let (Some(grid_db), Some(one_db)) = (report.left_out_rms_db, report.one_condition_rms_db)
     else {
@@ -145,13 +145,13 @@ fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
     }
 }
 
-/// Returns speed and force of a cell's crossing, to four digits.
+/// Returns speed and force at a cell's crossing, to four digits.
 fn fit_condition(cell: &Cell) -> FitCondition {
     let [speed, force] = cell.at.map(|log| four_digits(libm::exp(log)));
     FitCondition { speed_mm_s: Some(speed), force_n: Some(force) }
 }
 
-/// Returns quantity and band of all recordings, which must be the same.
+/// Returns the quantity and band of the recordings, which must be the same for all.
 fn same_kind(all: &[Steady]) -> Result<(Quantity, Band), AuthorError> {
     let first = all.first().ok_or(AuthorError::NoSegments { source_name: String::new() })?;
     if all.iter().any(|one| one.quantity != first.quantity) {

@@ -1,11 +1,11 @@
-//! Spectra of windows over equal paths.
+//! Spectra of windows over equal lengths of path.
 //!
-//! Most of a texture's spectrum is its relief, read at the finger's speed. A window that the finger
-//! passes at another speed than that of its grid line is therefore taken as long as the finger
-//! needs for the path of 0.2 s at the line's speed: its bins then lie at the frequencies that the
-//! relief has at the line (order tracking, as for rotating machines). Lines of a weave are not
-//! blurred by the scatter of the speed within a cell; what does not follow the speed is blurred by
-//! as much.
+//! Most of a texture's spectrum is its relief, read at the finger's speed. If the finger passes a
+//! window at another speed than the grid line's, the window is made as long as the finger needs for
+//! the path of 0.2 s at the line's speed. Its bins then lie at the frequencies that the relief has
+//! at the line (order tracking, as for rotating machines). This keeps the lines of a weave sharp
+//! although the speed scatters within a cell; components that do not follow the speed are blurred
+//! by the same amount instead.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -17,9 +17,10 @@ use crate::blocks::Span;
 use crate::spectrum::{SegmentReader, Trend, inverse_at};
 use crate::{AuthorError, SpectrumOptions, Take};
 
-/// Largest ratio of a window's speed to the line's that is compensated.
+/// Largest ratio between a window's speed and the line's speed that is compensated.
 pub(super) const MOST: f64 = 1.5;
-/// Steps of a window's length, in parts of 0.2 s: few lengths, of which each has tables.
+/// Window lengths are multiples of 0.2 s divided by this. It keeps the number of lengths small,
+/// because each length needs its own tables.
 const STEPS: f64 = 100.0;
 
 /// A steady window.
@@ -31,7 +32,7 @@ pub(super) struct Window {
     pub(super) start: usize,
     /// Number of samples in 0.2 s.
     pub(super) len: usize,
-    /// Logarithms of the mean speed, mm/s, and the mean force, N.
+    /// Logarithms of the mean speed in mm/s and the mean force in N.
     pub(super) motion: [f64; 2],
 }
 
@@ -49,8 +50,8 @@ impl<'a> Paths<'a> {
         Self { takes, options, band, readers: BTreeMap::new(), inverses: BTreeMap::new() }
     }
 
-    /// Returns the spectrum of a window over the path of 0.2 s at a speed, given by its logarithm,
-    /// on the band's grid.
+    /// Returns the spectrum of a window, read over the path of 0.2 s at the given logarithm of a
+    /// speed, on the band's grid.
     pub(super) fn read(
         &mut self,
         window: &Window,
@@ -74,8 +75,7 @@ impl<'a> Paths<'a> {
         Ok(bins)
     }
 
-    /// Returns the samples that are read of a window over the path of 0.2 s at a speed, given by
-    /// its logarithm.
+    /// Returns the samples of a window's path of 0.2 s at the given logarithm of a speed.
     pub(super) fn samples(&self, window: &Window, log_speed: f64) -> Range<usize> {
         let len = self.length(window, log_speed);
         let middle = window.start + window.len / 2;
@@ -84,15 +84,16 @@ impl<'a> Paths<'a> {
         start..start + len
     }
 
-    /// Returns the place of what is read of a window, in segments of 0.2 s.
+    /// Returns where the samples read for a window lie, in segments of 0.2 s.
     pub(super) fn span(&self, window: &Window, log_speed: f64) -> Span {
         let samples = self.samples(window, log_speed);
         let place = |sample: usize| sample as f64 / window.len as f64;
         Span { take: window.take, from: place(samples.start), to: place(samples.end) }
     }
 
-    /// Returns the number of samples of the path of 0.2 s at a speed; those of 0.2 s if the
-    /// recording's rate does not suffice for the band then.
+    /// Returns the number of samples in the path of 0.2 s at a speed. If the recording's sample
+    /// rate is then too low for the band, or the recording too short, returns the number of samples
+    /// in 0.2 s.
     fn length(&self, window: &Window, log_speed: f64) -> usize {
         let most = libm::log(MOST);
         let ratio = libm::exp((log_speed - window.motion[0]).clamp(-most, most));

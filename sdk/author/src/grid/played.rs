@@ -1,5 +1,4 @@
-//! Recorded spectra, played at other motions: what a player that loses nothing to a model makes of
-//! them.
+//! Recorded spectra played at other motions, as by a player whose model loses nothing.
 
 use htex_format::{AtCondition, Condition, Contact};
 use htex_play::exploration::CEILING;
@@ -9,7 +8,7 @@ use super::slopes::third_octaves;
 use crate::TextureSpectrum;
 use crate::law::law;
 
-/// Conditions with their spectra, interpolated and scaled as players do.
+/// Conditions with their spectra, interpolated and scaled as a player does it.
 pub(super) struct PlayedSpectra {
     mesh: Mesh,
     motions: Motions,
@@ -18,7 +17,7 @@ pub(super) struct PlayedSpectra {
 }
 
 impl PlayedSpectra {
-    /// Takes spectra at their conditions; `None` if there are none.
+    /// Takes spectra with their conditions; `None` if there are none.
     pub(super) fn new(
         conditions: &[Condition],
         spectra: Vec<TextureSpectrum>,
@@ -42,7 +41,7 @@ impl PlayedSpectra {
         })
     }
 
-    /// Returns the energies of the third octaves at a motion, decibels.
+    /// Returns the energies in third octaves at a motion, decibels.
     pub(super) fn third_octaves_db(&self, [speed, force]: [f64; 2]) -> Vec<f64> {
         let scaling = self.motions.scaling(Motion::new(speed, force), CEILING);
         let weights: Vec<(usize, f64)> = self.mesh.weights(speed, force).iter().collect();
@@ -62,8 +61,8 @@ impl PlayedSpectra {
     }
 }
 
-/// Returns the energies of the third octaves of a noise, its frequencies multiplied by `ratio`, in
-/// decibels over a level.
+/// Returns the third-octave energies of a noise whose frequencies are multiplied by `ratio`, in
+/// decibels relative to a level.
 pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) -> Vec<f64> {
     let first = spectrum.band.first_bin() as f64;
     let power = |bin: usize| {
@@ -85,7 +84,7 @@ pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) 
     third_octaves(spectrum.band).into_iter().map(energy).collect()
 }
 
-/// Returns speed and force of a condition, as a player reads them.
+/// Returns speed and force of a condition, as a player uses them.
 pub(super) fn motion(condition: &Condition) -> [f64; 2] {
     [condition.speed_mm_s, condition.force_n].map(|value| value.unwrap_or(0.0))
 }

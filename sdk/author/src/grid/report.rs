@@ -1,4 +1,4 @@
-//! The description of a fitted grid.
+//! Report on a fitted grid.
 
 use htex_format::Condition;
 use htex_play::Mesh;
@@ -18,9 +18,9 @@ use crate::conditions::four_digits;
 pub enum CellStatus {
     /// It has enough windows.
     Fitted,
-    /// It has enough windows with the nearest ones of its neighbours.
+    /// It has enough windows when the nearest windows of its neighbours are included.
     Widened,
-    /// It has too few windows and is not a condition.
+    /// It has too few windows and did not become a condition.
     Thin,
 }
 
@@ -34,13 +34,14 @@ pub struct GridCell {
     pub force_n: f64,
     /// Number of steady windows inside.
     pub segments: usize,
-    /// Number of windows that were averaged, with those of its neighbours; 0 if it is thin.
+    /// Number of windows that were averaged, including those borrowed from neighbours; 0 for a thin
+    /// cell.
     pub averaged: usize,
-    /// RMS over nine bands of the difference between odd and even blocks of the windows, over √2,
-    /// decibels.
+    /// RMS over nine bands of the difference between odd and even blocks of the windows, divided by
+    /// √2, decibels.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
-    /// Index of its condition in the asset.
+    /// Index in the asset of the condition made from it.
     pub condition: Option<usize>,
 }
 
@@ -52,19 +53,20 @@ pub struct GridReport {
     pub speed_mm_s: Vec<f64>,
     /// Normal forces of the lines, newtons.
     pub force_n: Vec<f64>,
-    /// Number of windows of 0.2 s in the recordings, half overlapping.
+    /// Number of windows of 0.2 s in the recordings; each overlaps the next by half.
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
-    /// RMS error of the third octaves of blocks of time that were left out, as players interpolate
-    /// the recorded spectra of the rest, decibels. `None` if the blocks have too few windows.
+    /// Held-out error: RMS error in third octaves, in decibels, when players interpolate the
+    /// recorded spectra of the rest to predict blocks of time that were left out. `None` if the
+    /// blocks have too few windows.
     pub left_out_rms_db: Option<f64>,
-    /// The same of one condition for all motions, the mean of all steady windows, scaled by the
-    /// law: what a grid must be better than.
+    /// The same error when one condition, the mean of all steady windows scaled by the law, serves
+    /// all motions. A grid must be better than this.
     pub one_condition_rms_db: Option<f64>,
-    /// The cells, by speed and then by force.
+    /// The cells, ordered by speed and then by force.
     pub cells: Vec<GridCell>,
-    /// Triangles between conditions, by their indices, between which players interpolate.
+    /// Triangles of conditions (by index) in which players interpolate.
     pub triangles: Vec<[usize; 3]>,
     /// Mean speed in mm/s and force in newtons of each steady window.
     #[serde(skip)]
@@ -111,14 +113,14 @@ impl GridReport {
         self.triangles = Mesh::new(&points).triangles().collect();
     }
 
-    /// Returns the cell of a crossing, by the indices of its lines.
+    /// Returns the cell of a crossing, given the indices of its two lines.
     #[must_use]
     pub fn cell(&self, speed: usize, force: usize) -> Option<&GridCell> {
         let inside = force < self.force_n.len();
         self.cells.get(speed * self.force_n.len() + force).filter(|_| inside)
     }
 
-    /// Describes the ranges of the steady windows' motions.
+    /// Describes the ranges of speed and force over the steady windows.
     pub(super) fn motion_text(&self) -> String {
         let range = |axis: usize| {
             let values = self.motions.iter().map(|motion| motion[axis]);

@@ -1,10 +1,10 @@
-//! The request of a grid: lines at given speeds and forces, or chosen from the recordings.
+//! Request for a grid: lines at given speeds and forces, or chosen from the recordings.
 
 use std::str::FromStr;
 
 use crate::AuthorError;
 
-/// Lines of a grid; an axis without given lines gets lines chosen from the recordings.
+/// Lines of a grid. For an axis without given lines, they are chosen from the recordings.
 ///
 /// ```
 /// use htex_author::Grid;
@@ -24,11 +24,11 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Parses one or more texts: `auto`, `speed=40,80,160` (mm/s), `force=0.3,0.6` (N).
+    /// Parses one or more texts such as `auto`, `speed=40,80,160` (mm/s) or `force=0.3,0.6` (N).
     ///
     /// # Errors
     /// When a text has another form, an axis is given twice, or a line is not above 0, not finite,
-    /// too large, or within 5 % of another one.
+    /// too large, or within 5 % of another line.
     pub fn parse<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Self, AuthorError> {
         let mut grid = Self::default();
         for text in texts {

@@ -1,4 +1,4 @@
-//! Choice of a grid's lines: the fewest that predict best what was left out.
+//! Choice of a grid's lines: the fewest lines that best predict what was left out.
 
 use htex_format::Condition;
 
@@ -16,35 +16,36 @@ use crate::findings::quantile;
 use crate::law::law;
 use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum};
 
-/// Ratios of neighbouring speeds that are tried: an octave to a twelfth of it. Within 5 % a player
-/// treats speeds as one.
+/// Ratios of neighbouring speeds that are tried: from an octave down to a twelfth of it. A player
+/// treats speeds within 5 % as one.
 const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
-/// Ratio of the lines between which left-out windows are gathered to compare all grids with, and
-/// below which lines are tried only where there are windows for them.
+/// Ratio of the lines around which left-out windows are gathered, so that all grids are compared
+/// with the same windows. Denser lines than this are tried only if there are enough windows for
+/// them.
 const COMPARED_RATIO: f64 = 1.19;
-/// Decibels by which more lines must be nearer to what was left out.
+/// A denser grid is chosen only if its error is smaller by this many decibels.
 const WORTH_DB: f64 = 0.02;
 
-/// Cells and their spectra, for one choice of lines.
+/// The cells and their spectra for one choice of lines.
 pub(super) struct Gathered {
     pub(super) lines: Lines,
     pub(super) cells: Vec<Cell>,
     pub(super) spectra: Vec<Option<TextureSpectrum>>,
-    /// The spectra without each block of time.
+    /// For each left-out block, the spectra of the cells without it.
     without: Vec<Vec<Option<TextureSpectrum>>>,
 }
 
-/// The chosen lines, and what they cost.
+/// The chosen lines and their error.
 pub(super) struct Searched {
     pub(super) gathered: Gathered,
-    /// RMS error of what is played of left-out blocks, in third octaves, decibels.
+    /// RMS error of what is played for left-out blocks, in third octaves, decibels.
     pub(super) left_out_rms_db: Option<f64>,
-    /// The same of one condition for all motions.
+    /// The same error when one condition serves all motions.
     pub(super) one_condition_rms_db: Option<f64>,
     pub(super) left_out: Vec<LeftOutBlock>,
 }
 
-/// The windows of some recordings, from which grids are gathered.
+/// The windows of the recordings from which grids are gathered.
 pub(super) struct Search<'a> {
     paths: Paths<'a>,
     windows: &'a [Window],
@@ -69,8 +70,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Gathers windows around the given lines, or around those of speed that predict left-out
-    /// blocks best. Where no block can be left out, the lines are a quarter of an octave apart.
+    /// Gathers windows around the given lines. If no speeds are given, uses the speed lines that
+    /// best predict left-out blocks; if no block can be left out, lines a quarter of an octave
+    /// apart.
     pub(super) fn best(mut self, grid: &Grid) -> Result<Searched, AuthorError> {
         let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
         let all: Vec<usize> = (0..self.windows.len()).collect();
@@ -112,7 +114,7 @@ impl<'a> Search<'a> {
         folds.map(|fold| held(paths, windows, fold, cells, kind)).collect()
     }
 
-    /// Averages the windows of all cells, of all the time and without each block.
+    /// Averages the windows of all cells, once over the whole time and once without each block.
     fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<Gathered, AuthorError> {
         let folds = self.folds.iter();
         let cells_without: Vec<Vec<Cell>> =
@@ -129,7 +131,7 @@ impl<'a> Search<'a> {
         Ok(Gathered { lines, cells, spectra, without })
     }
 
-    /// Averages the windows of a cell, corrected to its crossing; `None` if they are too few.
+    /// Averages the windows of a cell, corrected to its crossing; `None` if there are too few.
     fn spectrum(&self, reads: &[Read], cell: &Cell) -> Option<TextureSpectrum> {
         let used = cell.used()?;
         let kind = self.kind;
@@ -142,7 +144,8 @@ impl<'a> Search<'a> {
         Some(TextureSpectrum::of(quantity, band, &spectra, &spans, averaging))
     }
 
-    /// Returns the error of a grid: of each block of time as it is played without it.
+    /// Returns the error of a grid: each block of time is compared with what the grid fitted
+    /// without it plays.
     fn error_db(&self, gathered: &Gathered, compared: &[Vec<Held>]) -> Option<f64> {
         let mut errors = Vec::new();
         for (spectra, held) in gathered.without.iter().zip(compared) {
@@ -156,8 +159,8 @@ impl<'a> Search<'a> {
         rms_db(&errors)
     }
 
-    /// Returns the error of one condition for all motions: the mean of all windows at their median
-    /// motion.
+    /// Returns the error of a single condition for all motions: the mean of all windows, placed at
+    /// their median motion.
     fn one_condition_db(&mut self, compared: &[Vec<Held>]) -> Result<Option<f64>, AuthorError> {
         let mut errors = Vec::new();
         for (fold, held) in self.folds.iter().zip(compared) {
@@ -180,7 +183,7 @@ impl<'a> Search<'a> {
         Ok(rms_db(&errors))
     }
 
-    /// Returns the chosen grid without each block of time, and the blocks.
+    /// Returns the chosen grid fitted without each block of time, together with the blocks.
     fn left_out(&mut self, gathered: &Gathered) -> Result<Vec<LeftOutBlock>, AuthorError> {
         let all_held = self.all_held(&gathered.cells)?;
         let blocks = gathered.without.iter().zip(all_held);
@@ -206,7 +209,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Keeps what was left out of cells that are conditions, and counts it by condition.
+/// Keeps the left-out windows whose cells are conditions, and replaces their cell index by the
+/// index of the condition.
 fn of_conditions(held: Vec<Held>, gathered: &Gathered) -> Vec<Held> {
     let spectra = &gathered.spectra;
     let is_fitted = |cell: usize| spectra.get(cell).is_some_and(Option::is_some);
@@ -215,7 +219,7 @@ fn of_conditions(held: Vec<Held>, gathered: &Gathered) -> Vec<Held> {
     kept.map(|one| Held { cell: before(one.cell), ..one }).collect()
 }
 
-/// Returns the condition of a cell, by its motion alone.
+/// Returns the condition of a cell, which has only its motion.
 fn condition(cell: &Cell) -> Condition {
     let motion = fit_condition(cell);
     Condition { speed_mm_s: motion.speed_mm_s, force_n: motion.force_n, ..Condition::default() }

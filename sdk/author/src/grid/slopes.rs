@@ -1,10 +1,10 @@
-//! Correction of windows to the speed and force of their crossing.
+//! Correction of windows to the speed and force of their cell's crossing.
 //!
-//! The windows are read over equal paths ([`super::paths`]). In each third-octave band the
-//! logarithm of the energy is regressed linearly on the logarithms of speed and force, over the
-//! windows around the crossing. A window's spectrum is scaled by the change that this predicts
-//! between its motion and the crossing. The windows of a cell then count equally, where firm ones
-//! would otherwise dominate the mean.
+//! The windows are read over equal paths ([`super::paths`]). In each third-octave band, the
+//! logarithm of the energy is fitted linearly against the logarithms of speed and force, over the
+//! windows around the crossing. Each window's spectrum is then scaled by the change that this fit
+//! predicts between its motion and the crossing. Thus all windows of a cell count equally;
+//! otherwise those with a firm touch would dominate the mean.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;
@@ -13,16 +13,17 @@ use super::cells::Cell;
 use super::paths::{Paths, Window};
 use crate::AuthorError;
 
-/// Fewest windows of a regression.
+/// Fewest windows for a regression.
 const FEWEST: usize = 12;
-/// Smallest standard deviation of an axis over which a slope is determined, in the logarithm.
+/// Smallest standard deviation of an axis at which a slope is determined, in the logarithm.
 const LEAST_SPREAD: f64 = 0.02;
-/// Largest slope of a power: textures do not change faster than by this power of speed or force.
+/// Steepest slope of the energy: textures do not change faster than with this power of speed or
+/// force.
 const STEEPEST: f64 = 6.0;
-/// Energy that is added to silent bands, relative to the band's mean.
+/// Energy added to each band, relative to the band's mean, so that a silent band has a logarithm.
 const FLOOR: f64 = 1e-9;
 
-/// The spectrum of a window over the path of its cell, and its motion.
+/// The spectrum of a window over the path of its cell, with its motion.
 pub(super) struct Read {
     index: usize,
     motion: [f64; 2],
@@ -46,8 +47,8 @@ pub(super) fn read_around(
     Ok(around)
 }
 
-/// Returns the spectra of the windows `used`, corrected to the crossing of their cell. `reads` has
-/// all windows around it.
+/// Returns the spectra of the windows `used`, corrected to the crossing of their cell. `reads`
+/// holds all windows around the crossing.
 pub(super) fn corrected(
     reads: &[Read],
     cell: &Cell,
@@ -72,8 +73,8 @@ pub(super) fn corrected(
     around.iter().filter(is_used).map(correct).collect()
 }
 
-/// Returns the bins of each third octave from the band's lower edge, the last one with what
-/// remains.
+/// Returns the bins of each third octave from the band's lower edge; the last range holds the
+/// remaining bins.
 pub(super) fn third_octaves(band: Band) -> Vec<std::ops::Range<usize>> {
     let grid = band.grid_hz();
     let mut bands: Vec<std::ops::Range<usize>> = Vec::new();
@@ -118,7 +119,7 @@ fn slopes(windows: &[&Read], at: [f64; 2], bins: &std::ops::Range<usize>) -> [f6
     let least = LEAST_SPREAD * LEAST_SPREAD;
     let determinant = xx * yy - xy * xy;
     let slopes = match (xx > least, yy > least) {
-        // Speed and force that rise together have no separate slopes.
+        // If speed and force rise together, their slopes cannot be separated.
         (true, true) if determinant > 0.1 * xx * yy => {
             [(xl * yy - yl * xy) / determinant, (yl * xx - xl * xy) / determinant]
         }

@@ -12,10 +12,10 @@ use crate::segments::SegmentChoice;
 use crate::spectrum::{Trend, spectra_of};
 use crate::{AuthorError, Exploration, SpectrumOptions, Take};
 
-/// Lowest mean speed of a window in which the finger slides, mm/s.
+/// Lowest mean speed at which the finger counts as sliding in a window, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
-/// Largest deviation of speed and force from their mean within a window, relative: the paper's
-/// tolerance of a condition.
+/// Largest relative deviation of speed and force from their mean within a window: the paper's
+/// tolerance for a condition.
 const STEADY: f64 = 0.10;
 
 /// The steady windows of one recording.
@@ -31,8 +31,8 @@ pub(super) struct Steady {
 }
 
 /// Finds the half-overlapping windows of 0.2 s in which speed and force stay within 10 % of their
-/// means, and checks the recording as for a plain fit. A linear trend is removed from each window:
-/// in a free motion the friction itself rises and falls with the force.
+/// means, and checks the recording as a plain fit does. A linear trend is removed from each window,
+/// because in a free motion the friction itself rises and falls with the force.
 pub(super) fn read_steady(
     index: usize,
     take: &Take,
@@ -78,20 +78,20 @@ pub(super) fn read_steady(
     })
 }
 
-/// The source of a speed or a force.
+/// Where a speed or a force comes from.
 enum MotionAxis<'a> {
     Measured(Known<'a>),
     Given(f64),
 }
 
 impl<'a> MotionAxis<'a> {
-    /// Returns the given value, else the measured signal.
+    /// Returns the given value, or else the measured signal.
     fn of(given: Option<f64>, measured: Option<Known<'a>>) -> Option<Self> {
         given.map(MotionAxis::Given).or(measured.map(MotionAxis::Measured))
     }
 }
 
-/// Returns the sources of speed and force.
+/// Returns where speed and force come from.
 fn motion_axes(take: &Take) -> Result<[MotionAxis<'_>; 2], AuthorError> {
     let [speed, force] = known(&take.recording, Exploration::default());
     let missing = |what, columns| AuthorError::NoMotion {
@@ -107,7 +107,7 @@ fn motion_axes(take: &Take) -> Result<[MotionAxis<'_>; 2], AuthorError> {
     ])
 }
 
-/// Returns the logarithms of mean speed and force over a window, if both are steady.
+/// Returns the logarithms of the mean speed and force over a window, if both are steady.
 fn steady_motion(axes: &[MotionAxis<'_>; 2], start: usize, len: usize) -> Option<[f64; 2]> {
     let [speed, force] = axes.each_ref().map(|axis| match axis {
         MotionAxis::Given(value) => Some(*value),

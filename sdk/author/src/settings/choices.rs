@@ -1,4 +1,4 @@
-//! Choices as values of the command's flags, by their names in recipes.
+//! Command-line values of choices, under the names that recipes use.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;

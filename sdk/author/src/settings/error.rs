@@ -5,7 +5,7 @@ use htex_host::HostError;
 use crate::AuthorError;
 use htex_recording::ReadError;
 
-/// A setting that cannot be used.
+/// Why settings cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
@@ -18,26 +18,26 @@ pub enum SettingsError {
         /// What is wrong with it.
         error: Box<ReadError>,
     },
-    /// There are neither one tracker nor one for each recording.
+    /// The number of trackers is neither one nor the number of recordings.
     #[error("{trackers} trackers for {recordings} recordings; give one for each, or one for all")]
     Trackers {
-        /// Trackers that are given.
+        /// Number of trackers that are given.
         trackers: usize,
         recordings: usize,
     },
     /// The response of the recording setup cannot be read.
     #[error(transparent)]
     Response(Box<ReadError>),
-    /// A model is not known, or an option of it is not.
+    /// A model or one of its options is unknown.
     #[error(transparent)]
     Model(#[from] HostError),
-    /// An option names a model that is not fitted.
+    /// An option names a model that is not being fitted.
     #[error("option {model}.{name}: no such model is fitted; there are {}", .fitted.join(", "))]
     ModelNotFitted {
         /// The model that the option names.
         model: String,
         name: String,
-        /// Short names of the models that are fitted.
+        /// Short names of the models that are being fitted.
         fitted: Vec<String>,
     },
     /// An option is not of the form `MODEL.NAME=VALUE`.
@@ -46,7 +46,7 @@ pub enum SettingsError {
     /// The grid cannot be read.
     #[error(transparent)]
     Grid(Box<AuthorError>),
-    /// Metadata that the asset's validation would refuse.
+    /// Metadata that asset validation would reject.
     #[error("{field}: {problem}")]
     Metadata {
         field: &'static str,

@@ -11,7 +11,7 @@ use super::{OneOrMore, ReadingSettings, SettingsError, one_or_more};
 use crate::{AssetRequest, Grid, Level, ModelRequest};
 
 settings! {
-    /// Settings of fitting models; an absent one has its default.
+    /// Settings of fitting models; a missing one has its default.
     ///
     /// ```
     /// use htex_author::settings::{FitSettings, OptionSetting};
@@ -26,8 +26,8 @@ settings! {
     /// # Ok::<(), htex_author::settings::SettingsError>(())
     /// ```
     pub struct FitSettings {
-        /// Models by short name or id, in the order of the representations; all that are fitted by
-        /// default when absent.
+        /// Models by short name or id, in the order of the representations. If missing, all that
+        /// are fitted by default.
         #[cfg_attr(feature = "clap", arg(
             long = "model",
             default_value = "all",
@@ -37,7 +37,7 @@ settings! {
         ))]
         pub models: Option<Vec<String>>,
 
-        /// Fit options by `MODEL.NAME`; read of tables, too.
+        /// Fit options by `MODEL.NAME`; may also be given as a table for each model.
         #[serde(deserialize_with = "options")]
         #[schemars(
             with = "BTreeMap<String, BTreeMap<String, OptionSetting>>",
@@ -79,8 +79,8 @@ settings! {
         ))]
         pub grid: Option<Vec<String>> = "grid",
 
-        /// Whether to refuse recordings with findings that are errors or warnings: in a recipe one
-        /// of the gates, in the command a flag of reading recordings.
+        /// Whether to refuse recordings with findings that are errors or warnings. In a recipe this
+        /// is one of the gates; on the command line it is a flag of reading recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub strict: Option<bool>,
@@ -97,7 +97,7 @@ pub enum OptionSetting {
     Text(String),
 }
 
-/// Reads options by `MODEL.NAME`, and tables of a model's options by name.
+/// Reads options given as `MODEL.NAME`, or as a table of options for each model.
 fn options<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<BTreeMap<String, OptionSetting>, D::Error> {
@@ -130,7 +130,7 @@ impl std::fmt::Display for OptionSetting {
 }
 
 impl FitSettings {
-    /// Adds options of the form `MODEL.NAME=VALUE`; a model may be named by its dotted id.
+    /// Adds options of the form `MODEL.NAME=VALUE`. `MODEL` may also be a model's dotted id.
     ///
     /// # Errors
     /// When a text has another form.
@@ -149,7 +149,7 @@ impl FitSettings {
     /// Returns the models to fit, each with its options.
     ///
     /// # Errors
-    /// When a model or an option is not known, or an option names a model that is not fitted.
+    /// When a model or an option is unknown, or an option names a model that is not being fitted.
     pub fn models(&self, registry: &Registry) -> Result<Vec<ModelRequest>, SettingsError> {
         let models = named_models(registry, self.models.as_deref().unwrap_or_default())?;
         let mut options = Vec::new();
@@ -176,9 +176,10 @@ impl FitSettings {
         models.into_iter().map(request).collect()
     }
 
-    /// Returns the reasons why models that were named could not be fitted, of all that were left
-    /// out of an asset ([`FittedAsset::skipped`](crate::FittedAsset::skipped)): a model that was
-    /// taken because none was named may be left out.
+    /// Returns why models could not be fitted, only for models that the user named. `skipped` lists
+    /// all models that were left out of an asset
+    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)). A model that was included only
+    /// because the user named none may be left out.
     pub fn named_of(&self, skipped: &[(String, String)]) -> Vec<String> {
         let names = || self.models.iter().flatten();
         let is_named = |id: &str| {
@@ -189,11 +190,11 @@ impl FitSettings {
         named.map(|(id, reason)| format!("{id}: {reason}")).collect()
     }
 
-    /// Returns the request of an asset that is fitted with these settings to recordings that are
+    /// Returns the request for an asset to be fitted with these settings, from recordings that are
     /// read with `reading`.
     ///
     /// # Errors
-    /// As [`Self::models`], and when the setup's response cannot be read.
+    /// As [`Self::models`], and when the setup's response or the grid cannot be read.
     pub fn request(
         &self,
         registry: &Registry,
@@ -207,7 +208,7 @@ impl FitSettings {
         recorded.extend(self.recorded());
         let lines = self.grid.as_deref().unwrap_or_default();
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
-        // The models that come with this program: a plugin runs only where it is asked for.
+        // Only the models that come with this program: a plugin runs only where it is asked for.
         let builtin = registry.by_default().filter(|model| *model.origin() == Origin::Builtin);
         Ok(AssetRequest::new(name)
             .with_models(self.models(registry)?)
@@ -222,12 +223,12 @@ impl FitSettings {
     }
 }
 
-/// Returns the models of these names, each once. `all`, and no name, stand for those that a program
-/// takes by itself ([`Registry::by_default`]); those of them that are written in another language
-/// of the running program come last.
+/// Returns the models with these names, each once. `all`, or no name, stands for the models that a
+/// program fits by default ([`Registry::by_default`]); among these, models written in another
+/// language of the running program come last.
 ///
 /// # Errors
-/// When a model is not known.
+/// When a model is unknown.
 pub fn named_models(registry: &Registry, names: &[String]) -> Result<Vec<LoadedModel>, HostError> {
     let mut models: Vec<LoadedModel> = Vec::new();
     if names.is_empty() || names.iter().any(|name| name == "all") {

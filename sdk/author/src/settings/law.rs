@@ -1,4 +1,4 @@
-//! Exponents of a law that a person gives.
+//! Exponents of a law given by the user.
 
 use std::str::FromStr;
 
@@ -6,7 +6,7 @@ use htex_format::{Exponent, Law, MOST_EXPONENT};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Exponents that a person gives; an absent one is measured or assumed.
+/// Exponents given by the user; a missing one is measured or assumed.
 ///
 /// ```
 /// use htex_author::settings::GivenLaw;
@@ -58,7 +58,7 @@ impl TryFrom<Exponents> for GivenLaw {
 }
 
 impl GivenLaw {
-    /// Returns a law with the given exponents in place of its own.
+    /// Returns `law` with the given exponents in place of its own.
     #[must_use]
     pub fn over(&self, law: Law) -> Law {
         let given = |given: Option<f64>, own: Exponent| given.map_or(own, Exponent::given);

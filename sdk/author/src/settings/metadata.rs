@@ -6,11 +6,11 @@ use htex_finding::Severity;
 use htex_format::{Contact, Law, Manifest, check_doi, check_license};
 
 settings! {
-    /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is
-    /// there; an empty text removes it.
+    /// What a texture is, who made it, and how it was recorded. A missing entry keeps the existing
+    /// value; an empty text removes it.
     #[cfg_attr(feature = "clap", command(next_help_heading = "Metadata"))]
     pub struct Metadata {
-        /// Name of the texture. A recipe says it beside the recordings.
+        /// Name of the texture. A recipe gives it next to the recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
         pub name: Option<String>,
@@ -72,7 +72,7 @@ settings! {
         ))]
         pub finger: Option<String>,
 
-        /// Whether a finger or a tool slid over the surface, which decides what is assumed of other
+        /// Whether a finger or a tool slid over the surface. It decides what is assumed about other
         /// motions.
         #[cfg_attr(feature = "clap", arg(
             long,
@@ -99,7 +99,8 @@ impl Metadata {
         *self == Self::default()
     }
 
-    /// Checks what the asset's validation would find; returns warnings, `FIELD: SENTENCE`.
+    /// Checks the entries as the asset's validation would. Returns warnings of the form
+    /// `FIELD: SENTENCE`.
     ///
     /// # Errors
     /// When an entry would make the asset invalid.
@@ -147,7 +148,8 @@ impl Metadata {
         self.apply_law(manifest);
     }
 
-    /// Writes contact and law into a manifest. A stated law of another contact is assumed anew.
+    /// Writes contact and law into a manifest. If the contact changes, exponents that were only
+    /// assumed are assumed anew for the new contact.
     fn apply_law(&self, manifest: &mut Manifest) {
         let (law, contact) = (manifest.law(), self.contact.unwrap_or(manifest.contact));
         let of_contact = |law: Law| law.reassumed(manifest.quantity, contact);

@@ -1,8 +1,8 @@
-//! Settings by name, each defined once: what the command's flags, the Python package's keywords and
-//! recipes say, and what provenance keeps.
+//! Settings by name, each defined once, for the command's flags, the Python package's keywords,
+//! recipes, and provenance.
 //!
-//! Everything is optional, so that settings for many textures and those of one can be laid over
-//! each other ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
+//! Every setting is optional, so that the settings of one texture can be laid over the settings of
+//! many ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
 
 #[cfg(feature = "clap")]
 mod choices;

@@ -1,9 +1,9 @@
-//! Settings that are one value or a list.
+//! Settings that accept one value or a list.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
-/// A text, or several.
+/// One text, or several.
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "OneOrMore")]
@@ -17,7 +17,7 @@ pub enum OneOrMore<T = String> {
 /// Reads one value, or a list.
 ///
 /// # Errors
-/// When it is neither.
+/// When the input is neither.
 pub fn one_or_more<'de, T, L, D>(deserializer: D) -> Result<L, D::Error>
 where
     T: Deserialize<'de>,

@@ -11,7 +11,7 @@ use htex_recording::read_response;
 use htex_recording::{ColumnMap, MAX_RATE_HZ, ReadOptions, Tracker};
 
 settings! {
-    /// Settings of reading recordings; an absent one has its default.
+    /// Settings of reading recordings; a missing one has its default.
     ///
     /// ```
     /// use htex_author::settings::ReadingSettings;
@@ -21,7 +21,7 @@ settings! {
     /// # Ok::<(), htex_author::settings::SettingsError>(())
     /// ```
     pub struct ReadingSettings {
-        /// Sampling rate of the recordings, hertz, where the files do not say.
+        /// Sample rate of the recordings, hertz, for files that do not state it.
         #[schemars(range(max = MAX_RATE_HZ), extend("exclusiveMinimum" = 0))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "HZ",
@@ -29,7 +29,7 @@ settings! {
         ))]
         pub rate_hz: Option<f64> = "rate",
 
-        /// Names and scales of the recordings' columns, as the command's `--map`.
+        /// Names and scales of the recordings' columns, in the syntax of the command's `--map`.
         #[cfg_attr(feature = "clap", arg(
             value_name = "MAP",
             help = "Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g. \
@@ -39,7 +39,7 @@ settings! {
         ))]
         pub map: Option<String> = "map",
 
-        /// Files of trackers with the finger's motion, one for each recording, or one for all.
+        /// Tracker files with the finger's motion: one for each recording, or one for all.
         #[serde(deserialize_with = "one_or_more")]
         #[schemars(
             with = "Option<String>",
@@ -52,7 +52,8 @@ settings! {
         ))]
         pub tracker: Option<Vec<PathBuf>> = "tracker",
 
-        /// Names and scales of the trackers' columns, as the command's `--tracker-map`.
+        /// Names and scales of the trackers' columns, in the syntax of the command's
+        /// `--tracker-map`.
         #[cfg_attr(feature = "clap", arg(
             value_name = "MAP",
             requires = "tracker",
@@ -77,7 +78,7 @@ settings! {
         ))]
         pub scale: Option<f64> = "scale",
 
-        /// File of the setup's response, which spectra are divided by.
+        /// File with the setup's response, by which spectra are divided.
         #[schemars(description = "File of the setup's response, relative to the recipe.")]
         #[cfg_attr(feature = "clap", arg(
             value_name = "CSV",
@@ -125,10 +126,10 @@ settings! {
 }
 
 impl ReadingSettings {
-    /// Returns the options of reading each of `count` recordings.
+    /// Returns the options for reading each of `count` recordings.
     ///
     /// # Errors
-    /// When a map of columns cannot be read, or there are neither one nor `count` trackers.
+    /// When a map of columns cannot be read, or the number of trackers is neither one nor `count`.
     pub fn read_options(&self, count: usize) -> Result<Vec<ReadOptions>, SettingsError> {
         let options = ReadOptions::default()
             .with_rate_hz(self.rate_hz)
@@ -151,7 +152,7 @@ impl ReadingSettings {
         }
     }
 
-    /// Returns whether a setting says what the columns of recordings are.
+    /// Returns whether a setting says which columns the recordings have.
     #[must_use]
     pub fn says_columns(&self) -> bool {
         let scaled = self.rate_hz.or(self.scale).is_some();
@@ -159,7 +160,7 @@ impl ReadingSettings {
         scaled || self.map.is_some() || self.tracker.is_some() || is_other
     }
 
-    /// Returns the options of computing spectra; reads the response.
+    /// Returns the options for computing spectra; reads the setup's response.
     ///
     /// # Errors
     /// When the response cannot be read.

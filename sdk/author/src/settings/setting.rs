@@ -1,5 +1,5 @@
-//! What all settings have in common: they may be absent, they are laid over each other, and an
-//! asset's provenance keeps some.
+//! What all settings have in common: they may be missing, one set can be laid over another, and an
+//! asset's provenance stores some of them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -9,18 +9,18 @@ use htex_format::{Contact, Quantity};
 use super::{GivenLaw, OptionSetting};
 use crate::{Averaging, Level, SegmentChoice};
 
-/// A setting, which may be absent.
+/// A setting, which may be missing.
 pub(super) trait Setting {
-    /// Returns this setting, or where it is absent that of `under`.
+    /// Returns this setting, or the one in `under` if this one is missing.
     fn over(self, under: Self) -> Self;
 
     fn is_absent(&self) -> bool;
 
-    /// Returns the text that provenance keeps; `None` for a default, from which nothing differs.
+    /// Returns the text to store in the provenance; `None` for a default, which is not stored.
     fn recorded(&self) -> Option<String>;
 }
 
-/// The value of a setting that provenance keeps.
+/// The value of a setting, as the provenance stores it.
 pub(super) trait Recorded {
     fn recorded(&self) -> Option<String>;
 }
@@ -39,7 +39,7 @@ impl<T: Recorded> Setting for Option<T> {
     }
 }
 
-/// Options of models, laid over each other one by one.
+/// Options of models are laid over each other one by one.
 impl Setting for BTreeMap<String, OptionSetting> {
     fn over(self, mut under: Self) -> Self {
         under.extend(self);
@@ -61,7 +61,7 @@ impl Recorded for Vec<String> {
     }
 }
 
-/// A file is recorded by its name: folders differ from machine to machine.
+/// A file is stored by its name only: folders differ from machine to machine.
 impl Recorded for PathBuf {
     fn recorded(&self) -> Option<String> {
         Some(self.file_name()?.to_string_lossy().into_owned())
@@ -75,7 +75,7 @@ impl Recorded for Vec<PathBuf> {
     }
 }
 
-/// Values that are recorded by a text, unless they are the default.
+/// Values that are stored as a text, unless they are the default.
 macro_rules! recorded {
     ($($type:ty: |$value:ident| $text:expr;)*) => {$(
         impl Recorded for $type {
@@ -104,11 +104,11 @@ fn unless_default<T: Default + PartialEq>(value: &T, text: &str) -> Option<Strin
     (*value != T::default()).then(|| text.to_owned())
 }
 
-/// Defines a struct of settings: what is read of recipes and of keywords (serde), of the command's
-/// flags (clap), and what provenance keeps.
+/// Defines a struct of settings once for all its uses: read from recipes and keywords (serde), from
+/// the command's flags (clap), and stored in the provenance.
 ///
-/// `= "NAME"` after a setting is its flag, under which provenance keeps it; a flag of another kind
-/// is among its attributes.
+/// `= "NAME"` after a setting names its flag, under which the provenance stores it. A setting whose
+/// flag has another form declares the flag in its attributes.
 macro_rules! settings {
     (
         $(#[$meta:meta])*
@@ -128,24 +128,25 @@ macro_rules! settings {
         )*}
 
         impl $name {
-            /// The names of the settings, as recipes and keywords have them.
+            /// The names of the settings in recipes and keywords.
             pub const NAMES: &'static [&'static str] = &[$(stringify!($field),)*];
 
-            /// Returns these settings, and where they are absent those of `under`.
+            /// Returns these settings, with missing ones taken from `under`.
             #[must_use]
             pub fn over(self, under: Self) -> Self {
                 use crate::settings::setting::Setting;
                 Self { $($field: self.$field.over(under.$field),)* }
             }
 
-            /// Returns the settings that differ from their defaults, for an asset's provenance,
-            /// under the names of the command's flags.
+            /// Returns the settings that differ from their defaults, under the names of the
+            /// command's flags, to store in an asset's provenance.
             pub fn recorded(&self) -> std::collections::BTreeMap<String, String> {
                 #[allow(unused_imports)]
                 use crate::settings::setting::Setting;
                 let entries: &[(&str, Option<String>)] = &[$($(($flag, self.$field.recorded()),)?)*];
                 let said = entries.iter().filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?)));
-                // Inserted one by one: to collect them would sort them, by a sort of their own.
+                // Inserted one by one: `collect` into a `BTreeMap` sorts with a sort function of
+                // its own.
                 let mut recorded = std::collections::BTreeMap::new();
                 recorded.extend(said);
                 recorded

@@ -1,4 +1,4 @@
-//! What is felt of a difference, against another program.
+//! Felt differences, compared with an independent program.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{Felt, SpectrumRef, felt};
@@ -31,8 +31,8 @@ struct Expected {
     below: bool,
 }
 
-/// `tests/peers/felt.py` has a complex impedance, a threshold in decibels over decades, and bands
-/// by their edges: 1e-6 dB.
+/// `tests/peers/felt.py` uses a complex impedance, a threshold in decibels over decades, and bands
+/// given by their edges. Both agree within 1e-6 dB.
 #[test]
 fn another_program_feels_the_same() {
     let text = include_str!("../../../tests/golden/felt.json");

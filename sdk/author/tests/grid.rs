@@ -1,4 +1,5 @@
-//! Grids of conditions from one recording of a free motion, against the simulator's true spectra.
+//! Grids of conditions from one recording of a free motion, compared with the simulator's true
+//! spectra.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -27,7 +28,7 @@ fn take(options: &SimulationOptions) -> Take {
     }
 }
 
-/// Fits with the rig's response divided out, as a user does (`--frf`).
+/// Fits with the rig's response divided out, as a user does with `--frf`.
 fn fit_at_finger(options: &SimulationOptions, models: &[&str]) -> FittedAsset {
     let spectrum = SpectrumOptions::default().with_response(options.setup_response().unwrap());
     fit_with(&[take(options)], models, Grid::default(), spectrum)
@@ -47,7 +48,7 @@ fn fit_with(takes: &[Take], models: &[&str], grid: Grid, spectrum: SpectrumOptio
     fit_asset(takes, &request).unwrap()
 }
 
-/// Third-octave errors of what a player interpolates, at random motions inside the mesh.
+/// Third-octave errors of what a player interpolates at random motions inside the mesh.
 fn errors_db(asset: &Asset, model: &str, options: &SimulationOptions, count: usize) -> Vec<f64> {
     let truth = options.truth().unwrap();
     let rig = options.setup_response().unwrap();
@@ -95,7 +96,7 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     assert!(!report.triangles.is_empty() && report.steady < report.windows);
     assert!(fitted.findings.is_empty(), "{:?}", fitted.findings);
     assert!(report.one_condition_rms_db.unwrap() > 2.0 * report.left_out_rms_db.unwrap());
-    // Each cell names its condition, and the mesh spans most of the motions.
+    // Each cell names its condition, and the mesh covers most of the motions.
     for cell in report.cells.iter().filter(|c| c.status != CellStatus::Thin) {
         let condition = &conditions[cell.condition.unwrap()];
         assert_eq!(condition.speed_mm_s, Some(cell.speed_mm_s));
@@ -104,7 +105,8 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     let [slow, fast] = [0, report.speed_mm_s.len() - 1].map(|i| report.speed_mm_s[i]);
     assert!(slow < 45.0 && fast > 220.0, "{slow} to {fast} mm/s");
     assert_eq!(fitted.asset.manifest.provenance.recordings[0].segments, report.steady as u64);
-    // The left-out error, known without the truth, bounds what a player does.
+    // The held-out error needs no knowledge of the truth, and it bounds the error of what a player
+    // makes.
     let at = &fitted.asset.manifest.representations[0].at;
     let left: Vec<f64> = at.iter().filter_map(left_out_db).collect();
     assert!(left.len() * 2 > at.len(), "{} of {}", left.len(), at.len());
@@ -119,7 +121,7 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     assert!(left_db < 1.2 && left_db > half);
 }
 
-/// So it is where frequencies stay, the level rises with the speed, and the finger leaves the
+/// The same holds where frequencies stay, the level rises with the speed, and the finger leaves the
 /// surface a fifth of the time.
 #[test]
 fn a_hand_that_lifts_over_no_relief_gives_the_truth_inside_the_mesh() {
@@ -133,8 +135,8 @@ fn a_hand_that_lifts_over_no_relief_gives_the_truth_inside_the_mesh() {
     assert!(half < 0.7 && most < 1.0, "{half}, {most} dB");
 }
 
-/// Noise whose level follows the law that is assumed of an unknown contact and rises in time by
-/// some decibels, over a motion whose speed and force vary by a quarter.
+/// Noise over a motion whose speed and force vary by a quarter. Its level follows the law assumed
+/// for an unknown contact, and rises over time by some decibels.
 fn noise(seconds: f64, rise_db: f64) -> Take {
     const RATE_HZ: f64 = 2000.0;
     let times: Vec<f64> = (0..(seconds * RATE_HZ) as usize).map(|at| at as f64 / RATE_HZ).collect();
@@ -156,8 +158,8 @@ fn noise(seconds: f64, rise_db: f64) -> Take {
     }
 }
 
-/// What is left out is another time, so a texture that drifts is further from it than noise alone
-/// is.
+/// The left-out blocks are from another time, so the held-out error of a texture that drifts is
+/// larger than that of noise.
 #[test]
 fn what_drifts_is_in_the_left_out_error() {
     let [still, drifting] = [0.0, 8.0].map(|rise_db| {
@@ -193,7 +195,7 @@ fn given_lines_are_the_conditions_and_far_lines_stay_empty() {
     let report = fitted.grid.unwrap();
     let at = |speed, force| report.cell(speed, force).unwrap().status;
     assert_eq!([at(3, 0), at(3, 1)], [CellStatus::Thin; 2]);
-    // In two parts the recording gives nearly the same windows, and the same conditions.
+    // Cut into two parts, the recording gives nearly the same windows and the same conditions.
     let half = |from: Option<f64>, to: Option<f64>| Take {
         recording: takes[0].recording.clone().between(from, to).unwrap(),
         given: Exploration::default(),
@@ -230,7 +232,7 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
         ..moving.clone()
     };
     assert!(refused(restless, one, "auto").contains("stroke more evenly"));
-    // A given force stands for a column, and leaves lines of speed alone.
+    // A given force replaces a missing column, so the grid has only lines of speed.
     let unpressed = Recording { normal_n: None, ..moving };
     let given = Exploration { force_n: Some(0.5), ..one };
     assert!(refused(unpressed.clone(), one, "auto").contains("the normal force"));
@@ -251,8 +253,8 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
     assert!(Grid::parse(["speed=1", "speed=2"]).is_err());
 }
 
-/// The numbers of `docs/free-motion.md`: `cargo xtask prove grids` takes all models and surfaces, a
-/// test Bands on vinyl.
+/// The numbers of `docs/free-motion.md`. `cargo xtask prove grids` covers all models and surfaces,
+/// a plain test only Bands on vinyl.
 #[test]
 fn errors_inside_the_mesh_stay_small() {
     let (models, surfaces) = if xtask::prove::whole() {

@@ -1,5 +1,5 @@
-//! Laws of simulated surfaces, of some that are a relief and of some that are not: what recordings
-//! tell, and what plays outside of them.
+//! Laws of simulated surfaces, with and without a relief: what the recordings determine, and what
+//! plays outside of the recorded motions.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -10,7 +10,7 @@ use htex_host::Registry;
 use htex_play::{Asset, Motion};
 use htex_simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
 
-/// A free motion that keeps a speed and a force: its true spectrum is known.
+/// A free motion at one speed and force, whose true spectrum is known.
 fn steady(surface: Surface, departures: Departures, motion: Motion) -> SimulationOptions {
     let free = FreeMotion::default()
         .with_speed_mm_s([motion.speed_mm_s; 2])
@@ -21,7 +21,7 @@ fn steady(surface: Surface, departures: Departures, motion: Motion) -> Simulatio
         .with_rate_hz(5_000.0)
 }
 
-/// An asset of recordings at motions, with the rig's response divided out.
+/// Fits an asset to recordings at several motions, with the rig's response divided out.
 fn recorded(
     surface: Surface,
     departures: Departures,
@@ -43,7 +43,7 @@ fn recorded(
         .with_models([ModelRequest::new(registry.find("bands").unwrap())])
         .with_spectrum(SpectrumOptions::default().with_response(response.unwrap()));
     let fitted = fit_asset(&takes, &request).unwrap();
-    // Of a condition that was computed nothing is said to be felt.
+    // A computed condition has no recording, so no felt difference is stored for it.
     let conditions = fitted.asset.manifest.conditions.iter();
     let is_recorded = conditions.map(|condition| condition.segments != Some(0));
     assert!(is_recorded.eq(fitted.felt[0].iter().map(Option::is_some)));
@@ -59,7 +59,8 @@ fn motions<const N: usize>(motions: [(f64, f64); N]) -> [Motion; N] {
 }
 
 /// A relief, whose frequencies follow the speed and whose level follows the force, and a surface
-/// that keeps its frequencies; each with its exponents and a contact of which others are assumed.
+/// whose frequencies stay the same. Each comes with its exponents and with a contact for which
+/// other exponents are assumed.
 fn kinds() -> [(&'static str, Departures, [f64; 3], Contact); 2] {
     let relief = Departures::default();
     let other = relief.with_frequency_speed(0.0).with_level_speed(0.5).with_level_force(0.3);
@@ -69,8 +70,8 @@ fn kinds() -> [(&'static str, Departures, [f64; 3], Contact); 2] {
     ]
 }
 
-/// Three speeds and two forces tell the exponents, on every surface although others are assumed of
-/// the contact.
+/// Three speeds and two forces determine the exponents on every surface, although the contact's
+/// assumed exponents are different.
 #[test]
 fn exponents_of_simulated_surfaces_are_found() {
     let recorded_at = motions([(40.0, 0.3), (80.0, 0.3), (160.0, 0.3), (40.0, 1.2), (160.0, 1.2)]);
@@ -83,13 +84,13 @@ fn exponents_of_simulated_surfaces_are_found() {
             let [level_speed, level_force] =
                 [law.level_speed, law.level_force].map(|x| x.estimate.unwrap());
             assert!((level_speed - b).abs() < 0.17 && (level_force - c).abs() < 0.05);
-            // What plays is drawn to what is assumed beside these frequencies.
+            // The exponent that plays is pulled towards the one assumed with these frequencies.
             assert!((law.level_speed.exponent - b).abs() < 0.2);
         }
     }
 }
 
-/// The true magnitudes at a motion, the rig's response divided out, and their frequencies.
+/// The true magnitudes at a motion, with the rig's response divided out, and their frequencies.
 fn true_spectrum(surface: Surface, departures: Departures, motion: Motion) -> (Vec<f64>, Vec<f64>) {
     let options = steady(surface, departures, motion);
     let truth = options.truth().unwrap();
@@ -104,6 +105,7 @@ fn true_spectrum(surface: Surface, departures: Departures, motion: Motion) -> (V
 
 /// The asset without the conditions that were computed between recorded ones.
 fn without_computed(asset: &Asset) -> Asset {
+    // Computed conditions come after the recorded ones, so cutting off the end removes them.
     let mut data = asset.data().clone();
     let recorded = |c: &&htex_format::Condition| c.segments != Some(0);
     let count = data.manifest.conditions.iter().filter(recorded).count();
@@ -117,8 +119,8 @@ fn without_computed(asset: &Asset) -> Asset {
     Asset::new(data)
 }
 
-/// Between recorded speeds the lines of a relief move instead of fading into each other, and
-/// nothing is computed where they stay.
+/// Between recorded speeds, the lines of a relief move instead of fading into each other. Where
+/// frequencies stay the same, no condition is computed.
 #[test]
 fn lines_move_between_recorded_speeds() {
     let recorded_at = motions([(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)]);
@@ -145,8 +147,8 @@ fn lines_move_between_recorded_speeds() {
     }
 }
 
-/// Of two speeds, what plays an octave beyond them is nearer to the truth than the nearest
-/// recording, on both kinds.
+/// With recordings at two speeds, what plays an octave beyond them is nearer to the truth than the
+/// nearest recording, on both kinds of surface.
 #[test]
 fn what_plays_outside_is_nearer_than_the_nearest_recording() {
     let recorded_at = motions([(40.0, 0.4), (80.0, 0.4)]);
@@ -154,8 +156,7 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
     for surface in Surface::ALL {
         for (kind, departures, _, contact) in kinds() {
             let (grid, truth) = true_spectrum(surface, departures, beyond);
-            // What the recording at 80 mm/s has below 20 Hz is not known, and would be below 40 Hz
-            // here.
+            // The recording at 80 mm/s shows nothing below 20 Hz, which would be below 40 Hz here.
             let known = grid.partition_point(|hz| *hz < 40.0);
             let asset = recorded(surface, departures, contact, &recorded_at);
             let of = |motion| asset.magnitude(None, Some(motion), &grid).unwrap();

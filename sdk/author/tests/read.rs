@@ -1,4 +1,4 @@
-//! What a model states as a recording of its voice reads it, compared with its voice.
+//! The spectrum that a model states for a recording of its voice, compared with the voice itself.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{
@@ -21,7 +21,7 @@ fn spectrum(surface: Surface) -> TextureSpectrum {
     TextureSpectrum::average(&[part], options.averaging).unwrap()
 }
 
-/// The spectrum of 60 s of a voice, with another seed than measures have.
+/// The spectrum of 60 s of a voice, with another seed than the measures use.
 fn played(model: &LoadedModel, parameters: &[f64], of: &TextureSpectrum) -> Vec<f64> {
     let mut samples = vec![0.0; (SECONDS * RATE_HZ) as usize];
     let mut voice = Stream::new(model, parameters, of.band, RATE_HZ, 7).unwrap();
@@ -29,7 +29,8 @@ fn played(model: &LoadedModel, parameters: &[f64], of: &TextureSpectrum) -> Vec<
     spectrum_of_samples(&samples, RATE_HZ, 1.0, of.as_ref()).unwrap()
 }
 
-/// Errors against the recording, by magnitude and by 60 s of the voice, of fits at their defaults.
+/// Errors of default fits against the recording, computed from magnitudes and measured on 60 s of
+/// the voice.
 #[test]
 fn measures_of_magnitudes_are_those_of_the_voice() {
     let registry = Registry::builtin();
@@ -49,8 +50,8 @@ fn measures_of_magnitudes_are_those_of_the_voice() {
             for measure in [Measure::NineBand, Measure::ThirdOctave, Measure::LogSpectral] {
                 let [stated, heard] = [&stated, &heard].map(|a| a.get(measure).unwrap());
                 println!("{surface} {name} {measure:?}: {stated:.3} {heard:.3} dB");
-                // 0.3 dB is chance and the edges of voices. Large errors are those of bands next to
-                // empty, where the voice is read through the side lobes of the window, too.
+                // 0.3 dB is chance and the edges of voices. Large errors come from bands next to
+                // empty ones, where the voice is also read through the window's side lobes.
                 let tolerance_db = f64::max(0.3, 0.06 * heard);
                 assert!(
                     (stated - heard).abs() < tolerance_db,
@@ -61,8 +62,8 @@ fn measures_of_magnitudes_are_those_of_the_voice() {
     }
 }
 
-/// A filter loses up to half the power near half its own rate when it is played; the stored level
-/// makes up for it.
+/// When a filter is played, it loses up to half the power near half its own sample rate; the stored
+/// level makes up for it.
 #[test]
 fn a_filter_plays_at_the_level_of_a_recording_near_half_its_rate() {
     let mut spectrum = spectrum(Surface::Sandpaper);

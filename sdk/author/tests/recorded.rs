@@ -1,4 +1,4 @@
-//! Loops of recordings, read as recordings.
+//! Recorded loops, read again as recordings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{
@@ -20,12 +20,13 @@ fn spectrum(recording: &Recording, options: &SpectrumOptions) -> TextureSpectrum
     TextureSpectrum::average(&[part], options.averaging).unwrap()
 }
 
-/// Largest errors of nine bands, dB: of windows, which share their signal with their neighbours,
-/// and of the eight segments of four sweeps, each second of which fades to another stretch, and is
-/// read with it by windows that lie across both.
+/// Largest nine-band errors in dB. The first is for windows, which share their signal with their
+/// neighbours. The second is for the eight segments of four sweeps: every second one fades into
+/// another stretch, and windows that lie across both read the two together.
 const WITHIN_DB: [f64; 2] = [0.5, 0.6];
 
-/// Two turns of a loop have the spectrum and the level of its recording, of windows and of sweeps.
+/// Two turns of a loop have the spectrum and the level of its recording, whether it is cut into
+/// windows or sweeps.
 #[test]
 fn a_loop_has_the_spectrum_of_its_recording() {
     for surface in [Surface::Vinyl, Surface::Sandpaper, Surface::CorrugatedPaper] {
@@ -46,8 +47,8 @@ fn a_loop_has_the_spectrum_of_its_recording() {
     }
 }
 
-/// The samples are those of the recording: a sinusoid stays one through all segments, and there is
-/// no step at the seam.
+/// The loop has the recording's own samples: a sinusoid stays a sinusoid through all segments, and
+/// there is no step at the seam.
 #[test]
 fn a_loop_is_the_recorded_signal() {
     let hertz = 150.0;
@@ -60,8 +61,8 @@ fn a_loop_is_the_recorded_signal() {
     let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
     let made = RecordedLoop::of(&take, &options, false, 8000.0).unwrap();
     assert_eq!(made.samples.len(), made.segments * 800);
-    // Between the first half segment and the seam; the level is that of the spectrum, which is as
-    // near.
+    // Only between the first half segment and the seam. The level comes from the spectrum and
+    // agrees to within the same error.
     let inside = made.samples.iter().zip(&samples).skip(800);
     let worst = inside.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(worst < 0.004, "{worst}");

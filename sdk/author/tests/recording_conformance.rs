@@ -1,4 +1,4 @@
-//! The conformance recordings of `spec/` with their reports, the page of findings, and valid
+//! The conformance recordings in `spec/` with their reports, the page of findings, and valid
 //! recordings without findings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -17,10 +17,10 @@ use serde_json::Value;
 use xtask::generated::{file, folder};
 
 const FOLDER: &str = "spec/recording-conformance";
-/// Codes that need several recordings, or parts of one.
+/// Codes that need several recordings, or parts of one recording.
 const OF_FITS: [&str; 2] = ["GRID_NOT_BETTER", "RECORDING_LEVELS_DIFFER"];
 
-/// [`FOLDER`], from the folder of this package, in which tests run.
+/// [`FOLDER`], relative to this package's folder, in which tests run.
 fn conformance() -> PathBuf {
     Path::new("../..").join(FOLDER)
 }
@@ -30,7 +30,7 @@ fn generated_recordings_reports_and_page_are_fresh() {
     let mut files = Vec::new();
     for case in cases() {
         let recording = (format!("{FOLDER}/{}", case.file()), case.text.as_bytes().to_vec());
-        // The report is that of the recording as a file.
+        // The report is made from the recording's file, so the file comes first.
         file(&recording.0, &recording.1);
         let report = case.golden(&conformance()).into_bytes();
         files.extend([recording, (format!("{FOLDER}/{}", case.report()), report)]);
@@ -64,13 +64,13 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
     }
     let silent: Vec<_> = RULES
         .iter()
-        // Those of several recordings are of fits (`grid.rs`, and below).
+        // Codes of several recordings come from fits (tested in `grid.rs` and below).
         .filter(|rule| !raised.contains(rule.code) && !OF_FITS.contains(&rule.code))
         .collect();
     assert!(silent.is_empty(), "{silent:?}");
 }
 
-/// The simulated hand varies by a few percent, and the surfaces have knots and ribs: the only
+/// The simulated hand varies by a few percent, and the surfaces have knots and ribs. The only
 /// finding is a sweep that is cut off.
 #[test]
 fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
@@ -103,8 +103,8 @@ fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
     }
 }
 
-/// Two recordings of one condition whose levels differ are found by the fit that averages them, and
-/// refused by a strict one.
+/// A fit that averages two recordings of one condition finds that their levels differ; a strict fit
+/// refuses them.
 #[test]
 fn recordings_of_one_condition_with_different_levels_are_found() {
     let take = |gain: f64, name: &str| {
@@ -130,7 +130,7 @@ fn recordings_of_one_condition_with_different_levels_are_found() {
         let differ = all.filter(|f| f.finding.code == "RECORDING_LEVELS_DIFFER");
         differ.map(|f| f.recording.clone()).collect()
     };
-    // 6 dB, which takes of one material may have; 10 and 20 dB.
+    // Level differences of 6 dB, which recordings of one material may have, and of 10 and 20 dB.
     assert!(found(&[1.0, 0.5]).is_empty());
     assert_eq!(found(&[1.0, 0.316]), ["two"]);
     assert_eq!(found(&[0.1, 1.0]), ["one"]);

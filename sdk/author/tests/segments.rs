@@ -10,14 +10,14 @@ use htex_simulate::{SimulationOptions, Surface, simulate};
 
 const RATE_HZ: f64 = 1000.0;
 
-/// Uniform numbers from -1 to 1.
+/// Uniform random numbers from -1 to 1.
 fn noise(at: usize) -> f64 {
     let mixed = (at as u64 ^ 0x9E37_79B9).wrapping_mul(0xD134_2543_DE82_EF95);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0x2545_F491_4F6C_DD1D);
     (mixed >> 40) as f64 / f64::from(1u32 << 23) - 1.0
 }
 
-/// Friction of sweeps from one second to another, with texture, at 1 kHz.
+/// Friction with texture at 1 kHz, in sweeps given by their start and end in seconds.
 fn friction(seconds: f64, sweeps: &[(f64, f64)]) -> Vec<f64> {
     let force = |at: usize| {
         let t = at as f64 / RATE_HZ;
@@ -34,7 +34,7 @@ fn read(recording: &Recording, given: Exploration) -> Result<Reading, AuthorErro
 
 #[test]
 fn a_sweep_that_the_end_cuts_off_is_left_out() {
-    // The middle of the recorded part is where the finger stops, at 25 mm/s instead of 80.
+    // In the middle of the recorded part the finger stops, at 25 mm/s instead of 80.
     let options = SimulationOptions::new(Surface::CorrugatedPaper);
     let recording = simulate(&options).unwrap().to_recording("paper").unwrap();
     let reading = read(&recording, Exploration::default()).unwrap();
@@ -47,7 +47,7 @@ fn a_sweep_that_the_end_cuts_off_is_left_out() {
     let codes: Vec<&str> = reading.findings.iter().map(|f| f.code.as_str()).collect();
     assert_eq!(codes, ["RECORDING_SWEEPS_CUT_OFF"]);
     assert!(reading.notes[0].contains("1 of 9 sweeps left out"), "{:?}", reading.notes);
-    // The same at the beginning.
+    // The same, cut at the beginning.
     let cut = recording.between(Some(0.6), None).unwrap();
     assert_eq!(choose_segments(&cut, SegmentChoice::Sweeps).cut_off, 2);
 }
@@ -57,7 +57,7 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
     let sweeps: Vec<(f64, f64)> =
         (0..6).map(|n| (1.3 * f64::from(n) + 0.2, 1.3 * f64::from(n) + 1.2)).collect();
     let lateral = friction(8.0, &sweeps);
-    // The first at 65 mm/s, the second at 80 except for a moment at 95, the others at 80.
+    // The first sweep is at 65 mm/s, the second at 80 except for a moment at 95, the others at 80.
     let speed = |at: usize| match at {
         0..1300 => 65.0,
         1950..2050 => 95.0,
@@ -91,7 +91,7 @@ fn a_long_stroke_is_read_all_along_and_sweeps_in_their_middles() {
     assert!(!stroke.from_sweeps && stroke.starts.len() == 89);
     let unread = stroke.unread.unwrap();
     assert!((unread.represented_s - 2.0).abs() < 0.01 && (unread.sliding_s - 8.4).abs() < 0.1);
-    // Two complete sweeps of a second beside a long one that is cut off.
+    // Two complete sweeps of a second each, next to a long one that is cut off.
     assert!(!read_in(&[(0.3, 1.3), (1.6, 2.6), (3.0, 9.0)]).from_sweeps);
     let three = read_in(&[(0.3, 1.8), (2.3, 5.3), (5.7, 8.0)]);
     assert!(three.from_sweeps && three.starts.len() == 3 && three.unread.is_none());

@@ -1,4 +1,4 @@
-//! Loops and filters, compared with the magnitudes they are made from.
+//! Synthesised loops and filters, compared with the magnitudes that they are made from.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{
@@ -50,8 +50,8 @@ fn played(model: &LoadedModel, spectrum: &TextureSpectrum, synthesis: &str) -> (
 #[test]
 fn a_filter_has_the_spectrum_within_three_quarters_of_a_decibel() {
     let (registry, spectrum) = (Registry::builtin(), spectrum());
-    // The lowest band is 24 Hz wide, from 20 to 44 Hz, which 511 taps at 2500 Hz just resolve;
-    // other errors are chance.
+    // The lowest band is 24 Hz wide, from 20 to 44 Hz, which 511 taps at 2500 Hz just resolve.
+    // Other errors are chance.
     for name in ["ar", "mfcc", "sbeta"] {
         let model = registry.find(name).unwrap();
         let (error_db, rms) = played(model, &spectrum, "filter");
@@ -68,8 +68,8 @@ fn a_loop_has_unit_power_and_the_spectrum_of_its_piece() {
     for model in registry.models() {
         let (error_db, rms) = played(model, &spectrum, "loop:10");
         assert!((rms - 1.0).abs() < 1e-3, "{}: {rms}", model.id());
-        // Ten seconds of noise determine the energy of the lowest band within 0.3 dB; a set of
-        // lines has empty bands, whose only energy is that of the seam.
+        // Ten seconds of noise determine the energy of the lowest band within 0.3 dB. A set of
+        // lines has empty bands, whose only energy comes from the seam.
         let is_noise = model.short_name() != "speak";
         assert!(!is_noise || error_db < 0.6, "{}: {error_db} dB", model.id());
     }

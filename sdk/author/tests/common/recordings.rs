@@ -1,4 +1,4 @@
-//! The conformance recordings: a valid one, and one for each code.
+//! The conformance recordings: one valid recording, and one or more for each finding code.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +14,7 @@ const RATE_HZ: f64 = 500.0;
 pub struct Case {
     pub name: &'static str,
     pub text: String,
-    /// Requested scanning speed, mm/s.
+    /// Scanning speed requested by the user, mm/s.
     pub speed_mm_s: Option<f64>,
 }
 
@@ -23,7 +23,8 @@ impl Case {
         format!("{}.csv", self.name)
     }
 
-    /// The code it is named after; several inputs of one code have a word behind it.
+    /// The code that the case is named after. If a code has several inputs, their names have a word
+    /// after it.
     pub fn code(&self) -> String {
         self.name.trim_end_matches("_many").to_uppercase()
     }
@@ -65,7 +66,7 @@ impl Case {
     }
 }
 
-/// Columns of a simulated recording; each case changes some.
+/// Columns of a simulated recording, some of which each case changes.
 struct Columns {
     /// Decimals of the time.
     decimals: usize,
@@ -123,7 +124,7 @@ impl Columns {
     }
 }
 
-/// Uniform numbers from -1 to 1, equal on every machine.
+/// Uniform random numbers from -1 to 1, the same on every machine.
 fn noise(at: usize) -> f64 {
     let mixed = (at as u64 ^ 0x9E37_79B9).wrapping_mul(0xD134_2543_DE82_EF95);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0x2545_F491_4F6C_DD1D);
@@ -190,7 +191,7 @@ fn clock_jitter() -> String {
     columns.lateral()
 }
 
-/// 61 % of the samples are on two levels.
+/// 61 % of the samples are at two levels.
 fn clipped() -> String {
     let columns = Columns::new(3.0);
     let mut sorted: Vec<f64> = columns.lateral_n.iter().map(|f| f.abs()).collect();
@@ -207,7 +208,7 @@ fn held(samples: std::ops::Range<usize>, value: fn(&[f64]) -> f64) -> String {
     columns.map_lateral(change).lateral()
 }
 
-/// Two spikes in the middles of sweeps.
+/// Two spikes, in the middles of sweeps.
 fn spikes() -> String {
     let columns = Columns::new(6.0);
     let at = [sample(0.6), sample(3.1)];
@@ -215,12 +216,13 @@ fn spikes() -> String {
     columns.map_lateral(change).lateral()
 }
 
-/// Fifteen small spikes, which are in more than a tenth of the blocks.
+/// Fifteen small spikes, in more than a tenth of the blocks.
 fn many_spikes() -> String {
     bare(|at, noise| 0.2 + 0.005 * noise + if at % 170 == 50 { 0.15 } else { 0.0 })
 }
 
-/// A force of five seconds by its sample and a noise of unit size.
+/// A recording of five seconds with only a force, computed from the sample index and a noise of
+/// unit size.
 fn bare(force: impl Fn(usize, f64) -> f64) -> String {
     let columns = Columns::new(5.0);
     columns.map_lateral(|at, _| force(at, noise(at))).lateral()
@@ -249,7 +251,7 @@ fn above() -> String {
     text
 }
 
-/// The quotient of the forces, at a normal force that rises and falls by 40 %.
+/// The quotient of the forces, with a normal force that rises and falls by 40 %.
 fn coefficient() -> String {
     let mut columns = Columns::new(9.0);
     for (at, normal) in columns.normal_n.iter_mut().enumerate() {
@@ -273,7 +275,7 @@ fn speed(change: fn(f64) -> f64) -> String {
     columns.with_speed()
 }
 
-/// The first of several sweeps has three quarters of the speed.
+/// The first of several sweeps is at three quarters of the speed.
 fn slow_sweep() -> String {
     let mut columns = Columns::new(4.0);
     columns.speed_mm_s[..sample(1.2)].iter_mut().for_each(|v| *v *= 0.75);
@@ -291,7 +293,7 @@ fn stroke() -> String {
     columns.lateral()
 }
 
-/// A knock at the table during one sweep.
+/// Someone knocks at the table during one sweep.
 fn knock() -> String {
     let columns = Columns::new(8.0);
     let from = sample(3.0);

@@ -1,4 +1,4 @@
-//! Recordings from the columns of a file.
+//! Building a recording from the columns of a file.
 
 use htex_finding::Notice;
 use htex_format::Quantity;
@@ -13,13 +13,14 @@ use crate::options::ReadOptions;
 use crate::recording::{Recording, RecordingError};
 use crate::sheet::{Layout, Sheet, even_numbers};
 
-/// A recording, and the time of each sample if the file has times.
+/// A recording, with the time of each sample if the file has times.
 pub(crate) struct Assembled {
     pub(crate) recording: Recording,
     pub(crate) time_s: Option<Vec<f64>>,
 }
 
-/// Reads the columns that the map and their names select, or without a map channels by their order.
+/// Reads the columns that the map and their names select. Channels without names and without a map
+/// are assigned by their order.
 pub(crate) fn assemble(
     file: &str,
     sheet: &mut dyn Sheet,
@@ -58,14 +59,14 @@ fn by_name(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<A
 pub(crate) struct Signals {
     /// The columns that were read.
     wanted: Vec<usize>,
-    /// Each is removed once.
+    /// The values of each role; taking a role's values removes them.
     roles: Vec<(Role, Vec<f64>)>,
     simulated: bool,
     warnings: Vec<Notice>,
 }
 
 impl Signals {
-    /// Reads the selected columns, each once, and computes the values of the roles.
+    /// Reads each of the selected columns once and computes the values of the roles.
     pub(crate) fn read(sheet: &mut dyn Sheet, selection: &Selection) -> Result<Self, Fault> {
         let mut wanted: Vec<usize> = selection.chosen.iter().flat_map(Chosen::columns).collect();
         htex_dsp::order::sort(&mut wanted);
@@ -135,7 +136,8 @@ impl Signals {
     }
 }
 
-/// Computes a role's values. A column that no later role needs is moved out of `columns`.
+/// Computes a role's values. A column that no later role needs is moved out of `columns`, not
+/// copied.
 fn values(
     chosen: &Chosen,
     later: &[Chosen],
@@ -161,7 +163,7 @@ fn values(
     }
 }
 
-/// Refuses an expression whose values are not finite, such as a quotient by zero.
+/// Refuses an expression whose values are not finite, such as a division by zero.
 fn check_computed(sheet: &dyn Sheet, chosen: &Chosen, values: &[f64]) -> Result<(), Fault> {
     let Values::Formula { text, .. } = &chosen.values else {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Recordings of channels without names, by their order.
+//! Recordings whose channels have no names: roles by the order of the channels.
 
 use htex_finding::{Hint, Notice};
 use htex_format::Quantity;
@@ -8,8 +8,9 @@ use crate::options::ReadOptions;
 use crate::recording::Recording;
 use crate::sheet::Sheet;
 
-/// Assigns channels. Of a force: one is lateral, two are lateral x and y, three are x, y and
-/// normal. Of other quantities the channels are axes. Scales to the quantity's unit.
+/// Assigns roles to channels and scales them to the quantity's unit. For a force, one channel is
+/// lateral, two are lateral x and y, and three are x, y and normal. For other quantities, the
+/// channels are the axes.
 pub(crate) fn by_order(
     file: &str,
     sheet: &mut dyn Sheet,

@@ -1,4 +1,4 @@
-//! All channels of a file, with their names and without roles.
+//! All channels of a file with their names, but without roles.
 
 use std::path::Path;
 
@@ -13,22 +13,22 @@ use crate::input::{Opened, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
 
-/// The channels of a recording as they are in its file, without roles and scales.
+/// The channels of a recording as its file has them, without roles and scales.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ChannelTable {
     /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Times of the samples, seconds, ascending, if the file has a column of times.
+    /// Times of the samples, seconds, ascending; only if the file has a time column.
     pub time_s: Option<Vec<f64>>,
-    /// Names of the channels; `#` and its number for one without a name.
+    /// Names of the channels. A channel without a name is called `#` and its number.
     pub names: Vec<String>,
-    /// The samples of each channel, at least two, of equal lengths and finite.
+    /// The samples of each channel: at least two, finite, and equally many in every channel.
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Reads all channels of a file. The rate is the given one, the file's, or that of its column of
-/// times, which is no channel.
+/// Reads all channels of a file. The sample rate is the given one, the file's own, or the one that
+/// follows from its time column. The time column is not among the channels.
 ///
 /// # Errors
 /// As [`read_recording`](crate::read_recording).
@@ -67,7 +67,7 @@ fn table(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<Cha
     Ok(ChannelTable { rate_hz, time_s, names, channels: columns })
 }
 
-/// Returns the first column whose name is that of a time, and its factor to seconds.
+/// Returns the first column with the name of a time, and its factor to seconds.
 fn time_column(sheet: &dyn Sheet) -> Option<(usize, f64)> {
     let columns = sheet.columns();
     (0..columns.width()).find_map(|column| {

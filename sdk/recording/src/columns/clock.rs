@@ -8,19 +8,20 @@ use crate::recording::check_rate;
 use crate::rules::{RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER};
 use crate::sheet::Sheet;
 
-/// Ratio to the median step above which a step is a gap, if the clock is otherwise even.
+/// A step longer than this multiple of the median step is a gap, if the clock is otherwise even.
 const GAP: f64 = 1.5;
-/// The same for an uneven clock, where short steps make up for a long one. Of the steps of a
-/// Poisson process, one in a thousand is longer.
+/// The same for an uneven clock, in which short steps make up for a long one. In a Poisson process,
+/// one step in a thousand is longer than the median by more than this.
 const GAP_UNEVEN: f64 = 10.0;
-/// Interquartile range of the steps, relative to the median, above which a clock is uneven: normal
-/// scatter of this width puts one step in 200,000 beyond [`GAP`].
+/// Interquartile range of the steps relative to the median above which a clock counts as uneven.
+/// Normally distributed steps with this scatter put one step in 200,000 beyond [`GAP`].
 const UNEVEN: f64 = 0.15;
-/// Jitter of the steps (rms over mean) above which a warning is given.
+/// Jitter of the steps (rms divided by mean) above which a warning is given.
 const JITTER: f64 = 0.01;
-/// Relative difference between column and option above which a warning is given.
+/// Relative difference between the rate of the time column and the given rate above which a warning
+/// is given.
 const DISAGREE: f64 = 1e-3;
-/// Relative distance from an integer rate within which the integer is used: printed times are
+/// A rate this close to an integer, relatively, is taken as that integer, because printed times are
 /// rounded.
 const WHOLE: f64 = 1e-5;
 
@@ -33,14 +34,14 @@ pub fn clock_definition() -> String {
     )
 }
 
-/// Warnings of a reader, and findings of the time column.
+/// Warnings of the reader, and findings of the time column.
 #[derive(Default)]
 pub(crate) struct Noticed {
     pub(crate) warnings: Vec<Notice>,
     pub(crate) findings: Findings,
 }
 
-/// Returns the rate to read at without a time column: the given one, or else the file's own.
+/// Returns the sample rate of a file without a time column: the given rate, or else the file's own.
 pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed) -> Option<f64> {
     if let (Some(own), Some(given)) = (own, given)
         && (own / given - 1.0).abs() > DISAGREE
@@ -57,7 +58,8 @@ pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed)
     given.or(own)
 }
 
-/// Returns the rate in hertz of a file; `given` takes precedence over the time column `time_s`.
+/// Returns the sample rate of a file in hertz; `given` takes precedence over the time column
+/// `time_s`.
 pub(crate) fn rate(
     file: &str,
     sheet: &dyn Sheet,
@@ -91,7 +93,7 @@ pub(crate) fn rate(
     }
 }
 
-/// Returns the number of steps over the time they take, without gaps.
+/// Returns the number of steps divided by the time they take, without gaps.
 fn measure(
     sheet: &dyn Sheet,
     time_s: &[f64],
@@ -144,18 +146,18 @@ fn measure(
     Ok(rate_hz)
 }
 
-/// Returns the longest step that is not a gap.
+/// Returns the longest duration of a step that does not count as a gap.
 fn longest_step(mut steps: Vec<f64>) -> f64 {
     let last = steps.len() - 1;
     let mut rank = |at: usize| *steps.select_nth_unstable_by(at, f64::total_cmp).1;
     let [low, median, high] = [last / 4, last / 2, last - last / 4].map(&mut rank);
     let is_even = high - low <= UNEVEN * median;
-    // A step that is too long only by rounding is not a gap.
+    // A step that is too long only because of rounding is not a gap.
     let factor = if is_even { GAP } else { GAP_UNEVEN };
     factor * median * (1.0 + 1e-6)
 }
 
-/// Returns the integer that a rate is nearly equal to, or the rate.
+/// Returns the integer closest to a rate if the rate is nearly equal to it, otherwise the rate.
 pub(crate) fn snap(rate_hz: f64) -> f64 {
     let whole = rate_hz.round();
     if (rate_hz - whole).abs() <= WHOLE * whole { whole } else { rate_hz }

@@ -8,24 +8,26 @@
 //! column  = '#' number | '"' any '"' | "'" any "'" | path | name
 //! ```
 //!
-//! A name begins with neither a digit nor an operator; spaces and units in brackets belong to it,
-//! as in `Fx [mN]` and `Lateral Force (m/s)`. A path begins with `/` and ends at a space or another
-//! operator, as in `/run1/fx`. Products and quotients of columns are allowed, so an expression need
-//! not be linear.
+//! A name begins with neither a digit nor an operator. It may contain spaces and a unit in
+//! brackets, as in `Fx [mN]` and `Lateral Force (m/s)`. A path begins with `/` and ends at a space
+//! or another operator, as in `/run1/fx`. Products and quotients of columns are allowed, so an
+//! expression need not be linear.
 //!
-//! It is evaluated row by row, and a result that is not finite is an error with its row.
+//! The expression is evaluated row by row. A result that is not finite is an error that names the
+//! row.
 
 use std::fmt;
 
 use crate::columns::token::{ColumnRef, Problem, Token, TokenKind};
 
-/// Deepest nesting of parentheses and signs.
+/// Deepest allowed nesting of parentheses and signs.
 const MOST_DEEP: usize = 32;
-/// Most numbers, columns and operators: a stack of this size is enough to evaluate them.
+/// Largest number of numbers, columns and operators together. A stack of this size is always enough
+/// to evaluate them.
 const MOST_STEPS: usize = 256;
 
-/// What a role's values are computed from: a column, or sums, differences, products and quotients
-/// of columns and numbers.
+/// How a role's values are computed: one column, or sums, differences, products and quotients of
+/// columns and numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     text: String,
@@ -56,7 +58,8 @@ impl fmt::Display for Expression {
 }
 
 impl Expression {
-    /// Returns the column that the whole expression is; `None` if it is computed.
+    /// Returns the column if the expression is nothing but a column; `None` if it has to be
+    /// computed.
     #[must_use]
     pub fn column(&self) -> Option<&ColumnRef> {
         match &self.steps[..] {
@@ -71,13 +74,13 @@ impl Expression {
         &self.text
     }
 
-    /// Whether it contains a number, and so possibly a factor between units.
+    /// Whether it contains a number, which may be a factor between units.
     pub(crate) fn has_number(&self) -> bool {
         let is_number = |step: &Step| matches!(step, Step::Number(_));
         self.steps.iter().any(is_number)
     }
 
-    /// Returns the formula, with each column replaced by what `find` returns for it.
+    /// Returns the formula, in which each column is replaced by what `find` returns for it.
     pub(crate) fn resolve<E>(
         &self,
         mut find: impl FnMut(&ColumnRef) -> Result<usize, E>,
@@ -94,7 +97,7 @@ impl Expression {
         Ok(Formula { operations })
     }
 
-    /// Parses tokens of `text`, of which there is at least one.
+    /// Parses `tokens` of `text`; there must be at least one.
     pub(crate) fn parse(text: &str, tokens: &[Token]) -> Result<Self, Problem> {
         let mut parser = Parser { tokens, steps: Vec::new(), depth: 0 };
         parser.sum()?;
@@ -228,7 +231,7 @@ enum Operation {
 }
 
 impl Formula {
-    /// Returns the columns in the order of their use, with repetitions.
+    /// Returns the columns in the order of use; a column may occur several times.
     pub(crate) fn columns(&self) -> impl Iterator<Item = usize> {
         self.operations.iter().filter_map(|operation| match operation {
             Operation::Column(column) => Some(*column),
@@ -236,8 +239,8 @@ impl Formula {
         })
     }
 
-    /// Returns the value in each of `rows` rows, times `scale`; `of` returns the values of a
-    /// column.
+    /// Returns the value in each of `rows` rows, multiplied by `scale`; `of` returns the values of
+    /// a column.
     pub(crate) fn values<'a>(
         &self,
         rows: usize,

@@ -1,4 +1,4 @@
-//! The columns that a map names, and the errors of selecting columns.
+//! Finding the columns that a map names.
 
 use htex_format::Quantity;
 
@@ -9,7 +9,8 @@ use crate::columns::token::ColumnRef;
 use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
-/// Returns the column that an expression is: the one with its text as name, or the only one in it.
+/// Returns the column if the expression is a single column, or if the file has exactly one column
+/// with the expression's text as its name.
 pub(crate) fn whole_column(
     columns: &Columns,
     values: &Expression,

@@ -1,4 +1,5 @@
-//! The column map, in which the user assigns roles: `lateral=lateral_V:0.4444,normal=-#3*0.31`.
+//! The column map, with which the user assigns roles to columns:
+//! `lateral=lateral_V:0.4444,normal=-#3*0.31`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,10 +8,10 @@ use crate::columns::expression::Expression;
 use crate::columns::token::{Problem, Token, TokenKind, tokens};
 use crate::error::{ReadError, ReadProblem};
 
-/// Longest map, bytes.
+/// Longest map that is accepted, bytes.
 const MOST_BYTES: usize = 16 << 10;
 
-/// The role of a column: the signal that it holds.
+/// The role of a column: which signal it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Lateral force along a single axis, newtons.
@@ -19,7 +20,7 @@ pub enum Role {
     LateralX,
     /// Second lateral axis, newtons.
     LateralY,
-    /// Single axis of an acceleration, velocity or displacement, in its unit.
+    /// Single axis of an acceleration, velocity or displacement, in the quantity's unit.
     Signal,
     /// First axis of the quantity.
     SignalX,
@@ -40,7 +41,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Every role, in the order in which columns are assigned.
+    /// All roles, in the order in which columns are assigned to them.
     pub const ALL: [Self; 12] = [
         Self::Lateral,
         Self::LateralX,
@@ -82,23 +83,23 @@ impl fmt::Display for Role {
     }
 }
 
-/// An entry `ROLE=EXPRESSION[:SCALE]` of a column map.
+/// One entry of a column map: `ROLE=EXPRESSION[:SCALE]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEntry {
-    /// The role of the values.
+    /// The role that the values get.
     pub role: Role,
-    /// The column, or what is computed from columns.
+    /// The column, or an expression over columns.
     pub values: Expression,
-    /// Factor to the role's unit (N, the quantity's, mm/s, s, mm). Without it a column has the unit
-    /// in its name, and the values of an expression are in the role's unit.
+    /// Factor to the role's unit (N, the quantity's unit, mm/s, s, mm). Without a factor, a column
+    /// has the unit in its name, and the values of an expression are in the role's unit.
     pub scale: Option<f64>,
 }
 
 impl MapEntry {
-    /// Parses the values of a role, `EXPRESSION[:SCALE]`.
+    /// Parses the values of a role, in the form `EXPRESSION[:SCALE]`.
     ///
     /// # Errors
-    /// [`ReadProblem::Map`] if the text is no expression, with the place in it.
+    /// [`ReadProblem::Map`] if the text is not an expression; it gives the place in the text.
     ///
     /// ```
     /// # use htex_recording::{MapEntry, Role};
@@ -123,12 +124,12 @@ impl MapEntry {
     }
 }
 
-/// The user's assignment of columns to roles.
+/// Column map: the user's assignment of columns to roles.
 ///
 /// A role's values are a column or an expression: sums, differences, products and quotients of
 /// numbers and columns, with parentheses. Columns are given by name, by number (`#3`), by path
-/// (`/run1/fx`), or in quotes if the name contains an operator. A text that is the name of a column
-/// as a whole is that column.
+/// (`/run1/fx`), or in quotes if the name contains an operator. If the whole text is the name of a
+/// column, it means that column.
 ///
 /// ```
 /// # use htex_recording::ColumnMap;
@@ -144,11 +145,11 @@ pub struct ColumnMap {
 }
 
 impl ColumnMap {
-    /// Creates a map of entries.
+    /// Creates a map from its entries.
     ///
     /// # Errors
-    /// [`ReadProblem::Map`] if a role or a column is given twice, or a single axis together with
-    /// several.
+    /// [`ReadProblem::Map`] if a role or a column is given twice, or if a single axis is given
+    /// together with several axes.
     pub fn new(entries: impl IntoIterator<Item = MapEntry>) -> Result<Self, ReadError> {
         let mut map = Self::default();
         for entry in entries {
@@ -158,7 +159,7 @@ impl ColumnMap {
         Ok(map)
     }
 
-    /// Returns the entries in the given order.
+    /// Returns the entries in the order in which they were given.
     #[must_use]
     pub fn entries(&self) -> &[MapEntry] {
         &self.entries
@@ -251,7 +252,7 @@ fn parse_role(text: &str) -> Result<Role, String> {
     })
 }
 
-/// Splits at the last colon. A name that contains a colon is quoted, or has a scale after it.
+/// Splits at the last colon. A name that contains a colon must be quoted or followed by a scale.
 fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
     let is_colon = |token: &Token| token.kind == TokenKind::Colon;
     let Some(colon) = tokens.iter().rposition(is_colon) else {

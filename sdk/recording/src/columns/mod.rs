@@ -1,4 +1,4 @@
-//! Columns of a file: their names, units and roles, and what is computed from them.
+//! Columns of a file: their names, units and roles, and expressions over them.
 
 pub(crate) mod assemble;
 mod by_order;

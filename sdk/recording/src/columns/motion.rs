@@ -1,15 +1,16 @@
-//! Sliding speed, from the finger's position.
+//! Sliding speed, computed from the finger's position.
 
 use crate::sums::Sums;
 
-/// Length of the moving average of the position and of the difference for the speed, seconds.
-/// Trackers are slow (60 Hz is common): in a shorter window the speed shows their steps.
+/// Length of the moving average of the position, and of the difference that gives the speed,
+/// seconds. Trackers are slow (60 Hz is common): with a shorter window the speed would show their
+/// steps.
 const WINDOW_S: f64 = 0.05;
 
-/// Returns the speed in mm/s of each sample, from one or two coordinates in mm of equal length.
+/// Returns the speed of each sample in mm/s, from one or two coordinates in mm of equal length.
 ///
-/// The position is averaged over 50 ms, and its difference is taken over 50 ms around each sample;
-/// both windows are shorter at the ends.
+/// The position is averaged over 50 ms, and its difference is then taken over 50 ms around each
+/// sample. Both windows are shorter at the ends.
 pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     let [first, others @ ..] = coordinates_mm else {
         return Vec::new();
@@ -24,8 +25,8 @@ pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     speed
 }
 
-/// Returns the difference of the averaged position over `2 half` samples around each sample, fewer
-/// at the ends.
+/// Returns the difference of the averaged position over `2 half` samples around each sample; over
+/// fewer samples at the ends.
 fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item = f64> {
     let position = moving_average(position, half);
     let last = position.len().saturating_sub(1);
@@ -35,7 +36,8 @@ fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item =
     })
 }
 
-/// Returns the mean over `2 half + 1` samples, fewer at the ends but symmetric around the sample.
+/// Returns the mean over `2 half + 1` samples. At the ends it covers fewer samples, but stays
+/// symmetric around the sample.
 fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
     let sums = Sums::of(values.iter().copied());
     let mean = |at: usize| {

@@ -1,13 +1,13 @@
-//! Roles and units of columns, from their names.
+//! Roles and units, recognised from the names of columns.
 
 use htex_format::Quantity;
 
 use crate::columns::map::Role;
 
-/// The unit in a column's name.
+/// The unit that a column's name states.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Unit {
-    /// Factor to the role's base unit (that of the quantity, N, mm/s, s, mm).
+    /// Factor to the role's base unit (the quantity's unit, N, mm/s, s, mm).
     Scale(f64),
     /// The name has no unit.
     Unsaid,
@@ -64,17 +64,18 @@ const NAMES: [(Role, &[&str]); 8] = [
     (Role::Y, &["y", "pos_y", "y_pos", "position_y", "y_position", "finger_y"]),
 ];
 
-/// Unit suffixes after an underscore, each before its own suffixes.
+/// Unit suffixes after an underscore. A suffix comes before any shorter one that it ends with.
 const SUFFIXES: [&str; 23] = [
     "mm_s2", "cm_s2", "m_s2", "mm/s2", "cm/s2", "m/s2", "mm_s", "cm_s", "um_s", "m_s", "mm/s",
     "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us", "s", "mm",
 ];
-/// Units of length, and standard gravity. They are separate because `_m` also ends other units.
+/// Units of length, and standard gravity. They are separate because `_m` is also the end of other
+/// units.
 const SHORT: [&str; 5] = ["cm", "um", "nm", "m", "g"];
 /// Standard gravity, m/s².
 const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Returns the role and the unit of a column's name in a recording of a quantity.
+/// Returns the role and the unit that a column's name stands for in a recording of a quantity.
 pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> {
     let name = normalise(name);
     let known = |name: &str| signal_role(name, quantity).or_else(|| known_role(name));
@@ -86,7 +87,7 @@ pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> 
     Some((role, unit_of(role, unit, quantity)))
 }
 
-/// Returns the unit in a column's name when the column has this role.
+/// Returns the unit stated in the name of a column with this role.
 pub(crate) fn unit_in(name: &str, role: Role, quantity: Quantity) -> Unit {
     match split_unit(&normalise(name)) {
         Some((_, unit)) => unit_of(role, unit, quantity),
@@ -114,8 +115,8 @@ fn normalise(name: &str) -> String {
         .replace('^', "")
 }
 
-/// Returns the axis of a motion's quantity that a name stands for: `accel`, `ax`, `velocity_y`,
-/// `z_disp`.
+/// Returns the axis of a motion's quantity that a name stands for, such as `accel`, `ax`,
+/// `velocity_y` or `z_disp`.
 fn signal_role(name: &str, quantity: Quantity) -> Option<Role> {
     let bases: &[&str] = match quantity {
         Quantity::LateralForce | Quantity::NormalForce => return None,
@@ -154,7 +155,7 @@ fn split_unit(name: &str) -> Option<(&str, &str)> {
     })
 }
 
-/// Returns the unit of this symbol, in lower case, for a role.
+/// Returns the unit with this symbol (in lower case) for a role.
 pub(crate) fn unit_of(role: Role, unit: &str, quantity: Quantity) -> Unit {
     let scale = match (base_unit(role, quantity), unit) {
         ("N", "n" | "newton" | "newtons") => 1.0,

@@ -1,4 +1,4 @@
-//! The column map applied to signals that arrive in blocks, such as those of a card's channels.
+//! The column map for signals that arrive in blocks, such as the channels of an acquisition card.
 
 use htex_finding::Notice;
 use htex_format::Quantity;
@@ -11,8 +11,8 @@ use crate::columns::select::{Selection, Values, select, select_motion};
 use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
-/// Conversion of channels to the values of roles, in the roles' units, by the rules of files: a
-/// map, then the names of channels.
+/// Converts channels to the values of roles, in the roles' units. The rules are the same as for
+/// files: first a map, then the names of channels.
 ///
 /// ```
 /// use htex_recording::{ColumnMap, Role, RowMap};
@@ -34,11 +34,11 @@ pub struct RowMap {
 }
 
 impl RowMap {
-    /// Selects from channels, each a name and a unit, which is empty if it is not known. A unit in
-    /// the name takes precedence.
+    /// Selects from channels, each given as a name and a unit. The unit is empty if it is not
+    /// known; a unit in the name takes precedence.
     ///
     /// # Errors
-    /// [`ReadProblem::Columns`] as for a file with these columns; `source` is its name in messages.
+    /// [`ReadProblem::Columns`] as for a file with these columns. Messages name it `source`.
     pub fn new(
         source: &str,
         channels: &[(String, String)],
@@ -53,7 +53,7 @@ impl RowMap {
         Ok(row_map)
     }
 
-    /// Selects the motion of the finger, as [`Tracker`](crate::Tracker) does: position or speed.
+    /// Selects the finger's motion, as [`Tracker`](crate::Tracker) does: position or speed.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -84,7 +84,7 @@ impl RowMap {
         selected.map_err(|problem| problem.in_file(source))
     }
 
-    /// Uses the units of channels whose names have none and for which the map has no scale.
+    /// Applies the units of channels whose names state none and for which the map has no scale.
     fn take_units(
         &mut self,
         columns: &Columns,
@@ -117,7 +117,7 @@ impl RowMap {
         Ok(())
     }
 
-    /// Returns the roles in the order of the values.
+    /// Returns the roles, in the order of the values.
     #[must_use]
     pub fn roles(&self) -> Vec<Role> {
         self.selection.chosen.iter().map(|c| c.role).collect()
@@ -129,7 +129,7 @@ impl RowMap {
         base_unit(role, self.quantity)
     }
 
-    /// Returns the indices of the channels in use, ascending.
+    /// Returns the indices of the channels that are used, ascending.
     #[must_use]
     pub fn channels(&self) -> Vec<usize> {
         let chosen = self.selection.chosen.iter();
@@ -139,14 +139,14 @@ impl RowMap {
         used
     }
 
-    /// Returns the assumptions that were made, such as units, each a full sentence.
+    /// Returns the assumptions that were made, such as assumed units, each as a full sentence.
     #[must_use]
     pub fn warnings(&self) -> &[Notice] {
         &self.selection.warnings
     }
 
-    /// Returns the values of each role, from the samples of each channel, of equal lengths. A
-    /// quotient by zero is not finite.
+    /// Returns the values of each role, from equally many samples of each channel. A division by
+    /// zero gives a value that is not finite.
     #[must_use]
     pub fn values(&self, channels: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let rows = channels.first().map_or(0, Vec::len);

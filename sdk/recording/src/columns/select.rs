@@ -10,7 +10,7 @@ use crate::columns::names::{Unit, base_unit, recognise, unit_in};
 use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
-/// What a role's values are.
+/// How a role's values are obtained.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
     pub(crate) role: Role,
@@ -19,7 +19,7 @@ pub(crate) struct Chosen {
     pub(crate) scale: f64,
 }
 
-/// A column, or what is computed from columns. Indices are from 0.
+/// A column, or an expression over columns. Indices start at 0.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Values {
     Column(usize),
@@ -31,7 +31,7 @@ impl Chosen {
         Self { role, values: Values::Column(column), scale }
     }
 
-    /// Returns the columns, in the order of their use, with repetitions.
+    /// Returns the columns in the order of use; a column may occur several times.
     pub(crate) fn columns(&self) -> Vec<usize> {
         match &self.values {
             Values::Column(column) => vec![*column],
@@ -40,7 +40,7 @@ impl Chosen {
     }
 }
 
-/// Returns the roles of a quantity's axes: the role of a single one, and those of several.
+/// Returns the roles of a quantity's axes: the role of a single axis, and the roles of several.
 fn axis_roles(quantity: Quantity) -> (Role, &'static [Role]) {
     match quantity {
         Quantity::LateralForce => (Role::Lateral, &[Role::LateralX, Role::LateralY]),
@@ -51,13 +51,13 @@ fn axis_roles(quantity: Quantity) -> (Role, &'static [Role]) {
     }
 }
 
-/// Returns every role of an axis, in the order of the axes.
+/// Returns all axis roles of a quantity: the single one, then the others in the order of the axes.
 pub(crate) fn all_axis_roles(quantity: Quantity) -> impl Iterator<Item = Role> {
     let (one, several) = axis_roles(quantity);
     [one].into_iter().chain(several.iter().copied())
 }
 
-/// Selects the motion of a tracker: time, and position or speed.
+/// Selects a tracker's motion: time, and position or speed.
 pub(crate) fn select_motion(
     columns: &Columns,
     map: Option<&ColumnMap>,
@@ -77,17 +77,17 @@ pub(crate) fn select_motion(
     Err(columns.refuse(problem))
 }
 
-/// The selected columns, and the assumptions made.
+/// The selected columns, and the assumptions that were made.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     quantity: Quantity,
-    /// Whether only the motion of the finger is selected.
+    /// Whether only the finger's motion is selected.
     is_motion: bool,
     pub(crate) chosen: Vec<Chosen>,
     pub(crate) warnings: Vec<Notice>,
 }
 
-/// Assigns columns by the map, then by their names, and requires an axis of the quantity.
+/// Assigns columns by the map, then by their names. At least one axis of the quantity is required.
 pub(crate) fn select(
     columns: &Columns,
     map: Option<&ColumnMap>,
@@ -111,7 +111,7 @@ pub(crate) fn select(
 }
 
 impl Selection {
-    /// Returns the position of the column with a role, if there is one.
+    /// Returns the index of the column with a role, if there is one.
     pub(crate) fn position(&self, role: Role) -> Option<usize> {
         self.chosen.iter().position(|chosen| chosen.role == role)
     }
@@ -129,7 +129,7 @@ impl Selection {
         all_axis_roles(self.quantity).any(|role| self.has(role))
     }
 
-    /// Returns the role of a map's entry; refuses axes of other quantities.
+    /// Returns the role of a map entry; refuses axes of other quantities.
     fn mapped_role(&self, columns: &Columns, role: Role) -> Result<Role, ReadProblem> {
         if self.is_motion {
             return match role {
@@ -185,8 +185,8 @@ impl Selection {
         Ok(Chosen::new(role, column, scale))
     }
 
-    /// The numbers of the columns are taken as they are in the file, since a factor between units
-    /// may be part of the expression.
+    /// The columns' numbers are used as they are in the file, not converted by the units in their
+    /// names, since the expression may contain a factor between units.
     fn mapped_formula(
         &mut self,
         columns: &Columns,
@@ -216,7 +216,8 @@ impl Selection {
         })
     }
 
-    /// Assigns columns by their names; returns why some with a known name cannot be used.
+    /// Assigns columns by their names. Returns reasons why some columns with a known name cannot be
+    /// used.
     fn take_named(&mut self, columns: &Columns) -> Result<Vec<String>, ReadProblem> {
         let mut refused = Vec::new();
         for role in self.open_roles(columns) {
@@ -224,7 +225,8 @@ impl Selection {
             for column in self.candidates(columns, role) {
                 let name = columns.name(column);
                 match recognise(columns.last_part(column), self.quantity) {
-                    // A column x or y without unit may as well be a force or an acceleration.
+                    // A column named x or y without a unit may just as well be a force or an
+                    // acceleration.
                     Some((Role::X | Role::Y, Unit::Unsaid)) if !self.is_motion => {}
                     Some((_, unit @ (Unit::Volts | Unit::Unknown(_)))) => {
                         refused.push(no_scale(&name, role, &unit, self.quantity))
@@ -247,8 +249,8 @@ impl Selection {
         Ok(refused)
     }
 
-    /// Returns the columns whose names have a role. Once a column is selected, they are in its
-    /// group or in one around it.
+    /// Returns the columns whose names fit a role. Once a column is selected, the candidates are in
+    /// its group or in the nearest enclosing group.
     fn candidates(&self, columns: &Columns, role: Role) -> Vec<usize> {
         let is_candidate = |column: &usize| {
             !self.claims(*column)
@@ -260,7 +262,7 @@ impl Selection {
         let Some(first) = selected.next() else {
             return all.collect();
         };
-        // Another run of the same file has columns of the same names.
+        // Another run in the same file has columns with the same names.
         let group = columns.group(first);
         let around: Vec<usize> =
             all.filter(|column| group.starts_with(columns.group(*column))).collect();
@@ -269,8 +271,8 @@ impl Selection {
         around.into_iter().filter(is_nearest).collect()
     }
 
-    /// Returns the roles that names may fill: several axes before a single one; position only
-    /// without a speed.
+    /// Returns the roles that may be filled by name: several axes before a single one, and position
+    /// only if there is no speed.
     fn open_roles(&self, columns: &Columns) -> Vec<Role> {
         let named = |role| !self.candidates(columns, role).is_empty();
         let mut roles = Vec::new();
@@ -296,7 +298,8 @@ impl Selection {
         roles
     }
 
-    /// Assigns a single column without a name to the texture's signal.
+    /// If the file has only one column and no role was found for it, takes it as the texture's
+    /// signal.
     fn take_single(&mut self, columns: &Columns) {
         if columns.width() == 1 && self.chosen.is_empty() {
             let (role, _) = axis_roles(self.quantity);
@@ -337,7 +340,7 @@ impl Selection {
         Err(columns.refuse(problem))
     }
 
-    /// Returns another quantity whose names include a column's name.
+    /// Returns another quantity to which a column's name would belong.
     fn other_quantity(&self, columns: &Columns) -> Option<Quantity> {
         let is_there = |quantity: &Quantity| {
             let is_axis = |role| all_axis_roles(*quantity).any(|axis| axis == role);

@@ -5,9 +5,9 @@ use std::fmt;
 /// A column, by name or by number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ColumnRef {
-    /// The name in the header, compared without case.
+    /// The name in the header, compared without regard to case.
     Name(String),
-    /// The number counted from 1, written `#3`.
+    /// The column's number, counted from 1 and written `#3`.
     Number(usize),
 }
 
@@ -20,7 +20,7 @@ impl fmt::Display for ColumnRef {
     }
 }
 
-/// A token, and the bytes of the text that it takes.
+/// A token, and the bytes of the text that it covers.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Token {
     pub(crate) kind: TokenKind,
@@ -43,7 +43,7 @@ pub(crate) enum TokenKind {
     Equals,
 }
 
-/// What is wrong with a text, and the byte at which it is.
+/// What is wrong with a text, and the byte at which it is wrong.
 #[derive(Debug)]
 pub(crate) struct Problem {
     pub(crate) at: Option<usize>,
@@ -59,7 +59,7 @@ impl Problem {
         Self { at: None, what: what.into() }
     }
 
-    /// Returns the sentence with the place in the text, in characters from 1.
+    /// Returns a sentence that states the place in the text, in characters counted from 1.
     pub(crate) fn in_text(self, text: &str) -> String {
         match self.at.and_then(|at| text.get(..at)) {
             Some(before) => format!("character {}: {}", before.chars().count() + 1, self.what),
@@ -88,8 +88,8 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
     Ok(tokens)
 }
 
-/// Returns the token at the start of a text, and its length in bytes. `ends_operand` says that an
-/// operator may follow.
+/// Returns the token at the start of a text, and its length in bytes. `ends_operand` means that an
+/// operator may come next.
 fn token(text: &str, first: char, ends_operand: bool) -> Result<(TokenKind, usize), String> {
     if let Some(operator) = operator(first)
         && (first != '/' || ends_operand || !path_follows(text))
@@ -156,7 +156,7 @@ fn numbered(text: &str) -> Result<(TokenKind, usize), String> {
     }
 }
 
-/// Returns the number at the start and its length; `None` where a name begins with digits, as in
+/// Returns the number at the start and its length. `None` if a name begins with digits, as in
 /// `5V_supply`.
 fn number(text: &str) -> Option<(f64, usize)> {
     let bytes = text.as_bytes();
@@ -186,7 +186,7 @@ fn number(text: &str) -> Option<(f64, usize)> {
     ends.then(|| text[..length].parse().ok())?.map(|value| (value, length))
 }
 
-/// Returns the length of the name at the start: up to an operator outside brackets.
+/// Returns the length of the name at the start; it ends at an operator outside brackets.
 fn name_length(text: &str) -> usize {
     let mut closing: Option<char> = None;
     for (at, c) in text.char_indices() {
@@ -205,7 +205,7 @@ fn name_length(text: &str) -> usize {
     text.len()
 }
 
-/// Returns the closing bracket if it is there before the next comma, such as that of a unit.
+/// Returns the closing bracket, such as a unit's, if it comes before the next comma.
 fn closes(text: &str, end: char) -> Option<char> {
     let here = text.find([end, ','])?;
     text[here..].starts_with(end).then_some(end)

@@ -1,7 +1,7 @@
 //! Errors of reading recordings, setup responses and motion traces.
 //!
-//! A reader says what is wrong and where ([`Fault`]); the name of the file is added where it is
-//! opened.
+//! A reader reports what is wrong and where ([`Fault`]). The name of the file is added where the
+//! file is opened.
 
 use std::borrow::Cow;
 use std::{fmt, io};
@@ -18,7 +18,7 @@ use crate::recording::RecordingError;
 pub struct ReadError {
     /// File name without its directory, or `column map`.
     pub file: String,
-    /// Where in the file, if it is one place.
+    /// Where in the file, if the problem is at one place.
     pub place: Option<Place>,
     /// What is wrong, and what to do.
     pub problem: ReadProblem,
@@ -53,7 +53,7 @@ pub enum ReadProblem {
     LongLine { bytes: usize, limit: usize },
     #[error("{got} cells where the first row has {expected}; every row must have the same columns")]
     Ragged {
-        /// Cells of the first row, and of this one.
+        /// Number of cells in the first row, and in this row.
         expected: usize,
         got: usize,
     },
@@ -63,7 +63,7 @@ pub enum ReadProblem {
     CutOff { expected: usize, got: usize },
     #[error("{0}; every sample must be a finite number with a decimal point")]
     Cell(String),
-    /// The columns' roles are not clear.
+    /// It is not clear which roles the columns have.
     #[error("{problem}; the columns are: {columns}")]
     Columns {
         /// What is missing or ambiguous, and what to give.
@@ -75,16 +75,16 @@ pub enum ReadProblem {
         "column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
     )]
     Lengths { first: String, rows: usize, other: String, got: usize },
-    /// The file is damaged or of an unsupported kind, or its numbers are not what they are to be.
+    /// The file is damaged or of an unsupported kind, or its numbers are invalid.
     #[error("{0}")]
     Invalid(String),
-    /// The file is of a format whose reader was not built.
+    /// The reader of this format was not built.
     #[error(
         "this build does not read {formats}; build with the feature {feature}, use the Python package, \
          or convert the file to CSV"
     )]
     NotBuilt {
-        /// The formats of the feature.
+        /// The formats that the feature adds.
         formats: String,
         /// The feature that builds their readers.
         feature: &'static str,
@@ -98,7 +98,7 @@ pub enum ReadProblem {
         "the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
     )]
     Time {
-        /// Seconds, of this row and the one before it.
+        /// Times of the previous row and of this row, seconds.
         before: f64,
         after: f64,
     },
@@ -109,7 +109,7 @@ pub enum ReadProblem {
     Option {
         /// The option: a field of [`ReadOptions`](crate::ReadOptions), or `response`.
         option: &'static str,
-        /// Its value, and what to do instead.
+        /// The option's value, and what to do instead.
         problem: String,
     },
     /// The signals are not a valid recording.
@@ -121,11 +121,11 @@ pub enum ReadProblem {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Place {
-    /// A line of text, from 1.
+    /// A line of text, counted from 1.
     Line(usize),
-    /// A row of numbers, from 1.
+    /// A row of numbers, counted from 1.
     Row(usize),
-    /// A byte, a channel, a data set, a cell.
+    /// A byte, a channel, a data set or a cell.
     Named(String),
 }
 
@@ -159,7 +159,7 @@ impl ReadError {
 }
 
 impl ReadProblem {
-    /// Names the file, or the source, of a problem of the whole of it.
+    /// Adds the name of the file or source to a problem that concerns all of it.
     #[must_use]
     pub fn in_file(self, file: &str) -> ReadError {
         Fault::from(self).in_file(file)
@@ -174,12 +174,12 @@ impl ReadProblem {
     }
 }
 
-/// Returns the fault of a cell that is not a finite number.
+/// Returns the fault for a cell that is not a finite number.
 pub(crate) fn cell(row: Place, column: &str, problem: String) -> Fault {
     ReadProblem::Cell(problem).at(format!("{row}, column {column:?}"))
 }
 
-/// A problem and its place in the file that is being read.
+/// A problem, with its place in the file that is being read.
 #[derive(Debug)]
 pub(crate) struct Fault {
     pub(crate) place: Option<Place>,

@@ -1,4 +1,4 @@
-//! The motion of the finger from a tracker at its own rate, in a second file.
+//! The finger's motion from a tracker: a second file with its own sample rate.
 
 use htex_finding::Notice;
 
@@ -16,10 +16,11 @@ use crate::velocity::velocity;
 
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-9;
-/// Longest time between two rows without a warning, seconds: the position is interpolated over it.
+/// Longest time between two rows without a warning, seconds. The position is interpolated between
+/// the rows.
 const GAP_S: f64 = 0.2;
 
-/// Adds the tracked speed to a recording, which is cut to the time that both cover.
+/// Adds the tracked speed to a recording and cuts the recording to the time that both cover.
 pub(crate) fn follow(
     tracker: &Tracker,
     assembled: Assembled,
@@ -27,7 +28,7 @@ pub(crate) fn follow(
 ) -> Result<Recording, ReadError> {
     let (mut recording, time_s) = (assembled.recording, assembled.time_s);
     let (samples, rate_hz) = (recording.samples(), recording.rate_hz);
-    // Times that a given rate replaces need not ascend.
+    // A given rate replaces the times, so they need not ascend.
     let second = |sample: usize| match (&time_s, options.rate_hz) {
         (Some(time_s), None) => time_s[sample],
         (Some(time_s), Some(_)) => time_s[0] + sample as f64 / rate_hz,
@@ -103,7 +104,7 @@ fn check_time(sheet: &dyn Sheet, time_s: &[f64]) -> Result<(), Fault> {
     Err(ReadProblem::Invalid(problem).at(sheet.place(row + 1)))
 }
 
-/// Returns a warning about the longest gap.
+/// Returns a warning about the longest gap, if it is too long.
 fn gap(time_s: &[f64]) -> Option<String> {
     let steps = time_s.windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
     let (gap_s, begin_s) = steps.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -114,7 +115,7 @@ fn gap(time_s: &[f64]) -> Option<String> {
 
 /// The motion that a tracker recorded.
 struct Motion {
-    /// Seconds, strictly ascending, at least two.
+    /// Times in seconds, strictly ascending, at least two.
     time_s: Vec<f64>,
     path: Path,
     warnings: Vec<Notice>,
@@ -145,8 +146,8 @@ impl Motion {
         self.time_s.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the samples, at ascending times, that the tracker covers, as a range; refuses fewer
-    /// than two.
+    /// Returns the range of samples, at ascending times, that the tracker covers. Refuses a range
+    /// of fewer than two samples.
     fn covered(
         &self,
         samples: usize,
@@ -170,7 +171,7 @@ impl Motion {
         })
     }
 
-    /// Returns the speed at ascending times that the tracker covers.
+    /// Returns the speed at ascending times, all of which the tracker must cover.
     fn speed_mm_s(&self, at_s: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
         let coordinates = match &self.path {
             Path::Speed(speed) => return interpolated(&self.time_s, speed, at_s),
@@ -194,7 +195,7 @@ impl Motion {
     }
 }
 
-/// Returns values at ascending times, linear between rows.
+/// Returns values at ascending times, interpolated linearly between rows.
 fn interpolated(time_s: &[f64], values: &[f64], at_s: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut row = 0;
     let value = |t: f64| {

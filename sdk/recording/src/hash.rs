@@ -1,20 +1,21 @@
-//! The hash of a recording's bytes, by which provenance tells recordings of one name apart.
+//! The hash of a recording's file, by which provenance distinguishes recordings of the same name.
 
 use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The file that a recording was read from, as far as its hash needs it.
+/// The file that a recording was read from, as far as is needed to hash it.
 ///
-/// A file is hashed where provenance asks for it, and not when it is read, which would read it
-/// twice for a tenth of the time.
+/// A file is hashed only when provenance asks for it. Hashing on every read would read the file a
+/// second time, which takes a tenth longer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedFile(Known);
 
 #[derive(Debug, Clone, PartialEq, Default)]
 enum Known {
-    /// The recording is of no file, or of one that is read once, such as a pipe.
+    /// The recording does not come from a file, or comes from one that can be read only once, such
+    /// as a pipe.
     #[default]
     Nothing,
     Hash(String),
@@ -22,7 +23,7 @@ enum Known {
 }
 
 impl RecordedFile {
-    /// The file at a path as it is now.
+    /// The file at a path, in its present version.
     pub(crate) fn at(path: &Path) -> Self {
         let known = || {
             let version = Version::of(path)?;
@@ -31,13 +32,13 @@ impl RecordedFile {
         Self(known().unwrap_or_default())
     }
 
-    /// A file that is in memory.
+    /// A file whose bytes are in memory.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Known::Hash(blake3::hash(bytes).to_hex().to_string()))
     }
 
-    /// BLAKE3 of the file's bytes, 64 hexadecimal digits. `None` where there is no file, and where
-    /// the file is another one than at the reading, or cannot be read any more.
+    /// BLAKE3 of the file's bytes, 64 hexadecimal digits. `None` if there is no file, if the file
+    /// has changed since it was read, or if it can no longer be read.
     pub fn blake3(&self) -> Option<String> {
         match &self.0 {
             Known::Nothing => None,
@@ -47,7 +48,7 @@ impl RecordedFile {
     }
 }
 
-/// What tells that a file has not changed.
+/// Size and time by which a change of the file is noticed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Version {
     bytes: u64,
@@ -55,7 +56,7 @@ struct Version {
 }
 
 impl Version {
-    /// `None` of what is no regular file, such as a pipe, which is read once.
+    /// `None` if the path is not a regular file, such as a pipe, which can be read only once.
     fn of(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok()?;
         metadata.is_file().then(|| Self::of_metadata(&metadata))
@@ -66,7 +67,7 @@ impl Version {
     }
 }
 
-/// BLAKE3 of a file that is still of this version, hexadecimal; `None` of one that changed.
+/// BLAKE3 of a file, hexadecimal; `None` if the file is no longer of this version.
 fn of_file(path: &Path, version: Version) -> io::Result<Option<String>> {
     let file = File::open(path)?;
     let mut hasher = blake3::Hasher::new();

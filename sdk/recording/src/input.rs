@@ -1,4 +1,4 @@
-//! Files and bytes as input.
+//! Input from files and from bytes in memory.
 
 use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, SeekFrom, Take};
@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Fault, ReadProblem};
 
-/// The largest file that is read, bytes. The numbers kept of it are limited by
+/// The largest file that is read, bytes. The numbers kept from it are limited by
 /// [`crate::MOST_VALUES`].
 const MAX_BYTES: u64 = 4 << 30;
 
-/// First bytes that are read to detect the kind of file: an HDF5 signature is at most this far from
-/// the start.
+/// Number of bytes that are read to detect the kind of file. An HDF5 signature is at most this far
+/// from the start.
 const FRONT: usize = 4096;
 
-/// A file, or bytes.
+/// A file, or bytes in memory.
 enum Input<'a> {
     File(Take<File>),
     Bytes(&'a [u8]),
@@ -31,7 +31,7 @@ impl Read for Input<'_> {
 
 /// An input whose first bytes have been read.
 pub(crate) struct Opened<'a> {
-    /// Its path, for the extension.
+    /// Its path, needed for the extension.
     pub(crate) path: PathBuf,
     /// The first bytes.
     pub(crate) front: Vec<u8>,
@@ -53,7 +53,7 @@ impl Opened<'static> {
 }
 
 impl<'a> Opened<'a> {
-    /// Takes bytes in place of a file; `path` is not opened.
+    /// Uses bytes in place of a file; `path` is not opened.
     pub(crate) fn bytes(path: &Path, bytes: &'a [u8]) -> Result<Self, Fault> {
         Self::new(path, Input::Bytes(bytes))
     }
@@ -65,12 +65,12 @@ impl<'a> Opened<'a> {
         Ok(Self { path: path.to_owned(), front, rest: input })
     }
 
-    /// Returns all bytes, in their order.
+    /// Returns all bytes in order.
     pub(crate) fn stream(self) -> impl Read + 'a {
         Cursor::new(self.front).chain(self.rest)
     }
 
-    /// Returns the input for access in any order. What cannot be read twice, such as a pipe, is
+    /// Returns the input for random access. An input that can be read only once, such as a pipe, is
     /// read into memory.
     pub(crate) fn random(self) -> io::Result<Random> {
         let mut bytes = self.front;
@@ -94,14 +94,14 @@ fn from_file(mut taken: Take<File>, mut front: Vec<u8>) -> io::Result<Random> {
     Ok(Random::Bytes(Cursor::new(front)))
 }
 
-/// An input for access in any order.
+/// An input for random access.
 pub(crate) enum Random {
     File(File),
     Bytes(Cursor<Vec<u8>>),
 }
 
 impl Random {
-    /// Returns the number of bytes.
+    /// Returns the length in bytes.
     pub(crate) fn len(&self) -> io::Result<u64> {
         match self {
             Self::File(file) => Ok(file.metadata()?.len().min(MAX_BYTES)),

@@ -1,5 +1,5 @@
-//! Recordings of a finger that slides on a texture, and the readers of their files: CSV, and the
-//! other [`FORMATS`] by the features of this crate.
+//! Recordings of a finger sliding on a texture, and the readers of their files: CSV, and the other
+//! [`FORMATS`] if the crate's features for them are on.
 //!
 //! ```no_run
 //! # use std::path::Path;
@@ -13,8 +13,9 @@
 //! # Ok::<(), htex_recording::ReadError>(())
 //! ```
 //!
-//! A format is read by a library where that checks what it reads. All readers read only the columns
-//! that are used, and take no memory for a size that the file does not hold.
+//! A format is read by a library if that library validates its input. All readers read only the
+//! columns that are used, and never allocate memory for a size that a file states but does not
+//! hold.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
@@ -78,20 +79,20 @@ use error::Fault;
 use follow::follow;
 use input::{Opened, file_name};
 
-/// Reads a recording. The kind of file is detected by its first bytes; a file without a signature
-/// by its extension.
+/// Reads a recording. The kind of file is detected by its first bytes, or by its extension if it
+/// has no known signature.
 ///
 /// The recording's warnings list assumed units, gaps in time and unused columns.
 ///
 /// # Errors
-/// See [`ReadError`]: each names the file, and the place where there is one.
+/// See [`ReadError`]: every error names the file, and the place in it if there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
     let file = RecordedFile::at(path);
     let recording = read(path, || Opened::file(path), options)?;
     Ok(Recording { file, ..recording })
 }
 
-/// Reads a recording from bytes; `path` is its name and is not opened.
+/// Reads a recording from bytes; `path` is only its name and is not opened.
 ///
 /// # Errors
 /// As [`read_recording`].

@@ -8,27 +8,27 @@ use crate::recording::{MAX_RATE_HZ, check_rate};
 use crate::tracker::Tracker;
 use crate::value_limit::{MOST_VALUES, ValueLimit};
 
-/// Options of reading, for what a file does not state.
+/// Options for reading a recording, for facts that a file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Sample rate, hertz. Required where the file has neither a rate nor times. It takes
-    /// precedence over both, but must equal the rate of a WAV or FLAC.
+    /// Sample rate, hertz. Required if the file has neither a rate nor times. It takes precedence
+    /// over both, but must equal the rate of a WAV or FLAC.
     pub rate_hz: Option<f64>,
-    /// Roles of columns; columns that it leaves out are assigned by their names.
+    /// Roles of columns. Columns that are not in the map are assigned by their names.
     pub map: Option<ColumnMap>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
     /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY without a map, in the quantity's
-    /// unit; 1 with a warning when absent.
+    /// unit. If absent, it is 1, with a warning.
     pub scale: Option<f64>,
     /// Start of the part to read, seconds of the file.
     pub from_s: Option<f64>,
     /// End of the part to read, seconds of the file.
     pub to_s: Option<f64>,
-    /// A file with the motion of the finger.
+    /// A second file with the finger's motion.
     pub tracker: Option<Tracker>,
-    /// Limit on the numbers kept in memory of each file; [`MOST_VALUES`] when absent. Unused
+    /// Limit on the numbers of each file that are kept in memory; [`MOST_VALUES`] if absent. Unused
     /// columns do not count.
     pub most_values: Option<usize>,
 }
@@ -82,7 +82,7 @@ impl ReadOptions {
         self
     }
 
-    /// Sets the file with the motion of the finger.
+    /// Sets the second file with the finger's motion.
     #[must_use]
     pub fn with_tracker(mut self, tracker: impl Into<Option<Tracker>>) -> Self {
         self.tracker = tracker.into();
@@ -94,7 +94,7 @@ impl ReadOptions {
         ValueLimit { most_values: self.most_values.unwrap_or(MOST_VALUES) }
     }
 
-    /// Refuses values that no file can be read with.
+    /// Refuses option values with which no file can be read.
     pub(crate) fn check(&self) -> Result<(), ReadProblem> {
         let refuse = |option, problem| Err(ReadProblem::Option { option, problem });
         match (self.rate_hz, self.scale) {

@@ -1,5 +1,5 @@
-//! What a file's columns are taken to be, before it is read: for programs that show it and let a
-//! person correct it.
+//! Preview of a file before it is read: what its columns are taken to be. For programs that show
+//! this and let the user correct it.
 
 use std::path::Path;
 
@@ -13,24 +13,25 @@ use crate::options::ReadOptions;
 use crate::sheet::{Layout, Sheet};
 use htex_format::Quantity;
 
-/// Rows of which the numbers are shown.
+/// Number of rows whose numbers are shown.
 const ROWS: usize = 5;
-/// Columns of a text of which the numbers are shown.
+/// Number of columns of a text file whose numbers are shown.
 const MOST_READ: usize = 64;
-/// Bytes of a text of which the first rows are read.
+/// Number of bytes at the start of a text file in which the first rows are looked for.
 const FIRST_BYTES: usize = 64 << 10;
 
-/// The columns of a file, and the role of each.
+/// The columns of a file, with the role of each.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Preview {
     pub columns: Vec<PreviewColumn>,
-    /// The rate that the file states, hertz; that of a column of times is not among them.
+    /// The sample rate that the file states, hertz. A rate that follows from a time column is not
+    /// given here.
     pub rate_hz: Option<f64>,
-    /// The roles as a column map ([`crate::ColumnMap`]), which a person may correct; empty if no
-    /// column has one.
+    /// The roles as a column map ([`crate::ColumnMap`]), which the user may correct. Empty if no
+    /// column has a role.
     pub map: String,
-    /// Why the file cannot be read as a recording with these options, if it cannot.
+    /// Why the file cannot be read as a recording with these options; `None` if it can.
     pub problem: Option<String>,
 }
 
@@ -38,20 +39,20 @@ pub struct Preview {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PreviewColumn {
-    /// Its name; `#` and its number for one without a name.
+    /// The column's name, or `#` and its number if it has no name.
     pub name: String,
-    /// What it is read as, if it is read.
+    /// The role that the column is read as; `None` if it is not read.
     pub role: Option<Role>,
-    /// Factor to the unit of its role; 1 for one that is not read alone.
+    /// Factor to the unit of the role; 1 if the column is read only as part of an expression.
     pub scale: f64,
-    /// Unit of the role; empty without one.
+    /// Unit of the role; empty if there is no role.
     pub unit: &'static str,
-    /// Its first numbers, as they are in the file.
+    /// The column's first numbers, as they are in the file.
     pub first: Vec<f64>,
 }
 
-/// Returns what the columns of a file are taken to be. `path` names it; the bytes are those of its
-/// contents.
+/// Returns what the columns of a file are taken to be. `path` is only the file's name; `bytes` is
+/// its content.
 ///
 /// ```
 /// use htex_recording::{ReadOptions, Role, preview};
@@ -66,7 +67,7 @@ pub struct PreviewColumn {
 ///
 /// # Errors
 /// When the file has no columns of numbers at all, or an option does not apply. Columns without a
-/// clear role are no error, but the [`Preview::problem`].
+/// clear role are not an error: they are reported in [`Preview::problem`].
 pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Preview, ReadError> {
     let previewed = || {
         options.check()?;
@@ -81,8 +82,8 @@ pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Previ
     previewed().map_err(|fault: Fault| fault.in_file(&file_name(path)))
 }
 
-/// Returns the first numbers of each column; none of a column of words. A sheet is read once, so
-/// that it is opened for each reading.
+/// Returns the first numbers of each column; none for a column of words. A sheet can be read only
+/// once, so it is opened anew for each reading.
 fn first_numbers<'a>(
     sheet: &dyn Sheet,
     open: impl Fn() -> Result<Box<dyn Sheet + 'a>, Fault>,
@@ -173,8 +174,8 @@ fn by_order(columns: &mut [PreviewColumn], options: &ReadOptions) -> Result<(), 
     Ok(())
 }
 
-/// Assigns columns that a map or their names select; what is computed of several has the role at
-/// its first column.
+/// Assigns the columns that a map or their names select. Values computed from several columns have
+/// their role at the first of these.
 fn by_name(selection: &Selection, columns: &mut [PreviewColumn], quantity: Quantity) {
     for chosen in &selection.chosen {
         let scale = match chosen.values {
@@ -188,7 +189,7 @@ fn by_name(selection: &Selection, columns: &mut [PreviewColumn], quantity: Quant
     }
 }
 
-/// Writes the roles as a column map; columns by number, since a name may stand twice.
+/// Writes the roles as a column map. Columns are given by number, since a name may occur twice.
 fn map_of(columns: &[PreviewColumn]) -> String {
     let entries = columns.iter().enumerate().filter_map(|(at, column)| {
         let role = column.role?;

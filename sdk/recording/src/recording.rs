@@ -6,20 +6,20 @@ use thiserror::Error;
 
 use crate::hash::RecordedFile;
 
-/// Highest sample rate, hertz: above that of any force sensor, and low enough that sample counts
-/// are exact.
+/// Highest sample rate, hertz: above the rate of any force sensor, and low enough that sample
+/// counts are exact.
 pub const MAX_RATE_HZ: f64 = 1e9;
-/// Largest magnitude of a sample, in any unit: sums of squares over hours stay finite.
+/// Largest magnitude of a sample, in any unit. It keeps sums of squares over hours finite.
 const LARGEST: f64 = 1e12;
 
-/// Errors of constructing a recording.
+/// Why a recording cannot be constructed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// The rate is zero, negative, NaN, or above [`MAX_RATE_HZ`].
     #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most {MAX_RATE_HZ} Hz")]
     Rate { rate_hz: f64 },
-    /// There are more axes than the quantity has, or none.
+    /// There are no axes, or more than the quantity has.
     #[error("a recording of a {} has 1 to {} axes, this one has {axes}", .quantity.words(), most_axes(*.quantity))]
     Axes { quantity: Quantity, axes: usize },
     /// There are fewer than two samples.
@@ -30,7 +30,7 @@ pub enum RecordingError {
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
     )]
     Between { from_s: f64, to_s: f64, begins_s: f64, ends_s: f64 },
-    /// A signal differs in length from the first axis.
+    /// A signal does not have the length of the first axis.
     #[error(
         "the {signal} has {got} samples, the first axis has {expected}; all signals must be equally long"
     )]
@@ -41,7 +41,7 @@ pub enum RecordingError {
     )]
     TooLarge {
         signal: &'static str,
-        /// Index from 0.
+        /// Index of the sample, counted from 0.
         sample: usize,
         value: f64,
     },
@@ -51,46 +51,46 @@ pub enum RecordingError {
     )]
     NotFinite {
         signal: &'static str,
-        /// Index from 0.
+        /// Index of the sample, counted from 0.
         sample: usize,
         value: f64,
     },
 }
 
-/// A recording: the texture's signal, such as the lateral force, and the normal force and speed if
-/// they are known.
+/// A recording: the texture's signal, such as the lateral force, with the normal force and the
+/// speed if they are known.
 ///
-/// All signals have the same length of at least two samples, and are finite with magnitudes up to
-/// 1e12.
+/// All signals have the same length of at least two samples. Their values are finite, with
+/// magnitudes up to 1e12.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
     pub source: String,
-    /// The file it was read from, whose hash provenance holds.
+    /// The file it was read from, whose hash is stored in the provenance.
     pub file: RecordedFile,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
     /// Quantity of the axes.
     pub quantity: Quantity,
-    /// The signal in the quantity's unit: one axis, or perpendicular axes: two of a lateral force,
-    /// up to three of an acceleration, velocity or displacement.
+    /// The signal in the quantity's unit, as one axis or several perpendicular axes: up to two of a
+    /// lateral force, up to three of an acceleration, velocity or displacement.
     pub axes: Vec<Vec<f64>>,
     /// Normal force, newtons, with a positive mean.
     pub normal_n: Option<Vec<f64>>,
     /// Sliding speed of each sample, mm/s.
     pub speed_mm_s: Option<Vec<f64>>,
-    /// True when the file states that it comes from a simulator instead of a finger.
+    /// True if the file states that it comes from a simulator instead of a finger.
     pub simulated: bool,
-    /// Number of samples of the file before the first of this recording.
+    /// Number of samples in the file before the first sample of this recording.
     pub first_sample: usize,
-    /// Findings of the time column: gaps, jitter.
+    /// Findings about the time column: gaps, jitter.
     pub clock_findings: Vec<Finding>,
-    /// Assumptions and observations of the reader, each a full sentence.
+    /// What the reader assumed and observed, each as a full sentence.
     pub warnings: Vec<Notice>,
 }
 
 impl Recording {
-    /// Creates a recording of a lateral force, one or two axes in newtons.
+    /// Creates a recording of a lateral force with one or two axes, in newtons.
     ///
     /// # Errors
     /// As [`Self::of`].
@@ -110,13 +110,13 @@ impl Recording {
         Self::of(Quantity::LateralForce, source, rate_hz, axes)
     }
 
-    /// Creates a recording without normal force, speed or warnings; `axes` are in the quantity's
+    /// Creates a recording without normal force, speed or warnings. `axes` are in the quantity's
     /// unit.
     ///
     /// # Errors
-    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], there are no axes or more than the
-    /// quantity has, or they are shorter than two samples, differ in length, or hold NaN or an
-    /// infinity.
+    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], or there are no axes or more than
+    /// the quantity has. Also when the axes have fewer than two samples, differ in length, or
+    /// contain NaN or infinity.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -159,8 +159,8 @@ impl Recording {
         })
     }
 
-    /// Adds the normal force, newtons. A force with a negative mean is inverted, so that
-    /// pressing is positive whatever the sensor's sign.
+    /// Adds the normal force, newtons. A force with a negative mean is inverted, so that pressing
+    /// is positive whatever the sign of the sensor.
     ///
     /// # Errors
     /// When it differs in length from the axes or is not finite.
@@ -183,11 +183,11 @@ impl Recording {
         Ok(self)
     }
 
-    /// Returns the part of the recording between two times of its file, seconds; `None` is the
-    /// start or the end. Findings of the time column are kept.
+    /// Returns the part of the recording between two times of its file, seconds; `None` stands for
+    /// the start or the end. Findings about the time column are kept.
     ///
     /// # Errors
-    /// When a time is not finite, or fewer than two samples are between them.
+    /// When a time is not finite, or there are fewer than two samples between them.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -220,7 +220,8 @@ impl Recording {
         Ok(self)
     }
 
-    /// Keeps the samples from `from` to before `to`, both up to the number of samples.
+    /// Keeps the samples from `from` up to but not including `to`; both must be at most the number
+    /// of samples.
     pub(crate) fn keep(&mut self, from: usize, to: usize) {
         let (normal, speed) = (&mut self.normal_n, &mut self.speed_mm_s);
         for signal in self.axes.iter_mut().chain(normal).chain(speed) {
@@ -236,7 +237,7 @@ impl Recording {
         (self.first_sample + sample) as f64 / self.rate_hz
     }
 
-    /// Returns the length of the signal's vector at a sample.
+    /// Returns the length of the signal vector at a sample.
     #[must_use]
     pub fn magnitude_at(&self, sample: usize) -> f64 {
         let square = |axis: &Vec<f64>| axis[sample] * axis[sample];
@@ -246,7 +247,7 @@ impl Recording {
         }
     }
 
-    /// Returns an axis' name in pointers and messages: `lateral_x`, `signal`.
+    /// Returns the name of an axis, as used in pointers and messages: `lateral_x`, `signal`.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {
@@ -266,14 +267,15 @@ impl Recording {
         self.axes.first().map_or(0, Vec::len)
     }
 
-    /// Returns the length in seconds: samples over rate.
+    /// Returns the length in seconds: number of samples divided by the sample rate.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.samples() as f64 / self.rate_hz
     }
 }
 
-/// Returns the most axes of a quantity: two along a surface, one across it, three of a motion.
+/// Returns the largest number of axes of a quantity: two for a force along a surface, one across
+/// it, three for a motion.
 pub(crate) const fn most_axes(quantity: Quantity) -> usize {
     match quantity {
         Quantity::LateralForce => 2,
@@ -295,7 +297,7 @@ fn check(signal: &'static str, values: &[f64], expected: usize) -> Result<(), Re
     if values.len() != expected {
         return Err(RecordingError::Lengths { signal, expected, got: values.len() });
     }
-    // False for NaN.
+    // NaN compares as false, so it does not pass.
     let holds = |value: &f64| value.abs() <= LARGEST;
     match values.iter().position(|value| !holds(value)) {
         Some(sample) if values[sample].is_finite() => {

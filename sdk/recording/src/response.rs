@@ -1,4 +1,4 @@
-//! The setup's frequency response: the recording rig's gain of a lateral force.
+//! The setup's frequency response: the gain of the recording rig for a lateral force.
 
 use std::path::Path;
 use std::{fmt, io};
@@ -11,21 +11,22 @@ use crate::input::{Opened, file_name};
 use crate::sheet::{Columns, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// Smallest magnitude above 0; largest magnitude, frequency (hertz) and phase (radians).
+/// Smallest magnitude above 0; also the limits for magnitude, frequency (hertz) and phase
+/// (radians).
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
-/// Gain above which a warning is given, decibels: what it raises was attenuated to a third or less
+/// Gain above which a warning is given, decibels. What it raises was attenuated to a third or less,
 /// and is mostly noise.
 const RAISED_DB: f64 = 10.0;
 
-/// A sampled frequency response.
+/// Frequency response of a recording setup, sampled at some frequencies.
 ///
 /// The three vectors have equal lengths of at least 2; the frequencies increase strictly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SetupResponse {
     /// Frequencies, hertz, strictly increasing, not negative.
     pub frequency_hz: Vec<f64>,
-    /// Ratio of output to input at each frequency, without unit, not negative.
+    /// Ratio of output to input at each frequency, unitless, not negative.
     pub magnitude: Vec<f64>,
     /// Phase at each frequency, radians, unwrapped.
     pub phase_rad: Vec<f64>,
@@ -33,7 +34,8 @@ pub struct SetupResponse {
 
 impl SetupResponse {
     /// Returns the real and imaginary part at a frequency in hertz. Magnitude and unwrapped phase
-    /// are interpolated linearly in frequency and constant below the first and above the last.
+    /// are interpolated linearly in frequency, and constant below the first frequency and above the
+    /// last.
     ///
     /// ```
     /// # use htex_recording::SetupResponse;
@@ -74,11 +76,11 @@ impl SetupResponse {
 }
 
 impl SetupResponse {
-    /// Writes `frequency_hz,magnitude,phase_rad`, each number in the shortest form that reads back
-    /// to the same bits.
+    /// Writes the columns `frequency_hz,magnitude,phase_rad`. Each number has the shortest form
+    /// that reads back to the same bits.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write_csv(&self, out: &mut impl io::Write) -> io::Result<()> {
         writeln!(out, "frequency_hz,magnitude,phase_rad")?;
         let numbers = self.magnitude.iter().zip(&self.phase_rad);
@@ -89,15 +91,16 @@ impl SetupResponse {
     }
 }
 
-/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, with the
-/// gains.
+/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, and by how
+/// much.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Raised {
-    /// Lowest and highest frequency of each stretch, hertz, and its largest gain, decibels.
+    /// For each stretch, its lowest and highest frequency in hertz, and its largest gain in
+    /// decibels.
     pub stretches: Vec<(f64, f64, f64)>,
 }
 
-/// Returns the stretches of a grid where gains exceed 10 dB; `None` when there is none.
+/// Returns the stretches of a grid in which gains exceed 10 dB; `None` if there are none.
 pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<Raised> {
     let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
     let mut goes_on = false;
@@ -128,14 +131,14 @@ impl fmt::Display for Raised {
 /// `phase_rad` (default zero).
 ///
 /// # Errors
-/// Those of [`read_recording`](crate::read_recording) for a CSV; and, with the line, a
+/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also, with the line number, a
 /// frequency that is negative or does not increase, or a negative magnitude.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
     let read = Opened::file(path).and_then(response);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a setup response from bytes; `file` is its name.
+/// Reads a setup response from bytes; `file` is its name in messages.
 ///
 /// # Errors
 /// As [`read_response`].
@@ -209,7 +212,7 @@ fn check(csv: &Csv<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(), F
     Ok(())
 }
 
-/// Removes jumps of more than half a turn.
+/// Removes jumps of more than half a turn from the phase.
 fn unwrapped(mut phase_rad: Vec<f64>) -> Vec<f64> {
     let turn = 2.0 * std::f64::consts::PI;
     let mut previous = phase_rad.first().copied().unwrap_or(0.0);

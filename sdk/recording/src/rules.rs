@@ -1,4 +1,4 @@
-//! The rules for recordings, in one table.
+//! The table of all rules for recordings.
 
 htex_finding::rule_table! {
     RECORDING_UNREADABLE Error ("map", "rate", "quantity"):

@@ -1,21 +1,21 @@
-//! Files as named columns of numbers, whatever their format.
+//! A file of any format as named columns of numbers.
 
 use crate::error::{Fault, Place, ReadProblem, cell};
 
 /// The columns of a file, before their numbers are read.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
-    /// Names in the order of the file; empty for a column without one.
+    /// Names in the order of the file; empty for a column without a name.
     names: Vec<String>,
-    /// Where the last part of each name begins: `fx` of `/run1/fx`.
+    /// For each name, the byte at which its last part begins: `fx` in `/run1/fx`.
     parts: Vec<usize>,
     /// Whether the file names its columns.
     pub(crate) are_named: bool,
 }
 
 impl Columns {
-    /// Makes columns from their names; the last part of a name follows the last `separator`, if
-    /// there is one.
+    /// Makes columns from their names. The last part of a name follows the last `separator`, if the
+    /// name has one.
     pub(crate) fn new(names: impl IntoIterator<Item = String>, separator: Option<char>) -> Self {
         let names: Vec<String> = names.into_iter().collect();
         let part = |name: &String| {
@@ -25,13 +25,13 @@ impl Columns {
         Self { parts: names.iter().map(part).collect(), names, are_named: true }
     }
 
-    /// Makes columns from names and the bytes at which their last parts begin.
+    /// Makes columns from names, each with the byte at which its last part begins.
     pub(crate) fn with_parts(names: Vec<(String, usize)>) -> Self {
         let (names, parts) = names.into_iter().unzip();
         Self { names, parts, are_named: true }
     }
 
-    /// Makes columns that have only numbers.
+    /// Makes columns that have numbers instead of names.
     pub(crate) fn unnamed(width: usize) -> Self {
         Self { are_named: false, ..Self::new(vec![String::new(); width], None) }
     }
@@ -41,7 +41,7 @@ impl Columns {
         self.names.len()
     }
 
-    /// Returns the column's whole name, or `#` and its number when it has none.
+    /// Returns the column's whole name, or `#` and its number if it has none.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.names.get(column) {
             Some(name) if !name.is_empty() => htex_finding::plain(name).into_owned(),
@@ -49,7 +49,7 @@ impl Columns {
         }
     }
 
-    /// Returns the last part of the column's name, which says what it holds.
+    /// Returns the last part of the column's name, which says what the column holds.
     pub(crate) fn last_part(&self, column: usize) -> &str {
         let name = self.names.get(column).map_or("", String::as_str);
         &name[self.parts.get(column).copied().unwrap_or(0)..]
@@ -61,8 +61,8 @@ impl Columns {
         &name[..self.parts.get(column).copied().unwrap_or(0)]
     }
 
-    /// Returns the columns of this name: those with exactly the name, else in another case, else
-    /// whose last part it is.
+    /// Returns the columns with this name: those with exactly this name; if there are none, those
+    /// with it in another case; else those whose last part it is.
     pub(crate) fn by_name(&self, name: &str) -> Vec<usize> {
         let all = 0..self.width();
         let exact = |column: &usize| self.names[*column] == name;
@@ -73,7 +73,7 @@ impl Columns {
         found.find(|columns| !columns.is_empty()).unwrap_or_default()
     }
 
-    /// Returns the problem that roles of these columns are not clear.
+    /// Returns the problem that it is unclear which roles these columns have.
     pub(crate) fn refuse(&self, problem: String) -> ReadProblem {
         ReadProblem::Columns { problem, columns: self.list() }
     }
@@ -95,29 +95,29 @@ impl Columns {
     }
 }
 
-/// Numbers of some columns of a file.
+/// The numbers of some columns of a file.
 #[derive(Debug, Default)]
 pub(crate) struct Numbers {
     /// One vector per wanted column.
     pub(crate) columns: Vec<Vec<f64>>,
     /// Whether a comment contains "simulated".
     pub(crate) simulated: bool,
-    /// Observations, each a full sentence.
+    /// What the reader observed, each as a full sentence.
     pub(crate) warnings: Vec<String>,
 }
 
-/// What a file's columns are, which decides on the options that apply.
+/// The kind of columns that a file has. It decides which options apply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
     /// Cells of text.
     Text,
-    /// Channels without names, in an order; integers are read as fractions of full scale.
+    /// Channels without names, in a fixed order; integers are read as fractions of full scale.
     Channels { are_integers: bool },
     /// Columns with names.
     Named,
 }
 
-/// A file that has been opened, with its columns: what a format implements.
+/// An opened file with its columns: the trait that every format implements.
 pub(crate) trait Sheet {
     fn columns(&self) -> &Columns;
 
@@ -125,22 +125,23 @@ pub(crate) trait Sheet {
         Layout::Named
     }
 
-    /// Returns the sample rate in hertz that the file states for these columns, if it states one.
+    /// Returns the sample rate in hertz that the file states for the wanted columns, if it states
+    /// one.
     fn rate_hz(&self, _wanted: &[usize]) -> Result<Option<f64>, Fault> {
         Ok(None)
     }
 
-    /// Reads the wanted columns, each below the width. They may be of different lengths and hold
-    /// numbers that are not finite.
+    /// Reads the wanted columns; each index must be below the width. The columns may differ in
+    /// length and contain numbers that are not finite.
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault>;
 
-    /// Returns the place of a row, from 0.
+    /// Returns the place of a row; rows are counted from 0.
     fn place(&self, row: usize) -> Place {
         Place::Row(row + 1)
     }
 }
 
-/// Reads columns of equal lengths, at least two rows, and refuses numbers that are not finite.
+/// Reads columns that must have equal lengths, at least two rows, and only finite numbers.
 pub(crate) fn even_numbers(sheet: &mut dyn Sheet, wanted: &[usize]) -> Result<Numbers, Fault> {
     let numbers = sheet.numbers(wanted)?;
     let columns = sheet.columns();

@@ -1,10 +1,10 @@
-//! Running sums: the mean of any stretch of a signal with two look-ups.
+//! Running sums, which give the mean of any stretch of a signal from two look-ups.
 
-/// The sum before each sample of a signal, and the total.
+/// For each sample of a signal, the sum of all samples before it; and the total.
 pub struct Sums(Vec<f64>);
 
 impl Sums {
-    /// Adds up values.
+    /// Adds up `values`.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut sum = 0.0;
@@ -17,19 +17,20 @@ impl Sums {
         Self(sums)
     }
 
-    /// Returns the number of samples of the signal.
+    /// Returns the number of samples in the signal.
     #[must_use]
     pub fn samples(&self) -> usize {
         self.0.len() - 1
     }
 
-    /// Returns the mean of the samples from `from` to before `to`, 0 if there are none.
+    /// Returns the mean of the samples from `from` up to but not including `to`; 0 if there are
+    /// none.
     #[must_use]
     pub fn mean(&self, from: usize, to: usize) -> f64 {
         (self.0[to] - self.0[from]) / (to - from).max(1) as f64
     }
 
-    /// Returns the mean over `2·half + 1` samples around one, fewer at the ends.
+    /// Returns the mean over the `2·half + 1` samples around a sample; over fewer at the ends.
     #[must_use]
     pub fn mean_around(&self, at: usize, half: usize) -> f64 {
         self.mean(at.saturating_sub(half), (at + half + 1).min(self.samples()))

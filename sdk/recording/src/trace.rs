@@ -1,4 +1,4 @@
-//! Motion traces as CSV: position and normal force of the finger over time.
+//! Motion traces as CSV: the finger's position and normal force over time.
 
 use std::path::Path;
 
@@ -14,10 +14,10 @@ use crate::value_limit::ValueLimit;
 
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-9;
-/// Largest magnitude of time (seconds), position (mm), speed (mm/s) and force (newtons).
+/// Largest magnitude of a time (seconds), position (mm), speed (mm/s) or force (newtons).
 const LARGEST: f64 = 1e9;
 
-/// The columns of a trace, of equal length, at least two rows.
+/// The columns of a motion trace. All have equal lengths of at least two rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumns {
     /// Time, seconds, strictly ascending.
@@ -28,9 +28,9 @@ pub struct TraceColumns {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, if the trace has it.
+    /// Sliding speed, mm/s, if the trace contains it.
     pub speed_mm_s: Option<Vec<f64>>,
-    /// Assumptions: units without a name, unused columns.
+    /// Assumptions of the reader, such as assumed units, and unused columns.
     pub warnings: Vec<String>,
 }
 
@@ -38,14 +38,14 @@ pub struct TraceColumns {
 /// `speed_mm_s`. Other names and units are recognised as in a recording (`time [ms]`, `fz_n`).
 ///
 /// # Errors
-/// Those of [`read_recording`](crate::read_recording) for a CSV; and, with the line, a time that
-/// does not increase by a nanosecond, or a number beyond 1e9.
+/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also, with the line number, a
+/// time that does not increase by at least a nanosecond, or a number beyond 1e9.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
     let read = Opened::file(path).and_then(trace);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a trace from bytes; `file` is its name.
+/// Reads a trace from bytes; `file` is its name in messages.
 ///
 /// # Errors
 /// As [`read_trace`].
@@ -54,7 +54,7 @@ pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadEr
     read.map_err(|fault| fault.in_file(file))
 }
 
-/// The columns of a stroke, of equal length, at least two rows.
+/// The columns of a stroke: speed and force over time. All have equal lengths of at least two rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeColumns {
     /// Time, seconds, strictly ascending.
@@ -63,12 +63,12 @@ pub struct StrokeColumns {
     pub speed_mm_s: Vec<f64>,
     /// Normal force, newtons.
     pub force_n: Vec<f64>,
-    /// Assumptions: units without a name, unused columns.
+    /// Assumptions of the reader, such as assumed units, and unused columns.
     pub warnings: Vec<String>,
 }
 
-/// Reads a stroke from a CSV with time, speed and force (`t_s`, `speed_mm_s`, `force_n`); one
-/// without a speed is read as a trace, whose speed is that of its positions.
+/// Reads a stroke from a CSV with time, speed and force (`t_s`, `speed_mm_s`, `force_n`). A file
+/// without a speed is read as a trace, and the speed is computed from its positions.
 ///
 /// # Errors
 /// As [`read_trace`].
@@ -77,7 +77,7 @@ pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a stroke from bytes; `file` is its name.
+/// Reads a stroke from bytes; `file` is its name in messages.
 ///
 /// # Errors
 /// As [`read_stroke`].
@@ -111,7 +111,7 @@ fn stroke(opened: Opened<'_>) -> Result<StrokeColumns, Fault> {
     Ok(StrokeColumns { t_s, speed_mm_s, force_n, warnings })
 }
 
-/// The stroke of a trace.
+/// Computes the stroke along a trace.
 fn along(trace: TraceColumns) -> StrokeColumns {
     let of = |position: &[f64]| crate::velocity(&trace.t_s, position, trace.t_s.iter().copied());
     let speeds = of(&trace.x_mm).into_iter().zip(of(&trace.y_mm));
@@ -158,7 +158,7 @@ fn traced(mut csv: Csv<'_>) -> Result<TraceColumns, Fault> {
     Ok(trace)
 }
 
-/// Returns the column with a role and the factor to its unit.
+/// Returns the column with a role, and the factor to the role's unit.
 fn find(
     columns: &Columns,
     role: Role,

@@ -1,33 +1,34 @@
-//! The file of a tracker, beside a recording.
+//! A tracker's file, which accompanies a recording.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::columns::map::ColumnMap;
 
-/// A file with the finger's position or speed over time, of any kind that recordings have.
+/// A file with the finger's position or speed over time, in any format that recordings may have.
 ///
-/// Both files have times of one clock. A recording without times begins at 0 s, and so does a
-/// tracker whose file has only a rate. The recording is cut to the time that the tracker covers.
+/// The times in both files must be from one clock. A recording without times begins at 0 s, and so
+/// does a tracker whose file has only a sample rate. The recording is cut to the time that the
+/// tracker covers.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Tracker {
     pub path: PathBuf,
-    /// The bytes of the file, where it is not read from the path.
+    /// The bytes of the file, if it is not to be read from the path.
     pub bytes: Option<Arc<[u8]>>,
-    /// Roles of its columns: time, x, y, speed; columns that it leaves out are assigned by their
-    /// names.
+    /// Roles of its columns: time, x, y, speed. Columns that are not in the map are assigned by
+    /// their names.
     pub map: Option<ColumnMap>,
 }
 
 impl Tracker {
-    /// Names a tracker's file; its columns are assigned by their names.
+    /// Names a tracker's file. Its columns are assigned by their names.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self { path: path.into(), bytes: None, map: None }
     }
 
-    /// Gives the bytes of the file, whose path is then its name alone.
+    /// Provides the bytes of the file; the path is then only its name.
     #[must_use]
     pub fn with_bytes(mut self, bytes: impl Into<Arc<[u8]>>) -> Self {
         self.bytes = Some(bytes.into());

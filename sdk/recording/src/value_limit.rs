@@ -1,19 +1,19 @@
-//! Limit on the numbers of a file that are kept in memory.
+//! Limit on the numbers from a file that are kept in memory.
 
 use crate::error::ReadProblem;
 
-/// Default limit on the numbers kept of a file: 11 minutes of three columns at 20 kHz. With derived
-/// data they take 8 to 40 bytes each, most at low rates.
+/// Default limit on the numbers kept from a file: 11 minutes of three columns at 20 kHz. With
+/// derived data each number takes 8 to 40 bytes, the most at low sample rates.
 pub const MOST_VALUES: usize = 40_000_000;
 
-/// Limit on the numbers kept of one file.
+/// Limit on the numbers kept from one file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ValueLimit {
     pub(crate) most_values: usize,
 }
 
 impl ValueLimit {
-    /// Refuses more numbers than the limit.
+    /// Refuses `values` numbers if they are more than the limit.
     #[inline]
     pub(crate) fn check(self, values: u64) -> Result<(), ReadProblem> {
         if values <= self.most_values as u64 {

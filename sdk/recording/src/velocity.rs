@@ -1,17 +1,18 @@
-//! Velocity of a tracked position.
+//! Velocity, computed from tracked positions.
 
-/// Half the support of the triangle over which the velocity is averaged, seconds. Trackers are slow
-/// and quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the motion.
+/// Half the width of the triangular window over which the velocity is averaged, seconds. Trackers
+/// are slow and quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the
+/// motion.
 const REACH_S: f64 = 0.05;
 
-/// Returns the velocity at ascending times, from positions at the times `t_s`, which ascend
+/// Returns the velocity at ascending times, from positions at the times `t_s`, which must ascend
 /// strictly from 0.
 ///
-/// The velocity is the second difference, over 50 ms, of the position's integral: the slope of the
-/// position (linear between rows) averaged with a triangular window of 100 ms. It is exact for a
-/// constant velocity with any spacing of the rows, and insensitive to a tracker of 60 Hz that
-/// repeats its last value. Within 50 ms of the ends, and beyond them, it is constant. Its unit is
-/// that of the position per second.
+/// The velocity is the second difference, over 50 ms, of the position's integral. This is the slope
+/// of the position (linear between rows), averaged with a triangular window of 100 ms. It is exact
+/// for a constant velocity at any spacing of the rows, and not disturbed by a 60 Hz tracker that
+/// repeats its last value. Within 50 ms of the ends, and beyond them, the velocity is constant. Its
+/// unit is the position's unit per second.
 ///
 /// ```
 /// # use htex_recording::velocity;
@@ -39,8 +40,8 @@ pub fn velocity(t_s: &[f64], position: &[f64], at_s: impl IntoIterator<Item = f6
     at_s.map(at).collect()
 }
 
-/// The integral of the position (minus the first one) from the first row on, evaluated at ascending
-/// times.
+/// The integral of the position minus the first position, from the first row on, evaluated at
+/// ascending times.
 #[derive(Clone)]
 struct Integral<'a> {
     t_s: &'a [f64],
@@ -54,7 +55,7 @@ impl<'a> Integral<'a> {
         Self { t_s, position, row: 0, sum: 0.0 }
     }
 
-    /// Time and position of a row.
+    /// Returns the time and position of a row.
     fn point(&self, row: usize) -> (f64, f64) {
         (self.t_s[row], self.position[row] - self.position[0])
     }

@@ -1,5 +1,5 @@
-//! Files as laboratories keep them, written by SciPy, h5py, npTDMS, pyarrow and soundfile
-//! (`lab/make.py`), and compared with the numbers that these libraries read back
+//! Files as laboratories store them, written by SciPy, h5py, npTDMS, pyarrow and soundfile
+//! (`lab/make.py`). They are compared with the numbers that these libraries read back
 //! (`lab/expected.json`).
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
@@ -20,14 +20,14 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lab")
 }
 
-/// A file with the columns that a library reads from it.
+/// A file, with the columns that a library reads from it.
 struct Case {
     name: String,
     rate_hz: Option<f64>,
     columns: Vec<(String, Vec<f64>)>,
 }
 
-/// The files that this build reads.
+/// The files that this build can read.
 fn cases() -> Vec<Case> {
     let text = fs::read_to_string(folder().join("expected.json")).unwrap();
     let all: Value = serde_json::from_str(&text).unwrap();
@@ -48,7 +48,7 @@ fn cases() -> Vec<Case> {
     all.filter(|case| cfg!(feature = "lab-files") || !is_heavy(&case.name)).collect()
 }
 
-/// Whether a file is read only with the feature `lab-files`.
+/// Whether a file can be read only with the feature `lab-files`.
 fn is_heavy(name: &str) -> bool {
     let kinds = [".h5", "version73.mat", ".parquet", ".feather", ".arrow", ".arrows"];
     kinds.iter().any(|end| name.ends_with(end))
@@ -85,7 +85,7 @@ fn every_column_is_what_its_library_reads() {
 #[test]
 fn a_recording_is_that_of_the_csv_with_the_same_numbers() {
     for case in cases() {
-        // Arithmetic on the first column of a file and another of its length.
+        // An expression over the file's first column and another column of the same length.
         let (first, values) = &case.columns[0];
         let mut others = case.columns.iter().skip(1);
         let (second, other) =

@@ -1,4 +1,4 @@
-//! Files longer than one block of 256 KiB are read as shorter ones, with the same line numbers in
+//! Files longer than one block of 256 KiB are read like shorter ones, with the same line numbers in
 //! errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
@@ -53,7 +53,7 @@ fn all_rows_are_read_and_lines_are_counted_through() {
     assert!(told, "{:?}", gap.clock_findings);
 }
 
-/// A short row is reported as truncated only at the end of the file, wherever blocks end.
+/// A short row is reported as truncated only at the end of the file, wherever the blocks end.
 #[test]
 fn a_short_row_is_cut_off_at_the_end_alone() {
     for pad in 0..16 {

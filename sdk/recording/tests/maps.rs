@@ -27,7 +27,8 @@ fn expressions_compute_with_columns() {
         ("-a*0.5", [-0.5, 1.5]),
         ("(a-b)/2*9.81e-3", [-0.5 * 9.81e-3, -4.0 * 9.81e-3]),
         ("a - b", [-1.0, -8.0]),
-        // The whole text is the name of a column; quotes and parentheses say which is meant.
+        // The whole text is the name of a column; quotes or parentheses say which of the two is
+        // meant.
         ("a-b", [8.0, 11.0]),
         ("\"a-b\"*1", [8.0, 11.0]),
         ("(a)-b", [-1.0, -8.0]),
@@ -115,7 +116,7 @@ fn columns_of_an_array_are_chosen_by_a_map() {
     }
 }
 
-/// A recording of 2 s at 1 kHz whose clock begins at 100 s, and a tracker's file.
+/// A recording of 2 s at 1 kHz whose clock begins at 100 s, with a tracker's file.
 fn tracked(tracker: &str, map: Option<&str>, header: &str) -> Result<Recording, String> {
     let folder = Folder::new();
     let rows = (0..2000).map(|i| format!("{:.3},0.1\n", 100.0 + f64::from(i) / 1000.0));
@@ -127,7 +128,7 @@ fn tracked(tracker: &str, map: Option<&str>, header: &str) -> Result<Recording, 
     read_recording(&signal, &options).map_err(|error| error.to_string())
 }
 
-/// A tracker of 60 Hz and 0.1 mm from one time to another, moving along a line at 80 mm/s.
+/// A tracker of 60 Hz and 0.1 mm that moves along a line at 80 mm/s from one time to another.
 fn at_80_mm_s(header: &str, from_s: f64, to_s: f64) -> String {
     let mut text = format!("{header}\n");
     let mut row = 0.0;

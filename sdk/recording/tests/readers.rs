@@ -1,4 +1,4 @@
-//! Readers of recordings: accepted files, and errors with file, line and column.
+//! Readers of recordings: which files they accept, and errors with file, line and column.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -170,7 +170,7 @@ fn the_time_column_gives_the_rate_or_says_why_not() {
 
 #[test]
 fn jitter_does_not_move_the_rate() {
-    // Timestamps of a busy computer: late by up to a whole period, in order.
+    // Timestamps of a busy computer: in order, but late by up to a whole period.
     let mut state = 1u32;
     let mut text = String::from("t_s,fy_n\n");
     let mut last = -1.0;

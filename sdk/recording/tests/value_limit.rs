@@ -1,4 +1,4 @@
-//! The limit on the numbers of a file takes effect before they are read.
+//! The limit on the numbers from a file takes effect before they are read.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -17,8 +17,8 @@ fn read(name: &str, bytes: &[u8], most_values: Option<usize>) -> Result<usize, S
     read.map(|r| r.samples()).map_err(|error| error.to_string())
 }
 
-/// The whole file is read with a limit equal to its numbers. With a lower limit nothing after it is
-/// parsed, such as the invalid text at the end of `more`.
+/// With a limit equal to its numbers, the whole file is read. With a lower limit, nothing beyond
+/// the limit is parsed, such as the invalid text at the end of `more`.
 fn check_limit(name: &str, whole: &[u8], more: &[u8], most_values: usize, samples: usize) {
     assert_eq!(read(name, whole, Some(most_values)), Ok(samples));
     let broken = read(name, more, None).unwrap_err();
@@ -35,7 +35,7 @@ fn check_limit(name: &str, whole: &[u8], more: &[u8], most_values: usize, sample
 #[test]
 fn numbers_beyond_the_limit_are_refused_before_they_are_read() {
     // Longer than a block, with an unused column. The start of the rows and each gap between them
-    // take the memory of two numbers.
+    // take as much memory as two numbers.
     let rows = "1,2,oiled\n".repeat(40_000);
     let csv = format!("lateral_n,normal_n,what\n{rows}\n1,2,dry\n");
     let values = 2 * 40_001 + 2;

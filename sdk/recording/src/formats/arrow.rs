@@ -1,9 +1,9 @@
-//! Arrow IPC: files (Feather version 2) and streams. Numeric columns; the values of others are
-//! passed over.
+//! Reader of Arrow IPC files (Feather version 2) and streams. It reads numeric columns and skips
+//! the values of all others.
 //!
 //! Layout: "Arrow Columnar Format", section "Serialization and Interprocess Communication". The
-//! metadata are verified flatbuffers of the crate `arrow-ipc`; its reader is not used, because it
-//! takes the sizes in a file as they are.
+//! metadata are verified flatbuffers of the crate `arrow-ipc`. That crate's own reader is not used,
+//! because it trusts the sizes stated in a file.
 
 use std::io::{self, Read};
 
@@ -17,9 +17,9 @@ use crate::input::Opened;
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// Longest metadata of a message, and of the footer, bytes.
+/// Longest metadata of a message or footer that is read, bytes.
 const MOST_METADATA: u64 = 16 << 20;
-/// The first bytes of a file, and of a message.
+/// The first bytes of a file, then those of a message.
 const FILE: &[u8] = b"ARROW1";
 const MESSAGE: [u8; 4] = [0xff; 4];
 
@@ -50,7 +50,7 @@ pub(crate) struct Arrow {
     source: Shared,
 }
 
-/// Where a batch of rows is, and their number.
+/// Where a batch of rows is, and how many rows it has.
 #[derive(Debug, Clone, Copy)]
 struct Batch {
     message: Message,
@@ -67,7 +67,7 @@ struct Message {
 }
 
 impl Arrow {
-    /// Reads the schema, and where the batches are.
+    /// Reads the schema and finds the batches.
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let (is_file, is_old) = (opened.front.starts_with(FILE), opened.front.starts_with(b"FEA1"));
         let source = Shared::new(opened.random()?)?;
@@ -88,7 +88,7 @@ impl Arrow {
         Ok(arrow)
     }
 
-    /// Reads the footer of a file, which lists its batches.
+    /// Reads a file's footer, which lists its batches.
     fn read_footer(&mut self) -> Result<(), (u64, ArrowError)> {
         let length = self.source.length();
         let tail_at = length.saturating_sub(10);
@@ -130,7 +130,7 @@ impl Arrow {
         Ok(())
     }
 
-    /// Reads the messages of a stream, one after the other.
+    /// Reads the messages of a stream one after the other.
     fn read_stream(&mut self) -> Result<(), (u64, ArrowError)> {
         let mut at = 0;
         let mut is_first = true;
@@ -145,8 +145,8 @@ impl Arrow {
         Ok(())
     }
 
-    /// Reads the message at a place of a stream and returns the place of the next one; `None` at
-    /// the end of the stream.
+    /// Reads the message at `at` and returns the place of the next message; `None` at the end of
+    /// the stream.
     fn read_message(&mut self, at: u64, is_first: bool) -> Result<Option<u64>, ArrowError> {
         let prefix = self.source.read(at, 8)?;
         if prefix[..4] != MESSAGE {
@@ -192,14 +192,14 @@ impl Arrow {
         Ok(())
     }
 
-    /// Calls a function with the metadata of a batch.
+    /// Calls a function with a batch's metadata.
     fn with_batch<T>(
         &self,
         message: Message,
         read: impl FnOnce(&RecordBatch<'_>) -> Result<T, ArrowError>,
     ) -> Result<T, ArrowError> {
         let bytes = metadata(&self.source, message.metadata, message.metadata_bytes)?;
-        // Files before version 0.15 have no marker before the length.
+        // Files from before version 0.15 have no marker before the length.
         let start = if bytes.starts_with(&MESSAGE) { 8 } else { 4 };
         let root = root_as_message(bytes.get(start..).unwrap_or_default())
             .map_err(|error| ArrowError::Metadata(error.to_string()))?;
@@ -209,7 +209,7 @@ impl Arrow {
         }
     }
 
-    /// Appends the values of a column in a batch, with NaN where there is none.
+    /// Appends a column's values in a batch, with NaN for missing values.
     fn append(
         &self,
         batch: Batch,
@@ -252,8 +252,8 @@ impl Arrow {
         Ok(())
     }
 
-    /// Returns the first `wanted` bytes of a buffer, decompressed. The stated length of compressed
-    /// bytes is not relied on.
+    /// Returns the first `wanted` bytes of a buffer, decompressed. The stated length of the
+    /// decompressed data is not trusted.
     fn buffer(
         &self,
         message: Message,
@@ -317,7 +317,7 @@ impl Sheet for Arrow {
     }
 }
 
-/// Reads metadata up to their largest size.
+/// Reads metadata, up to the largest allowed size.
 fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError> {
     if bytes <= MOST_METADATA {
         Ok(source.read(at, bytes)?)

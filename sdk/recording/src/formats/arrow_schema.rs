@@ -1,10 +1,10 @@
-//! The columns of an Arrow schema, and which buffers of a batch are theirs.
+//! The columns of an Arrow schema, and which buffers of a batch belong to each column.
 
 use arrow_ipc::{Endianness, Field, Precision, Type};
 
 use crate::formats::bytes::{Endian, NumberType};
 
-/// Deepest types within types.
+/// Deepest allowed nesting of types.
 const MOST_DEEP: usize = 32;
 
 /// The columns of a file.
@@ -20,20 +20,21 @@ impl Default for Schema {
     }
 }
 
-/// A column at the top of the schema.
+/// A column at the top level of the schema.
 #[derive(Debug)]
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Name of the type, for messages.
+    /// Name of its type, for messages.
     pub(crate) kind: String,
-    /// `None` for types that are not numbers, or behind one whose buffers cannot be counted.
+    /// `None` if the type is not numeric, or if the column comes after a type whose buffers cannot
+    /// be counted.
     pub(crate) number: Option<NumberType>,
-    /// Index of its node, and of the first of its buffers.
+    /// Index of the column's node, and of the first of its buffers.
     pub(crate) node: usize,
     pub(crate) buffer: usize,
 }
 
-/// Nodes and buffers of a field with all fields in it.
+/// Number of nodes and buffers of a field, including all fields inside it.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     nodes: usize,
@@ -76,7 +77,7 @@ impl Schema {
     }
 }
 
-/// Returns the type of a field's numbers; times are numbers in their unit.
+/// Returns the number type of a field. Times are read as numbers in their own unit.
 fn number(field: &Field<'_>) -> Option<NumberType> {
     if field.dictionary().is_some() {
         return None;
@@ -106,13 +107,13 @@ fn number(field: &Field<'_>) -> Option<NumberType> {
     })
 }
 
-/// Counts nodes and buffers; `None` if a type's buffers are not known from the schema.
+/// Counts a field's nodes and buffers; `None` if the schema does not determine them.
 fn extent(field: &Field<'_>, depth: usize) -> Option<Extent> {
     if depth == MOST_DEEP {
         return None;
     }
     let own = match field.type_type() {
-        // The values of a dictionary are in messages of their own, the batch has indices.
+        // A dictionary's values are in messages of their own; the batch has only indices.
         _ if field.dictionary().is_some() => {
             return Some(Extent { nodes: 1, buffers: 2 });
         }

@@ -1,5 +1,5 @@
-//! Reading of files in blocks of whole lines: a reused buffer takes less memory and time than one
-//! as large as the file.
+//! Reads files in blocks of whole lines. A reused buffer takes less memory and time than one as
+//! large as the file.
 
 use std::io::Read;
 
@@ -7,16 +7,16 @@ use crate::error::Fault;
 use crate::formats::text::{Lines, checked, without_mark};
 use crate::value_limit::ValueLimit;
 
-/// Bytes of a block; longer than any valid line.
+/// Size of a block, bytes; longer than any valid line.
 const BLOCK: usize = 256 << 10;
 
-/// A reader whose data are split at line ends.
+/// A reader that splits its data at line ends.
 pub(crate) struct Blocks<'a> {
-    /// Limit on the numbers that are kept.
+    /// Limit on the numbers that are kept in memory.
     pub(crate) limit: ValueLimit,
     source: Box<dyn Read + 'a>,
     buffer: Vec<u8>,
-    /// Bytes of the buffer already returned, and bytes filled.
+    /// Number of bytes in the buffer that were already returned, and number of bytes filled.
     taken: usize,
     filled: usize,
     ended: bool,
@@ -34,7 +34,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the first remaining bytes, or all of them if they are fewer than a block.
+    /// Returns the first remaining bytes: a block, or everything if less than a block is left.
     pub(crate) fn front(&mut self) -> Result<&[u8], Fault> {
         self.buffer.copy_within(self.taken..self.filled, 0);
         (self.taken, self.filled) = (0, self.filled - self.taken);
@@ -49,8 +49,9 @@ impl<'a> Blocks<'a> {
         Ok(&self.buffer[..self.filled])
     }
 
-    /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than
-    /// a block is returned in pieces, the first of which exceeds the limit of a line.
+    /// Returns the next lines; `before` is the number of lines before them. `None` at the end. A
+    /// line longer than a block is returned in pieces; its first piece already exceeds the limit
+    /// for a line.
     pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, Fault> {
         self.front()?;
         let filled = &self.buffer[..self.filled];
@@ -64,8 +65,8 @@ impl<'a> Blocks<'a> {
         Ok((!block.is_empty()).then_some(block))
     }
 
-    /// Returns the first lines, without a byte order mark: as many as contain two rows, if there
-    /// are two.
+    /// Returns the first lines, without a byte order mark: as many as are needed to contain two
+    /// rows, if there are two.
     pub(crate) fn head(&mut self) -> Result<String, Fault> {
         let (mut head, mut rows, mut before) = (String::new(), 0, 0);
         while rows < 2 {
@@ -75,7 +76,7 @@ impl<'a> Blocks<'a> {
             let block = if before == 0 { without_mark(block) } else { block };
             head.push_str(block);
             let mut lines = Lines::behind(block, before, false);
-            // A line that is too long is reported when it is parsed.
+            // A line that is too long is reported later, when it is parsed.
             while rows < 2 && !matches!(lines.next_row(), Ok(None)) {
                 rows += 1;
             }
@@ -84,7 +85,7 @@ impl<'a> Blocks<'a> {
         Ok(head)
     }
 
-    /// Whether another row follows, after `before` lines.
+    /// Whether another row follows; `before` is the number of lines before it.
     pub(crate) fn has_row(&mut self, mut before: usize) -> Result<bool, Fault> {
         while let Some(block) = self.next(before)? {
             let mut lines = Lines::behind(block, before, false);
@@ -97,7 +98,7 @@ impl<'a> Blocks<'a> {
     }
 }
 
-/// Returns the length of the bytes without an incomplete character at the end.
+/// Returns the length of the bytes up to the last complete character.
 fn whole_characters(bytes: &[u8]) -> usize {
     match std::str::from_utf8(bytes) {
         Err(error) if error.error_len().is_none() && error.valid_up_to() > 0 => error.valid_up_to(),

@@ -1,8 +1,8 @@
-//! Numbers of either byte order, read from files whose sizes are not to be trusted.
+//! Numbers of either byte order, read from files whose stated sizes cannot be trusted.
 
 use std::io::{self, ErrorKind, Read};
 
-/// Most bytes that are read at once.
+/// Largest number of bytes that are read at once.
 const AT_ONCE: usize = 64 << 10;
 
 /// A byte order.
@@ -27,7 +27,7 @@ pub(crate) enum NumberType {
 }
 
 impl NumberType {
-    /// Returns the number of bytes.
+    /// Returns the size of a value in bytes.
     pub(crate) const fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -37,7 +37,7 @@ impl NumberType {
         }
     }
 
-    /// Returns the value of as many bytes as the type has; missing ones are 0.
+    /// Returns the value stored in the first bytes of `bytes`; missing bytes count as 0.
     pub(crate) fn value(self, bytes: &[u8], endian: Endian) -> f64 {
         let mut little = [0; 8];
         for (to, from) in little.iter_mut().zip(bytes) {
@@ -63,11 +63,11 @@ impl NumberType {
     }
 }
 
-/// A reader that knows its position.
+/// A reader that keeps track of its position.
 pub(crate) struct ByteReader<R> {
     pub(crate) source: R,
     pub(crate) endian: Endian,
-    /// Bytes read so far.
+    /// Number of bytes read so far.
     pub(crate) at: u64,
 }
 
@@ -99,7 +99,7 @@ impl<R: Read> ByteReader<R> {
         })
     }
 
-    /// Reads bytes; memory is taken as they come.
+    /// Reads `length` bytes. Memory is allocated only as the bytes arrive.
     pub(crate) fn vec(&mut self, length: u64) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let read = self.source.by_ref().take(length).read_to_end(&mut bytes)?;
@@ -107,14 +107,14 @@ impl<R: Read> ByteReader<R> {
         if read as u64 == length { Ok(bytes) } else { Err(ErrorKind::UnexpectedEof.into()) }
     }
 
-    /// Reads past bytes.
+    /// Skips bytes.
     pub(crate) fn skip(&mut self, length: u64) -> io::Result<()> {
         let skipped = io::copy(&mut self.source.by_ref().take(length), &mut io::sink())?;
         self.at += skipped;
         if skipped == length { Ok(()) } else { Err(ErrorKind::UnexpectedEof.into()) }
     }
 
-    /// Reads `count` values, and passes each with its index.
+    /// Reads `count` values and passes on each with its index.
     pub(crate) fn values(
         &mut self,
         kind: NumberType,

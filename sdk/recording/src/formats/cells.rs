@@ -1,14 +1,14 @@
-//! Cells of a line of delimited text.
+//! Splitting a line of delimited text into cells.
 
-/// What is between two cells.
+/// The text between two cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Delimiter {
     Byte(u8),
     Whitespace,
 }
 
-/// Returns the delimiter that gives the first two rows the same number of cells, and the most of
-/// them.
+/// Returns the delimiter that splits the first two rows into the same number of cells. If several
+/// do, returns the one with the most cells.
 pub(crate) fn sniff(first: &str, second: &str) -> Delimiter {
     let count = |line, delimiter| {
         let mut cells = Vec::new();
@@ -37,7 +37,8 @@ pub(crate) fn split<'a>(line: &'a str, delimiter: Delimiter, cells: &mut Vec<&'a
     }
 }
 
-/// Splits at a one-byte delimiter outside double quotes and removes outer spaces and quotes.
+/// Splits at a one-byte delimiter outside double quotes. Removes spaces and quotes around each
+/// cell.
 fn split_bytes<'a>(line: &'a str, delimiter: u8, cells: &mut Vec<&'a str>) {
     let mut start = 0;
     let mut quoted = false;

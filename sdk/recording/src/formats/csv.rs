@@ -1,4 +1,4 @@
-//! Delimited text as named columns of numbers.
+//! Reader of delimited text (CSV) as named columns of numbers.
 
 use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::blocks::Blocks;
@@ -13,7 +13,7 @@ use crate::value_limit::ValueLimit;
 /// A CSV, read block by block.
 pub(crate) struct Csv<'a> {
     table: Table,
-    /// The first lines, which have been read from the blocks.
+    /// The first lines, already read from the blocks.
     head: String,
     start: Start,
     blocks: Blocks<'a>,
@@ -22,9 +22,9 @@ pub(crate) struct Csv<'a> {
 /// Where the rows of numbers begin.
 struct Start {
     byte: usize,
-    /// Lines before.
+    /// Number of lines before the rows.
     line: usize,
-    /// Whether a comment before contains "simulated".
+    /// Whether a comment before the rows contains "simulated".
     simulated: bool,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Csv<'a> {
     }
 }
 
-/// Returns the layout of a file that begins with these lines, and where its rows begin.
+/// Returns the layout of a file that begins with the lines `head`, and where its rows begin.
 fn layout(head: &str) -> Result<(Table, Start), Fault> {
     let mut lines = Lines::new(head);
     let here = |lines: &Lines<'_>| Start {
@@ -66,8 +66,8 @@ fn layout(head: &str) -> Result<(Table, Start), Fault> {
     Ok((Table::new(columns, delimiter), start))
 }
 
-/// Returns the header that `numpy.savetxt` writes: the comment before the numbers, with the same
-/// number of cells.
+/// Returns the header that `numpy.savetxt` writes: the comment just before the numbers, if it has
+/// the same number of cells.
 fn commented_header(
     comment: Option<&str>,
     delimiter: Delimiter,
@@ -87,7 +87,7 @@ impl Sheet for Csv<'_> {
         Layout::Text
     }
 
-    /// The cells of other columns are only counted.
+    /// The cells of unwanted columns are only counted.
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
         let (table, limit) = (&mut self.table, self.blocks.limit);
         let mut columns = vec![Vec::new(); wanted.len()];
@@ -116,7 +116,8 @@ impl Sheet for Csv<'_> {
     }
 }
 
-/// Converts the fault of a truncated row if other rows follow the block.
+/// A truncated row is reported as cut off only at the end of the file: if other rows follow the
+/// block, converts the fault.
 fn in_the_middle(fault: Fault, behind: &mut Blocks<'_>) -> Result<Fault, Fault> {
     match fault {
         Fault {

@@ -1,6 +1,6 @@
-//! FLAC: integer samples of up to eight channels, compressed without loss.
+//! Reader of FLAC: losslessly compressed integer samples of up to eight channels.
 //!
-//! `claxon` reads it; `symphonia` is under the MPL.
+//! `claxon` reads the format; `symphonia` is not used because it is under the MPL.
 
 use std::io::Read;
 
@@ -11,7 +11,7 @@ use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::Opened;
 use crate::value_limit::ValueLimit;
 
-/// Opens a FLAC file, whose blocks are then decoded one by one.
+/// Opens a FLAC file. Its blocks are decoded one by one later.
 pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let options = FlacReaderOptions { metadata_only: false, read_vorbis_comment: false };
     let reader = FlacReader::new_ext(opened.stream(), options)
@@ -47,18 +47,18 @@ struct Decoded<R: Read> {
     reader: FlacReader<R>,
     width: usize,
     full_scale: f64,
-    /// Samples of a channel by the header, if it says.
+    /// Number of samples in a channel according to the header, if it states one.
     expected: Option<u64>,
     block: Block,
-    /// Sample and channel of the next value in the block.
+    /// Sample and channel index of the next value in the block.
     next: (u32, u32),
-    /// Samples of a channel before the block.
+    /// Number of samples of a channel before this block.
     before: u64,
     ended: bool,
 }
 
 impl<R: Read> Decoded<R> {
-    /// Decodes the next block; false at the end.
+    /// Decodes the next block; returns false at the end.
     fn advance(&mut self) -> Result<bool, Fault> {
         self.before += u64::from(self.block.duration());
         let buffer = std::mem::replace(&mut self.block, Block::empty()).into_buffer();

@@ -1,7 +1,8 @@
-//! HDF5, and MATLAB's version 7.3, which is HDF5: data sets addressed by path.
+//! Reader of HDF5, and of MATLAB's version 7.3, which is HDF5. Data sets are addressed by path.
 //!
-//! `hdf5-reader` bounds chunks, headers and depth, has no C code and follows no links to other
-//! files. `hdf5` binds the C library, and `hdf5-pure` is a writer of 120,000 lines too.
+//! The crate `hdf5-reader` limits chunks, headers and depth, has no C code, and does not follow
+//! links to other files. Alternatives: `hdf5` binds the C library; `hdf5-pure` also contains a
+//! writer and has 120,000 lines.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -19,17 +20,18 @@ use crate::input::Opened;
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// Deepest groups within groups.
+/// Deepest allowed nesting of groups.
 const MOST_DEEP: usize = 16;
-/// Most groups and data sets.
+/// Largest number of groups and data sets.
 const MOST_OBJECTS: usize = 65_536;
-/// Values that are read at once.
+/// Number of values that are read at once.
 const AT_ONCE: u64 = 64 << 10;
-/// Largest chunk, and largest object header, bytes.
+/// Largest chunk and largest object header that are read, bytes.
 const MOST_CHUNK: usize = 256 << 20;
 const MOST_HEADER: usize = 4 << 20;
-/// Most bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and MATLAB, reaches
-/// 1032; parts of a data set that were never written take no bytes at all.
+/// Largest number of bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and
+/// MATLAB, reaches 1032. Parts of a data set that were never written take no bytes at all, so
+/// without a limit a small file could claim any size.
 const MOST_EXPANSION: u64 = 2048;
 
 /// An opened file.
@@ -37,7 +39,7 @@ pub(crate) struct Hdf5 {
     columns: Columns,
     arrays: Arrays<Dataset>,
     limit: ValueLimit,
-    /// Length of the file.
+    /// Length of the file, bytes.
     bytes: u64,
 }
 
@@ -54,7 +56,7 @@ impl Storage for SharedFile {
 }
 
 impl Hdf5 {
-    /// Reads the names of all data sets. Links to other files are not followed.
+    /// Finds the names of all data sets. Links to other files are not followed.
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let shared = Shared::new(opened.random()?)?;
         let bytes = shared.length();
@@ -91,7 +93,7 @@ impl Sheet for Hdf5 {
 /// The data sets found so far.
 struct Scan {
     arrays: Arrays<Dataset>,
-    /// Addresses of groups: a group may contain a link to one around it.
+    /// Addresses of groups already visited: a group may contain a link to a group around it.
     seen: HashSet<u64>,
     objects: usize,
 }
@@ -111,7 +113,8 @@ impl Scan {
             );
             return Err(ReadProblem::Invalid(problem).at(htex_finding::plain(path)));
         }
-        // Attributes that cannot be read, of kinds without numbers among them, do not state a rate.
+        // Attributes that cannot be read do not state a rate; these include kinds that are not
+        // numbers.
         self.attributes(path, group.attributes().unwrap_or_default());
         for dataset in datasets {
             self.dataset(dataset, path)?;
@@ -168,7 +171,7 @@ fn is_number(kind: &Datatype) -> bool {
     )
 }
 
-/// Refuses a data set of more numbers than a file of this length can have.
+/// Refuses a data set with more numbers than a file of this length can hold.
 fn fits(bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), Fault> {
     let size = match dataset.dtype() {
         Datatype::FixedPoint { size, .. } | Datatype::FloatingPoint { size, .. } => *size,
@@ -185,7 +188,7 @@ fn fits(bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), Fault> {
     Err(ReadProblem::Invalid(problem).at(htex_finding::plain(dataset.name())))
 }
 
-/// Reads a data set, some samples of all its channels at once.
+/// Reads a data set in slabs: some samples of all its channels at once.
 fn read(
     dataset: &Dataset,
     shape: Shape,
@@ -204,7 +207,7 @@ fn read(
         };
         let here = to - from;
         slab(dataset, &SliceInfo { selections }, &mut |index, value| {
-            // From the index in the slab to that in the data set.
+            // Converts an index in the slab to an index in the data set.
             let index = if shape.is_planar {
                 index / here * shape.samples + from + index % here
             } else {
@@ -217,7 +220,7 @@ fn read(
     Ok(())
 }
 
-/// Reads a part of a data set, and passes each value with its index in the part.
+/// Reads a part of a data set and passes on each value with its index in the part.
 fn slab(
     dataset: &Dataset,
     part: &SliceInfo,

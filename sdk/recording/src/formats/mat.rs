@@ -1,11 +1,12 @@
-//! MATLAB files of version 5 (`save -v6` and `-v7`): numeric matrices, also in structs.
+//! Reader of MATLAB version 5 files (`save -v6` and `-v7`): numeric matrices, also inside structs.
 //!
-//! Layout: "MAT-File Format", MathWorks; a header of 128 bytes, then elements, each a tag of type
-//! and size with its data. Compressed elements are zlib streams with one element. Nothing is
-//! decompressed into memory: the file is read once for the names, and the variables that are used
-//! once more.
+//! Layout: "MAT-File Format", MathWorks. A header of 128 bytes is followed by elements; each has a
+//! tag with type and size, and then its data. A compressed element is a zlib stream that contains
+//! one element. Nothing is decompressed into memory: the file is read once for the names, and then
+//! the variables that are used are read once more.
 //!
-//! The reader is the project's own: `matfile` has no structs and reads a whole file.
+//! This reader is written for this project, because the crate `matfile` does not read structs and
+//! reads a whole file into memory.
 
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 
@@ -35,12 +36,12 @@ pub(crate) struct Mat {
     input: Random,
 }
 
-/// Where the values of a matrix are.
+/// Where a matrix's values are.
 #[derive(Debug)]
 struct Data {
-    /// The variable, as an element of the file.
+    /// The variable that contains them, as an element of the file.
     element: Element,
-    /// Bytes of the element, decompressed, before the values.
+    /// Number of bytes, decompressed, from the start of the element to the values.
     before: u64,
     kind: NumberType,
 }
@@ -54,7 +55,7 @@ struct Element {
 }
 
 impl Mat {
-    /// Reads the names of all variables.
+    /// Finds the names of all variables.
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let endian = match opened.front.get(126..128) {
             Some(b"IM") => Endian::Little,
@@ -99,7 +100,7 @@ impl Mat {
                     let mut inside = ByteReader::new(self.inside(scan.element)?, endian);
                     scan.matrix(&mut inside, bytes, None, 0)?;
                 }
-                // Other elements at the top are not variables.
+                // Other top-level elements are not variables.
                 _ => {}
             }
             let padding = if kind == COMPRESSED { 0 } else { bytes.wrapping_neg() % 8 };
@@ -108,7 +109,7 @@ impl Mat {
         Ok(())
     }
 
-    /// Returns the bytes of an element, decompressed.
+    /// Returns a reader of an element's bytes, decompressed.
     fn inside(&mut self, element: Element) -> io::Result<Box<dyn Read + '_>> {
         self.input.seek(SeekFrom::Start(element.at))?;
         let bytes = BufReader::new((&mut self.input).take(element.bytes));
@@ -150,7 +151,7 @@ impl Sheet for Mat {
 struct Scan {
     arrays: Arrays<Data>,
     element: Element,
-    /// Bytes of all variables, decompressed.
+    /// Total decompressed size of all variables, bytes.
     scanned: u64,
 }
 
@@ -162,7 +163,8 @@ impl Scan {
         }
     }
 
-    /// Reads a matrix of `bytes` bytes up to its end; a field of a struct has the name `field`.
+    /// Reads a matrix of `bytes` bytes to its end. If it is a struct's field, `field` is the
+    /// field's name.
     fn matrix(
         &mut self,
         inside: &mut ByteReader<impl Read>,
@@ -175,7 +177,7 @@ impl Scan {
         if self.scanned > MOST_BYTES {
             return Err(MatError::TooLarge);
         }
-        // A field without a value.
+        // A struct's field without a value.
         if bytes == 0 {
             return Ok(());
         }
@@ -233,7 +235,7 @@ impl Scan {
         Ok(())
     }
 
-    /// Reads the fields of a struct, `s.fx`, or of an array of structs, `s(2).fx`.
+    /// Reads the fields of a struct (`s.fx`) or of an array of structs (`s(2).fx`).
     fn fields(
         &mut self,
         inside: &mut ByteReader<impl Read>,

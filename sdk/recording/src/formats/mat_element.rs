@@ -1,16 +1,16 @@
-//! The elements of a MATLAB 5 file; and the errors of a file.
+//! The elements of a MATLAB version 5 file, and the errors of reading it.
 
 use std::io::{self, Read};
 
 use crate::formats::bytes::{ByteReader, NumberType};
 use crate::formats::matrix::MOST_COLUMNS;
 
-/// Deepest structs within structs.
+/// Deepest allowed nesting of structs.
 pub(crate) const MOST_DEEP: usize = 16;
-/// Longest name, and names of all fields of a struct, bytes.
+/// Longest name, and longest list of a struct's field names, bytes.
 pub(crate) const MOST_NAME: u32 = 1 << 10;
 pub(crate) const MOST_NAMES: u32 = 1 << 20;
-/// Most bytes of all variables, decompressed.
+/// Largest decompressed size of all variables, bytes.
 pub(crate) const MOST_BYTES: u64 = 4 << 30;
 
 /// Types of elements.
@@ -44,14 +44,14 @@ pub(crate) enum MatError {
 pub(crate) struct Tag {
     pub(crate) kind: u32,
     pub(crate) bytes: u32,
-    /// Bytes after the data up to the next tag.
+    /// Bytes between the end of the data and the next tag.
     padding: u32,
 }
 
 impl Tag {
     pub(crate) fn read(inside: &mut ByteReader<impl Read>) -> io::Result<Self> {
         let word = inside.u32()?;
-        // Up to four bytes of data may share the eight bytes of the tag.
+        // Data of up to four bytes may be stored inside the eight bytes of the tag.
         let short = word >> 16;
         if short != 0 {
             return Ok(Self {
@@ -69,7 +69,7 @@ impl Tag {
     }
 }
 
-/// Reads an element of 32-bit numbers.
+/// Reads an element that holds 32-bit numbers.
 pub(crate) fn words(
     inside: &mut ByteReader<impl Read>,
     kind: u32,
@@ -85,7 +85,7 @@ pub(crate) fn words(
     Ok(words)
 }
 
-/// Reads an element of text.
+/// Reads an element that holds text.
 pub(crate) fn text(
     inside: &mut ByteReader<impl Read>,
     most: u32,

@@ -1,14 +1,14 @@
-//! Named arrays of one or two dimensions as columns, for MATLAB and HDF5.
+//! Named arrays of one or two dimensions, read as columns, for MATLAB and HDF5.
 
 use crate::error::{Fault, ReadProblem};
 use crate::sheet::Columns;
 use crate::value_limit::ValueLimit;
 
-/// Most channels of an array: a picture or a table of results has more.
+/// Largest number of channels in an array; a picture or a table of results has more.
 pub(crate) const MOST_CHANNELS: u64 = 256;
-/// Most columns of a file.
+/// Largest number of columns in a file.
 pub(crate) const MOST_COLUMNS: usize = 65_536;
-/// Names of scalars and attributes that state the sample rate in hertz, in lower case.
+/// Names (in lower case) of scalars and attributes that state the sample rate in hertz.
 const RATES: [&str; 9] = [
     "fs",
     "fs_hz",
@@ -21,23 +21,24 @@ const RATES: [&str; 9] = [
     "sampling_rate_hz",
 ];
 
-/// Whether a scalar or an attribute of this name states the sample rate.
+/// Whether a scalar or attribute with this name states the sample rate.
 pub(crate) fn is_rate_name(name: &str) -> bool {
     RATES.contains(&name.to_ascii_lowercase().as_str())
 }
 
-/// The shape of an array that is read as columns: its longer side is time.
+/// The shape of an array that is read as columns. The longer side is time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub(crate) samples: u64,
     pub(crate) channels: u64,
-    /// Whether the samples of a channel are next to each other in the file.
+    /// Whether a channel's samples are next to each other in the file.
     pub(crate) is_planar: bool,
 }
 
 impl Shape {
-    /// Returns the shape of an array of `outer` blocks of `inner` values that are next to each
-    /// other in the file; `None` for a single value, nothing, and more than [`MOST_CHANNELS`].
+    /// Returns the shape of an array of `outer` blocks, each with `inner` values that are next to
+    /// each other in the file. `None` for an empty array, a single value, or more than
+    /// [`MOST_CHANNELS`] channels.
     pub(crate) fn of(outer: u64, inner: u64) -> Option<Self> {
         let is_planar = inner >= outer;
         let (channels, samples) = if is_planar { (outer, inner) } else { (inner, outer) };
@@ -45,7 +46,7 @@ impl Shape {
         is_signal.then_some(Self { samples, channels, is_planar })
     }
 
-    /// Returns channel and sample of a value, by its index in the file.
+    /// Returns the channel and the sample of a value, given its index in the file.
     pub(crate) fn place(self, index: u64) -> (u64, u64) {
         if self.is_planar {
             (index / self.samples, index % self.samples)
@@ -55,14 +56,14 @@ impl Shape {
     }
 }
 
-/// The arrays of a file, each of one or more columns.
+/// The arrays of a file, each with one or more columns.
 #[derive(Debug)]
 pub(crate) struct Arrays<T> {
     arrays: Vec<(Shape, T)>,
-    /// Array and channel of each column.
+    /// For each column, its array and its channel there.
     columns: Vec<(usize, u64)>,
     names: Vec<String>,
-    /// Names and values of scalars that state a rate.
+    /// Names and values of the scalars that state a rate.
     rates: Vec<(String, f64)>,
     separator: char,
 }
@@ -78,8 +79,8 @@ impl<T> Arrays<T> {
         }
     }
 
-    /// Adds an array. A single channel has its name, several have `name#1` and so on. False when
-    /// there are too many columns.
+    /// Adds an array. A single channel gets the array's name; several channels get `name#1` and so
+    /// on. Returns false if there are too many columns.
     #[must_use]
     pub(crate) fn add(&mut self, name: &str, shape: Shape, array: T) -> bool {
         for channel in 0..shape.channels {
@@ -93,7 +94,7 @@ impl<T> Arrays<T> {
         self.columns.len() <= MOST_COLUMNS
     }
 
-    /// Adds a scalar, if its name is that of a rate.
+    /// Adds a scalar, if its name is a sample rate's.
     pub(crate) fn add_scalar(&mut self, name: &str, value: f64) {
         let last = name.rsplit(self.separator).next().unwrap_or(name);
         if is_rate_name(last) && value.is_finite() && value > 0.0 && self.rates.len() < MOST_COLUMNS
@@ -106,8 +107,8 @@ impl<T> Arrays<T> {
         Columns::new(self.names.iter().cloned(), Some(self.separator))
     }
 
-    /// Returns the rate that is stated nearest to the wanted columns: in their group or array, or
-    /// in one around it. Different rates at the same distance are an error.
+    /// Returns the rate stated nearest to the wanted columns: in their own group or array, or else
+    /// in an enclosing one. Different rates at the same distance are an error.
     pub(crate) fn rate_hz(
         &self,
         columns: &Columns,
@@ -138,8 +139,8 @@ impl<T> Arrays<T> {
         }
     }
 
-    /// Reads the wanted columns: `read` reads an array and passes each value with its index in the
-    /// file. Each array is read once.
+    /// Reads the wanted columns, each array once. `read` reads an array and passes on each value
+    /// with its index in the file.
     pub(crate) fn numbers(
         &self,
         limit: ValueLimit,
@@ -171,7 +172,7 @@ impl<T> Arrays<T> {
     }
 }
 
-/// Returns the name of the array of a column: `data` of `data#2`.
+/// Returns the name of the array that a column belongs to: `data` for `data#2`.
 fn array_name(column: &str) -> &str {
     match column.rsplit_once('#') {
         Some((name, number)) if number.bytes().all(|byte| byte.is_ascii_digit()) => name,

@@ -1,4 +1,4 @@
-//! The formats of recordings, in one table, and the readers of their files.
+//! The table of all recording formats, and the readers of their files.
 
 #[cfg(feature = "lab-files")]
 mod arrow;
@@ -50,18 +50,18 @@ use crate::value_limit::ValueLimit;
 #[non_exhaustive]
 pub struct Format {
     pub name: &'static str,
-    /// Extensions of its files, in lower case. They count for files without a signature.
+    /// File extensions, in lower case. They decide only for files without a known signature.
     pub extensions: &'static [&'static str],
-    /// Bytes, and where in a file they are, of which one set makes a file one of this format.
+    /// Signatures: byte sequences with their offsets in the file. One match is enough.
     pub signatures: &'static [(usize, &'static [u8])],
-    /// The feature of this crate that builds its reader, if there is one.
+    /// The feature of this crate that builds the format's reader, if it needs one.
     pub feature: &'static str,
     open: Option<Open>,
 }
 
 type Open = for<'a> fn(Opened<'a>, ValueLimit) -> Result<Box<dyn Sheet + 'a>, Fault>;
 
-/// The reader of a format, if it is built.
+/// The reader of a format, if it was built.
 macro_rules! reader {
     ($feature:literal, $open:path) => {{
         #[cfg(feature = $feature)]
@@ -75,7 +75,7 @@ macro_rules! reader {
     }};
 }
 
-/// Text, which is what a file without a signature and a known extension is read as.
+/// Text: the format of any file without a known signature and a known extension.
 const CSV: Format = Format {
     name: "CSV",
     extensions: &["csv", "tsv", "txt"],
@@ -84,7 +84,7 @@ const CSV: Format = Format {
     open: Some(|opened, limit| Ok(Box::new(csv::Csv::open(opened, limit)?))),
 };
 
-/// Every format that is read, in the order in which signatures are tried.
+/// All formats that can be read, in the order in which their signatures are tried.
 pub const FORMATS: &[Format] = &[
     CSV,
     Format {
@@ -111,7 +111,7 @@ pub const FORMATS: &[Format] = &[
     Format {
         name: "MATLAB",
         extensions: &["mat"],
-        // Version 1 and the byte order.
+        // Version 1, with either byte order.
         signatures: &[(124, b"\0\x01IM"), (124, b"\x01\0MI")],
         feature: "matlab",
         open: reader!("matlab", mat::Mat::open),
@@ -140,7 +140,7 @@ pub const FORMATS: &[Format] = &[
     Format {
         name: "HDF5 (MATLAB 7.3)",
         extensions: &["hdf5", "h5"],
-        // A block of the user may precede the file, of 512 bytes in those of MATLAB 7.3.
+        // The file may begin with a user block, which has 512 bytes in MATLAB 7.3.
         signatures: &[(0, HDF5_START), (512, HDF5_START), (1024, HDF5_START), (2048, HDF5_START)],
         feature: "lab-files",
         open: reader!("lab-files", hdf5::Hdf5::open),
@@ -150,7 +150,8 @@ pub const FORMATS: &[Format] = &[
 const HDF5_START: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 impl Format {
-    /// Detects the format of a file by its signature, else by its extension; the default is text.
+    /// Detects the format of a file by its signature, or else by its extension; the default is
+    /// text.
     fn of(opened: &Opened<'_>) -> &'static Self {
         let extension = opened.path.extension().map(|e| e.to_ascii_lowercase());
         let extension = extension.as_ref().and_then(|extension| extension.to_str());
@@ -166,21 +167,21 @@ impl Format {
         signatures.any(|(at, bytes)| front.get(*at..).is_some_and(|all| all.starts_with(bytes)))
     }
 
-    /// Whether this build reads it.
+    /// Whether this build can read the format.
     #[must_use]
     pub fn is_built(&self) -> bool {
         self.open.is_some()
     }
 }
 
-/// Returns the names of all formats, for texts: `CSV, WAV, FLAC`.
+/// Returns the names of all formats for use in a text: `CSV, WAV, FLAC`.
 #[must_use]
 pub fn format_names() -> String {
     let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
     names.join(", ")
 }
 
-/// Opens a file of any format, and refuses options that do not apply to it.
+/// Opens a file of any format and refuses options that do not apply to it.
 pub(crate) fn open<'a>(
     opened: Opened<'a>,
     options: &ReadOptions,

@@ -1,4 +1,4 @@
-//! NumPy arrays: `(n,)` or `(n, channels)` of f4, f8, i2 or i4.
+//! Reader of NumPy arrays (NPY): shape `(n,)` or `(n, channels)`, of type f4, f8, i2 or i4.
 
 use std::io::{BufReader, ErrorKind, Read, copy, sink};
 
@@ -9,10 +9,10 @@ use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::Opened;
 use crate::value_limit::ValueLimit;
 
-/// Most channels: an array with its axes exchanged has one for each sample.
+/// Largest number of channels. An array with exchanged axes would have one channel for each sample.
 const MAX_CHANNELS: u64 = 256;
 
-/// Opens an NPY file, whose values are then read one by one.
+/// Opens an NPY file. Its values are read one by one later.
 pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let header = Header::parse(&opened.front).map_err(broken)?;
     let (rows, width) = shape(&header.shape).map_err(broken)?;
@@ -31,7 +31,7 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
     })
 }
 
-/// Returns the rows and columns of an array.
+/// Returns the number of rows and columns of an array.
 fn shape(shape: &[u64]) -> Result<(u64, usize), NpyError> {
     match shape {
         [rows] => Ok((*rows, 1)),
@@ -40,8 +40,8 @@ fn shape(shape: &[u64]) -> Result<(u64, usize), NpyError> {
     }
 }
 
-/// Returns the values in the order of the file, with integers as fractions of full scale; a file
-/// that is too short is an error after its last value.
+/// Returns the values in the order of the file, integers as fractions of full scale. If the file is
+/// too short, an error follows its last value.
 fn values(
     mut bytes: impl Read,
     header: Header,
@@ -60,7 +60,7 @@ fn values(
     })
 }
 
-/// Returns the value that integers are fractions of; `None` for floats.
+/// Returns the full-scale value of an integer type; `None` for floats.
 fn full_scale(kind: NumberType) -> Option<f64> {
     match kind {
         NumberType::I16 => Some(32_768.0),

@@ -2,10 +2,10 @@
 
 use crate::formats::bytes::{Endian, NumberType};
 
-/// Longest header, bytes; NumPy writes 118 for such arrays.
+/// Longest header that is read, bytes; NumPy writes 118 bytes for such arrays.
 const MAX_HEADER: usize = 4096;
 
-/// Problem of an array, and what to do.
+/// What is wrong with an array, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum NpyError {
     #[error("the file ends in its header or is of an unknown NPY version; copy it again")]
@@ -35,17 +35,17 @@ pub(crate) enum NpyError {
 /// What an NPY header states.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Header {
-    /// Bytes before the values.
+    /// Number of bytes before the values.
     pub(crate) bytes: usize,
     pub(crate) kind: NumberType,
     pub(crate) endian: Endian,
-    /// Whether a column's values are next to each other.
+    /// Whether the values of a column are next to each other.
     pub(crate) is_planar: bool,
     pub(crate) shape: Vec<u64>,
 }
 
 impl Header {
-    /// Parses the first bytes of a file, among which the whole header is to be.
+    /// Parses the header from the first bytes of a file, which must contain all of it.
     pub(crate) fn parse(front: &[u8]) -> Result<Self, NpyError> {
         let (start, text) = text(front)?;
         let (kind, endian) = kind(value(text, "descr")?)?;
@@ -64,7 +64,7 @@ impl Header {
     }
 }
 
-/// Returns the dictionary and where it begins.
+/// Returns the header's dictionary, and the byte at which the dictionary begins.
 fn text(front: &[u8]) -> Result<(usize, &str), NpyError> {
     let (start, length) = match front {
         [_, _, _, _, _, _, 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
@@ -81,7 +81,7 @@ fn text(front: &[u8]) -> Result<(usize, &str), NpyError> {
     Ok((start, text))
 }
 
-/// Returns the text from the value of a key on.
+/// Returns the dictionary's text from a key's value to the end.
 fn value<'a>(dictionary: &'a str, key: &'static str) -> Result<&'a str, NpyError> {
     let quoted = |quote| dictionary.split_once(&format!("{quote}{key}{quote}"));
     let after = quoted('\'').or_else(|| quoted('"'));
@@ -112,7 +112,7 @@ fn kind(descr: &str) -> Result<(NumberType, Endian), NpyError> {
     Ok((kind, endian))
 }
 
-/// Parses `(1000, 3)`, of at most two sizes whose product cannot overflow.
+/// Parses a shape such as `(1000, 3)`: at most two sizes, whose product cannot overflow.
 fn shape(text: &str) -> Result<Vec<u64>, NpyError> {
     let inside = text
         .strip_prefix(['(', '['])

@@ -1,12 +1,14 @@
 //! Parser of decimal numbers, correctly rounded.
 
-/// Powers of ten that are exact in `f64`, as many as a plain number has digits.
+/// Powers of ten that `f64` represents exactly, one for each possible number of decimals in a plain
+/// number.
 const POWERS: [f64; 17] =
     [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16];
-/// Digits that are read in an unrolled loop, which takes a fifth less time; few numbers have more.
+/// Number of digits that are read in an unrolled loop, which saves a fifth of the time; few numbers
+/// have more.
 const USUAL: usize = 9;
 
-/// Parses a cell; `None` when it is not a number. NaN and infinities are returned as such.
+/// Parses a cell; `None` if it is not a number. NaN and infinities are returned as they are.
 pub(crate) fn parse_number(cell: &str) -> Option<f64> {
     match plain_number(cell.as_bytes()) {
         Some((value, [])) => Some(value),
@@ -14,11 +16,11 @@ pub(crate) fn parse_number(cell: &str) -> Option<f64> {
     }
 }
 
-/// Parses a row of plain numbers at the start of `text` into `values`, one per cell. Returns the
-/// text that follows the row, from the line feed on.
+/// Parses a row of plain numbers at the start of `text` into `values`, one for each cell. Returns
+/// the text after the row, from the line feed on.
 ///
-/// Returns `None` when a cell has another form or their count is not `values.len()`: the row is
-/// then read by the slower parser, and the contents of `values` are undefined.
+/// Returns `None` if a cell has another form or the number of cells is not `values.len()`. The row
+/// must then be read by the slower parser, and the contents of `values` are undefined.
 pub(crate) fn parse_plain_row<'a>(
     text: &'a [u8],
     delimiter: u8,
@@ -41,10 +43,10 @@ pub(crate) fn parse_plain_row<'a>(
     }
 }
 
-/// Parses `[+-]digits[.digits]` at the start and returns the rest; `None` when there is no number
-/// or it has more digits than are exact in `f64`. The quotient of two exact numbers is rounded
-/// once, so it equals the result of `str::parse`.
-// Called for every cell: inlining it saves a quarter of the time of a row.
+/// Parses `[+-]digits[.digits]` at the start and returns the rest. `None` if there is no number, or
+/// it has more digits than `f64` holds exactly. The quotient of two exact numbers is rounded only
+/// once, so the result equals `str::parse`.
+// Called for every cell: inlining saves a quarter of the time for a row.
 #[inline(always)]
 fn plain_number(text: &[u8]) -> Option<(f64, &[u8])> {
     let (negative, text) = match text {
@@ -67,8 +69,8 @@ fn plain_number(text: &[u8]) -> Option<(f64, &[u8])> {
     Some((if negative { -magnitude } else { magnitude }, rest))
 }
 
-/// Appends the digits at the start to `value` and returns the rest. The value wraps beyond 19
-/// digits, which the caller refuses by the count.
+/// Appends the digits at the start to `value` and returns the rest. The value wraps around after 19
+/// digits; the caller refuses that many digits by their count.
 #[inline(always)]
 fn digits(text: &[u8], value: u64) -> (u64, &[u8]) {
     if let Some(front) = text.first_chunk::<USUAL>() {

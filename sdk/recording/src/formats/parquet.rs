@@ -1,7 +1,6 @@
-//! Parquet: numeric columns without lists.
+//! Reader of Parquet: numeric columns that are not lists.
 //!
-//! The crate `parquet` asserts what a damaged file may break in three places, which are checked
-//! here before.
+//! In three places the crate `parquet` panics on damaged files; these are checked here beforehand.
 
 use std::io::{BufReader, Read};
 
@@ -22,10 +21,10 @@ use crate::input::Opened;
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// Rows that are read at once.
+/// Number of rows that are read at once.
 const AT_ONCE: usize = 8 << 10;
 
-/// Length of the end of a file: the length of the footer, and `PAR1`.
+/// Length of the end of a file, bytes: the footer's length, and `PAR1`.
 const END: u64 = 8;
 /// Longest header of a page of numbers, bytes.
 const LONGEST_HEADER: u64 = 4 << 10;
@@ -33,7 +32,7 @@ const LONGEST_HEADER: u64 = 4 << 10;
 /// An opened file.
 pub(crate) struct Parquet {
     columns: Columns,
-    /// Index in the file of each column.
+    /// For each column, its index in the file.
     leaves: Vec<usize>,
     limit: ValueLimit,
     reader: SerializedFileReader<SharedFile>,
@@ -50,7 +49,7 @@ impl Length for SharedFile {
 impl ChunkReader for SharedFile {
     type T = BufReader<From>;
 
-    /// The library reads the header of a page from `start` on, or the end of the file.
+    /// The library reads a page's header from `start` on, or the end of the file.
     fn get_read(&self, start: u64) -> Result<Self::T> {
         let left = self.0.length().saturating_sub(start);
         if left != END {
@@ -65,7 +64,7 @@ impl ChunkReader for SharedFile {
     }
 }
 
-/// The input from a place on.
+/// Reads the input from a place on.
 struct From {
     source: Shared,
     at: u64,
@@ -136,8 +135,8 @@ impl Parquet {
     }
 }
 
-/// Refuses a footer that is not a whole structure; one whose length is not that of the file's is
-/// left to the library.
+/// Refuses a footer that is not a whole structure. A footer with a wrong length is left to the
+/// library, which reports it.
 fn check_footer(source: &Shared) -> Result<()> {
     let Some(end) = source.length().checked_sub(END) else {
         return Ok(());
@@ -155,7 +154,7 @@ fn check_footer(source: &Shared) -> Result<()> {
     whole.map(drop).map_err(|problem| ParquetError::General(problem.to_owned()))
 }
 
-/// Refuses a chunk of a column that the library cannot read, or does not check.
+/// Refuses a column chunk that the library cannot read or does not check.
 fn check(chunk: &ColumnChunkMetaData) -> std::result::Result<(), String> {
     if !is_known(chunk.compression()) {
         let compression = chunk.compression().to_string();
@@ -174,7 +173,7 @@ fn check(chunk: &ColumnChunkMetaData) -> std::result::Result<(), String> {
     Ok(())
 }
 
-/// Pages in an order and of encodings that the library reads without a panic.
+/// Passes on only pages whose order and encoding the library reads without a panic.
 struct CheckedPages {
     pages: Box<dyn PageReader>,
     has_dictionary: bool,
@@ -229,17 +228,17 @@ impl Iterator for CheckedPages {
     }
 }
 
-/// Values that are appended to a column.
+/// Appends values to a column.
 struct Append<'a> {
     limit: ValueLimit,
-    /// The level of a value that is there.
+    /// The definition level of a value that is not missing.
     levels: i16,
     values: &'a mut Vec<f64>,
 }
 
 impl Append<'_> {
-    /// Appends all values of a chunk, with NaN where there is none; the inner error is that of the
-    /// limit.
+    /// Appends all values of a chunk, with NaN for missing values. The inner error is that of the
+    /// limit on numbers.
     fn all<T: DataType>(
         &mut self,
         mut reader: ColumnReaderImpl<T>,

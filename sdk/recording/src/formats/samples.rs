@@ -1,17 +1,17 @@
-//! Files of channels: WAV, FLAC and NPY.
+//! Files with channels of samples: WAV, FLAC and NPY.
 
 use crate::error::Fault;
 use crate::sheet::{Columns, Layout, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// An opened file of channels of equal lengths.
+/// An opened file with channels of equal lengths.
 pub(crate) struct Samples<'a> {
     pub(crate) columns: Columns,
-    /// The file's own rate, hertz.
+    /// The file's own sample rate, hertz.
     pub(crate) rate_hz: Option<f64>,
-    /// Whether samples are integers, which are read as fractions of full scale.
+    /// Whether the samples are integers; these are read as fractions of full scale.
     pub(crate) are_integers: bool,
-    /// Samples of a channel by the header, if it says.
+    /// Number of samples in a channel according to the header, if it states one.
     pub(crate) frames: Option<u64>,
     pub(crate) limit: ValueLimit,
     pub(crate) order: Order,
@@ -21,14 +21,14 @@ pub(crate) struct Samples<'a> {
 /// The order of samples in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// A sample of each channel in turn.
+    /// One sample of each channel in turn.
     Interleaved,
     /// Channel after channel, each of this length.
     Planar(u64),
 }
 
 impl Samples<'_> {
-    /// Reads the wanted channels; the samples of others are passed over.
+    /// Reads the wanted channels and skips the samples of all others.
     fn channels(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, Fault> {
         if let Some(frames) = self.frames {
             let values = frames.saturating_mul(wanted.len() as u64);
@@ -80,7 +80,7 @@ impl Sheet for Samples<'_> {
     }
 }
 
-/// Returns the names of channels: `ch1` and so on.
+/// Returns channel names: `ch1` and so on.
 pub(crate) fn channel_names(count: usize) -> Columns {
     let names = (1..=count).map(|number| format!("ch{number}"));
     Columns::new(names, None)

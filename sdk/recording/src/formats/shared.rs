@@ -1,11 +1,11 @@
-//! An input that several readers of a library share.
+//! An input shared by several readers of a library.
 
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::input::Random;
 
-/// An input of known length, read at any place.
+/// An input of known length that can be read at any place.
 #[derive(Clone)]
 pub(crate) struct Shared {
     input: Arc<Mutex<Random>>,
@@ -17,12 +17,12 @@ impl Shared {
         Ok(Self { length: input.len()?, input: Arc::new(Mutex::new(input)) })
     }
 
-    /// Returns the number of bytes.
+    /// Returns the length in bytes.
     pub(crate) fn length(&self) -> u64 {
         self.length
     }
 
-    /// Returns bytes. No memory is taken for bytes beyond the end.
+    /// Reads bytes. No memory is allocated for bytes beyond the end.
     pub(crate) fn read(&self, at: u64, length: u64) -> io::Result<Vec<u8>> {
         let left = self.length.saturating_sub(at);
         if length > left {

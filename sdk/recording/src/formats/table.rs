@@ -1,8 +1,8 @@
-//! Rows of numbers in delimited text.
+//! Parsing rows of numbers in delimited text.
 //!
-//! The cells are split here instead of by the `csv` crate: rows are plain numbers, one pass splits
-//! and parses them in half the time that crate takes, and messages need line numbers as in an
-//! editor.
+//! The cells are split here instead of by the `csv` crate. Rows are plain numbers, so that one pass
+//! can split and parse them in half the time that the crate takes. And messages need the line
+//! numbers that an editor shows.
 
 use crate::error::{Fault, Place, ReadProblem, cell};
 use crate::formats::cells::{Delimiter, split};
@@ -11,16 +11,16 @@ use crate::formats::text::Lines;
 use crate::sheet::Columns;
 use crate::value_limit::ValueLimit;
 
-/// Longest part of a cell in a message, characters.
+/// Longest part of a cell that is shown in a message, characters.
 const MAX_SHOWN: usize = 40;
 
-/// The layout of a delimited file, and the lines of its rows.
+/// The layout of a delimited file, and the line numbers of its rows.
 #[derive(Debug)]
 pub(crate) struct Table {
     pub(crate) columns: Columns,
     delimiter: Delimiter,
-    /// Rows whose line is not the one after the previous row, with their lines; the first row is
-    /// always listed.
+    /// Pairs of a row and its line number, for rows that are not on the line right after the
+    /// previous row. The first row is always listed.
     runs: Vec<(usize, usize)>,
 }
 
@@ -29,7 +29,7 @@ impl Table {
         Self { columns, delimiter, runs: Vec::new() }
     }
 
-    /// Reads the rows of a block, up to the limit of numbers.
+    /// Reads the rows of a block, up to the limit on numbers.
     pub(crate) fn block(
         &mut self,
         lines: &mut Lines<'_>,
@@ -40,7 +40,7 @@ impl Table {
         let mut row = vec![0.0; self.columns.width()];
         let mut count = columns.first().map_or(0, Vec::len);
         while self.next_numbers(lines, wanted, &mut row)? {
-            // A run takes the memory of two numbers.
+            // A run takes as much memory as two numbers.
             let values = (count + 1) * wanted.len() + 2 * self.runs.len();
             limit.check(values as u64)?;
             for (values, &column) in columns.iter_mut().zip(wanted) {
@@ -54,7 +54,7 @@ impl Table {
         Ok(())
     }
 
-    /// Returns the line, from 1, of a row of numbers, from 0.
+    /// Returns the line (counted from 1) of a row of numbers (counted from 0).
     pub(crate) fn line_of_row(&self, row: usize) -> usize {
         let mut runs = self.runs.iter().rev();
         let run = runs.find(|(first, _)| *first <= row);
@@ -79,7 +79,8 @@ impl Table {
         }
     }
 
-    /// Reads the wanted cells of a row that is not all plain numbers; `lines` is already past it.
+    /// Reads the wanted cells of a row with cells that are not plain numbers; `lines` is already
+    /// past that row.
     fn read_row(
         &self,
         line: &str,

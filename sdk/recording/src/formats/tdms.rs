@@ -1,11 +1,11 @@
-//! TDMS, the files of LabVIEW: channels in groups, with their rate.
+//! Reader of TDMS, LabVIEW's file format: channels in groups, with their sample rate.
 //!
-//! Layout: "TDMS File Format Internal Structure", National Instruments; segments, each with the
-//! objects that it changes, and raw data in chunks. The directory of all segments is read first,
-//! then the channels that are used.
+//! Layout: "TDMS File Format Internal Structure", National Instruments. A file consists of
+//! segments; each has the objects that it changes, and raw data in chunks. The directory of all
+//! segments is read first, then the channels that are used.
 //!
-//! The reader is the project's own: `tdms` unwraps what a damaged file may lack, and reads files
-//! alone.
+//! This reader is written for this project: the crate `tdms` unwraps values that a damaged file may
+//! lack, and it reads only from files.
 
 use std::io::{Seek, SeekFrom};
 
@@ -63,14 +63,14 @@ impl Tdms {
     }
 }
 
-/// Reads the values of a channel in one chunk, which begins with its first value.
+/// Reads a channel's values in one chunk; the input must be at the first value.
 fn read_chunk(input: &mut Random, piece: &Piece, values: &mut Vec<f64>) -> Result<(), TdmsError> {
     let size = piece.kind.size() as u64;
     if piece.stride == size {
         let mut reader = ByteReader::new(input, piece.endian);
         return Ok(reader.values(piece.kind, piece.values, |_, value| values.push(value))?);
     }
-    // Whole rows of interleaved channels, some at once.
+    // Reads whole rows of interleaved channels, several at once.
     let rows_at_once = (256 << 10) / piece.stride + 1;
     let mut done = 0;
     while done < piece.values {
@@ -93,7 +93,7 @@ impl Sheet for Tdms {
         &self.columns
     }
 
-    /// Returns the inverse of `wf_increment`, which must be that of all channels.
+    /// Returns the sample rate, the inverse of `wf_increment`; all wanted channels must agree.
     fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, Fault> {
         let channels = wanted.iter().filter_map(|column| self.channels.get(*column));
         let mut first: Option<(&Channel, f64)> = None;

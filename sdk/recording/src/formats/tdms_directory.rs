@@ -1,4 +1,4 @@
-//! The directory of a TDMS file: its channels, and where their values are.
+//! The directory of a TDMS file: its channels, and where their values are stored.
 
 use std::collections::HashMap;
 use std::io::{BufReader, Read, Seek};
@@ -10,28 +10,28 @@ use crate::formats::tdms_object::{
 use crate::input::Random;
 use crate::value_limit::ValueLimit;
 
-/// Length of the first part of a segment.
+/// Length of a segment's lead-in, bytes.
 const LEAD_IN: u64 = 28;
-/// Why channels are refused.
+/// Reasons for refusing a channel.
 const RAW_DAQMX: &str =
     "it has raw DAQmx data, which are not read; in LabVIEW or DIAdem, save it with scaled values";
 const UNSCALED: &str = "its values are stored without their scales (NI_Number_Of_Scales), which are not applied; in LabVIEW or \
                         DIAdem, save it with scaled values";
 
-/// Bits of a segment's table of contents.
+/// Bits in a segment's table of contents.
 const METADATA: u32 = 1 << 1;
 const NEW_OBJECTS: u32 = 1 << 2;
 const RAW_DATA: u32 = 1 << 3;
 const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
 const DAQMX: u32 = 1 << 7;
-/// The length of a segment that was not completed.
+/// The length stated by a segment that was not completed.
 const INCOMPLETE: u64 = u64::MAX;
 
 /// A channel of a file.
 #[derive(Debug)]
 pub(crate) struct Channel {
-    /// `Group/Channel`.
+    /// The name, as `Group/Channel`.
     pub(crate) name: String,
     /// Byte at which the channel's own name begins.
     pub(crate) part: usize,
@@ -39,21 +39,21 @@ pub(crate) struct Channel {
     pub(crate) increment_s: Option<f64>,
     pub(crate) samples: u64,
     pub(crate) pieces: Vec<Piece>,
-    /// Why the channel cannot be read.
+    /// Why the channel cannot be read, if it cannot.
     pub(crate) refused: Option<&'static str>,
     layout: Option<Layout>,
-    /// The list of objects that the channel was added to last.
+    /// The last list of objects to which the channel was added.
     list: u64,
 }
 
-/// Values of a channel in the chunks of one segment.
+/// A channel's values in the chunks of one segment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Piece {
-    /// Byte of the first value.
+    /// Position of the first value, bytes.
     pub(crate) start: u64,
     pub(crate) chunks: u64,
     pub(crate) chunk_bytes: u64,
-    /// Values in a chunk.
+    /// Number of values in a chunk.
     pub(crate) values: u64,
     /// Bytes from one value to the next.
     pub(crate) stride: u64,
@@ -61,18 +61,18 @@ pub(crate) struct Piece {
     pub(crate) endian: Endian,
 }
 
-/// What has been read of a directory.
+/// What has been read of a directory so far.
 pub(crate) struct Directory {
     pub(crate) channels: Vec<Channel>,
     pub(crate) warnings: Vec<String>,
     by_path: HashMap<String, usize>,
     /// Channels with values in the current segment, in their order.
     current: Vec<usize>,
-    /// Number of the list of objects, from 1.
+    /// Number of the current list of objects, counted from 1.
     list: u64,
     limit: ValueLimit,
     pieces: u64,
-    /// Byte of the segment.
+    /// Position of the segment, bytes.
     segment: u64,
 }
 
@@ -98,7 +98,7 @@ impl Directory {
         }
     }
 
-    /// Returns the place that was read last.
+    /// Returns the place in the file that was read last.
     pub(crate) fn place(&self) -> String {
         format!("segment at byte {}", self.segment)
     }
@@ -187,7 +187,7 @@ impl Directory {
         Ok(())
     }
 
-    /// Returns the channel of a path, `None` for the file and groups.
+    /// Returns the channel with a path; `None` for the file itself and for groups.
     fn channel(&mut self, path: &str) -> Result<Option<usize>, TdmsError> {
         if let Some(channel) = self.by_path.get(path) {
             return Ok(Some(*channel));
@@ -232,7 +232,7 @@ impl Directory {
         self.channels[channel].refused.get_or_insert(problem);
     }
 
-    /// Reads the attributes of an object; of a channel, its rate and scales are kept.
+    /// Reads the attributes of an object. If it is a channel, its rate and scales are stored.
     fn attributes(
         &mut self,
         reader: &mut ByteReader<impl Read>,
@@ -332,7 +332,7 @@ impl Directory {
         if layout.kind.is_none() || piece.values == 0 || piece.chunks == 0 {
             return Ok(());
         }
-        // A piece takes the memory of eight numbers.
+        // A piece takes as much memory as eight numbers.
         self.pieces += 8;
         if self.pieces > self.limit.most_values as u64 {
             return Err(TdmsError::TooManyPieces);

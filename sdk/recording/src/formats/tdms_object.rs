@@ -1,11 +1,11 @@
-//! The parts of a TDMS object: its path, the layout of its values, its attributes; and the errors
-//! of a file.
+//! The parts of a TDMS object: its path, the layout of its values and its attributes; and the
+//! errors of a file.
 
 use std::io::{self, Read};
 
 use crate::formats::bytes::{ByteReader, NumberType};
 
-/// Longest text, bytes.
+/// Longest text that is read, bytes.
 const MOST_TEXT: u32 = 64 << 10;
 pub(crate) const MOST_CHANNELS: usize = 65_536;
 
@@ -41,16 +41,16 @@ pub(crate) enum TdmsError {
     Refused(&'static str),
 }
 
-/// The values of a channel in a chunk.
+/// A channel's values in a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
-    /// `None` for what are not numbers, such as texts and times.
+    /// `None` for values that are not numbers, such as texts and times.
     pub(crate) kind: Option<NumberType>,
     pub(crate) values: u64,
     pub(crate) bytes: u64,
 }
 
-/// Reads type and length of a channel's values in a chunk.
+/// Reads the type and number of a channel's values in a chunk.
 pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsError> {
     let (kind, dimension, values) = (reader.u32()?, reader.u32()?, reader.u64()?);
     if dimension != 1 {
@@ -81,7 +81,7 @@ pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsE
     Ok(Layout { kind: number, values, bytes })
 }
 
-/// Reads past the index of raw DAQmx data.
+/// Skips the index of raw DAQmx data.
 pub(crate) fn daqmx_index(reader: &mut ByteReader<impl Read>) -> Result<(), TdmsError> {
     reader.skip(16)?;
     let scalers = reader.u32()?;
@@ -90,7 +90,7 @@ pub(crate) fn daqmx_index(reader: &mut ByteReader<impl Read>) -> Result<(), Tdms
     Ok(reader.skip(4 * u64::from(widths))?)
 }
 
-/// Reads a value; `None` for what is not a number.
+/// Reads an attribute's value; `None` if it is not a number.
 pub(crate) fn attribute(reader: &mut ByteReader<impl Read>) -> Result<Option<f64>, TdmsError> {
     let kind = reader.u32()?;
     if let Some(number) = number_type(kind) {
@@ -132,7 +132,7 @@ pub(crate) fn text(reader: &mut ByteReader<impl Read>) -> Result<String, TdmsErr
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Returns the parts of a path: `/'Group'/'Channel'`, in which a quote is doubled.
+/// Returns the parts of a path such as `/'Group'/'Channel'`. In a name, a quote is written twice.
 pub(crate) fn parts(path: &str) -> Option<Vec<String>> {
     let mut parts = Vec::new();
     let mut rest = path;

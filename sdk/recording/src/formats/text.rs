@@ -1,8 +1,8 @@
-//! Numbered lines of text.
+//! Lines of text, with their numbers.
 
 use crate::error::{Fault, Place, ReadProblem};
 
-/// The longest line, bytes; a row of forces has a few tens.
+/// The longest line that is read, bytes; a row of forces has a few tens.
 const MAX_LINE: usize = 64 << 10;
 
 /// Removes a byte order mark.
@@ -10,7 +10,8 @@ pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
-/// Returns the bytes, which follow `before` lines, as text; refuses NUL and invalid UTF-8.
+/// Returns bytes as text and refuses NUL and invalid UTF-8. `before` is the number of lines before
+/// them.
 pub(crate) fn checked(bytes: &[u8], before: usize) -> Result<&str, Fault> {
     let refuse = |position: usize, what| {
         let line = before + 1 + bytes[..position].iter().filter(|byte| **byte == b'\n').count();
@@ -24,12 +25,12 @@ pub(crate) fn checked(bytes: &[u8], before: usize) -> Result<&str, Fault> {
         .map_err(|error| refuse(error.valid_up_to(), "a byte sequence that is not UTF-8"))
 }
 
-/// The lines that hold cells, without blank lines and `#` comments.
+/// The lines that contain cells; skips blank lines and `#` comments.
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
-    /// What follows the last returned or skipped line.
+    /// The text after the last returned or skipped line.
     pub(crate) rest: &'a str,
-    /// Number of the last returned or skipped line, from 1.
+    /// Number of the last returned or skipped line, counted from 1.
     pub(crate) number: usize,
     /// The last skipped comment, without its `#`.
     pub(crate) comment: Option<&'a str>,
@@ -42,12 +43,13 @@ impl<'a> Lines<'a> {
         Self::behind(text, 0, false)
     }
 
-    /// Lines of a text that follows others, which may have contained "simulated".
+    /// Continues with the text after `number` lines, which may have contained "simulated".
     pub(crate) fn behind(text: &'a str, number: usize, simulated: bool) -> Self {
         Self { rest: text, number, comment: None, simulated }
     }
 
-    /// Returns the next line with cells, without its line end; `None` at the end of the file.
+    /// Returns the next line that contains cells, without its line end; `None` at the end of the
+    /// file.
     pub(crate) fn next_row(&mut self) -> Result<Option<&'a str>, Fault> {
         while !self.rest.is_empty() {
             let line = self.take_line()?;
@@ -61,8 +63,8 @@ impl<'a> Lines<'a> {
         Ok(None)
     }
 
-    /// Skips the next line if `parse` can read it. `parse` is given the remaining text and
-    /// returns what follows the line, from the line feed on.
+    /// Skips the next line if `parse` can read it. `parse` gets the remaining text and returns the
+    /// text after the line, from the line feed on.
     pub(crate) fn pass_line(&mut self, parse: impl FnOnce(&[u8]) -> Option<&[u8]>) -> bool {
         let Some(left) = parse(self.rest.as_bytes()) else {
             return false;

@@ -1,18 +1,18 @@
-//! Lengths in Thrift's compact protocol
-//! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), by which
-//! Parquet writes its headers. The library that reads them takes as many turns for a list as it
-//! claims to have elements.
+//! Lengths of structures in Thrift's compact protocol
+//! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), in which
+//! Parquet writes its headers. They are checked because the library that reads them loops over a
+//! list as often as the list claims to have elements.
 
-/// Deepest nesting of structures and lists.
+/// Deepest allowed nesting of structures and lists.
 const DEEPEST: usize = 32;
 
-/// The types true and false.
+/// The type codes of true and false.
 const TRUTH_VALUES: [u8; 2] = [1, 2];
 
 /// Returns the length of the structure at the beginning of `bytes`.
 ///
 /// # Errors
-/// When it is not whole: an element of a list takes at least a byte.
+/// When the structure is not complete. An element of a list takes at least one byte.
 pub(crate) fn struct_len(bytes: &[u8]) -> Result<usize, &'static str> {
     let mut walk = Walk { bytes, at: 0 };
     walk.fields(0)?;
@@ -38,7 +38,7 @@ impl Walk<'_> {
             if delta == 0 {
                 self.varint()?;
             }
-            // A field of type true or false has no further bytes.
+            // A field of type true or false has no bytes after its header.
             if kind > 2 {
                 self.value(kind, depth)?;
             }
@@ -79,7 +79,8 @@ impl Walk<'_> {
         if depth > DEEPEST {
             return Err("its header is nested too deeply");
         }
-        // The library takes them for values without bytes, and so reads other lists than this.
+        // The library takes such elements for values without bytes, so it would read lists
+        // differently from this code.
         if kinds.iter().any(|kind| TRUTH_VALUES.contains(kind)) {
             return Err("its header has a list of truth values, which none of Parquet's has");
         }
@@ -130,9 +131,9 @@ mod tests {
     fn lengths_are_those_of_whole_structures() {
         // Field 1, i32: 3; field 2, list of two bytes; the end.
         assert_eq!(struct_len(&[0x15, 0x06, 0x19, 0x23, 1, 2, 0, 9]), Ok(7));
-        // The same of truth values.
+        // The same list, of truth values.
         assert!(struct_len(&[0x15, 0x06, 0x19, 0x21, 1, 2, 0, 9]).is_err());
-        // Two thousand million bytes in seven.
+        // Seven bytes that claim a list of two thousand million elements.
         let long = [0x19, 0xf3, 0xff, 0xff, 0xff, 0xff, 0x07, 0];
         assert!(struct_len(&long).is_err());
         assert!(struct_len(&[0x15]).is_err() && struct_len(&[]).is_err());

@@ -1,4 +1,4 @@
-//! WAV: integer or float samples of any number of channels.
+//! Reader of WAV: integer or float samples of any number of channels.
 
 use std::io::BufReader;
 
@@ -9,7 +9,7 @@ use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::Opened;
 use crate::value_limit::ValueLimit;
 
-/// Opens a WAV file, whose samples are then read one by one.
+/// Opens a WAV file. Its samples are read one by one later.
 pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let reader = WavReader::new(BufReader::new(opened.stream()))
         .map_err(|error| broken(format!("not a readable WAV file: {error}")))?;

@@ -1,5 +1,5 @@
-//! The time of a sample of an imported texture that follows a finger: cargo run --release -p
-//! htex-exchange --example live FILE.xml
+//! Measures the time for each sample of an imported texture that follows a finger: cargo run
+//! --release -p htex-exchange --example live FILE.xml
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use htex_exchange::hatt::{Imported, asset, read};
 use htex_play::{Asset, Motion, VoiceOptions};
 
 const RATE_HZ: f64 = 20_000.0;
-/// Samples of a run.
+/// Number of samples in a run.
 const SAMPLES: usize = 400_000;
 const RUNS: usize = 15;
 
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The time of a run in blocks of some samples, seconds.
+/// Time of a run that renders `samples` samples at a time, seconds.
 fn run_s(asset: &Asset, samples: usize, moves: bool) -> Result<f64, Box<dyn std::error::Error>> {
     let mut options = VoiceOptions::default();
     options.rate_hz = RATE_HZ;

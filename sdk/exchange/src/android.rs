@@ -1,12 +1,12 @@
-//! Android's `VibrationEffect`: a waveform of levels, and the envelopes of API 36, as JSON and as
-//! Kotlin.
+//! Android's `VibrationEffect`: a waveform of levels, and the envelopes of API 36, written as JSON
+//! and as Kotlin.
 //!
-//! Rules of the documentation: a waveform has timings of milliseconds and amplitudes of 0 to 255; a
-//! control point of an envelope has at least the duration and an envelope at most the points that
-//! `VibratorEnvelopeEffectInfo` says, which guarantees 16 points of 20 ms to 1 s; an envelope of
+//! Rules from the documentation: a waveform has timings in milliseconds and amplitudes from 0 to
+//! 255. `VibratorEnvelopeEffectInfo` states the shortest duration of a control point and the
+//! largest number of points in an envelope; it guarantees 16 points of 20 ms to 1 s. An envelope of
 //! `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is
-//! the part of the strongest vibration at the frequency. The JSON is this project's own: Android
-//! has no file of an effect.
+//! relative to the strongest vibration at the frequency. The JSON is this project's own, because
+//! Android has no file format for effects.
 
 use htex_format::Rights;
 use serde::{Deserialize, Serialize};
@@ -17,11 +17,11 @@ use crate::json::{self, within};
 use crate::pattern::Pattern;
 use crate::profile::Profile;
 
-/// Longest duration of a control point that every device takes, milliseconds.
+/// Longest duration of a control point that every device accepts, milliseconds.
 pub const LONGEST_POINT_MS: u64 = 1_000;
 const FORMAT: &str = "android.os.VibrationEffect";
 
-/// An effect, in three ways of which a device takes one.
+/// An effect in three forms, of which a device uses one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Android {
@@ -41,9 +41,9 @@ pub struct Android {
 #[serde(deny_unknown_fields)]
 pub struct Waveform {
     pub timings_ms: Vec<u64>,
-    /// 0 to 255.
+    /// Amplitudes from 0 to 255.
     pub amplitudes: Vec<u8>,
-    /// Index from which it is repeated; −1 for once.
+    /// Index from which the waveform is repeated; −1 to play it once.
     pub repeat: i32,
 }
 
@@ -57,10 +57,10 @@ pub struct WaveformEnvelope {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WaveformPoint {
-    /// 0 to 1.
+    /// Amplitude from 0 to 1.
     pub amplitude: f64,
     pub frequency_hz: f64,
-    /// Time from the point before.
+    /// Time since the previous point, milliseconds.
     pub duration_ms: u64,
 }
 
@@ -74,11 +74,11 @@ pub struct BasicEnvelope {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BasicPoint {
-    /// 0 to 1.
+    /// Intensity from 0 to 1.
     pub intensity: f64,
-    /// 0 to 1.
+    /// Sharpness from 0 to 1.
     pub sharpness: f64,
-    /// Time from the point before.
+    /// Time since the previous point, milliseconds.
     pub duration_ms: u64,
 }
 
@@ -102,11 +102,11 @@ impl Android {
         self
     }
 
-    /// Reads the JSON of an effect.
+    /// Reads an effect from JSON.
     ///
     /// # Errors
-    /// When it is no JSON, has another shape, or breaks a rule of Android's builders; with the
-    /// place.
+    /// When it is not JSON, has another structure, or breaks a rule of Android's builders. The
+    /// fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let effect: Self = json::read(bytes)?;
         if effect.format != FORMAT {
@@ -141,10 +141,11 @@ impl Android {
         }
     }
 
-    /// Checks what a device takes: the number of control points, and their least duration.
+    /// Checks that a device accepts the envelopes: the number of control points and their shortest
+    /// duration.
     ///
     /// # Errors
-    /// With the envelope or the point that it refuses.
+    /// The envelope or point that the device would refuse.
     pub fn check_device(&self, profile: &Profile) -> Result<(), Fault> {
         let waveform = self.waveform_envelope.control_points.iter();
         let basic = self.basic_envelope.control_points.iter();
@@ -165,7 +166,7 @@ impl Android {
         Ok(())
     }
 
-    /// Returns the vibration of `WaveformEnvelopeBuilder`, which begins at the amplitude 0.
+    /// Returns the vibration of `WaveformEnvelopeBuilder`, which starts from the amplitude 0.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         let envelope = &self.waveform_envelope;
@@ -187,8 +188,8 @@ impl Android {
         }
     }
 
-    /// Writes three functions of Kotlin that make the effect; `name` of the texture becomes a part
-    /// of theirs.
+    /// Writes three Kotlin functions that build the effect. The texture's `name` becomes part of
+    /// their names.
     #[must_use]
     pub fn to_kotlin(&self, name: &str) -> Vec<u8> {
         let name = identifier(name);
@@ -225,7 +226,7 @@ impl Android {
     }
 }
 
-/// An effect of one of Android's builders.
+/// Kotlin code for an effect built by one of Android's envelope builders.
 fn builder(name: &str, first: &str, points: impl Iterator<Item = (f64, f64, u64)>) -> String {
     let point =
         |(a, b, ms): (f64, f64, u64)| format!("        .addControlPoint({a}f, {b}f, {ms}L)\n");
@@ -274,7 +275,7 @@ fn joined<T: ToString>(values: impl Iterator<Item = T>) -> String {
     values.join(", ")
 }
 
-/// A name of Kotlin: letters and digits of ASCII, in camel case.
+/// A Kotlin name: ASCII letters and digits in camel case.
 fn identifier(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let mut identifier = String::new();

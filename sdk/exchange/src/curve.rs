@@ -1,4 +1,4 @@
-//! Curves of straight lines through points in time, which all formats of envelopes have.
+//! Curves of straight lines between points in time, which all envelope formats use.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,8 +17,9 @@ impl Point {
     }
 }
 
-/// Returns the value of a curve at a time: linear between points, that of the first before it and
-/// that of the last after it; at points of equal time, the last one's. `None` of no points.
+/// Returns the value of a curve at a time, linear between points. Before the first point it is the
+/// first point's value, after the last point the last one's. If several points have the same time,
+/// the last of them counts. `None` if there are no points.
 ///
 /// ```
 /// use htex_exchange::{Point, value_at};
@@ -41,7 +42,7 @@ pub fn value_at(curve: &[Point], time_s: f64) -> Option<f64> {
     }
 }
 
-/// A curve that is read at ascending times.
+/// Reads a curve at ascending times.
 pub(crate) struct Reader<'a> {
     curve: &'a [Point],
     after: usize,
@@ -52,7 +53,7 @@ impl<'a> Reader<'a> {
         Self { curve, after: 0 }
     }
 
-    /// As [`value_at`], in constant time for times that ascend.
+    /// As [`value_at`], but in constant time on average if the times ascend.
     pub(crate) fn at(&mut self, time_s: f64) -> Option<f64> {
         while (self.curve.get(self.after)).is_some_and(|point| point.time_s <= time_s) {
             self.after += 1;
@@ -63,7 +64,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Leaves out points that lie within `tolerance` of the straight line between those that stay
+/// Leaves out points that lie within `tolerance` of the straight line between the points that stay
 /// (Ramer 1972; Douglas & Peucker 1973).
 #[must_use]
 pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
@@ -83,7 +84,8 @@ pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
     kept.map(|(point, _)| *point).collect()
 }
 
-/// The point between two that is furthest from their line, if that is further than the tolerance.
+/// The point between two others that is furthest from the line between them, if it is further than
+/// the tolerance.
 fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<usize> {
     let (a, b) = (curve.get(from)?, curve.get(to)?);
     let ends = [*a, *b];
@@ -98,8 +100,8 @@ fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<u
     (most > tolerance).then_some(at)
 }
 
-/// The value of a curve from a time on, or just before it, which differ where two points have this
-/// time.
+/// The value of a curve at a time, or just before that time. The two differ where two points have
+/// this time.
 pub(crate) fn side(curve: &[Point], time_s: f64, before: bool) -> Option<f64> {
     let first_here = curve.partition_point(|point| point.time_s < time_s);
     match curve.get(first_here) {

@@ -1,12 +1,13 @@
-//! Errors of import and export. Each says what is wrong, where in the file, and what to do.
+//! Errors of import and export. Each says what is wrong, where in the file it is wrong, and what to
+//! do.
 
 use htex_author::AuthorError;
 
-/// What is wrong in a file, and where.
+/// What is wrong in a file, and at which place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{problem}", place_of(.place))]
 pub struct Fault {
-    /// A JSON pointer (RFC 6901), or `line 3 column 7`; empty for the whole file.
+    /// A JSON pointer (RFC 6901), or `line 3 column 7`; empty if the fault concerns the whole file.
     pub place: String,
     /// What is wrong there, and what to do.
     pub problem: String,
@@ -16,11 +17,11 @@ fn place_of(place: &str) -> String {
     if place.is_empty() { String::new() } else { format!("{place}: ") }
 }
 
-/// Most characters of a place or a problem, which quote the file.
+/// Longest place or problem, characters, since both may quote the file.
 const MOST_QUOTED: usize = 500;
 
-/// One line of a text that may quote a file: its beginning, without characters that steer a
-/// terminal.
+/// Makes one line of a text that may quote a file: keeps its beginning and removes characters that
+/// control a terminal.
 fn quoted(text: &str) -> String {
     let mut shown: String = text.chars().take(MOST_QUOTED).collect();
     if shown.len() < text.len() {
@@ -34,7 +35,7 @@ impl Fault {
         Self { place: quoted(place.as_ref()), problem: quoted(problem.as_ref()) }
     }
 
-    /// Of the whole file.
+    /// A fault of the whole file.
     pub(crate) fn whole(problem: impl AsRef<str>) -> Self {
         Self::new("", problem)
     }
@@ -44,47 +45,47 @@ impl Fault {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExchangeError {
-    /// The extension is of no format that is read.
+    /// No format that can be imported has this extension.
     #[error("{file}: no format that is read has this extension; there are {there}")]
     UnknownFormat {
         file: String,
-        /// The formats that are read, with their extensions.
+        /// The formats that can be imported, with their extensions.
         there: String,
     },
     /// The file is not what its format says.
     #[error("{file}: {fault}")]
     File { file: String, fault: Fault },
-    /// The format does not say what an asset needs, and nobody else did.
+    /// The format does not contain what an asset needs, and the user did not give it either.
     #[error("{}", not_said(.format, .missing, &keyword))]
     Missing { format: &'static str, missing: Vec<Missing> },
-    /// A setting that was given means nothing for this format.
+    /// A given setting does not apply to this format.
     #[error("{}", unused(.format, .way, .setting, .takes, &keyword))]
     Unused {
         format: &'static str,
         /// `import`, `export` or `export of a scene`.
         way: &'static str,
-        /// As a keyword: `full_scale`.
+        /// The setting as a keyword, such as `full_scale`.
         setting: String,
-        /// What it takes.
+        /// The settings that the format takes.
         takes: Vec<&'static str>,
     },
-    /// A number that was given is out of its range.
+    /// A given number is out of range.
     #[error("{name} {value}: {range}")]
     OutOfRange {
-        /// The setting, as a keyword: `full_scale`.
+        /// The setting as a keyword, such as `full_scale`.
         name: &'static str,
         value: f64,
         range: &'static str,
     },
-    /// The file, the asset in it and the file `.license` beside it state different rights.
+    /// The file, the asset in it and the `.license` file beside it state different rights.
     #[error("{}", disagree(.setting, .stated, &keyword))]
     Rights {
         /// `license` or `author`.
         setting: &'static str,
-        /// What they state.
+        /// What each of them states.
         stated: String,
     },
-    /// There is no profile of this name.
+    /// No actuator profile has this name.
     #[error("there is no profile `{wanted}`; there are {there}")]
     UnknownProfile { wanted: String, there: String },
     /// The actuator cannot play this kind of file.
@@ -94,10 +95,10 @@ pub enum ExchangeError {
     NoSamples {
         profile: String,
         format: &'static str,
-        /// Formats that it can play.
+        /// Formats that the actuator can play.
         instead: String,
     },
-    /// The format cannot hold this.
+    /// The format cannot hold this texture.
     #[error("{format}: {problem}")]
     Cannot { format: &'static str, problem: String },
     /// The asset cannot be played.
@@ -106,27 +107,27 @@ pub enum ExchangeError {
     /// The scene cannot be played.
     #[error("{problem}")]
     Scene { problem: String },
-    /// The signal cannot be read as a recording, or no model can be fitted to it.
+    /// The signal cannot be read as a recording, or no model could be fitted to it.
     #[error(transparent)]
     Author(#[from] AuthorError),
-    /// The signal is no recording.
+    /// The signal is not a valid recording.
     #[error(transparent)]
     Recording(#[from] htex_author::recording::RecordingError),
 }
 
-/// What a format does not say, and has to be given.
+/// A fact that a format does not contain and the user has to give.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Missing {
-    /// The setting, as a keyword: `full_scale`.
+    /// The setting as a keyword, such as `full_scale`.
     pub setting: &'static str,
     /// What it is, in words.
     pub words: &'static str,
 }
 
 impl ExchangeError {
-    /// Returns the message with its settings as a program names them; it is given a keyword,
-    /// `full_scale`.
+    /// Returns the message with settings named as a program names them. `named` is given a keyword
+    /// such as `full_scale`.
     ///
     /// ```
     /// use htex_exchange::{Format, Physical};
@@ -182,7 +183,7 @@ fn unused(
     format!("{format}: its {way} takes no {setting}; leave it out{taken}")
 }
 
-/// `a, b and c`.
+/// Joins parts as `a, b and c`.
 pub(crate) fn list(parts: impl Iterator<Item = String>) -> String {
     let parts: Vec<String> = parts.collect();
     match &parts[..] {

@@ -1,4 +1,4 @@
-//! Assets as files of other formats, with what is lost.
+//! Export of assets to files of other formats, with a report of what is lost.
 
 use htex_play::Asset;
 use serde::Serialize;
@@ -11,39 +11,39 @@ use crate::loss::{Loss, loss};
 use crate::map;
 use crate::profile::Profile;
 
-/// Shortest and longest export, seconds: a texture's spectrum takes 0.2 s.
+/// Shortest and longest export, seconds. Reading a texture's spectrum takes 0.2 s.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.5..=crate::pattern::MOST_S;
-/// Highest rate of samples, hertz.
+/// Highest sample rate of an export, hertz.
 const MOST_RATE_HZ: f64 = 192_000.0;
 
-/// What is exported, and for what.
+/// What is exported, and how.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Export<'a> {
     pub format: &'static Format,
-    /// The representation, by its model's id or short name; else the one with the smallest
+    /// The representation, by its model's id or short name. By default the one with the smallest
     /// nine-band error.
     pub model: Option<&'a str>,
     pub path: Path,
-    /// Else the format's own.
+    /// The actuator; by default the format's own.
     pub profile: Option<&'a Profile>,
-    /// Length of a condition; a stroke has its own.
+    /// Length of an export at a condition, seconds. A stroke has its own length.
     pub seconds: f64,
-    /// Rate of WAV, hertz; else 8000.
+    /// Sample rate of a WAV, hertz; by default 8000.
     pub rate_hz: Option<f64>,
-    /// Coding of `.hjif`; else [`Coding::Vectorial`].
+    /// Coding of `.hjif`; by default [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// The one of the format's extensions whose kind of file is written: Kotlin or JSON, `.gltf` or
-    /// `.glb`; else the first.
+    /// Which of the format's extensions is written: Kotlin or JSON, `.gltf` or `.glb`. By default
+    /// the format's first.
     pub extension: Option<&'a str>,
-    /// The asset's file, which an export of the asset itself holds bit for bit; without it, the
+    /// The asset's file. An export of the asset itself contains it bit for bit; without it, the
     /// asset is written anew.
     pub file: Option<&'a [u8]>,
     pub seed: u64,
 }
 
 impl<'a> Export<'a> {
-    /// Two seconds at the asset's default condition.
+    /// Exports two seconds at the asset's default condition.
     #[must_use]
     pub fn new(format: &'static Format) -> Self {
         Self {
@@ -88,7 +88,7 @@ impl<'a> Export<'a> {
         self.rate_hz.unwrap_or(RATE_HZ)
     }
 
-    /// The settings that differ from none at all, as keywords.
+    /// The settings that are set, as keywords.
     fn given(&self) -> Vec<&'static str> {
         let (is_stroke, is_moved) = match &self.path {
             Path::Stroke(_) => (true, false),
@@ -108,41 +108,41 @@ impl<'a> Export<'a> {
     }
 }
 
-/// A file, and what is lost.
+/// An exported file, with a report of what is lost.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Exported {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
-    /// How the file was played again; `None` where no actuator plays it.
+    /// How an actuator played the file; `None` if no actuator plays it.
     #[serde(flatten)]
     pub played: Option<Played>,
-    /// What is lost of the texture; `None` where the file holds it whole.
+    /// How much of the texture is lost; `None` if the file holds the whole texture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<Loss>,
     /// What the format loses of every texture.
     pub loses: &'static str,
-    /// What else is to say, each a sentence.
+    /// Other remarks, each as a sentence.
     pub notes: Vec<String>,
 }
 
-/// How an actuator plays a file, by its profile.
+/// How an actuator plays a file, according to its profile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Played {
     pub profile: String,
     pub seconds: f64,
-    /// Part of the time in which the actuator is too weak.
+    /// Fraction of the time in which the actuator is too weak.
     pub limited: f64,
 }
 
-/// Writes an asset as a file of another format; what is played of it is read again, and what is
-/// lost is measured.
+/// Writes an asset as a file of another format. A file of what the asset plays is then read back,
+/// and the loss is measured.
 ///
 /// # Errors
-/// When the format is not written, a setting is given that it does not take, a number is out of
-/// range, the actuator cannot play such files, or the asset cannot be played.
+/// When the format cannot be written or does not take a setting, a number is out of range, the
+/// actuator cannot play such files, or the asset cannot be played.
 pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;
@@ -188,10 +188,11 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
     }
 }
 
-/// Writes what a scene plays as a file of another format; model, motion and seed are the scene's.
+/// Writes what a scene plays as a file of another format. Model, motion and seed come from the
+/// scene.
 ///
 /// # Errors
-/// Those of [`export`], and when the format holds assets.
+/// As [`export`]. Also when the format holds assets, not what is played.
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,
@@ -267,7 +268,7 @@ fn of_signal(
     })
 }
 
-/// By how much a level, decibels, is below 0.
+/// Describes how far a level in decibels is below 0.
 fn below(db: f64) -> String {
     if db.is_finite() { format!("it is {:.1} dB", -db) } else { "all of it is".to_owned() }
 }

@@ -1,4 +1,5 @@
-//! What a format is: how its files come in, how they go out, and which settings either takes.
+//! Description of a format: how its files are imported and exported, and which settings each
+//! direction takes.
 
 use serde::Serialize;
 
@@ -8,40 +9,41 @@ use crate::job::{AssetJob, Job, Written};
 use crate::profile::Profile;
 use crate::rights::RightsPlace;
 
-/// A format.
+/// A file format that can be imported, exported or both.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// As `--to` has it.
+    /// The name, as given to `--to`.
     pub name: &'static str,
-    /// What it is, in words.
+    /// A short description.
     pub title: &'static str,
-    /// Extensions of its files, in lower case.
+    /// File extensions, in lower case.
     pub extensions: &'static [&'static str],
-    /// How a file comes in, if it is imported.
+    /// How files are imported; `None` if they cannot be.
     pub reads: Option<Reads>,
-    /// How an asset goes out, if it is exported.
+    /// How assets are exported; `None` if they cannot be.
     #[cfg(feature = "export")]
     pub writes: Option<Writes>,
-    /// Where its files carry licence and author.
+    /// Where its files carry the licence and the author.
     pub rights: RightsPlace,
-    /// What of a texture it keeps.
+    /// What the format keeps of a texture.
     pub keeps: &'static str,
-    /// What it loses.
+    /// What the format loses.
     pub loses: &'static str,
 }
 
-/// How a file comes in.
+/// How files of a format are imported.
 #[derive(Debug, Clone, Copy)]
 pub enum Reads {
-    /// As a signal within ±1 to fit, whose frequencies are positions in an actuator's range: that
-    /// of a profile, unless another is given.
+    /// As a signal within ±1, to which models are fitted. Its frequencies are positions in an
+    /// actuator's range; `profile` names the actuator unless the user gives another.
     Positions { read: ReadPositions, profile: &'static str },
-    /// As a signal within ±1 to fit, whose frequencies are hertz, or waves in a metre.
+    /// As a signal within ±1, to which models are fitted. Its frequencies are in hertz, or in waves
+    /// per metre.
     Signal(ReadSignal),
-    /// As an asset: the file states units, speeds and forces.
+    /// As an asset, because the file states units, speeds and forces.
     Asset(ReadAsset),
-    /// As an asset: the file is an image of grey values over a surface.
+    /// As an asset, because the file is an image of grey values over a surface.
     Map,
 }
 
@@ -49,19 +51,19 @@ pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
 pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
 pub type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<Held, Fault>;
 
-/// How an asset goes out.
+/// How assets are exported to a format.
 #[cfg(feature = "export")]
 #[derive(Debug, Clone, Copy)]
 pub enum Writes {
-    /// What it plays at a motion, as far as an actuator can.
+    /// What the asset plays at a motion, as far as an actuator can play it.
     Signal {
         write: WriteSignal,
-        /// The profile where none is given.
+        /// The profile that is used unless the user gives another.
         profile: &'static str,
-        /// Settings beside those that all signals take.
+        /// Settings in addition to those that all signals take.
         settings: &'static [&'static str],
     },
-    /// The asset itself, of which nothing is lost.
+    /// The asset itself, without loss.
     Asset(WriteAsset),
     /// An image of grey values over a surface.
     Map,
@@ -72,12 +74,12 @@ pub type WriteSignal = fn(&Job<'_>) -> Result<Written, ExchangeError>;
 #[cfg(feature = "export")]
 pub type WriteAsset = fn(&AssetJob<'_>) -> Result<Vec<u8>, ExchangeError>;
 
-/// How a signal is sampled.
+/// How a signal is to be sampled.
 #[derive(Debug, Clone, Copy)]
 pub struct Sampling {
-    /// Rate of the samples, hertz.
+    /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Speed of a finger over a file that lies over space, mm/s.
+    /// Speed of a finger over a file whose positions lie in space, mm/s.
     pub speed_mm_s: f64,
 }
 
@@ -85,47 +87,47 @@ pub struct Sampling {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
     pub samples: Vec<f64>,
-    /// What of the file was not read, each a sentence.
+    /// What was ignored in the file, each as a sentence.
     pub left_out: Vec<String>,
 }
 
-/// What an asset has that its file does not.
+/// What an asset needs in addition to its file.
 #[derive(Debug, Clone, Copy)]
 pub struct Naming<'a> {
-    /// Name of the texture, if the file gives none.
+    /// Name of the texture, if the file does not name it.
     pub name: &'a str,
-    /// Program and version, for the provenance.
+    /// Program and version, stored in the provenance.
     pub tool: &'a str,
 }
 
-/// The asset that a file holds.
+/// The asset that was read from a file.
 #[derive(Debug)]
 pub struct Held {
     pub asset: htex_format::Asset,
-    /// The asset's file, if the file that comes in has it in it.
+    /// The asset's own file, if the imported file contains it.
     pub bytes: Option<Vec<u8>>,
-    /// What a person should know of the file, each a sentence.
+    /// What the user should know about the file, each as a sentence.
     pub warnings: Vec<String>,
 }
 
-/// Settings of imports that are fitted.
+/// Settings of imports to which models are fitted.
 const FITTED: &[&str] =
     &["full_scale", "quantity", "speed", "force", "model", "option", "level", "keep_reference"];
-/// Settings of imports of an image.
+/// Settings of image imports.
 const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
-/// Settings of exports as an image.
+/// Settings of image exports.
 #[cfg(feature = "export")]
 const PRINTED: &[&str] = &["model", "speed", "force"];
 /// Settings of exports of what an asset plays.
 #[cfg(feature = "export")]
 const PLAYED: &[&str] = &["model", "speed", "force", "seconds", "stroke", "profile", "seed"];
 
-/// Those of them that a scene has itself.
+/// Settings among these that come from the scene when a scene is exported.
 #[cfg(feature = "export")]
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {
-    /// Returns the settings that it takes, as keywords, beside metadata.
+    /// Returns the settings that the import takes, as keywords, without metadata.
     #[must_use]
     pub fn settings(&self) -> Vec<&'static str> {
         match self {
@@ -146,7 +148,7 @@ impl Reads {
 
 #[cfg(feature = "export")]
 impl Writes {
-    /// Returns the settings that it takes, as keywords.
+    /// Returns the settings that the export takes, as keywords.
     #[must_use]
     pub fn settings(&self) -> Vec<&'static str> {
         match self {
@@ -166,10 +168,10 @@ impl Writes {
 }
 
 impl Format {
-    /// Checks that an import takes settings, which are keywords: `full_scale`.
+    /// Checks that an import takes the given settings, which are keywords such as `full_scale`.
     ///
     /// # Errors
-    /// With the first that it does not take.
+    /// The first setting that it does not take.
     ///
     /// ```
     /// use htex_exchange::Format;
@@ -185,10 +187,11 @@ impl Format {
         self.check("import", takes.unwrap_or_default(), given)
     }
 
-    /// As [`Self::check_import`], of an export.
+    /// Checks that an export takes the given settings, as [`Self::check_import`] does for an
+    /// import.
     ///
     /// # Errors
-    /// With the first that it does not take.
+    /// The first setting that it does not take.
     #[cfg(feature = "export")]
     pub fn check_export<'a>(
         &self,
@@ -198,10 +201,11 @@ impl Format {
         self.check("export", takes.unwrap_or_default(), given)
     }
 
-    /// As [`Self::check_export`], of what a scene plays: model, motion and seed are the scene's.
+    /// As [`Self::check_export`], for an export of what a scene plays. Model, motion and seed come
+    /// from the scene.
     ///
     /// # Errors
-    /// With the first that it does not take.
+    /// The first setting that it does not take.
     #[cfg(feature = "export")]
     pub fn check_export_of_scene<'a>(
         &self,
@@ -229,7 +233,7 @@ impl Format {
         }
     }
 
-    /// Its extensions, with their points.
+    /// Its extensions, each with its leading dot.
     #[must_use]
     pub fn dotted(&self) -> String {
         let dotted: Vec<String> = self.extensions.iter().map(|e| format!(".{e}")).collect();
@@ -237,18 +241,18 @@ impl Format {
     }
 }
 
-/// What `htex formats --json` tells of a format.
+/// What `htex formats --json` prints about a format.
 #[derive(Serialize)]
 struct Described<'a> {
     name: &'a str,
     title: &'a str,
     extensions: &'a [&'a str],
-    /// `signal` or `asset`; of exports also `image`.
+    /// `signal` or `asset`; for exports also `image`.
     import: Option<&'a str>,
     import_settings: Vec<&'a str>,
     export: Option<&'a str>,
     export_settings: Vec<&'a str>,
-    /// Where its files carry licence and author.
+    /// Where its files carry the licence and the author.
     rights: &'a str,
     keeps: &'a str,
     loses: &'a str,

@@ -1,4 +1,4 @@
-//! The formats, in one table: commands, help, messages and documents are made of it.
+//! The table of all formats. Commands, help, messages and documents are generated from it.
 
 use crate::error::{ExchangeError, list};
 use crate::format::{Format, Reads};
@@ -6,7 +6,7 @@ use crate::{ahap, gltf, haptic, hjif, import, rights};
 #[cfg(feature = "export")]
 use crate::{format::Writes, writers};
 
-/// Every format.
+/// All formats.
 pub const FORMATS: &[Format] = &[
     Format {
         name: "hatt",
@@ -113,10 +113,10 @@ impl Format {
         FORMATS.iter().find(|format| format.name == name)
     }
 
-    /// Finds the format that reads a file, by its extension.
+    /// Finds the format that imports a file, by the file's extension.
     ///
     /// # Errors
-    /// When none that is imported has it; the error lists those that are.
+    /// When no imported format has the extension; the error lists the formats that can be imported.
     pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
         let extension =
             file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
@@ -129,13 +129,13 @@ impl Format {
     }
 }
 
-/// Returns what is imported, in words: `.haptic, .ahap and .hjif`.
+/// Lists the extensions that can be imported: `.haptic, .ahap and .hjif`.
 #[must_use]
 pub fn imported() -> String {
     extensions_of(|reads| reads.is_some())
 }
 
-/// Returns what is imported as a signal, in words.
+/// Lists the extensions that are imported as signals.
 #[must_use]
 pub fn imported_signals() -> String {
     extensions_of(|reads| matches!(reads, Some(Reads::Positions { .. } | Reads::Signal(_))))
@@ -146,7 +146,7 @@ fn extensions_of(is_it: fn(Option<&Reads>) -> bool) -> String {
     list(found.flat_map(|format| format.extensions.iter().map(|e| format!(".{e}"))))
 }
 
-/// Returns the names of what is exported.
+/// Returns the names of the formats that can be exported.
 #[must_use]
 #[cfg(feature = "export")]
 pub fn exported() -> Vec<&'static str> {
@@ -154,7 +154,7 @@ pub fn exported() -> Vec<&'static str> {
     written.map(|format| format.name).collect()
 }
 
-/// Returns the table of the formats in Markdown, for documents.
+/// Returns a Markdown table of the formats, for documents.
 #[must_use]
 #[cfg(feature = "export")]
 pub fn formats_table() -> String {

@@ -1,11 +1,11 @@
-//! `.haptic` of Meta, version 1: an amplitude and a frequency envelope of numbers from 0 to 1, and
-//! emphasis at points of the amplitude.
+//! Reader and writer of Meta's `.haptic` files, version 1: an amplitude and a frequency envelope
+//! with numbers from 0 to 1, and emphasis at points of the amplitude.
 //!
-//! Read of the published description (*.haptic File Specification 1.0*,
-//! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). A frequency point beyond the end of
-//! the amplitude is refused, as it says, but for a last one to which the line across the end leads:
-//! earlier editors wrote it. Frequencies are positions in the range of an actuator, so that a
-//! profile says their hertz; without points they are 0.5.
+//! Written from the published description (*.haptic File Specification 1.0*,
+//! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). As it demands, a frequency point
+//! after the end of the amplitude is refused. The only exception is a last point whose line crosses
+//! the end, because earlier editors wrote such points. Frequencies are positions in an actuator's
+//! range, so a profile is needed to convert them to hertz; without frequency points they are 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -17,10 +17,10 @@ use crate::json::{self, within};
 use crate::pattern::{MOST_S, Pattern, Transient, rendered_of_file};
 use crate::profile::Profile;
 
-/// The frequency where a file says none (section Frequency Envelope).
+/// The frequency if a file states none (section Frequency Envelope).
 const USUAL_FREQUENCY: f64 = 0.5;
 
-/// A file.
+/// A `.haptic` file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Haptic {
     pub version: Version,
@@ -52,7 +52,7 @@ pub struct Metadata {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Signals {
     pub continuous: Continuous,
-    /// Of a draft of the format; left out.
+    /// From a draft of the format; ignored.
     #[serde(default, skip_serializing)]
     impulses: Option<Value>,
 }
@@ -65,7 +65,7 @@ pub struct Continuous {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelopes {
     pub amplitude: Vec<Amplitude>,
-    /// Absent, null and empty are the same.
+    /// Missing, null and empty mean the same.
     #[serde(default, deserialize_with = "or_none")]
     pub frequency: Vec<Frequency>,
 }
@@ -76,9 +76,9 @@ fn or_none<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Frequency>, D::Erro
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Amplitude {
-    /// Seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// 0 to 1.
+    /// Amplitude from 0 to 1.
     pub amplitude: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub emphasis: Option<Emphasis>,
@@ -86,17 +86,17 @@ pub struct Amplitude {
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Emphasis {
-    /// From the envelope's amplitude to 1.
+    /// Amplitude, from the envelope's amplitude up to 1.
     pub amplitude: f64,
-    /// 0 to 1.
+    /// Frequency from 0 to 1.
     pub frequency: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Frequency {
-    /// Seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// 0 to 1.
+    /// Frequency from 0 to 1.
     pub frequency: f64,
 }
 
@@ -104,11 +104,11 @@ const AMPLITUDE: &str = "/signals/continuous/envelopes/amplitude";
 const FREQUENCY: &str = "/signals/continuous/envelopes/frequency";
 
 impl Haptic {
-    /// Reads a file.
+    /// Reads a `.haptic` file.
     ///
     /// # Errors
-    /// When it is no JSON, has another version or shape, or breaks a rule of the format; with the
-    /// place.
+    /// When it is not JSON, has another version or structure, or breaks a rule of the format. The
+    /// fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let haptic: Self = json::read(bytes)?;
         haptic.check()?;
@@ -129,7 +129,7 @@ impl Haptic {
         self.check_frequency(start_s, end_s)
     }
 
-    /// Returns start and end.
+    /// Checks the amplitude envelope and returns its start and end.
     fn check_amplitude(&self) -> Result<(f64, f64), Fault> {
         let points = &self.signals.continuous.envelopes.amplitude;
         let mut before = 0.0;
@@ -169,7 +169,7 @@ impl Haptic {
         Ok(())
     }
 
-    /// What of the file is not read, each a sentence.
+    /// What the reader ignores in this file, each as a sentence.
     #[must_use]
     pub fn left_out(&self) -> Vec<String> {
         let impulses = self.signals.impulses.iter();
@@ -178,7 +178,8 @@ impl Haptic {
             .collect()
     }
 
-    /// Returns the vibration for an actuator, whose range the frequencies are positions in.
+    /// Returns the vibration for an actuator. The file's frequencies are positions in this
+    /// actuator's range.
     #[must_use]
     pub fn pattern(&self, profile: &Profile) -> Pattern {
         let envelopes = &self.signals.continuous.envelopes;
@@ -210,8 +211,9 @@ impl Haptic {
         }
     }
 
-    /// Makes a file of a vibration whose levels are amplitudes. A transient becomes the emphasis of
-    /// a point, which is added where there is none; one beyond the ends moves to them.
+    /// Makes a file from a vibration whose levels are amplitudes. A transient becomes the emphasis
+    /// of a point, which is added if there is none at that time. A transient before the start or
+    /// after the end is moved there.
     #[must_use]
     pub fn of(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
         let mut amplitude: Vec<Amplitude> = pattern.level.iter().map(plain).collect();

@@ -1,5 +1,5 @@
-//! What an asset plays at a condition or along a stroke, or a scene: its samples, and its envelope
-//! block by block.
+//! What is played before it is exported: an asset at a condition or along a stroke, or a scene, as
+//! samples and as an envelope block by block.
 
 use htex_author::threshold_magnitude;
 use htex_dsp::envelope::Analyser;
@@ -11,48 +11,48 @@ use htex_play::{Asset, Motion, VoiceOptions};
 use crate::error::ExchangeError;
 use crate::stroke::Stroke;
 
-/// Bands of the envelope.
+/// Number of bands in the envelope.
 pub(crate) const BANDS: usize = 14;
-/// What is played before the first sample, so that windows are full, seconds.
+/// Time that is played before the first sample, so that analysis windows are full, seconds.
 const BEFORE_S: f64 = 0.2;
 
-/// Where a finger moves.
+/// How the finger moves.
 #[derive(Debug, Clone)]
 pub enum Path {
-    /// At one speed and force; `None` for the asset's default condition.
+    /// At one speed and force; `None` stands for the asset's default condition.
     Condition(Option<Motion>),
     Stroke(Stroke),
 }
 
 /// What a scene plays, in the unit of its textures.
 pub struct SceneSound<'a> {
-    /// Its name, which the file gets.
+    /// The scene's name, which the file gets.
     pub name: &'a str,
-    /// The rights of all its textures.
+    /// The rights of all its textures together.
     pub rights: &'a Rights,
     pub quantity: Quantity,
     /// The band of its textures.
     pub band: Band,
-    /// Its length.
+    /// Length, seconds.
     pub seconds: f64,
-    /// Returns its samples at a rate in hertz, as many as its length has.
+    /// Returns samples at a rate in hertz, as many as the scene's length contains.
     pub samples: &'a dyn Fn(f64) -> Result<Vec<f32>, String>,
 }
 
-/// What is played.
+/// The source of what is played.
 #[derive(Clone, Copy)]
 pub(crate) enum Source<'a> {
     Asset { asset: &'a Asset, model: Option<&'a str>, path: &'a Path, seed: u64 },
     Scene(&'a SceneSound<'a>),
 }
 
-/// What is played, and how long.
+/// What is played, and for how long.
 pub(crate) struct Playing<'a> {
     pub(crate) source: Source<'a>,
     pub(crate) seconds: f64,
 }
 
-/// What was played.
+/// The result of playing: samples and envelope.
 pub(crate) struct Heard {
     pub(crate) quantity: Quantity,
     pub(crate) rate_hz: f64,
@@ -62,14 +62,14 @@ pub(crate) struct Heard {
     pub(crate) block_s: f64,
 }
 
-/// An envelope of some milliseconds, in the asset's unit.
+/// A block of the envelope, some milliseconds long, in the asset's unit.
 pub(crate) struct Block {
-    /// Mean square in each band; together that of the block's samples.
+    /// Mean square in each band; their sum is the mean square of the block's samples.
     pub(crate) powers: Vec<f64>,
 }
 
 impl Block {
-    /// With the powers of these bands alone.
+    /// The block with the powers of only these bands.
     pub(crate) fn only(&self, bands: &[usize]) -> Self {
         let mut powers = vec![0.0; self.powers.len()];
         for ((k, own), power) in powers.iter_mut().enumerate().zip(&self.powers) {
@@ -87,7 +87,7 @@ impl Source<'_> {
         }
     }
 
-    /// The rights of what is played, which every file carries.
+    /// The rights of what is played, which are written into every file.
     pub(crate) fn rights(&self) -> Rights {
         match self {
             Self::Asset { asset, .. } => Rights::of(asset.manifest()),
@@ -109,7 +109,7 @@ impl Source<'_> {
         }
     }
 
-    /// The manifest of an asset that is played alone.
+    /// The manifest, if a single asset is played.
     pub(crate) fn manifest(&self) -> Option<&Manifest> {
         match self {
             Self::Asset { asset, .. } => Some(asset.manifest()),
@@ -117,7 +117,7 @@ impl Source<'_> {
         }
     }
 
-    /// The stroke, if it is one.
+    /// The stroke, if the finger follows one.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         match self {
             Self::Asset { path: Path::Stroke(stroke), .. } => Some(stroke),
@@ -125,7 +125,7 @@ impl Source<'_> {
         }
     }
 
-    /// The speed, if it is always the same and known.
+    /// The speed, if it is constant and known.
     pub(crate) fn speed_mm_s(&self) -> Option<f64> {
         match self {
             Self::Asset { path: Path::Condition(Some(motion)), .. } => Some(motion.speed_mm_s),
@@ -139,7 +139,7 @@ impl Source<'_> {
 }
 
 impl Playing<'_> {
-    /// Plays at a rate, with an envelope of blocks of about `block_s`.
+    /// Plays at a sample rate, and measures an envelope with blocks of about `block_s`.
     pub(crate) fn heard(&self, rate_hz: f64, block_s: f64) -> Result<Heard, ExchangeError> {
         let (quantity, band) = (self.source.quantity(), self.source.band());
         let mut analyser = Analyser::new(BANDS, band, rate_hz);
@@ -163,7 +163,8 @@ impl Playing<'_> {
         })
     }
 
-    /// What is played before the first sample, and the samples, rendered in blocks.
+    /// Returns what is played before the first sample, and the samples. Both are rendered in
+    /// blocks.
     fn samples(
         &self,
         rate_hz: f64,
@@ -209,11 +210,11 @@ impl Path {
 }
 
 impl Block {
-    /// What an analyser had since it was last asked.
+    /// What an analyser measured since it was last asked.
     fn measured(analyser: &mut Analyser) -> Self {
         let mut powers = vec![0.0; BANDS];
         let level_rms = analyser.read(&mut powers).level_rms;
-        // The level is that of the samples; the bands are of windows that lag.
+        // The level comes from the samples, but the bands come from windows that lag behind them.
         let sum: f64 = powers.iter().sum();
         let scale = if sum > 0.0 { level_rms * level_rms / sum } else { 0.0 };
         powers.iter_mut().for_each(|power| *power *= scale);
@@ -222,13 +223,13 @@ impl Block {
 }
 
 impl Heard {
-    /// Returns the middle of each band, hertz, in equal ratios from its edges.
+    /// Returns the middle of each band in hertz: the geometric mean of its edges.
     pub(crate) fn middles_hz(&self) -> Vec<f64> {
         let pairs = self.edges_hz.windows(2);
         pairs.map(|pair| libm::sqrt(pair.iter().product())).collect()
     }
 
-    /// Returns the time of the middle of a block, seconds.
+    /// Returns the time at the middle of a block, seconds.
     pub(crate) fn middle_s(&self, block: usize) -> f64 {
         ((block as f64 + 0.5) * self.block_s).min(self.seconds())
     }
@@ -238,15 +239,15 @@ impl Heard {
     }
 }
 
-/// Acceleration, m/s², that is felt as a sample of 1 of a quantity is, at a frequency: both
-/// displace the skin equally.
+/// Acceleration in m/s² that feels like a sample of 1 of a quantity at a frequency: both displace
+/// the skin equally.
 pub(crate) fn acceleration_of(quantity: Quantity, hertz: f64) -> f64 {
     let listener = Listener::default();
     threshold_magnitude(hertz, Quantity::Acceleration, &listener)
         / threshold_magnitude(hertz, quantity, &listener)
 }
 
-/// Smallest amplitude of a quantity that is felt at a frequency.
+/// Smallest amplitude of a quantity that can be felt at a frequency.
 pub(crate) fn threshold(quantity: Quantity, hertz: f64) -> f64 {
     threshold_magnitude(hertz, quantity, &Listener::default())
 }

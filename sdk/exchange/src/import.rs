@@ -1,9 +1,9 @@
-//! Files of other formats as assets.
+//! Import of files of other formats as assets.
 //!
-//! A file that states units, speeds and forces is an asset (HaTT), or has one in it (glTF). The
-//! others are signals within ±1 and know no newtons, no speed and no force: a signal becomes a
-//! recording by the full scale that is given, at the condition that is given, and is fitted. A
-//! signal that is shorter than some seconds is repeated, since a texture lasts.
+//! A file that states units, speeds and forces is read as an asset (HaTT), or contains one (glTF).
+//! All other files hold signals within ±1 and state no newtons, no speed and no force. Such a
+//! signal becomes a recording, with the full scale and the condition that the user gives, and
+//! models are fitted to it. Since a texture lasts, a signal shorter than a few seconds is repeated.
 
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
@@ -26,52 +26,51 @@ use crate::signal::{RATE_HZ, signal};
 /// A signal is repeated until it is this long, seconds.
 const LEAST_S: f64 = 4.0;
 
-/// What is said of an asset without a licence.
+/// What is said about an asset without a licence.
 const UNLICENSED: &str =
     "It states no licence, without which nobody may pass it on; state that of the file.";
 
 /// How a file is imported.
 #[derive(Debug, Clone, Default)]
 pub struct Import<'a> {
-    /// The asset's name, where the file has none.
+    /// The asset's name, if the file does not name it.
     pub name: &'a str,
     pub physical: Physical,
-    /// The actuator whose range a file's frequencies are positions in; else the format's own.
+    /// The actuator in whose range a file's frequencies are positions; by default the format's own.
     pub profile: Option<&'a Profile>,
     pub fit: FitSettings,
     pub metadata: Metadata,
-    /// The text of the file `NAME.license` beside it, if there is one
+    /// The text of the file `NAME.license` beside the imported file, if there is one
     /// ([`htex_format::license_file`]).
     pub license_file: Option<&'a str>,
-    /// Program and version, for the provenance.
+    /// Program and version, stored in the provenance.
     pub tool: &'a str,
 }
 
-/// An asset that was imported, with what its file does not hold.
+/// An imported asset, with results that its file does not store.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Imported {
     pub asset: htex_format::Asset,
-    /// The asset's file, if the file that came in has it in it and metadata changed nothing.
+    /// The asset's own file, if the imported file contains it and metadata changed nothing.
     held: Option<Vec<u8>>,
-    /// What is felt of the difference from the signal, of each representation at each condition;
-    /// empty where nothing was fitted.
+    /// How much of the difference from the signal can be felt, for each representation at each
+    /// condition. Empty if nothing was fitted.
     pub felt: Vec<Vec<Option<FeltError>>>,
-    /// Ids of models that could not be fitted, each with its reason; empty where nothing was
-    /// fitted.
+    /// Ids of models that could not be fitted, each with the reason. Empty if nothing was fitted.
     pub skipped: Vec<(String, String)>,
-    /// What a person should know.
+    /// What the user should know.
     pub warnings: Vec<Notice>,
-    /// What a person may want to know; that a licence is missing is among them.
+    /// What the user may want to know, e.g. that a licence is missing.
     pub notes: Vec<Notice>,
 }
 
-/// Reads a file as an asset; `file` is its name, by whose extension the format is found.
+/// Imports a file as an asset. `file` is its name; the extension decides the format.
 ///
 /// # Errors
-/// When no format has the extension, a setting is given that the format does not take, something
-/// that it does not say is not given, the file is not what it says (with the place), or no model
-/// can be fitted.
+/// When no format has the extension or the format does not take a given setting, something that the
+/// file does not state is not given either, the file is invalid (with the place), or no model can
+/// be fitted.
 ///
 /// ```
 /// use htex_author::settings::FitSettings;
@@ -108,7 +107,7 @@ pub fn import(
     let own = Rights::of(&imported.asset.manifest);
     stated.check(&own, &given)?;
     let mut metadata = how.metadata.clone();
-    // What the asset states stays as it is, and so do the bytes of an asset that the file holds.
+    // What the asset states stays as it is, and so do the bytes of an asset inside the file.
     let missing = |own: &Option<String>, stated| if own.is_none() { stated } else { None };
     metadata.license = metadata.license.or(missing(&own.license, stated.rights.license));
     metadata.author = metadata.author.or(missing(&own.author, stated.rights.author));
@@ -126,7 +125,7 @@ impl Import<'_> {
         Naming { name: self.name, tool: self.tool }
     }
 
-    /// The settings that differ from none at all, as keywords.
+    /// The settings that are set, as keywords.
     fn given(&self) -> Vec<&'static str> {
         let (physical, fit) = (&self.physical, &self.fit);
         let is_all = |models: &Vec<String>| models[..] == ["all"];
@@ -157,8 +156,8 @@ impl Imported {
         }
     }
 
-    /// Returns the asset's file: bit for bit that which the imported file has in it, else a new
-    /// one.
+    /// Returns the asset's file. If the imported file contains one, it is returned bit for bit;
+    /// otherwise it is written anew.
     ///
     /// # Errors
     /// When the asset breaks a rule of its format.
@@ -182,7 +181,7 @@ fn held(file: &str, read: Result<Held, Fault>) -> Result<Imported, ExchangeError
     })
 }
 
-/// An image of grey values over a surface.
+/// Imports an image of grey values over a surface.
 fn mapped(
     format: &'static Format,
     file: &str,
@@ -206,7 +205,7 @@ fn mapped(
     held(file, map::held(&image, &surface))
 }
 
-/// A model file of the Penn Haptic Texture Toolkit.
+/// Imports a model file of the Penn Haptic Texture Toolkit.
 pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
     let of = |fault: crate::hatt::Fault| {
         Fault::new(fault.place.to_string().trim_end_matches(": "), fault.problem)
@@ -220,10 +219,10 @@ pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
     })
 }
 
-/// Reads a file as a recording, as [`import`] does before it fits.
+/// Reads a file as a recording, as [`import`] does before it fits models.
 ///
 /// # Errors
-/// Those of [`import`], and when the file is no signal but an asset.
+/// As [`import`]. Also when the file is an asset instead of a signal.
 pub fn recording_of(
     file: &str,
     bytes: &[u8],
@@ -253,12 +252,12 @@ pub fn recording_of(
     Ok(recording)
 }
 
-/// Fits an asset to signals ([`recording_of`]): their spectra are read in evenly spaced windows,
-/// and provenance keeps the full scale. The conditions have no repeatability: a file that is
-/// rendered, and repeated, says nothing of how far another touch would differ.
+/// Fits an asset to signals ([`recording_of`]). Their spectra are read in evenly spaced windows,
+/// and the full scale is stored in the provenance. The conditions have no repeatability: a file
+/// that is rendered and repeated says nothing about how much another touch would differ.
 ///
 /// # Errors
-/// Those of [`fit_asset`].
+/// As [`fit_asset`].
 pub fn fit_signals(
     takes: &[Take],
     mut request: AssetRequest,
@@ -298,7 +297,7 @@ fn fitted(
     })
 }
 
-/// Why a file is not imported.
+/// Why a file cannot be imported.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImportError {

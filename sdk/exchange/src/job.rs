@@ -1,4 +1,4 @@
-//! What a format's writer works on, and what it makes.
+//! What a format's writer is given, and what it returns.
 
 use std::borrow::Cow;
 
@@ -8,46 +8,47 @@ use crate::error::{ExchangeError, Fault};
 use crate::heard::{Heard, Playing};
 use crate::profile::{Kind, Profile};
 
-/// Rate at which envelopes are taken and losses measured, hertz.
+/// Sample rate at which envelopes are measured and losses computed, hertz.
 pub(crate) const RATE_HZ: f64 = 8_000.0;
 
 /// How `.hjif` codes a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Coding {
-    /// At most seven tones.
+    /// As at most seven tones.
     #[default]
     Vectorial,
-    /// Samples.
+    /// As samples.
     Wavelet,
 }
 
-/// What a writer of what is played works on.
+/// The input of a writer for what is played.
 pub struct Job<'a> {
     /// Name of the format.
     pub(crate) format: &'static str,
     pub(crate) playing: Playing<'a>,
     pub(crate) profile: &'a Profile,
-    /// Rate of samples that are written as they are, hertz.
+    /// Sample rate of files that contain plain samples, hertz.
     pub(crate) rate_hz: f64,
     pub(crate) coding: Coding,
     pub(crate) extension: Option<&'a str>,
 }
 
-/// What a writer of the asset itself works on.
+/// The input of a writer for the asset itself.
 pub struct AssetJob<'a> {
     /// Name of the format.
     pub(crate) format: &'static str,
     pub(crate) asset: &'a Asset,
-    /// The asset's file; without it the asset is written anew.
+    /// The asset's file; without it, the asset is written anew.
     pub(crate) file: Option<&'a [u8]>,
     pub(crate) extension: Option<&'a str>,
 }
 
-/// What a writer made.
+/// What a writer returns.
 pub struct Written {
     pub(crate) bytes: Vec<u8>,
     pub(crate) heard: Heard,
-    /// What the file, read again, drives the actuator with, at the rate of what was heard.
+    /// What the file drives the actuator with when it is read back, at the sample rate of what was
+    /// heard.
     pub(crate) drive: Vec<f64>,
     pub(crate) limited: f64,
     pub(crate) notes: Vec<String>,
@@ -70,7 +71,7 @@ impl AssetJob<'_> {
 }
 
 impl Job<'_> {
-    /// What is to say of profile and stroke.
+    /// Remarks about the profile and the stroke.
     pub(crate) fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         let mut values = self.profile.values().into_iter();
@@ -84,16 +85,16 @@ impl Job<'_> {
         notes
     }
 
-    /// Seconds between points of an envelope: the shortest that actuator and format take, or
-    /// longer, so that their number is enough.
+    /// Seconds between points of an envelope: the shortest that the actuator and the format accept,
+    /// or longer if there would be too many points.
     pub(crate) fn point_s(&self, most_points: usize) -> f64 {
         let most = (self.profile.most_points.value as usize).min(most_points).max(4);
-        // Two more points than blocks.
+        // There are two more points than blocks.
         let longest = self.playing.seconds / (most - 2) as f64;
         longest.max(self.profile.shortest_point_ms.value / 1e3)
     }
 
-    /// Refuses an actuator that plays no samples.
+    /// Refuses an actuator that cannot play samples.
     pub(crate) fn check_samples(&self) -> Result<(), ExchangeError> {
         if self.profile.kind == Kind::Resonant {
             return Ok(());
@@ -105,7 +106,7 @@ impl Job<'_> {
         })
     }
 
-    /// An error of what was just written, which its own reader refuses.
+    /// An error in a file just written, which its own reader refuses.
     pub(crate) fn own(&self, fault: Fault) -> ExchangeError {
         self.cannot(fault.to_string())
     }

@@ -1,5 +1,5 @@
-//! JSON with places: what is wrong is named by its pointer, or by line and column where the text is
-//! no JSON.
+//! Reading JSON with error places: a problem is located by its JSON pointer, or by line and column
+//! if the text is not JSON.
 
 use htex_finding::escape;
 use htex_format::{JsonError, parse_json};
@@ -10,16 +10,16 @@ use serde_path_to_error::Segment;
 
 use crate::error::Fault;
 
-/// Most bytes of a file that is imported.
+/// Largest file that is imported, bytes.
 pub const MOST_BYTES: u64 = 16 << 20;
 
-/// Reads a type from a JSON text of at most [`MOST_BYTES`].
+/// Reads a value from a JSON text of at most [`MOST_BYTES`].
 pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Fault> {
     if bytes.len() as u64 > MOST_BYTES {
         let problem = format!("it has {} bytes, and at most {MOST_BYTES} are read", bytes.len());
         return Err(Fault::whole(problem));
     }
-    // A mark of the byte order, which some editors write.
+    // Some editors write a byte order mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let value = parse_json(bytes).map_err(of_json)?;
     typed(value)
@@ -49,20 +49,20 @@ fn step(segment: &Segment) -> String {
     match segment {
         Segment::Seq { index } => format!("/{index}"),
         Segment::Map { key } => format!("/{}", escape(key)),
-        // A variant is a key of its object already, and the rest have no name.
+        // The variant is a key of its object here.
         Segment::Enum { variant } => format!("/{}", escape(variant)),
         Segment::Unknown => String::new(),
     }
 }
 
-/// Writes a type as JSON of lines.
+/// Writes a value as JSON with line breaks.
 pub(crate) fn written(value: &impl Serialize) -> Vec<u8> {
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
     bytes.push(b'\n');
     bytes
 }
 
-/// Checks that a number lies in a range; `what` it is.
+/// Checks that a number is within a range; `what` names it in the message.
 pub(crate) fn within(
     pointer: impl FnOnce() -> String,
     what: &str,

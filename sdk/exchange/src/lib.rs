@@ -1,11 +1,12 @@
-//! Formats of neighbouring systems: what others have comes in, what people own can play it.
+//! Import and export: reads haptic files of other systems, and writes files that other devices can
+//! play.
 //!
-//! [`FORMATS`] is the table of formats, of which commands, help and documents are made. **In.**
-//! [`import`] reads a file as an asset, if it states units, speeds and forces or has an asset in
-//! it, else as a signal to which models are fitted, once it is told what the file does not say.
-//! **Out.** [`export`] plays an asset at a condition or along a stroke, reduces it to what an
-//! actuator can do (its [`Profile`]), writes it, reads the file again, plays it through the profile
-//! and compares that with the asset's own samples.
+//! [`FORMATS`] is the table of formats, from which commands, help and documents are made. **In.**
+//! [`import`] reads a file as an asset if the file states units, speeds and forces or contains an
+//! asset. Otherwise it reads a signal and fits models to it; the user gives what the file does not
+//! state. **Out.** [`export`] plays an asset at a condition or along a stroke, reduces it to what
+//! an actuator can do (its [`Profile`]) and writes it. It then reads the file back, plays it
+//! through the profile, and compares the result with the asset's own samples.
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
@@ -17,8 +18,7 @@
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
 //!
-//! Without the feature `export` (on by default) formats are read alone: their `writes` is not
-//! there.
+//! Without the feature `export` (on by default) formats can only be read: they have no `writes`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! What is lost: the file that was written is read again and played through the profile, and
-//! compared with the asset's own samples.
+//! Loss of an export: the written file is read back, played through the profile, and compared with
+//! the asset's own samples.
 
 use htex_author::{
     AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
@@ -14,23 +14,24 @@ use crate::error::ExchangeError;
 use crate::heard::{Heard, acceleration_of};
 use crate::profile::{Kind, Profile};
 
-/// What is lost.
+/// What an export loses.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Loss {
-    /// What the actuator makes of the file, in the asset's unit as far as it is felt, compared with
-    /// the asset's own samples.
+    /// Difference between what the actuator plays from the file, in the asset's unit as far as it
+    /// can be felt, and the asset's own samples.
     #[serde(flatten)]
     pub difference: Difference,
-    /// Level of that over the asset's, decibels.
+    /// Level of what the actuator plays relative to the asset's level, decibels.
     pub level_db: f64,
-    /// Level of what the actuator makes of the file over the detection threshold of a sensitive
-    /// finger, decibels; 0 or less is felt by nobody. `None` where no actuator plays the file.
+    /// Level of what the actuator plays relative to the detection threshold of a sensitive finger,
+    /// decibels. At 0 or less, nobody feels it. `None` if no actuator plays the file.
     #[serde(skip)]
     pub(crate) sensation_db: Option<f64>,
 }
 
-/// Compares what an actuator makes of a drive, at the rate of what was heard, with what was heard.
+/// Compares what an actuator plays when driven by `drive` with what was heard. `drive` must be at
+/// the sample rate of what was heard.
 pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
     let recording =
         Recording::of(heard.quantity, "the asset", heard.rate_hz, vec![heard.samples.clone()])?;
@@ -45,7 +46,7 @@ pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Lo
     let in_unit = |(hertz, drive): (&f64, &f64)| {
         let strongest = match profile.kind {
             Kind::Resonant => profile.strongest_at(*hertz),
-            // The square of the level is in the drive.
+            // The drive already contains the square of the level.
             Kind::Rotating => profile.strongest_m_s2.value,
         };
         drive * strongest / acceleration_of(heard.quantity, *hertz)

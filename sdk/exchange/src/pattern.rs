@@ -1,20 +1,21 @@
-//! What the formats of envelopes have in common: a level and a frequency over time, and transients.
+//! What all envelope formats have in common: a level and a frequency over time, and transients.
 
 use crate::curve::{Point, Reader};
 use crate::error::Fault;
 
 /// Longest pattern that is rendered, seconds.
 pub const MOST_S: f64 = 600.0;
-/// Periods of the sine that stands for a transient. Renderers play one or two of a square wave
-/// (Meta, *.haptic File Specification 1.0*, Emphasis Object).
+/// Number of periods of the sine that stands for a transient. Renderers play one or two periods of
+/// a square wave (Meta, *.haptic File Specification 1.0*, Emphasis Object).
 const PERIODS: f64 = 2.0;
 
-/// Most samples that the vibrations of a file are added to, counted for each vibration, and points
-/// of their curves. At the rate of imports, a vibration of ten minutes takes 4.8 million.
+/// Limit on the work for a file: the number of samples that its vibrations are added to, counted
+/// for each vibration, plus the points of their curves. At the sample rate of imports, a vibration
+/// of ten minutes takes 4.8 million.
 const MOST_WORK: f64 = 3.2e7;
 
-/// Refuses more than [`MOST_WORK`] samples and points at a rate; `at` is where they are in the
-/// file.
+/// Refuses more than [`MOST_WORK`] samples and points at a sample rate. `at` is the vibrations'
+/// place in the file.
 pub(crate) fn check_work(
     work: f64,
     rate_hz: f64,
@@ -29,17 +30,17 @@ pub(crate) fn check_work(
     Err(Fault::new(at(), problem))
 }
 
-/// A vibration of one actuator: a sine whose level and frequency follow curves, and transients.
+/// A vibration of one actuator: a sine whose level and frequency follow curves, plus transients.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pattern {
-    /// When it begins and ends, seconds.
+    /// Start and end, seconds.
     pub from_s: f64,
     pub to_s: f64,
-    /// Level over time, 0 to 1, whose power `exponent` is the part of the strongest vibration at
-    /// the frequency.
+    /// Level over time, 0 to 1. Raised to the power `exponent`, it is relative to the strongest
+    /// vibration at the frequency.
     pub level: Vec<Point>,
-    /// 1 where levels are parts of the strongest vibration, 2 where they are its square root, as in
-    /// `.ahap`.
+    /// 1 if levels are relative to the strongest vibration; 2 if levels are the square root of
+    /// that, as in `.ahap`.
     pub exponent: i32,
     /// Frequency over time, hertz.
     pub frequency_hz: Vec<Point>,
@@ -51,21 +52,21 @@ pub struct Pattern {
 pub struct Transient {
     /// Its start, seconds.
     pub time_s: f64,
-    /// 0 to 1 of the strongest vibration.
+    /// Amplitude from 0 to 1, relative to the strongest vibration.
     pub amplitude: f64,
     pub frequency_hz: f64,
 }
 
 impl Pattern {
-    /// Returns the end of the pattern and of its transients, seconds.
+    /// Returns the end of the pattern, including its transients, seconds.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         let ends = self.transients.iter().map(Transient::end_s);
         ends.fold(self.to_s, f64::max)
     }
 
-    /// Adds the vibration to samples at a rate, from time 0 on; 1 is the strongest that the
-    /// actuator plays.
+    /// Adds the vibration to samples at a rate, from time 0 on. A value of 1 is the strongest that
+    /// the actuator plays.
     pub fn add_to(&self, samples: &mut [f64], rate_hz: f64) {
         self.add_sine(samples, rate_hz);
         for transient in &self.transients {
@@ -73,7 +74,8 @@ impl Pattern {
         }
     }
 
-    /// Samples that the vibration and its transients are added to, and points.
+    /// Number of samples to which the vibration and its transients are added, plus the number of
+    /// points.
     fn work(&self, rate_hz: f64) -> f64 {
         let sine = (self.to_s - self.from_s).max(0.0) * rate_hz;
         let pulse = |t: &Transient| (t.end_s() - t.time_s) * rate_hz + 1.0;
@@ -104,7 +106,7 @@ impl Pattern {
 }
 
 impl Transient {
-    /// When it ends, seconds.
+    /// Its end, seconds.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.time_s + PERIODS / self.frequency_hz.max(1.0)
@@ -123,7 +125,7 @@ impl Transient {
     }
 }
 
-/// As [`rendered`], of a file from anyone; `at` is where its vibrations are.
+/// As [`rendered`], for a file from an untrusted source. `at` is the vibrations' place in the file.
 pub(crate) fn rendered_of_file(
     patterns: &[Pattern],
     rate_hz: f64,
@@ -134,8 +136,8 @@ pub(crate) fn rendered_of_file(
     Ok(rendered(patterns, rate_hz))
 }
 
-/// Renders patterns together, held within ±1 as an actuator holds them, from time 0 to the last
-/// end.
+/// Renders patterns together, from time 0 to the last end. The sum is limited to ±1, as an actuator
+/// limits it.
 #[must_use]
 pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     let end_s = patterns.iter().map(Pattern::end_s).fold(0.0, f64::max);
@@ -148,9 +150,9 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     samples
 }
 
-/// Combines patterns to the one that a format of one envelope holds: at each time the strongest,
-/// and all transients. The levels' exponent becomes 1 at the points; between them the lines stay
-/// straight.
+/// Combines patterns into one, for formats with a single envelope: at each time the strongest
+/// pattern counts, and all transients are kept. The levels are converted to the exponent 1 at the
+/// points; between points the lines stay straight.
 #[must_use]
 pub fn combined(patterns: &[Pattern]) -> Pattern {
     let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();
@@ -179,8 +181,8 @@ fn push(curve: &mut Vec<Point>, point: Point) {
     }
 }
 
-/// Level and frequency of the strongest pattern just before a time, or from it on; silence where
-/// none sounds inside the whole.
+/// Level and frequency of the strongest pattern at a time, or just before it. Inside the whole
+/// range it is silence if no pattern sounds; outside it is `None`.
 fn strongest(patterns: &[&Pattern], time_s: f64, before: bool) -> Option<(f64, f64)> {
     let (first, last) =
         patterns.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.from_s), b.max(p.to_s)));
@@ -201,7 +203,7 @@ impl Pattern {
         [from_s, to_s].into_iter().chain(inner)
     }
 
-    /// The amplitude and frequency just before a time, or from it on, if it sounds there.
+    /// The amplitude and frequency at a time, or just before it, if the pattern sounds there.
     fn side(&self, time_s: f64, before: bool) -> Option<(f64, f64)> {
         let sounds = if before {
             self.from_s < time_s && time_s <= self.to_s

@@ -1,4 +1,4 @@
-//! What files do not say: how strong 1 is, where and how a finger moves.
+//! What files do not state: the physical value of 1, and how the finger moves.
 
 use htex_author::Exploration;
 use htex_format::Quantity;
@@ -8,17 +8,17 @@ use crate::format::{Format, Naming, Reads, Sampling};
 use crate::map;
 use crate::signal::{RATE_HZ, signal};
 
-/// What a signal does not say.
+/// What a signal does not state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Physical {
-    /// The quantity's unit at ±1: newtons of a lateral force.
+    /// The quantity at ±1, in its unit: newtons for a lateral force.
     pub full_scale: Option<f64>,
     pub quantity: Quantity,
     /// Speed of the finger, mm/s.
     pub speed_mm_s: Option<f64>,
-    /// Its normal force, newtons.
+    /// Normal force of the finger, newtons.
     pub force_n: Option<f64>,
-    /// Distance of an image's pixels, mm, where it is not the one that the file states.
+    /// Distance between an image's pixels, mm, if it is not the one stated in the file.
     pub pitch_mm: Option<f64>,
 }
 
@@ -30,11 +30,11 @@ pub(crate) const PITCH: Missing =
 /// Largest normal force, newtons.
 const MOST_FORCE_N: f64 = 1e3;
 
-/// Reads a file for what it does not say, and an import has to be given: nothing of one that states
-/// an asset. `file` is its name.
+/// Reads a file and returns what it does not state and an import must be given. The result is empty
+/// for a file that states an asset. `file` is its name.
 ///
 /// # Errors
-/// When no format has its extension, or the file is not what it says, with the place.
+/// When no format has the file's extension, or the file is invalid; the error names the place.
 ///
 /// ```
 /// let file = br#"{"Version": 1, "Pattern": [{"Event": {"Time": 0, "EventType": "HapticTransient"}}]}"#;
@@ -57,7 +57,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
             }
         }
         _ => {
-            // A file over space is the shorter, the faster it is felt.
+            // A file over space becomes shorter the faster it is felt, so it is read at the highest
+            // speed.
             let sampling = Sampling { rate_hz: RATE_HZ, speed_mm_s: Exploration::MOST_SPEED_MM_S };
             signal(format, bytes, sampling, None)?.map_err(in_file(file))?;
         }
@@ -66,8 +67,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
 }
 
 impl Reads {
-    /// Returns what its files never say, and an image that does not state the distance of its
-    /// pixels.
+    /// Returns what files of this format never state. For an image this includes the distance
+    /// between pixels, although some files state it.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         match self {
@@ -79,10 +80,10 @@ impl Reads {
 }
 
 impl Physical {
-    /// Checks that all of it is given, and in its range.
+    /// Checks that everything needed is given and in range.
     ///
     /// # Errors
-    /// With what is missing, or the first number that is out of its range.
+    /// What is missing, or the first number that is out of range.
     pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
         self.checked(format).map(drop)
     }
@@ -117,7 +118,7 @@ impl Physical {
     }
 }
 
-/// What a file does not say, in its range.
+/// What a file does not state, checked to be in range.
 pub(crate) struct Checked {
     pub(crate) full_scale: f64,
     pub(crate) speed_mm_s: f64,

@@ -1,9 +1,10 @@
-//! Profiles of actuators: what they can do, each value with its source.
+//! Profiles of actuators: what each can do, with a source for every value.
 //!
-//! They are data (`profiles.toml`) in the crate. A resonant actuator is a driven oscillator: at a
-//! frequency `f` it is at most as strong as `strongest_m_s2` times its response,
-//! `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`, and plays nothing outside its range. A rotating mass has one
-//! number: its acceleration grows with the square of its frequency, which follows its level.
+//! The profiles are data in the crate (`profiles.toml`). A resonant actuator is a driven
+//! oscillator: at a frequency `f` it is at most as strong as `strongest_m_s2` times its response,
+//! `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`, and it plays nothing outside its range. A rotating mass is
+//! described by one number: its acceleration grows with the square of its frequency, which follows
+//! its level.
 
 use std::sync::LazyLock;
 
@@ -11,18 +12,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{ExchangeError, list};
 
-/// The profiles, in the order of the documents.
+/// All profiles, in the order of the documents.
 pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
     #[derive(Deserialize)]
     struct Profiles {
         profile: Vec<Profile>,
     }
-    // A test reads the file; a build without it has no profiles, and says so of every name.
+    // A test makes sure that the file can be read. If it could not, there would be no profiles, and
+    // looking up any name would say so.
     htex_files::toml::from_str(include_str!("profiles.toml"))
         .map_or_else(|_| Vec::new(), |all: Profiles| all.profile)
 });
 
-/// A value, and where it is from.
+/// A value, with its source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
@@ -32,20 +34,20 @@ pub struct Sourced {
 }
 
 impl Sourced {
-    /// Whether nobody has measured or published it.
+    /// Whether the value is assumed: nobody has measured or published it.
     #[must_use]
     pub fn is_assumed(&self) -> bool {
         self.source == "assumed"
     }
 }
 
-/// What an actuator does with a drive.
+/// How an actuator responds to a drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// It follows samples, best at its resonance.
     Resonant,
-    /// A rotating mass, which has a level alone.
+    /// A rotating mass, which can only be given a level.
     Rotating,
 }
 
@@ -54,23 +56,23 @@ pub enum Kind {
 #[serde(deny_unknown_fields)]
 pub struct Profile {
     pub name: String,
-    /// What it is, in words.
+    /// A short description.
     pub title: String,
     pub kind: Kind,
-    /// Frequency at which it is strongest, hertz.
+    /// Frequency at which the actuator is strongest, hertz.
     pub resonance_hz: Sourced,
-    /// Quality factor of the resonance: resonance over bandwidth.
+    /// Quality factor: resonance frequency divided by bandwidth.
     pub q: Sourced,
-    /// Range of frequencies that it plays, hertz.
+    /// Range of frequencies that it can play, hertz.
     pub low_hz: Sourced,
     pub high_hz: Sourced,
-    /// Strongest acceleration of the housing, at the resonance, m/s², peak.
+    /// Strongest peak acceleration of the housing, at the resonance, m/s².
     pub strongest_m_s2: Sourced,
     /// Time from a command to the vibration, milliseconds.
     pub latency_ms: Sourced,
     /// Shortest time between two points of an envelope, milliseconds.
     pub shortest_point_ms: Sourced,
-    /// Most points of an envelope.
+    /// Largest number of points in an envelope.
     pub most_points: Sourced,
 }
 
@@ -78,7 +80,7 @@ impl Profile {
     /// Finds a profile by its name.
     ///
     /// # Errors
-    /// When there is none; the error lists all.
+    /// When no profile has the name; the error lists all names.
     pub fn find(name: &str) -> Result<&'static Self, ExchangeError> {
         let found = PROFILES.iter().find(|profile| profile.name == name);
         found.ok_or_else(|| ExchangeError::UnknownProfile {
@@ -87,7 +89,7 @@ impl Profile {
         })
     }
 
-    /// Returns its values with their names.
+    /// Returns the profile's values with their names.
     #[must_use]
     pub fn values(&self) -> [(&'static str, &Sourced); 8] {
         [
@@ -102,8 +104,8 @@ impl Profile {
         ]
     }
 
-    /// Returns the part of its strongest acceleration that it reaches at a frequency, 0 to 1; 0
-    /// outside its range.
+    /// Returns the fraction of its strongest acceleration that the actuator reaches at a frequency,
+    /// 0 to 1; 0 outside its range.
     #[must_use]
     pub fn response(&self, hertz: f64) -> f64 {
         if !(self.low_hz.value..=self.high_hz.value).contains(&hertz) {
@@ -118,19 +120,19 @@ impl Profile {
         }
     }
 
-    /// Returns its strongest acceleration at a frequency, m/s², peak.
+    /// Returns its strongest peak acceleration at a frequency, m/s².
     #[must_use]
     pub fn strongest_at(&self, hertz: f64) -> f64 {
         self.strongest_m_s2.value * self.response(hertz)
     }
 
-    /// Returns the frequency of a position in its range, 0 to 1.
+    /// Returns the frequency at a position in its range; positions go from 0 to 1.
     #[must_use]
     pub fn hertz_of(&self, part: f64) -> f64 {
         self.low_hz.value + part * (self.high_hz.value - self.low_hz.value)
     }
 
-    /// Returns the position of a frequency in its range, 0 to 1.
+    /// Returns the position of a frequency in its range, from 0 to 1.
     #[must_use]
     pub fn part_of(&self, hertz: f64) -> f64 {
         let part = (hertz - self.low_hz.value) / (self.high_hz.value - self.low_hz.value);
@@ -144,8 +146,8 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|profile| &profile.name[..]).collect()
 }
 
-/// Returns the table of the profiles in Markdown, for documents: a value that somebody published
-/// has the number of its source in the list below the table.
+/// Returns a Markdown table of the profiles, for documents. A published value has the number of its
+/// source in the list below the table.
 #[must_use]
 pub fn profiles_table() -> String {
     let mut sources: Vec<&str> = Vec::new();

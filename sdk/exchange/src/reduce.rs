@@ -1,12 +1,12 @@
-//! From what an asset plays to what an actuator can.
+//! Reduction of what an asset plays to what an actuator can play.
 //!
-//! **One tone.** A block's powers in bands, each over the detection threshold there, add up to what
-//! is felt of it; the tone is as far above its own threshold. Its frequency is the mean of the
-//! bands', weighted by what is felt, in the actuator's range. Where the actuator is too weak there,
-//! the frequency moves towards its resonance, no further than it must; where it is too weak
-//! everywhere, the tone is the strongest there is, and what is missing is counted. **Samples** are
-//! filtered by the inverse of the actuator's response, which raises no frequency by more than 12
-//! dB.
+//! **One tone.** A block's powers in bands are each taken relative to the detection threshold in
+//! the band, and added up to the strength that is felt. The tone is equally far above its own
+//! threshold. Its frequency is the mean of the bands' frequencies, weighted by what is felt, within
+//! the actuator's range. Where the actuator is too weak, the frequency moves towards its resonance,
+//! no further than necessary. Where it is too weak at every frequency, the strongest possible tone
+//! is played, and the time is counted as limited. **Samples** are filtered by the inverse of the
+//! actuator's response, which raises no frequency by more than 12 dB.
 
 use htex_dsp::fir::Fir;
 use htex_format::Quantity;
@@ -16,21 +16,21 @@ use crate::heard::{Block, Heard, acceleration_of, threshold};
 use crate::pattern::Pattern;
 use crate::profile::{Kind, Profile};
 
-/// Steps in which a frequency moves to the resonance.
+/// Number of steps in which a frequency moves to the resonance.
 const STEPS: usize = 32;
-/// Smallest response of the actuator that is inverted: −12 dB.
+/// Smallest response of the actuator that is still inverted: −12 dB.
 const LEAST_RESPONSE: f64 = 0.25;
-/// Resolution of the filter that inverts it, hertz.
+/// Resolution of the inverse filter, hertz.
 const RESOLUTION_HZ: f64 = 16.0;
 
-/// A pattern of one tone, and what was too strong for it.
+/// A pattern of one tone, and how often the actuator was too weak for it.
 pub(crate) struct Reduced {
     pub(crate) pattern: Pattern,
-    /// Part of the time in which the actuator is too weak.
+    /// Fraction of the time in which the actuator is too weak.
     pub(crate) limited: f64,
 }
 
-/// Reduces to one tone; at the resonance alone where it is `fixed`.
+/// Reduces what was heard to one tone; with `fixed`, always at the resonance.
 pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduced {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let (mut level, mut frequency_hz, mut limited) = (Vec::new(), Vec::new(), 0usize);
@@ -58,7 +58,7 @@ pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduced
     }
 }
 
-/// What is felt of a block.
+/// Computes how strongly a block is felt.
 struct Felt {
     thresholds: Vec<f64>,
     middles_hz: Vec<f64>,
@@ -72,7 +72,8 @@ impl Felt {
         }
     }
 
-    /// Amplitude over the threshold, and mean frequency, weighted by what is felt.
+    /// Returns the amplitude relative to the threshold, and the mean frequency weighted by what is
+    /// felt.
     fn of(&self, block: &Block) -> (f64, f64) {
         let (mut energy, mut moment) = (0.0, 0.0);
         for ((power, threshold), hertz) in
@@ -89,13 +90,14 @@ impl Felt {
 }
 
 struct Tone {
-    /// 0 to 1 of the strongest at its frequency; of a rotating mass, the level.
+    /// Amplitude from 0 to 1, relative to the strongest at its frequency; for a rotating mass, the
+    /// level.
     amplitude: f64,
     hertz: f64,
     is_limited: bool,
 }
 
-/// The frequency nearest to the wanted one at which the actuator is strong enough.
+/// The tone at the frequency nearest to the wanted one at which the actuator is strong enough.
 fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     let resonance_hz = profile.resonance_hz.value;
     let wanted_hz = if wanted_hz > 0.0 {
@@ -115,7 +117,7 @@ fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     enough.unwrap_or(Tone { amplitude: 1.0, hertz: resonance_hz, is_limited: true })
 }
 
-/// The least level of a motor at which it is felt as strongly.
+/// The smallest level of a motor at which it is felt as strongly.
 fn rotating(profile: &Profile, strength: f64) -> Tone {
     let (low_hz, high_hz) = (profile.low_hz.value, profile.high_hz.value);
     let felt = |hertz: f64| profile.strongest_at(hertz) / threshold(Quantity::Acceleration, hertz);
@@ -130,7 +132,7 @@ fn rotating(profile: &Profile, strength: f64) -> Tone {
     enough.map_or_else(|| tone(high_hz, true), |hertz| tone(hertz, false))
 }
 
-/// Adds the first and the last value at the ends.
+/// Adds points at time 0 and at the end, with the first and the last value.
 fn with_ends(mut curve: Vec<Point>, end_s: f64) -> Vec<Point> {
     if let (Some(first), Some(last)) = (curve.first().copied(), curve.last().copied()) {
         if first.time_s > 0.0 {
@@ -143,8 +145,8 @@ fn with_ends(mut curve: Vec<Point>, end_s: f64) -> Vec<Point> {
     curve
 }
 
-/// What a file's pattern makes of an actuator: the frequency of a motor follows its level, and its
-/// strength the square of that.
+/// What an actuator plays of a file's pattern. The frequency of a motor follows its level, and its
+/// strength the square of the level.
 pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     if profile.kind == Kind::Resonant {
         return pattern;
@@ -165,14 +167,14 @@ pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     Pattern { level: level.iter().map(turns).collect(), exponent: 2, frequency_hz, ..pattern }
 }
 
-/// A tone of several, and its amplitude over time.
+/// Several tones, with their amplitudes over time.
 pub(crate) struct Several {
     pub(crate) tones: Vec<(f64, Vec<Point>)>,
     pub(crate) limited: f64,
 }
 
-/// Reduces to a tone in each of some bands. Bands in which the actuator is weak are felt at its
-/// resonance.
+/// Reduces what was heard to one tone in each of several bands. Bands in which the actuator is weak
+/// are played at its resonance.
 pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Several {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let mut sums = vec![0.0f64; heard.blocks.len()];
@@ -192,7 +194,8 @@ pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Several {
     Several { tones, limited }
 }
 
-/// Groups bands: each has a frequency, that of the resonance where the actuator is weak at its own.
+/// Groups bands, each group with one frequency: its own, or the resonance if the actuator is weak
+/// at its own.
 fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<usize>)> {
     let own = middles_hz.len().div_ceil(count.max(1)).max(1);
     let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
@@ -213,7 +216,8 @@ fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<
     groups
 }
 
-/// Samples within ±1 that drive the actuator, and the part of them that was too strong.
+/// Returns the samples within ±1 that drive the actuator, and the fraction of them that was too
+/// strong.
 pub(crate) fn drive(heard: &Heard, profile: &Profile) -> (Vec<f64>, f64) {
     let strongest = profile.strongest_m_s2.value;
     let gain = |hertz: f64| match profile.response(hertz) {

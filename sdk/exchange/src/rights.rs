@@ -1,4 +1,4 @@
-//! Where files of a format carry the licence and the author of a texture.
+//! Where the files of a format store the licence and the author of a texture.
 
 use htex_format::{Rights, check_license};
 use serde::Deserialize;
@@ -9,7 +9,7 @@ use crate::format::Format;
 use crate::gltf;
 use crate::map;
 
-/// Where a format has its place, and how it is read.
+/// The place of the rights in a format, and how it is read.
 #[derive(Debug, Clone, Copy)]
 pub struct RightsPlace {
     /// The place, in words.
@@ -17,7 +17,7 @@ pub struct RightsPlace {
     pub(crate) read: fn(&[u8]) -> Rights,
 }
 
-/// Of a format that has no place: the file `NAME.license` beside it.
+/// For a format without such a place: the file `NAME.license` beside it.
 pub(crate) const BESIDE: RightsPlace =
     RightsPlace { place: "FILE.license", read: |_| Rights::default() };
 pub(crate) const HAPTIC: RightsPlace = RightsPlace {
@@ -49,7 +49,7 @@ fn of(text: Option<String>) -> Rights {
     text.map(|text| Rights::from_text(&text)).unwrap_or_default()
 }
 
-/// The parts of a JSON file that may hold text for people; the rest is not kept.
+/// The parts of a JSON file that may hold text for people; all other parts are ignored.
 #[derive(Deserialize)]
 struct Head {
     #[serde(default, alias = "Metadata")]
@@ -60,8 +60,8 @@ struct Head {
     asset: Value,
 }
 
-/// A string of a JSON file: `description`, or `metadata` or `asset` with a key in it. `None` if it
-/// is missing.
+/// A string of a JSON file: either `description`, or a key inside `metadata` or `asset`. `None` if
+/// it is missing.
 pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
     let head: Head = serde_json::from_slice(bytes).ok()?;
     let part = match part {
@@ -72,18 +72,19 @@ pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
     part.as_str().map(str::to_owned)
 }
 
-/// What a file says of its rights, and what the file `NAME.license` beside it says.
+/// The rights that a file and the file `NAME.license` beside it state.
 pub(crate) struct Stated {
     pub(crate) rights: Rights,
-    /// What was not taken, each a sentence.
+    /// What was not accepted, each as a sentence.
     pub(crate) left_out: Vec<String>,
 }
 
 impl Stated {
-    /// Brings both together. What is given anyway is not asked for.
+    /// Combines the rights stated inside the file and beside it. A conflict does not matter for a
+    /// value that the user gives anyway.
     ///
     /// # Errors
-    /// When they state different licences or authors, of which none is given.
+    /// When the two state different licences or authors, and the user gives none.
     pub(crate) fn of(
         format: &Format,
         bytes: &[u8],
@@ -107,10 +108,10 @@ impl Stated {
         Ok(stated)
     }
 
-    /// Checks that an asset that the file holds states the same, where it states something.
+    /// Checks that an asset inside the file states the same rights, if it states any.
     ///
     /// # Errors
-    /// When it states another licence or author, of which none is given.
+    /// When it states another licence or author, and the user gives none.
     pub(crate) fn check(&self, own: &Rights, given: &Rights) -> Result<(), ExchangeError> {
         agree("license", &own.license, &self.rights.license, &given.license)?;
         agree("author", &own.author, &self.rights.author, &given.author)

@@ -1,4 +1,4 @@
-//! What a person says of the signals of a file, by name: the flags of the command and the keys of
+//! What the user states about the signals of a file, by name: the command's flags and the keys of
 //! recipes.
 
 use schemars::JsonSchema;
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "clap")]
 use crate::profile_names;
 
-/// Settings of signals, as `.haptic`, `.ahap` and `.hjif` hold them, and of images; quantity, speed
-/// and force are those of recordings.
+/// Settings for importing signals (`.haptic`, `.ahap`, `.hjif`) and images. Quantity, speed and
+/// force are set as for recordings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct SignalSettings {
-    /// The quantity's unit at full scale, which files of haptic signals call 1.
+    /// The value of full scale, which files of haptic signals call 1, in the quantity's unit.
     #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     #[cfg_attr(
         feature = "clap",
@@ -27,7 +27,7 @@ pub struct SignalSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub full_scale: Option<f64>,
 
-    /// Distance of two pixels of an image, mm.
+    /// Distance between an image's pixels, mm.
     #[schemars(range(max = 64), extend("exclusiveMinimum" = 0))]
     #[cfg_attr(
         feature = "clap",
@@ -42,8 +42,8 @@ pub struct SignalSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pitch_mm: Option<f64>,
 
-    /// The actuator whose range the frequencies of haptic signals are positions in, by name; else
-    /// the format's own.
+    /// Name of the actuator in whose range the frequencies of haptic signals are positions; by
+    /// default the format's own.
     #[cfg_attr(feature = "clap", arg(
         long,
         value_name = "NAME",
@@ -56,7 +56,7 @@ pub struct SignalSettings {
 }
 
 impl SignalSettings {
-    /// Returns these settings, and where they are absent those of `under`.
+    /// Returns these settings, with missing ones taken from `under`.
     ///
     /// ```
     /// use htex_exchange::SignalSettings;

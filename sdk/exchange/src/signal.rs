@@ -1,13 +1,13 @@
-//! The signals of files that are no assets.
+//! Signals of files that are not assets.
 
 use crate::error::{ExchangeError, Fault};
 use crate::format::{Format, Reads, Sampling, Signal};
 use crate::profile::Profile;
 
-/// Rate of signals, hertz.
+/// Sample rate of signals, hertz.
 pub const RATE_HZ: f64 = 8_000.0;
 
-/// The signal of a file, or what is wrong with the file.
+/// Reads the signal of a file, or says what is wrong with the file.
 pub(crate) fn signal(
     format: &'static Format,
     bytes: &[u8],

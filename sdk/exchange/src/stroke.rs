@@ -1,4 +1,4 @@
-//! A stroke of a finger: speed and force over time, of a CSV.
+//! A finger's stroke: speed and force over time, read from a CSV.
 
 use std::path::Path;
 
@@ -7,14 +7,14 @@ use htex_play::Motion;
 
 use crate::curve::{Point, value_at};
 
-/// A stroke.
+/// A stroke: speed and force over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stroke {
     speed_mm_s: Vec<Point>,
     force_n: Vec<Point>,
-    /// Way along the path.
+    /// Distance along the path, mm.
     way_mm: Vec<Point>,
-    /// Assumptions of the reader, each a sentence.
+    /// Assumptions of the reader, each as a sentence.
     pub warnings: Vec<String>,
 }
 
@@ -23,12 +23,12 @@ impl Stroke {
     /// position and force.
     ///
     /// # Errors
-    /// Those of [`htex_author::recording::read_trace`], but that a speed replaces positions.
+    /// As [`htex_author::recording::read_trace`], except that a speed may stand in for positions.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_stroke(path)?))
     }
 
-    /// As [`Self::open`], of a file in memory; messages name `file`.
+    /// As [`Self::open`], but reads a file in memory. Messages name it `file`.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -57,7 +57,7 @@ impl Stroke {
         Self { force_n: curve(&force_n), way_mm, speed_mm_s, warnings: read.warnings.clone() }
     }
 
-    /// Returns its length, seconds.
+    /// Returns the length of the stroke, seconds.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.speed_mm_s.last().map_or(0.0, |last| last.time_s)

@@ -1,4 +1,4 @@
-//! WAV: one channel of 32-bit floats within ±1, which a voice coil or an amplifier is driven by.
+//! WAV: one channel of 32-bit floats within ±1, to drive a voice coil or an amplifier.
 
 use std::io::Cursor;
 

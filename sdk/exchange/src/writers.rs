@@ -1,5 +1,5 @@
-//! The writers of the formats: what is heard, reduced to what the actuator can do, and the file
-//! read again.
+//! The writers of the formats. Each reduces what is heard to what the actuator can do, writes the
+//! file and reads it back.
 
 use crate::android::{
     Android, BasicEnvelope, BasicPoint, LONGEST_POINT_MS, Waveform, WaveformEnvelope, WaveformPoint,
@@ -13,13 +13,14 @@ use crate::pattern::{Pattern, rendered};
 use crate::reduce::{drive, one_tone, played_by, tones};
 use htex_format::{Manifest, Quantity};
 
-/// Most points of an envelope where the format has no bound.
+/// Largest number of points in an envelope if the format has no limit.
 const MANY: usize = 4_000;
-/// Tones of a vectorial file: bands of a channel of level 1.
+/// Number of tones in a vectorial file: the bands that a channel of level 1 may have.
 const TONES: usize = 7;
-/// Points of a curve that are within this of the line between others are left out.
+/// Points of a curve are left out if they are within this distance of the line between their
+/// neighbours.
 const TOLERANCE: f64 = 1e-3;
-/// Least level of a basic envelope above the threshold, decibels (documentation of
+/// Lowest level of a basic envelope above the threshold, decibels (documentation of
 /// `VibrationEffect.BasicEnvelopeBuilder`).
 const LEAST_SL_DB: f64 = 10.0;
 
@@ -76,8 +77,8 @@ fn one_envelope(
     })
 }
 
-/// Rounds values to the digits that a file needs, and leaves out points between which nothing
-/// bends.
+/// Rounds values to the digits that a file needs, and leaves out points at which the curve does not
+/// bend.
 fn thin(pattern: &mut Pattern) {
     let rounded =
         |p: &Point| Point::new(libm::round(p.time_s * 1e6) / 1e6, libm::round(p.value * 1e4) / 1e4);
@@ -129,8 +130,8 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     })
 }
 
-/// Durations of points in whole milliseconds, which together last as long as what is heard. A last
-/// block that is shorter than the shortest point lengthens the one before.
+/// Durations of points in whole milliseconds; together they last as long as what is heard. If the
+/// last block is shorter than the shortest point, it lengthens the previous one.
 fn durations_ms(job: &Job<'_>, heard: &Heard) -> Vec<u64> {
     let end_s = |count: usize| (count as f64 * heard.block_s).min(heard.seconds());
     let shortest_ms = (libm::ceil(job.profile.shortest_point_ms.value) as u64).max(1);
@@ -158,7 +159,7 @@ fn as_waveform(job: &Job<'_>, heard: &Heard, fixed: &Pattern) -> Waveform {
     Waveform { amplitudes: timings_ms.iter().map(amplitude).collect(), timings_ms, repeat: -1 }
 }
 
-/// The points at the ends of blocks, and one that ends it.
+/// The points at the ends of blocks, and a final point.
 fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64)> {
     let mut time_s = 0.0;
     let mut points: Vec<(f64, f64, u64)> = Vec::new();
@@ -190,8 +191,8 @@ fn as_envelope(job: &Job<'_>, heard: &Heard, free: &Pattern) -> WaveformEnvelope
     }
 }
 
-/// An intensity is a part of the strongest sensation in decibels above 10 dB: Android states that
-/// 0.5 is felt as half, and no formula.
+/// Converts amplitudes to intensities. An intensity is the level in decibels above 10 dB, relative
+/// to the strongest sensation. Android only states that 0.5 feels like half, and gives no formula.
 fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
     let profile = job.profile;
     let above_db = |hertz: f64, part: f64| {
@@ -215,7 +216,8 @@ fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
     }
 }
 
-/// Over space at a condition, over time along a stroke and in a scene.
+/// Positions in space for an export at a condition; positions in time along a stroke and for a
+/// scene.
 fn space(job: &Job<'_>) -> Space {
     let speed = job.playing.source.speed_mm_s();
     Space { speed_mm_s: speed.filter(|speed| *speed > 0.0) }
@@ -248,7 +250,7 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
 
 type Coded = (Hjif, Heard, f64);
 
-/// The name, and the rights.
+/// Description with the name and the rights.
 fn described(job: &Job<'_>) -> String {
     let source = &job.playing.source;
     source.rights().described(source.name())

@@ -1,4 +1,4 @@
-//! Files that are damaged, or too large, are refused with their place.
+//! Damaged or too large files are refused, and the error names the place.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 #[path = "common/busy.rs"]
@@ -66,8 +66,7 @@ fn said(name: &str, bytes: &[u8]) -> String {
     read.map_or_else(|error| error.to_string(), |_| "it is read".to_owned())
 }
 
-/// What is said of a file in which the value at a pointer is replaced, or taken away where it is
-/// null.
+/// The message for a file in which the value at a pointer is replaced, or removed if `to` is null.
 fn changed(name: &str, file: &Value, pointer: &str, to: Value) -> String {
     let mut file = file.clone();
     let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -84,7 +83,7 @@ fn changed(name: &str, file: &Value, pointer: &str, to: Value) -> String {
 fn whole_files_are_read() {
     for (name, file) in [("a.haptic", haptic()), ("a.ahap", ahap()), ("a.hjif", hjif())] {
         assert_eq!(said(name, file.to_string().as_bytes()), "it is read", "{name}");
-        // With a mark of the byte order.
+        // With a byte order mark.
         let marked = format!("\u{feff}{file}");
         assert_eq!(said(name, marked.as_bytes()), "it is read", "{name}");
     }
@@ -93,8 +92,8 @@ fn whole_files_are_read() {
         .replace("channels", "tracks")
         .replace("mixing_coefficient", "mixing_weight");
     assert_eq!(said("a.hjif", draft.as_bytes()), "it is read");
-    // Of Meta's legacy files: a last point to which the line across the end leads. Null and absent
-    // are none.
+    // Meta's legacy files have a last point whose line crosses the end. Null and missing mean that
+    // there is none.
     let frequency = "/signals/continuous/envelopes/frequency";
     let across = json!([{"time": 0, "frequency": 0.5}, {"time": 1.5, "frequency": 1}]);
     assert_eq!(changed("a.haptic", &haptic(), frequency, across), "it is read");
@@ -327,7 +326,7 @@ fn sizes_are_limited() {
     }
 }
 
-/// Small files that would take minutes.
+/// Small files that would take minutes to read.
 #[test]
 fn work_is_limited() {
     let event = json!({"Event": {"Time": 0, "EventType": "HapticContinuous", "EventDuration": 1}});
@@ -359,8 +358,9 @@ fn work_is_limited() {
     assert!(start.elapsed() < Duration::from_secs(10));
 }
 
-/// Files whose work grew with a product that nothing counted: pulses of a referenced effect, pulses
-/// of a low frequency, points of curves by parameters of their event, channels by devices.
+/// Files in which the work grows with a product of two numbers: pulses of a referenced effect,
+/// pulses of a low frequency, points of curves times parameters of their event, channels times
+/// devices.
 #[test]
 fn no_work_is_left_out_of_the_count() {
     let start = Busy::start();

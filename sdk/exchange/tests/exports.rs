@@ -1,4 +1,4 @@
-//! What is written keeps the rules of its format, and what is lost of it is what is to be expected.
+//! Written files follow the rules of their formats, and lose what is to be expected.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 mod rules;
@@ -17,7 +17,7 @@ fn of<'a>(format: &str) -> Export<'a> {
     Export::new(Format::named(format).unwrap())
 }
 
-/// Checks a file by the rules of its format.
+/// Checks a file against the rules of its format.
 fn check(name: &str, exported: &Exported, profile: &Profile) {
     let json = || serde_json::from_slice::<Value>(&exported.bytes).unwrap();
     match name {
@@ -48,7 +48,7 @@ fn stroke() -> Path {
     Path::Stroke(Stroke::from_bytes("stroke.csv", csv.as_bytes()).unwrap())
 }
 
-/// Each format by each profile, at a condition and along a stroke.
+/// Each format with each profile, at a condition and along a stroke.
 #[test]
 fn each_file_keeps_the_rules_of_its_format() {
     let asset = texture(Surface::CoarseFabric);
@@ -83,7 +83,7 @@ fn each_file_keeps_the_rules_of_its_format() {
     assert_eq!(count, 2 * (5 * 6 - 2));
 }
 
-/// A wide actuator that is strong enough loses little of the samples, and one tone loses more.
+/// With a wide actuator that is strong enough, samples lose little, and a single tone loses more.
 #[test]
 fn samples_lose_less_than_a_tone_does() {
     let asset = texture(Surface::CoarseFabric);
@@ -101,7 +101,7 @@ fn samples_lose_less_than_a_tone_does() {
     assert!(wav < tones && tones < tone, "{wav} {tones} {tone}");
 }
 
-/// The same asset and seed give the same bytes; another seed gives others.
+/// The same asset and seed give the same bytes; another seed gives other bytes.
 #[test]
 fn equal_inputs_give_equal_bytes() {
     let asset = texture(Surface::Vinyl);
@@ -116,7 +116,7 @@ fn equal_inputs_give_equal_bytes() {
     }
 }
 
-/// A weak actuator is said to be weak.
+/// A weak actuator is reported as weak.
 #[test]
 fn what_is_too_strong_is_counted() {
     let asset = texture(Surface::Sandpaper);
@@ -159,7 +159,7 @@ fn numbers_that_cannot_be_are_refused() {
     assert!(said(&slow).contains("choose a higher speed"), "{}", said(&slow));
 }
 
-/// Kotlin has the numbers of the JSON.
+/// The Kotlin code has the same numbers as the JSON.
 #[test]
 fn kotlin_has_the_points_of_the_envelope() {
     let asset = texture(Surface::Vinyl);

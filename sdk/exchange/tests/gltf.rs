@@ -1,5 +1,4 @@
-//! glTF files that carry an asset: there and back bit for bit, and what is wrong named with its
-//! place.
+//! glTF files that carry an asset: round trips are bit for bit, and errors name their place.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 mod textures;
@@ -26,7 +25,7 @@ fn written(extension: &str, file: &[u8]) -> Vec<u8> {
     export(&ASSET, &how).unwrap().bytes
 }
 
-/// A container, by the specification of glTF.
+/// A container written by the specification of glTF.
 fn glb(chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     let mut made = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
     for (kind, bytes) in chunks {
@@ -39,7 +38,7 @@ fn glb(chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     made
 }
 
-/// JSON and bytes of a container, as its header says.
+/// The JSON and the bytes of a container, taken apart as its header says.
 fn parts(file: &[u8]) -> (Value, Vec<u8>) {
     let number = |at: usize| u32::from_le_bytes(*file[at..].first_chunk().unwrap()) as usize;
     assert_eq!((&file[..4], number(4), number(8)), (&b"glTF"[..], 2, file.len()));
@@ -60,7 +59,7 @@ fn said(file: &[u8]) -> String {
     read.map_or_else(|error| error.to_string(), |_| "it is read".to_owned())
 }
 
-/// What is said of a file with another value at a place of its JSON.
+/// The message for a file with another value at a place in its JSON.
 fn changed(pointer: &str, value: Value) -> String {
     let (mut json, bytes) = parts(&written("glb", &FILE));
     let (object, key) = pointer.rsplit_once('/').unwrap();
@@ -84,7 +83,8 @@ fn the_asset_comes_back_bit_for_bit() {
     }
 }
 
-/// A file that htex would write differently: its entries are not compressed.
+/// The round trip also keeps a file that htex would write differently: its entries are not
+/// compressed.
 #[test]
 fn a_file_that_would_be_written_differently_comes_back_too() {
     let seed = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/open_asset/bands-stored");
@@ -101,7 +101,7 @@ fn a_file_that_would_be_written_differently_comes_back_too() {
     }
 }
 
-/// Metadata that is given changes the file; the same as it has does not.
+/// Given metadata changes the file, unless the file already has the same values.
 #[test]
 fn metadata_is_applied() {
     let bytes = written("glb", &FILE);
@@ -126,7 +126,7 @@ fn an_export_says_that_nothing_is_lost_and_takes_no_setting() {
     how.seed = 1;
     let error = export(&ASSET, &how).unwrap_err().to_string();
     assert!(error.contains("its export takes no `seed`"), "{error}");
-    // What is no asset is not written as one.
+    // Bytes that are not an asset are not written as one.
     how.seed = 0;
     let long = vec![0; MOST_BYTES as usize + 1];
     how.file = Some(&long);
@@ -139,8 +139,8 @@ fn an_export_says_that_nothing_is_lost_and_takes_no_setting() {
     assert!(error.contains("at most 16777216 are read"), "{error}");
 }
 
-/// The mesh: a rectangle of the size that the material states, wound against the clock, whose
-/// texture coordinates go right and down.
+/// The mesh: a rectangle of the size that the material states, wound counterclockwise, with texture
+/// coordinates that go right and down.
 #[test]
 fn the_rectangle_has_the_size_that_is_stated() {
     let (json, bytes) = parts(&written("glb", &FILE));
@@ -363,14 +363,14 @@ fn what_is_wrong_in_the_container_is_named_with_its_byte() {
     assert!(said(&vec![b' '; MOST_BYTES as usize + 1]).contains("at most 16777216 are read"));
 }
 
-/// A file that ends anywhere is refused with words, and is never half read.
+/// A file cut off at any byte is refused with a message, and is never half read.
 #[test]
 fn a_file_that_ends_anywhere_is_refused() {
     let whole = written("glb", &FILE);
     for end in (0..whole.len()).step_by(7) {
         let short = &whole[..end];
         assert_ne!(said(short), "it is read", "{end}");
-        // With a header that is right.
+        // With a correct header.
         if end >= 12 {
             let mut short = short.to_vec();
             short[8..12].copy_from_slice(&(end as u32).to_le_bytes());
@@ -380,7 +380,7 @@ fn a_file_that_ends_anywhere_is_refused() {
 }
 
 proptest! {
-    /// Any bytes in any byte: words, or the asset.
+    /// Any change of bytes gives a message or the asset.
     #[test]
     fn no_byte_panics(at in 0usize..2000, byte: u8, bytes in prop::collection::vec(any::<u8>(), 0..64)) {
         let mut file = written("glb", &FILE);

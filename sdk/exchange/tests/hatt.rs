@@ -1,4 +1,4 @@
-//! Model files of the Penn Haptic Texture Toolkit, of its shape: filters, triangles, silent edges.
+//! Model files like those of the Penn Haptic Texture Toolkit: filters, triangles, silent edges.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 #[path = "common/busy.rs"]
@@ -25,8 +25,8 @@ fn imported(text: &str) -> Asset {
     Asset::from_bytes(&made.to_bytes().unwrap()).unwrap()
 }
 
-/// The magnitude of a model at its rate of 1 kHz, by its definition: the amplitude that a Hann
-/// window of 0.2 s reads of its density.
+/// The magnitude of a model at its rate of 1 kHz, by definition: the amplitude that a Hann window
+/// of 0.2 s reads from the model's power density.
 fn magnitude(model: &Model, hz: f64) -> f64 {
     let response = |coefficients: &[f64]| {
         let terms = coefficients.iter().enumerate().map(|(i, b)| {
@@ -41,8 +41,8 @@ fn magnitude(model: &Model, hz: f64) -> f64 {
     gain * (2.0 * density * 1.5 * 5.0).sqrt()
 }
 
-/// The largest difference at any audible model from 20 to 490 Hz, decibels; silent ones must be
-/// silent.
+/// The largest difference from 20 to 490 Hz over all audible models, decibels. Silent models must
+/// be silent.
 fn largest_error_db(models: &[Model], asset: &Asset) -> f64 {
     let grid: Vec<f64> = (4..=98).map(|bin| 5.0 * f64::from(bin)).collect();
     let mut worst = 0.0f64;
@@ -64,7 +64,7 @@ fn largest_error_db(models: &[Model], asset: &Asset) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Each audible model has its filter's magnitude, and each mix between them is stable.
+    /// Each audible model has the magnitude of its filter, and every mix of models is stable.
     #[test]
     fn each_model_is_exact_and_mixes_are_stable(seed in any::<u64>(), poles in 0usize..=20, zeros in 0usize..=18) {
         let models = draw(seed, poles, zeros);
@@ -98,7 +98,7 @@ fn forty_models_take_less_than_eight_kilobytes() {
     assert!(bytes <= 8_000, "{bytes}");
 }
 
-/// Zeros outside the circle are mirrored: the magnitude is the same.
+/// Zeros outside the circle are mirrored, which leaves the magnitude the same.
 #[test]
 fn zeros_outside_the_circle_are_mirrored() {
     let mut models = draw(3, 4, 2);
@@ -128,7 +128,7 @@ fn the_asset_says_what_it_is() {
     assert_ne!(schema.violations(&serde_json::json!({"mu": 1})), []);
 }
 
-/// What is said of a file that is changed: `from` into `to`, once.
+/// The message for a file in which `from` is replaced by `to` once.
 fn said(from: &str, to: &str) -> String {
     let text = file(&draw(1, 6, 4));
     assert!(text.contains(from), "{from}");
@@ -172,7 +172,7 @@ fn damaged_files_are_named_with_place() {
         let said = said(from, to);
         assert!(said.contains(expected) && said.starts_with("line "), "{from}: {said}");
     }
-    // An unstable filter, and a file that ends anywhere.
+    // An unstable filter, and a file that is cut off at any byte.
     let unstable = said("<ARcoeff><value>1.0", "<ARcoeff><value>1.0</value><value>9");
     assert!(unstable.contains("ARcoeff: "), "{unstable}");
     let text = file(&draw(1, 6, 4));
@@ -204,7 +204,8 @@ fn entities_and_sizes_are_refused() {
     );
 }
 
-/// Blanks are looked at once, and the search for zeros is counted over the whole file.
+/// Blanks are looked at only once, and the work of searching for zeros is counted over the whole
+/// file.
 #[test]
 fn no_file_takes_more_than_seconds() {
     let start = Busy::start();
@@ -245,7 +246,7 @@ fn no_file_takes_more_than_seconds() {
     assert!(start.elapsed() < Duration::from_secs(10));
 }
 
-/// Triangles that cover nothing are left out with a note, and the format's own are used.
+/// Triangles that leave a gap are ignored with a note, and the format's own triangles are used.
 #[test]
 fn triangles_that_leave_a_gap_are_left_out() {
     let text = file(&draw(1, 6, 4)).replacen("<numTri>56</numTri>", "", 1);

@@ -1,4 +1,4 @@
-//! SciPy has the same magnitudes at the nodes of model files of the toolkit's shape.
+//! For model files like the toolkit's, SciPy computes the same magnitudes at the nodes.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -10,7 +10,7 @@ use common::{draw, file};
 use htex_exchange::hatt::{Imported, asset, read};
 use htex_play::{Asset, Motion};
 
-/// Magnitudes at each node from 20 to 490 Hz, as the asset of a file states them.
+/// Magnitudes at each node from 20 to 490 Hz, as stated by the asset that is imported from a file.
 fn stated(text: &str) -> Vec<Vec<f64>> {
     let grid: Vec<f64> = (4..=98).map(|bin| 5.0 * f64::from(bin)).collect();
     let texture = read(text.as_bytes()).unwrap();

@@ -1,5 +1,5 @@
-//! The generated parts of `docs/exchange.md`: the formats, the profiles, and what is lost of five
-//! textures.
+//! The generated parts of `docs/exchange.md`: the formats, the profiles, and what five textures
+//! lose.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 mod textures;
@@ -9,9 +9,9 @@ use htex_simulate::Surface;
 use textures::texture;
 
 const PAGE: &str = "docs/exchange.md";
-/// Three actuators that play every format.
+/// Three actuators that can play every format.
 const PROFILES: [&str; 3] = ["quest", "lra-175", "console"];
-/// Formats, and codings of `.hjif`.
+/// Formats, with the codings of `.hjif`.
 const WAYS: [(&str, Option<Coding>); 6] = [
     ("haptic", None),
     ("ahap", None),

@@ -1,4 +1,4 @@
-//! Friction maps as PNG: there and back, what is refused, and what is felt.
+//! Friction maps as PNG: round trips, what is refused, and what is felt.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ const SPEED_MM_S: f64 = 80.0;
 const FORCE_N: f64 = 0.5;
 const FULL_SCALE: f64 = 0.3;
 
-/// A PNG of 8-bit pixels, with so many of them in a metre.
+/// A PNG of 8-bit pixels, with `in_metre` pixels in a metre.
 fn png(width: usize, pixels: &[u8], color: ColorType, in_metre: Option<[u32; 2]>) -> Vec<u8> {
     let rows = pixels.len() / width / color.samples();
     let mut bytes = Vec::new();
@@ -57,7 +57,7 @@ fn refusal(bytes: &[u8], pitch_mm: Option<f64>) -> String {
     refused.unwrap_err().to_string()
 }
 
-/// The asset as an app opens it.
+/// Opens the asset as an app does.
 fn opened(imported: &Imported) -> Asset {
     Asset::from_bytes(&imported.to_bytes().unwrap()).unwrap()
 }
@@ -75,7 +75,8 @@ fn ridges(width: usize, rows: usize, wave: f64) -> Vec<u8> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Every pixel comes back, and the distance as far as whole pixels in a metre have it.
+    /// Every pixel comes back. The distance comes back up to its rounding to whole pixels in a
+    /// metre.
     #[test]
     fn there_and_back(
         (width, pixels) in (1usize..=255, 1usize..=20).prop_flat_map(|(width, rows)| (Just(width), vec(any::<u8>(), width * rows))),
@@ -83,7 +84,7 @@ proptest! {
     ) {
         let there = png(width, &pixels, ColorType::Grayscale, None);
         let Ok(made) = import("map.png", &there, &how(Some(pitch_mm)), &Registry::builtin()) else {
-            // Nothing of it lies in the band.
+            // None of the image lies in the band.
             return Ok(());
         };
         let back = exported(&opened(&made));
@@ -163,8 +164,8 @@ fn what_is_no_map_is_refused_with_its_place() {
     }
 }
 
-/// Ridges 1 mm apart are felt at as many hertz as the finger has mm/s across them, and not along
-/// them.
+/// Ridges 1 mm apart are felt at as many hertz as the finger moves mm/s across them, and are not
+/// felt along them.
 #[test]
 fn what_is_felt_follows_the_place() {
     let file = png(100, &ridges(100, 3, 10.0), ColorType::Grayscale, Some([10_000; 2]));
@@ -203,8 +204,8 @@ fn stroke(asset: &Asset, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
     samples
 }
 
-/// A texture that is no map goes out as a row, which plays its level and its third octaves at the
-/// speed, as far as 255 pixels hold them.
+/// A texture that is not a map is exported as a row of pixels, which plays the texture's level and
+/// third octaves at the speed, as far as 255 pixels can hold them.
 #[test]
 fn a_texture_without_places_goes_out_as_a_row() {
     let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {

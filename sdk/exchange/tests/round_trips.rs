@@ -1,4 +1,4 @@
-//! Files that are written, read, and written again.
+//! Files that are written, read back and written again.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 use htex_exchange::haptic::Metadata;
@@ -32,7 +32,8 @@ fn pattern(steps_ms: &[u32], values: &[f64], hertz: &[f64]) -> Pattern {
         transients: vec![Transient {
             time_s,
             amplitude: 1.0,
-            // A control is added to the sharpness of a transient, which cannot be below it.
+            // A control is added to a transient's sharpness, so the sharpness cannot be lower than
+            // the control.
             frequency_hz: 300.0,
         }],
     }
@@ -51,8 +52,8 @@ fn back(pattern: &Pattern) -> Pattern {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// `.ahap` to `.haptic` to `.ahap`: at each point the level and the frequency, and the
-    /// transient.
+    /// From `.ahap` to `.haptic` and back to `.ahap`: level and frequency at each point and the
+    /// transient are kept.
     #[test]
     fn ahap_to_haptic_and_back(
         (steps, values, hertz) in (2usize..40).prop_flat_map(|count| (
@@ -80,8 +81,8 @@ proptest! {
         prop_assert!((was.frequency_hz - is.frequency_hz).abs() < 1e-6);
     }
 
-    /// `.hjif` there and back: samples as wavelets, within the resolution of their coefficients;
-    /// and the file itself, exactly.
+    /// Round trip through `.hjif`: samples coded by wavelets come back within the resolution of
+    /// their coefficients, and the file itself comes back exactly.
     #[test]
     fn samples_to_hjif_and_back(samples in vec(-1.0f64..=1.0, 1..3_000), speed in prop::option::of(20.0f64..400.0)) {
         let space = Space { speed_mm_s: speed };
@@ -105,7 +106,7 @@ proptest! {
     }
 }
 
-/// The scale of the reference software: each low-pass of the transform sums to √2.
+/// The scale matches the reference software: each low-pass of the transform sums to √2.
 #[test]
 fn a_constant_is_a_low_pass() {
     let coefficients = analysed(&[1.0; 32]);
@@ -115,7 +116,7 @@ fn a_constant_is_a_low_pass() {
     }
 }
 
-/// A tone of a vectorial band over way is a sine of its frequency at the speed.
+/// A tone of a vectorial band over space is a sine whose frequency follows the speed.
 #[test]
 fn a_tone_over_way_follows_the_speed() {
     let text = r#"{"version": "2023", "profile": "Main", "level": 1, "date": "2026", "description": "", "timescale": 10000,
@@ -139,8 +140,8 @@ fn a_tone_over_way_follows_the_speed() {
     }
 }
 
-/// A transient of an `.ahap` before any curve keeps its strength; one under a curve is changed by
-/// it.
+/// A transient in an `.ahap` before any curve keeps its strength; a transient during a curve is
+/// changed by it.
 #[test]
 fn controls_change_transients_from_their_first_point_on() {
     let text = |time: f64| {

@@ -44,7 +44,7 @@ fn each_profile_is_whole_and_says_where_its_values_are_from() {
     }
     let error = Profile::find("phone").unwrap_err().to_string();
     assert!(error.contains("quest, lra-175, erm"), "{error}");
-    // A format that plays what an asset plays has a profile of its own.
+    // A format that exports what an asset plays must have a profile of its own.
     for format in FORMATS {
         if let Some(Writes::Signal { profile, .. }) = format.writes {
             Profile::find(profile).unwrap();
@@ -73,7 +73,7 @@ fn a_setting_that_means_nothing_is_refused() {
         "{error}"
     );
 
-    // The functions refuse what their settings have.
+    // The functions refuse a setting that is set but does not apply.
     let how = Import {
         physical: Physical { speed_mm_s: Some(80.0), ..Physical::default() },
         ..Import::default()
@@ -126,7 +126,7 @@ fn what_a_file_does_not_say_is_asked_for_and_kept() {
     assert_eq!(manifest.name, "hum");
     assert_eq!(manifest.conditions[0].speed_mm_s, Some(80.0));
     assert_eq!(manifest.conditions[0].force_n, Some(0.4));
-    // A sine of half the full scale.
+    // A sine at half of full scale.
     let level = asset.level_rms(None, None).unwrap();
     assert!((level - 0.05 / 2f64.sqrt()).abs() < 0.001, "{level}");
     let warnings = &manifest.provenance.warnings;

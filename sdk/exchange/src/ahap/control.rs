@@ -1,4 +1,4 @@
-//! The controls of a file over time, and what they make of its events.
+//! The controls of a file over time, and how they change its events.
 
 use super::{
     ControlPoint, Entry, Event, INTENSITY, INTENSITY_CONTROL, SHARPNESS, SHARPNESS_CONTROL,
@@ -21,7 +21,7 @@ impl Controls {
         }
     }
 
-    /// How many points change an event.
+    /// Number of control points that change an event.
     pub(super) fn points_during(&self, event: &Event) -> usize {
         self.intensity.during(event).len() + self.sharpness.during(event).len()
     }
@@ -47,20 +47,20 @@ impl Controls {
     }
 }
 
-/// The level of an event by its control. The event's parameters are looked through once, not at
-/// each point.
+/// The level of an event as a function of its control. The event's parameters are looked up once,
+/// not at each point.
 fn level(event: &Event) -> impl Fn(f64) -> f64 {
     let intensity = event.parameter(INTENSITY, 1.0);
     move |control| (intensity * control).clamp(0.0, 1.0)
 }
 
-/// The frequency of an event by its control, hertz.
+/// The frequency of an event in hertz, as a function of its control.
 fn hertz(event: &Event, profile: &Profile) -> impl Fn(f64) -> f64 {
     let sharpness = event.parameter(SHARPNESS, 0.5);
     move |control| profile.hertz_of((sharpness + control).clamp(0.0, 1.0))
 }
 
-/// A control over time, and its value before its first point.
+/// A control over time, with its value before its first point.
 struct Control {
     points: Vec<Point>,
     usual: f64,
@@ -73,7 +73,7 @@ impl Control {
         curves.sort_by(|a, b| start_s(a).total_cmp(&start_s(b)));
         let mut points: Vec<Point> = Vec::new();
         for curve in curves {
-            // Between curves the control stays.
+            // Between two curves, the control keeps its value.
             if let (Some(last), Some(first)) = (points.last().copied(), curve.first())
                 && last.time_s < first.time_s
             {
@@ -95,15 +95,15 @@ impl Control {
         }
     }
 
-    /// The control's points during an event and at its ends, each changed to what it makes of the
-    /// event.
+    /// The control's points during an event and at its ends; `made` converts each value to the
+    /// event's level or frequency.
     fn over(&self, event: &Event, made: impl Fn(f64) -> f64) -> Vec<Point> {
         let (from_s, to_s) = (event.time, event.end_s());
         let point = |time_s: f64, control: f64| Point::new(time_s, made(control));
         let mut over = vec![point(from_s, self.at(from_s))];
         let first = self.points.first();
         for (index, p) in self.during(event).iter().enumerate() {
-            // A jump from the usual value to that of the first point.
+            // At the control's first point, its value jumps there from the usual value.
             let begins = index == 0 && first.is_some_and(|first| first.time_s == p.time_s);
             if begins && self.usual != p.value {
                 over.push(point(p.time_s, self.usual));
@@ -128,7 +128,7 @@ impl Control {
     }
 }
 
-/// The points of an entry that changes a control, at their own times.
+/// The points of an entry that changes the control `id`, at their absolute times.
 fn own_curve(entry: &Entry, id: &str) -> Option<Vec<Point>> {
     match entry {
         Entry::ParameterCurve(curve) if curve.id == id => {

@@ -1,13 +1,13 @@
-//! `.ahap` of Apple's Core Haptics, version 1: events that are continuous or transient, and curves
-//! of control points that change them.
+//! Reader and writer of Apple's Core Haptics files, `.ahap` version 1: continuous and transient
+//! events, and curves of control points that change them.
 //!
-//! Read of Apple's documentation (*Representing haptic patterns in AHAP files*;
-//! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`): an intensity control multiplies, a
-//! sharpness control adds, a control applies to all events from its first point on and is linear
-//! between points, whose times count from the curve's. Apple states neither what an intensity is
-//! nor a sharpness. Here an intensity is the square root of an amplitude, as in Meta's conversion
-//! (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk), and a sharpness the position in a
-//! range of frequencies, as in the reference software of ISO/IEC 23090-31.
+//! Written from Apple's documentation (*Representing haptic patterns in AHAP files*;
+//! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`). An intensity control multiplies, a
+//! sharpness control adds. A control applies to all events from its first point on and is linear
+//! between points; the times of the points count from the start of the curve. Apple does not define
+//! what an intensity or a sharpness is. Here an intensity is the square root of an amplitude, as in
+//! Meta's conversion (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk), and a sharpness
+//! is the position in a range of frequencies, as in the reference software of ISO/IEC 23090-31.
 
 mod control;
 #[cfg(feature = "export")]
@@ -26,10 +26,10 @@ use control::Controls;
 
 /// Longest continuous event, seconds (documentation of `CHHapticEvent.EventType.hapticContinuous`).
 pub const LONGEST_EVENT_S: f64 = 30.0;
-/// Most control points that one curve is written with.
+/// Largest number of control points that are written into one curve.
 pub const POINTS_OF_A_CURVE: usize = 16;
 
-/// A file.
+/// An `.ahap` file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "PascalCase")]
 pub struct Ahap {
@@ -50,10 +50,10 @@ pub enum Entry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "PascalCase")]
 pub struct Event {
-    /// Seconds.
+    /// Time, seconds.
     pub time: f64,
     pub event_type: EventType,
-    /// Seconds, of a continuous event.
+    /// Duration of a continuous event, seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub event_duration: Option<f64>,
     #[serde(default)]
@@ -76,7 +76,7 @@ pub struct Value {
     pub value: f64,
 }
 
-/// A control that changes at once.
+/// A control that changes its value at once.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     #[serde(rename = "ParameterID")]
@@ -87,12 +87,12 @@ pub struct Parameter {
     pub time: f64,
 }
 
-/// A control that follows lines.
+/// A control that follows straight lines between points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     #[serde(rename = "ParameterID")]
     pub id: String,
-    /// Seconds; those of the points count from here.
+    /// Start of the curve, seconds; the times of its points count from here.
     #[serde(rename = "Time")]
     pub time: f64,
     #[serde(rename = "ParameterCurveControlPoints")]
@@ -106,9 +106,10 @@ pub struct ControlPoint {
     pub parameter_value: f64,
 }
 
-/// Most points of curves during all events, each counted for each event that it changes.
+/// Largest number of curve points during events. A point counts once for each event that it
+/// changes.
 const MOST_POINTS: usize = 1_000_000;
-/// Most seconds of all events together.
+/// Largest total duration of all events, seconds.
 const MOST_TOGETHER_S: f64 = 4_000.0;
 
 const INTENSITY: &str = "HapticIntensity";
@@ -117,11 +118,11 @@ const INTENSITY_CONTROL: &str = "HapticIntensityControl";
 const SHARPNESS_CONTROL: &str = "HapticSharpnessControl";
 
 impl Ahap {
-    /// Reads a file.
+    /// Reads an `.ahap` file.
     ///
     /// # Errors
-    /// When it is no JSON, has another version or shape, or a number is out of its range; with the
-    /// place.
+    /// When it is not JSON, has another version or structure, or a number is out of range. The
+    /// fault names the place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let ahap: Self = json::read(bytes)?;
         if ahap.version != 1.0 {
@@ -140,7 +141,7 @@ impl Ahap {
         json::written(self)
     }
 
-    /// What of the file is not read, each a sentence.
+    /// What the reader ignores in this file, each as a sentence.
     #[must_use]
     pub fn left_out(&self) -> Vec<String> {
         let events = || self.events();
@@ -167,8 +168,8 @@ impl Ahap {
         })
     }
 
-    /// Returns the vibrations for an actuator: one for each continuous event, and one with all
-    /// transients.
+    /// Returns the vibrations for an actuator: one for each continuous event, and one for all
+    /// transients together.
     #[must_use]
     pub fn patterns(&self, profile: &Profile) -> Vec<Pattern> {
         let controls = Controls::of(&self.pattern);
@@ -181,7 +182,7 @@ impl Ahap {
         continuous.chain(pulses).collect()
     }
 
-    /// Refuses events and curves that together take long to play.
+    /// Refuses events and curves that would together take too long to play.
     fn check_work(&self) -> Result<(), Fault> {
         let controls = Controls::of(&self.pattern);
         let points: usize = self.events().map(|event| controls.points_during(event)).sum();
@@ -197,7 +198,7 @@ impl Ahap {
 }
 
 impl Entry {
-    /// What it controls, if it does.
+    /// The control that this entry changes, if it changes one.
     fn control(&self) -> Option<&str> {
         match self {
             Self::Event(_) => None,

@@ -1,4 +1,4 @@
-//! A file of a vibration.
+//! Writing a vibration as an `.ahap` file.
 
 use super::{
     Ahap, ControlPoint, Curve, Entry, Event, EventType, INTENSITY, INTENSITY_CONTROL,
@@ -9,9 +9,10 @@ use crate::pattern::{Pattern, Transient};
 use crate::profile::Profile;
 
 impl Ahap {
-    /// Makes a file of a vibration whose levels are amplitudes: curves of at most
-    /// [`POINTS_OF_A_CURVE`] points over events of at most [`LONGEST_EVENT_S`]. The controls change
-    /// transients, too, so that an intensity of theirs is divided by the control there, up to 1.
+    /// Makes a file from a vibration whose levels are amplitudes: curves of at most
+    /// [`POINTS_OF_A_CURVE`] points over events of at most [`LONGEST_EVENT_S`]. The controls also
+    /// change transients, so a transient's intensity is divided by the control's value there; the
+    /// result is at most 1.
     #[must_use]
     pub fn of(pattern: &Pattern, profile: &Profile) -> Self {
         let root = |p: &Point| Point::new(p.time_s, libm::sqrt(p.value.clamp(0.0, 1.0)));
@@ -28,7 +29,7 @@ impl Ahap {
         Self { version: 1.0, metadata: None, pattern: entries }
     }
 
-    /// Sets a description, in the metadata, unless it is empty.
+    /// Sets a description in the metadata, unless `description` is empty.
     #[must_use]
     pub fn with_description(mut self, description: &str) -> Self {
         if !description.is_empty() {
@@ -39,8 +40,8 @@ impl Ahap {
     }
 }
 
-/// A curve in parts, of which each begins with the last point of the one before: between curves a
-/// control stays.
+/// Splits a curve into parts. Each part begins with the last point of the previous one, because a
+/// control keeps its value between curves.
 fn curves(id: &'static str, points: &[Point]) -> Vec<Entry> {
     let step = POINTS_OF_A_CURVE - 1;
     let count = points.len().saturating_sub(1).div_ceil(step).max(1);

@@ -1,17 +1,17 @@
-//! The binary container of glTF 2.0 (specification, section 4.4): a header, a chunk of JSON, and
-//! one of bytes.
+//! The binary container of glTF 2.0, GLB (specification, section 4.4): a header, a chunk of JSON,
+//! and a chunk of bytes.
 
 use crate::error::Fault;
 
 const MAGIC: &[u8; 4] = b"glTF";
 const VERSION: u32 = 2;
-/// Magic, version and length of the file.
+/// Size of the header: magic, version and file length.
 const HEADER_BYTES: usize = 12;
-/// Length and kind of a chunk.
+/// Size of a chunk's header: length and kind.
 const CHUNK_HEADER_BYTES: usize = 8;
 const JSON: [u8; 4] = *b"JSON";
 const BINARY: [u8; 4] = *b"BIN\0";
-/// Chunks begin at multiples of it.
+/// Chunks begin at multiples of this many bytes.
 const ALIGNMENT: usize = 4;
 
 /// The chunks of a file.
@@ -21,8 +21,8 @@ pub(super) struct Chunks<'a> {
     pub(super) binary: Option<&'a [u8]>,
 }
 
-/// Returns the chunks of a file, or its whole text if it is no container. Chunks of other kinds are
-/// left out, as the specification asks for.
+/// Returns the chunks of a file, or its whole text if it is not a container. Chunks of other kinds
+/// are ignored, as the specification requires.
 pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
     if !file.starts_with(MAGIC) {
         return Ok(Chunks { json: file, binary: None });
@@ -55,7 +55,7 @@ fn check_header(file: &[u8]) -> Result<(), Fault> {
     Err(Fault::new("byte 8", problem))
 }
 
-/// The number of four bytes, if they are there.
+/// The 32-bit number at a byte offset, if the file is long enough.
 fn number_at(file: &[u8], at: usize) -> Option<u32> {
     let bytes = file.get(at..)?.first_chunk()?;
     Some(u32::from_le_bytes(*bytes))
@@ -64,7 +64,7 @@ fn number_at(file: &[u8], at: usize) -> Option<u32> {
 struct Chunk<'a> {
     kind: [u8; 4],
     bytes: &'a [u8],
-    /// Where the next one begins.
+    /// Where the next chunk begins.
     end: usize,
 }
 
@@ -88,7 +88,7 @@ impl<'a> Chunk<'a> {
     }
 }
 
-/// Writes a file of less than 4 GiB.
+/// Writes a container of less than 4 GiB.
 #[cfg(feature = "export")]
 pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     let chunks = [(JSON, padded(json, b' ')), (BINARY, padded(binary, 0))];

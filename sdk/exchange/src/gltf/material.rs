@@ -1,4 +1,4 @@
-//! The extension's properties.
+//! The properties of the glTF extension.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,9 +9,9 @@ use crate::error::Fault;
 /// The extension's name in a glTF file.
 pub const EXTENSION: &str = "HTEX_texture";
 
-/// The extension `HTEX_texture` of a material of glTF 2.0: what a finger feels that slides over
-/// surfaces of this material. Properties that are not described here, `extensions` and `extras`
-/// among them, are allowed.
+/// The extension `HTEX_texture` of a glTF 2.0 material: what a finger feels when it slides over
+/// surfaces of this material. Properties that are not described here are allowed, including
+/// `extensions` and `extras`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Material {
@@ -19,12 +19,11 @@ pub struct Material {
     pub buffer_view: u32,
     /// Media type of these bytes.
     pub mime_type: MediaType,
-    /// Number of the set of texture coordinates that say where on the surface a point is: n of
-    /// `TEXCOORD_n`.
+    /// Number n of the texture coordinates `TEXCOORD_n`, which say where on the surface a point is.
     #[serde(default)]
     pub tex_coord: u32,
-    /// Millimetres of the surface along one unit of the first and of the second texture coordinate.
-    /// Without it, the geometry says how long a way is.
+    /// Size on the surface, in millimetres, of one unit of the first and of the second texture
+    /// coordinate. Without it, distances follow from the geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,
@@ -39,11 +38,11 @@ pub enum MediaType {
 }
 
 impl Material {
-    /// Checks what types do not say; `pointer` leads to the extension.
+    /// Checks what the types do not express; `pointer` leads to the extension.
     pub(super) fn check(&self, pointer: &str) -> Result<(), Fault> {
         let sizes = self.tex_coord_size_mm.iter().flatten();
         for (i, size_mm) in sizes.enumerate() {
-            // Not a number is neither.
+            // Written this way so that NaN is refused too.
             if !(*size_mm > 0.0 && size_mm.is_finite()) {
                 return Err(Fault::new(
                     format!("{pointer}/texCoordSizeMm/{i}"),

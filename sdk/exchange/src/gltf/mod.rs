@@ -1,8 +1,8 @@
-//! glTF 2.0 with the extension `HTEX_texture`: a material that carries an asset, whose file is a
+//! glTF 2.0 with the extension `HTEX_texture`: a material with an asset, whose file is stored in a
 //! buffer view (`spec/materials-1.md`).
 //!
-//! Only the objects on the way from a material to the bytes are read, by types of this crate: a
-//! mesh may have anything else, and may be wrong in it.
+//! The types of this crate read only the objects on the way from a material to the bytes.
+//! Everything else in a file is ignored, even if it is wrong.
 
 mod glb;
 mod material;

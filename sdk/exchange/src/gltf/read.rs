@@ -1,4 +1,4 @@
-//! From a glTF file to the asset that its material carries.
+//! Reading the asset that a glTF file's material carries.
 
 use std::borrow::Cow;
 
@@ -21,7 +21,7 @@ const MOST_PADDING: usize = 3;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Texture {
-    /// What its material says of it.
+    /// What its material says about it.
     pub material: Material,
     /// The `.htex` file.
     pub bytes: Vec<u8>,
@@ -80,9 +80,9 @@ struct Buffer {
 /// Reads the texture of a `.glb` or a `.gltf` file.
 ///
 /// # Errors
-/// When the file is no glTF 2.0, no material carries a texture, or several do, or its bytes are not
-/// where the file says; with the place: a JSON pointer, or a byte of a `.glb`. Whether the bytes
-/// are a valid asset is not checked.
+/// When the file is not glTF 2.0, no material or several different ones carry a texture, or its
+/// bytes are not where the file says. The fault names the place: a JSON pointer, or a byte of a
+/// `.glb`. Whether the bytes are a valid asset is not checked.
 pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     if file.len() as u64 > json::MOST_BYTES {
         let most = json::MOST_BYTES;
@@ -99,12 +99,12 @@ pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     Ok(Texture { material: material.clone(), bytes })
 }
 
-/// The copyright that a file states; `None` of a file without one, or that cannot be read.
+/// The copyright that a file states; `None` if it states none or cannot be read.
 pub(crate) fn copyright(file: &[u8]) -> Option<String> {
     crate::rights::text(chunks(file).ok()?.json, "asset", "copyright")
 }
 
-/// The texture of a file as an asset, with its own name.
+/// Reads the texture of a file as an asset, which has its own name.
 pub(crate) fn held(file: &[u8], _: &Naming<'_>) -> Result<Held, Fault> {
     let texture = read(file)?;
     let asset = htex_format::Asset::from_bytes(&texture.bytes).map_err(|error| {
@@ -134,7 +134,7 @@ impl Document {
         Ok(())
     }
 
-    /// The only texture, and the pointer to it. Materials may share one.
+    /// The file's only texture, with the pointer to it. Several materials may share one texture.
     fn texture(&self) -> Result<(String, &Material), Fault> {
         let all = self.materials.iter().enumerate();
         let mut textures = all.filter_map(|(i, m)| Some((i, m.extensions.texture.as_ref()?)));
@@ -204,7 +204,7 @@ fn pointer_to(material: usize) -> String {
 }
 
 impl Buffer {
-    /// Its bytes, as many as it states.
+    /// The bytes of a buffer, as many as it states.
     fn bytes<'a>(&self, index: usize, chunks: &Chunks<'a>) -> Result<Cow<'a, [u8]>, Fault> {
         let pointer = format!("/buffers/{index}");
         let whole = match &self.uri {
@@ -248,7 +248,7 @@ impl Buffer {
     }
 }
 
-/// The bytes of a data URI (RFC 2397) in base64.
+/// Decodes a base64 data URI (RFC 2397).
 fn decoded(uri: &str, pointer: &str) -> Result<Vec<u8>, Fault> {
     let data = uri.strip_prefix("data:").ok_or_else(|| {
         let problem = "the buffer is another file, which is not read; import a .glb, or a .gltf with its buffers in it";
@@ -268,7 +268,7 @@ fn decoded(uri: &str, pointer: &str) -> Result<Vec<u8>, Fault> {
         .map_err(|error| Fault::new(pointer, format!("this is not base64: {error}")))
 }
 
-/// Writes a buffer as a data URI.
+/// Encodes a buffer as a data URI.
 #[cfg(feature = "export")]
 pub(super) fn data_uri(bytes: &[u8]) -> String {
     format!("data:{};base64,{}", BUFFER_TYPES[1], STANDARD.encode(bytes))

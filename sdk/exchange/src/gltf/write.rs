@@ -1,4 +1,4 @@
-//! A glTF file of a rectangle whose material carries an asset.
+//! Writing a glTF file: a rectangle whose material carries an asset.
 
 use htex_format::Rights;
 use serde_json::{Value, json};
@@ -10,19 +10,19 @@ use crate::error::ExchangeError;
 use crate::job::AssetJob;
 use crate::json::{self, MOST_BYTES};
 
-/// Side of the rectangle, millimetres, over which each texture coordinate goes from 0 to 1.
+/// Side of the rectangle, millimetres. Each texture coordinate goes from 0 to 1 along it.
 const SIDE_MM: f64 = 100.0;
-/// Half of it in metres, the unit of glTF.
+/// Half the side in metres, the unit of glTF.
 const HALF_M: f32 = 0.05;
-/// Corners, and texture coordinates there: the first from left to right, the second from the upper
-/// to the lower edge.
+/// Corners with their texture coordinates: the first goes from left to right, the second from the
+/// upper to the lower edge.
 const CORNERS: [([f32; 3], [f32; 2]); 4] = [
     ([-HALF_M, HALF_M, 0.0], [0.0, 0.0]),
     ([-HALF_M, -HALF_M, 0.0], [0.0, 1.0]),
     ([HALF_M, HALF_M, 0.0], [1.0, 0.0]),
     ([HALF_M, -HALF_M, 0.0], [1.0, 1.0]),
 ];
-/// The rectangle faces +Z: seen from there, triangles go against the clock.
+/// The rectangle faces +Z. Seen from there, its triangles run counterclockwise.
 const NORMAL: [f32; 3] = [0.0, 0.0, 1.0];
 const TRIANGLES: [u16; 6] = [0, 1, 2, 2, 1, 3];
 
@@ -32,8 +32,8 @@ const UNSIGNED_SHORT: u32 = 5123;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// The asset on a rectangle, as a `.gltf` file with its buffer in it if that extension is asked
-/// for, else as a `.glb`.
+/// Writes the asset on a rectangle: as a `.gltf` file with an embedded buffer if that extension is
+/// requested, otherwise as a `.glb`.
 pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
     let asset = job.file()?;
     if asset.len() as u64 > MOST_BYTES {
@@ -76,14 +76,14 @@ fn too_long(bytes: usize) -> String {
     )
 }
 
-/// The buffer, and its views.
+/// The buffer and its views.
 struct Buffer {
     bytes: Vec<u8>,
     views: Vec<Value>,
 }
 
 impl Buffer {
-    /// Positions, normals, texture coordinates, and indices of the triangles.
+    /// Positions, normals and texture coordinates, and the triangles' indices.
     fn of_rectangle() -> Self {
         let mut made = Self { bytes: Vec::new(), views: Vec::new() };
         let floats = |values: Vec<f32>| -> Vec<u8> {
@@ -99,7 +99,7 @@ impl Buffer {
         made
     }
 
-    /// Adds a view of these bytes, and returns its index.
+    /// Adds a view with these bytes and returns its index.
     fn add(&mut self, bytes: &[u8], target: Option<u32>) -> u32 {
         let mut view = json!({
             "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()

@@ -1,4 +1,4 @@
-//! The asset of a texture.
+//! Conversion of a toolkit texture to an asset.
 
 use htex_author::stored_fields;
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
@@ -17,25 +17,25 @@ use super::texture::Texture;
 
 const MODEL: &str = "org.htex.arma";
 
-/// What an asset has that is not in the file.
+/// What the asset needs in addition to the file.
 #[derive(Debug, Clone, Default)]
 pub struct Imported<'a> {
-    /// Name of the texture, if the file gives no material.
+    /// Name of the texture, if the file does not name the material.
     pub name: &'a str,
-    /// Program and version, for the provenance.
+    /// Program and version, stored in the provenance.
     pub tool: &'a str,
 }
 
-/// Makes the asset of a texture. It has no licence: the file has none.
+/// Makes the asset of a texture. It has no licence, because the file states none.
 ///
 /// # Errors
-/// When a filter cannot be stored: its poles or zeros are too close to each other.
+/// When a filter cannot be stored because its poles or zeros are too close to each other.
 pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault> {
     let registry = Registry::builtin();
     let model = registry.find(MODEL).map_err(|error| Fault::of_file(error.to_string()))?;
     let mut fields = stored_fields(model.descriptor());
     if let Some(rate) = fields.last_mut() {
-        // One byte at each node: it is the same at all.
+        // The rate is the same at all nodes, so one byte at each is enough.
         rate.store = StoredAs::U8(Steps { scale: texture.rate_hz, offset: 0.0, log: false });
     }
     let band = band(texture.rate_hz);
@@ -69,7 +69,7 @@ pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault>
     })
 }
 
-/// The band of textures, as far as the filters' rate has it.
+/// The tactile band, as far as the filters' sample rate covers it.
 fn band(rate_hz: f64) -> Band {
     Band { high_hz: (0.5 * rate_hz).min(Band::TACTILE.high_hz), ..Band::TACTILE }
 }
@@ -130,8 +130,8 @@ fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
     Ok([&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat())
 }
 
-/// The level at which the stored shape is the filter's magnitude: noise of variance s² has the
-/// one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
+/// The level at which the stored shape has the filter's magnitude. Noise of variance s² has the
+/// one-sided density 2 s² / rate, which is read as magnitude² = 2 P ENBW.
 fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f64, Fault> {
     let poles = stored.get(1..=node.ar.len()).unwrap_or_default();
     let zeros = stored.get(node.ar.len() + 2..).and_then(|rest| rest.get(..node.ma.len()));

@@ -1,6 +1,6 @@
-//! The elements of an XML document: names, texts and lines. No document type definition, thus no
-//! entity but the five of XML, and limits of size that a model file of the toolkit, of some 0.2 MB,
-//! is far from.
+//! Reader of XML elements: names, texts and lines. It does not support document type definitions,
+//! and thus no entities except the five of XML. The size limits are far above the toolkit's model
+//! files of about 0.2 MB.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, BytesStart, Event};
@@ -8,15 +8,16 @@ use quick_xml::events::{BytesRef, BytesStart, Event};
 use super::element::Element;
 use super::fault::{Fault, Place, short};
 
-/// Most bytes of a file.
+/// Largest file that is read, bytes.
 pub const MOST_BYTES: usize = 16 << 20;
-/// Most elements of a file.
+/// Largest number of elements in a file.
 pub const MOST_ELEMENTS: usize = 200_000;
-/// Most elements in each other.
+/// Deepest nesting of elements.
 const MOST_DEPTH: usize = 16;
-/// Most bytes of an element's text, without the blanks at its ends.
+/// Longest text of an element, bytes, without blanks at its ends.
 const MOST_TEXT: usize = 4096;
-/// Most attributes of an element; the reader compares each with all before it.
+/// Largest number of attributes of an element; the reader compares each with all attributes before
+/// it.
 const MOST_ATTRIBUTES: usize = 64;
 
 /// Reads the root element.
@@ -42,14 +43,14 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
 struct Builder<'a> {
     text: &'a str,
     reader: Reader<&'a [u8]>,
-    /// Elements that are not closed, the outermost first.
+    /// Elements that are still open, the outermost first.
     open: Vec<Element>,
-    /// Bytes of the innermost open element's text up to its last character that is not blank. It is
-    /// kept so that no blank is looked at twice.
+    /// Length in bytes of the innermost open element's text up to its last non-blank character. It
+    /// is stored so that no blank is looked at twice.
     filled: usize,
     root: Option<Element>,
     count: usize,
-    /// The last position of which the line is known, and the line.
+    /// The last position whose line is known, and that line.
     known: (usize, usize),
 }
 
@@ -83,7 +84,7 @@ impl<'a> Builder<'a> {
         root.ok_or_else(|| Fault::of_file("it holds no element; give a model file of the toolkit"))
     }
 
-    /// Takes an event; returns false at the end of the file.
+    /// Processes an event; returns false at the end of the file.
     fn take(&mut self, event: Event<'a>) -> Result<bool, Fault> {
         match event {
             Event::Start(start) => self.start(&start)?,
@@ -163,7 +164,7 @@ impl<'a> Builder<'a> {
                 Err(self.fault("a text outside of all elements"))
             };
         };
-        // The space between elements is no text.
+        // The space between elements is not text.
         let skipped = if open.text.is_empty() { words.len() - words.trim_start().len() } else { 0 };
         if !is_blank {
             self.filled = open.text.len() + filled - skipped;
@@ -219,7 +220,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The text of bytes that are UTF-8, as the whole file is.
+/// The text of bytes. They are valid UTF-8, as the whole file is.
 fn decoded<E>(text: Result<std::borrow::Cow<'_, str>, E>) -> String {
     text.map(std::borrow::Cow::into_owned).unwrap_or_default()
 }

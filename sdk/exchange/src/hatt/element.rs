@@ -1,4 +1,4 @@
-//! An element of a document, and what it holds.
+//! An XML element and its content.
 
 use super::fault::{Fault, Place, short};
 
@@ -21,12 +21,12 @@ impl Element {
         Fault::at(self.place(), problem)
     }
 
-    /// The children of a name.
+    /// All children with a name.
     pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
         self.children.iter().filter(move |child| child.name == name)
     }
 
-    /// The child of a name, of which there is at most one.
+    /// The child with a name; it is an error if there are several.
     pub(super) fn one(&self, name: &str) -> Result<Option<&Element>, Fault> {
         let mut found = self.children.iter().filter(|child| child.name == name);
         let first = found.next();
@@ -36,13 +36,13 @@ impl Element {
         }
     }
 
-    /// The child of a name, which must be there.
+    /// The child with a name; it is an error if there is none.
     pub(super) fn required(&self, name: &str) -> Result<&Element, Fault> {
         let found = self.one(name)?;
         found.ok_or_else(|| self.fault(format!("it has no element {name}")))
     }
 
-    /// The beginning of its text, in quotation marks.
+    /// The beginning of the element's text, in quotation marks.
     pub(super) fn quoted(&self) -> String {
         format!("\"{}\"", short(self.text.trim()))
     }
@@ -54,7 +54,7 @@ impl Element {
         number.ok_or_else(|| self.fault(format!("{} is no number", self.quoted())))
     }
 
-    /// As [`Self::number`], within a range.
+    /// As [`Self::number`], but the number must be within a range.
     pub(super) fn number_in(&self, low: f64, high: f64) -> Result<f64, Fault> {
         let number = self.number()?;
         if (low..=high).contains(&number) {
@@ -64,13 +64,13 @@ impl Element {
         }
     }
 
-    /// A count.
+    /// The element's content as a count.
     pub(super) fn count(&self) -> Result<usize, Fault> {
         let count = self.text.trim().parse().ok();
         count.ok_or_else(|| self.fault(format!("{} is no count", self.quoted())))
     }
 
-    /// The elements of a list, named `value`.
+    /// The numbers of a list, whose elements are named `value`.
     pub(super) fn values(&self) -> Result<Vec<f64>, Fault> {
         self.all("value").map(Element::number).collect()
     }

@@ -1,4 +1,4 @@
-//! What a model file has beside the texture, as an extension of the asset.
+//! What a model file contains in addition to the texture, stored as an extension of the asset.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,23 +9,24 @@ use super::texture::Texture;
 /// The extension's name in an asset.
 pub const EXTENSION: &str = "org.htex.hatt/1";
 
-/// Numbers of a model file of the Penn Haptic Texture Toolkit that no player of the texture needs.
+/// Numbers from a model file of the Penn Haptic Texture Toolkit that a player of the texture does
+/// not need.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hatt {
     /// Number of the texture in the toolkit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texture: Option<u32>,
-    /// Coefficient of kinetic friction between tool and surface, a force over a force.
+    /// Coefficient of kinetic friction between tool and surface: a ratio of forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
     /// Rate at which the toolkit runs its filters, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub sample_rate_hz: f64,
-    /// Speed that the toolkit's renderer plays for all higher ones, mm/s.
+    /// Highest speed of the toolkit's renderer, mm/s: it plays all higher speeds as this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_speed_mm_s: Option<f64>,
-    /// Force that the toolkit's renderer plays for all higher ones, newtons.
+    /// Largest force of the toolkit's renderer, newtons: it plays all larger forces as this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_force_n: Option<f64>,
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Most characters that are quoted of a file.
+/// Longest quotation from a file, characters.
 const MOST_QUOTED: usize = 100;
 
 /// Why a file cannot be read.
@@ -18,7 +18,7 @@ pub struct Fault {
 /// A place in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Place {
-    /// The line, from 1; 0 for the file as a whole.
+    /// The line, counted from 1; 0 for the file as a whole.
     pub line: usize,
     /// The name of the element, if it is in one.
     pub element: String,
@@ -36,7 +36,7 @@ impl Fault {
 }
 
 impl fmt::Display for Place {
-    /// Such as `line 12, ARcoeff: `; nothing for the file as a whole.
+    /// Formats the place as `line 12, ARcoeff: `; empty for the file as a whole.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.line, &self.element[..]) {
             (0, _) => Ok(()),
@@ -46,7 +46,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// The beginning of a text of the file, on one line.
+/// The beginning of a text from the file, on one line.
 pub(super) fn short(text: &str) -> String {
     let shown: String = text.chars().take(MOST_QUOTED).collect();
     shown.escape_debug().to_string()

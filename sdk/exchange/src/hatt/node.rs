@@ -1,4 +1,4 @@
-//! A node: a filter at a speed and a force.
+//! A node: the filter at one speed and force.
 
 use htex_dsp::all_zero::MAX_ORDER;
 use htex_dsp::line_spectrum::line_spectral_frequencies;
@@ -9,28 +9,28 @@ use super::fault::{Fault, Place};
 use super::work::Work;
 use super::zeros::{NotFound, inside};
 
-/// Largest difference of a line in the file from that of the coefficients, radians, without a
-/// warning.
+/// Largest difference between a line spectral frequency in the file and the one computed from the
+/// coefficients, radians, without a warning.
 const LINE_ERROR: f64 = 1e-3;
 
-/// What is wrong with a file whose filters take too long.
+/// The problem reported for a file whose filters take too much work.
 const TOO_MUCH: &str = "the filters up to here take too much work, by their number, their orders and their zeros outside the unit circle; split the file";
 
-/// A filter at a speed and a force: the acceleration is noise of `variance` through
+/// A filter at one speed and force. The acceleration is noise of `variance`, filtered by
 /// `gain (1 + Σ ma_i z⁻ⁱ) / (1 + Σ ar_i z⁻ⁱ)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     pub speed_mm_s: f64,
     pub force_n: f64,
-    /// Coefficients of the denominator behind the first, which is 1.
+    /// Coefficients of the denominator after the first, which is 1.
     pub ar: Vec<f64>,
-    /// Coefficients of the numerator behind the first, which is 1; all zeros inside the unit
+    /// Coefficients of the numerator after the first, which is 1. All zeros are inside the unit
     /// circle.
     pub ma: Vec<f64>,
     /// Variance of the noise, (m/s²)²; 0 at a silent node.
     pub variance: f64,
     pub gain: f64,
-    /// Where it is in the file.
+    /// Where the node is in the file.
     pub place: Place,
 }
 
@@ -78,13 +78,13 @@ impl Node {
         })
     }
 
-    /// Standard deviation of the noise behind the gain, m/s²; 0 at a silent node.
+    /// Standard deviation of the noise multiplied by the gain, m/s²; 0 at a silent node.
     pub fn deviation(&self) -> f64 {
         self.gain * self.variance.sqrt()
     }
 }
 
-/// The coefficients of a polynomial behind the first, which is 1.
+/// The coefficients of a polynomial after the first, which must be 1.
 fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64>, Fault> {
     let list = if is_required { Some(node.required(name)?) } else { node.one(name)? };
     let Some(list) = list else {
@@ -104,7 +104,8 @@ fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64
     Ok(rest.to_vec())
 }
 
-/// Compares the lines in the file, if there are any, with those of the coefficients.
+/// Compares the line spectral frequencies in the file, if there are any, with those computed from
+/// the coefficients.
 fn compare_lines(
     node: &Element,
     name: &str,

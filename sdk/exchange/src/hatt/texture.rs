@@ -1,4 +1,4 @@
-//! A model file: nodes, and triangles between them.
+//! A model file: nodes, and the triangles between them.
 
 use htex_format::{Triangle, check_triangles};
 
@@ -8,33 +8,34 @@ use super::fault::Fault;
 use super::node::Node;
 use super::work::Work;
 
-/// Relative difference of two numbers that are the same.
+/// Largest relative difference at which two numbers count as the same.
 const SAME: f64 = 1e-6;
 
 /// A texture of the toolkit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
-    /// Name of the material; empty if the file gives none.
+    /// Name of the material; empty if the file does not name it.
     pub material: String,
     /// Number of the texture in the toolkit.
     pub number: Option<u32>,
-    /// Rate of the filters, hertz.
+    /// Sample rate of the filters, hertz.
     pub rate_hz: f64,
     /// Coefficient of kinetic friction of the tool.
     pub friction: Option<f64>,
     pub max_speed_mm_s: Option<f64>,
     pub max_force_n: Option<f64>,
     pub nodes: Vec<Node>,
-    /// Triangles between nodes, by their indices from 0; empty for those of the format's rules.
+    /// Triangles between nodes, by node index from 0. Empty if the format's own rules for triangles
+    /// are used.
     pub triangles: Vec<Triangle>,
-    /// What a person should know of the file.
+    /// What the user should know about the file.
     pub notes: Vec<String>,
 }
 
 /// Reads a model file.
 ///
 /// # Errors
-/// With the line and the element that is wrong.
+/// The line and the element at which the file is wrong.
 pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
     let root = root(bytes)?;
     if root.name != "modelSet" {
@@ -63,7 +64,7 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
     })
 }
 
-/// Refuses other units than the toolkit's.
+/// Refuses units other than the toolkit's.
 fn check_unit(root: &Element, name: &str, unit: &str) -> Result<(), Fault> {
     match root.one(name)? {
         Some(given) if given.text.trim() != unit => {
@@ -105,7 +106,7 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
     Ok(nodes)
 }
 
-/// Compares a count in the file, if there is one.
+/// Checks a count in the file, if there is one.
 fn check_count(root: &Element, name: &str, of: &str, count: usize) -> Result<(), Fault> {
     match root.one(name)? {
         Some(stated) if stated.count()? != count => Err(stated.fault(format!(
@@ -116,8 +117,7 @@ fn check_count(root: &Element, name: &str, of: &str, count: usize) -> Result<(),
     }
 }
 
-/// Compares an order in the file, if there is one: the toolkit counts without the first
-/// coefficient.
+/// Checks an order in the file, if there is one. The toolkit does not count the first coefficient.
 fn check_order(root: &Element, name: &str, order: usize) -> Result<(), Fault> {
     match root.one(name)? {
         Some(stated) if ![order, order + 1].contains(&stated.count()?) => {
@@ -130,7 +130,7 @@ fn check_order(root: &Element, name: &str, order: usize) -> Result<(), Fault> {
     }
 }
 
-/// Compares a list in the file, if there is one, with the nodes' own numbers.
+/// Checks a list in the file, if there is one, against the nodes' own numbers.
 fn check_list(
     root: &Element,
     name: &str,
@@ -153,7 +153,7 @@ fn check_list(
     Ok(())
 }
 
-/// Refuses two nodes at one motion.
+/// Refuses two nodes at the same motion.
 fn check_places(models: &[&Element], nodes: &[Node]) -> Result<(), Fault> {
     let mut seen = std::collections::BTreeMap::new();
     for (model, node) in models.iter().zip(nodes) {
@@ -193,7 +193,7 @@ fn triangles(
     }
 }
 
-/// The corners of a triangle, which the file counts from 1.
+/// The corners of a triangle. The file counts nodes from 1.
 fn triangle(element: &Element, nodes: usize) -> Result<Triangle, Fault> {
     let corners: Vec<&Element> = element.all("value").collect();
     let corner = |corner: &Element| match corner.count()? {

@@ -1,11 +1,11 @@
-//! The work that the filters of a file take, counted over the whole file.
+//! Limit on the work that the filters of a file take, counted over the whole file.
 
-/// Most work of a file. Its unit is a zero that is compared with another one in a round of the
-/// search for zeros; some 7 ns, so that all of it takes about 1.5 s. A file of the toolkit has some
-/// 40 filters, which take a hundredth.
+/// Largest work for a file. The unit is one comparison of a zero with another zero in a round of
+/// the search for zeros. This takes some 7 ns, so the limit is about 1.5 s. A file of the toolkit
+/// has some 40 filters and takes a hundredth of that.
 const MOST_WORK: usize = 200_000_000;
-/// Work for each pair of coefficients of a polynomial whose lines are computed: each line is found
-/// by some fifty evaluations of all roots' angles.
+/// Work for each pair of coefficients of a polynomial whose line spectral frequencies are computed.
+/// Each of them is found by evaluating the angles of all roots some fifty times.
 const PER_PAIR: usize = 100;
 
 /// The work that is left for the filters of a file.
@@ -24,13 +24,13 @@ impl Work {
         Self(0)
     }
 
-    /// Counts work; `None` if there is no more left.
+    /// Counts work; `None` if the limit is exceeded.
     pub(super) fn add(&mut self, work: usize) -> Option<()> {
         self.0 = self.0.checked_sub(work)?;
         Some(())
     }
 
-    /// Counts the lines of a polynomial of this order.
+    /// Counts the computation of line spectral frequencies for a polynomial of this order.
     pub(super) fn add_lines(&mut self, order: usize) -> Option<()> {
         self.add(PER_PAIR * order * order)
     }

@@ -1,5 +1,5 @@
-//! The mirror image of zeros outside the unit circle: noise through both has the same spectrum, but
-//! for a gain.
+//! Mirroring of zeros that lie outside the unit circle. Noise through the mirrored filter has the
+//! same spectrum up to a gain.
 
 use std::f64::consts::TAU;
 
@@ -8,26 +8,28 @@ use htex_dsp::spectrum::Complex;
 
 use super::work::Work;
 
-/// Largest radius of a zero that was moved.
+/// Largest radius of a zero that has been moved.
 const MOST_RADIUS: f64 = 1.0 - 1e-7;
-/// Rounds in which roots are improved, some ten of which suffice unless roots are equal.
+/// Largest number of rounds in which roots are improved. Some ten are enough unless roots are
+/// equal.
 const ROUNDS: usize = 500;
-/// Angles at which the result is compared with the polynomial.
+/// Number of angles at which the result is compared with the original polynomial.
 const COMPARED: u32 = 512;
-/// Most by which they differ, relative to the largest power.
+/// Largest allowed difference between the two, relative to the largest power.
 const MOST_ERROR: f64 = 1e-6;
 
-/// Why zeros are not found.
+/// Why zeros could not be found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NotFound {
-    /// Of these coefficients.
+    /// The search failed for these coefficients.
     Here,
     /// The filters of the file together take too much work.
     TooMuch,
 }
 
-/// Returns the coefficients `B_1` to `B_q` of `1 + Σ B_i z⁻ⁱ` with all zeros inside the unit
-/// circle, and the gain by which it is the polynomial given in absolute value on the circle.
+/// Returns the coefficients `B_1` to `B_q` of a polynomial `1 + Σ B_i z⁻ⁱ` with all zeros inside
+/// the unit circle, and a gain. Multiplied by the gain, it has the same absolute value on the
+/// circle as the given polynomial.
 pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>, f64), NotFound> {
     let mut reflection: Vec<f64> = coefficients.iter().map(|b| -b).collect();
     if step_down_in_place(&mut reflection) {
@@ -55,7 +57,7 @@ pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>,
     Ok((made, gain))
 }
 
-/// The zeros of `z^n + Σ B_i z^(n-i)`, all at once (Aberth 1973).
+/// Finds all zeros of `z^n + Σ B_i z^(n-i)` at once (Aberth 1973).
 fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, NotFound> {
     let order = coefficients.len();
     let last = coefficients.last().ok_or(NotFound::Here)?.abs();
@@ -94,7 +96,8 @@ fn turned(radius: f64, angle: f64) -> Complex<f64> {
     Complex::new(radius * libm::cos(angle), radius * libm::sin(angle))
 }
 
-/// The coefficients `B_1` and on of the polynomial with these zeros, in conjugate pairs.
+/// The coefficients from `B_1` on of the polynomial with these zeros, which come in conjugate
+/// pairs.
 fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
     let mut made = vec![Complex::new(1.0, 0.0)];
     for zero in zeros {
@@ -107,7 +110,8 @@ fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
     made.iter().skip(1).map(|b| b.re).collect()
 }
 
-/// Whether two polynomials have the same power on the circle, but for the gain of the second.
+/// Whether two polynomials have the same power on the circle after the second is multiplied by the
+/// gain.
 fn is_same(a: &[f64], b: &[f64], gain: f64) -> bool {
     let at = |i: u32| TAU / 2.0 * f64::from(i) / f64::from(COMPARED);
     let powers = (0..=COMPARED).map(at).map(|w| (power(a, w), power(b, w) * gain * gain));
@@ -128,8 +132,8 @@ fn power(coefficients: &[f64], angle: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Zeros outside, on, and inside the circle, single and in pairs; what is inside is left as it
-    /// is.
+    /// Zeros outside, on and inside the circle, single and in pairs. Zeros that are inside stay as
+    /// they are.
     #[test]
     fn mirror_images_have_the_same_power() {
         let pair = |radius: f64, angle: f64| [turned(radius, angle), turned(radius, -angle)];

@@ -1,11 +1,11 @@
-//! `.hjif` of MPEG (ISO/IEC 23090-31, the readable format): perceptions of channels of bands of
-//! effects of keyframes.
+//! Reader and writer of MPEG's `.hjif` (ISO/IEC 23090-31, the readable format). A file has
+//! perceptions with channels, channels with bands, bands with effects, and effects with keyframes.
 //!
-//! Read of the reference software (MPEGGroup/HapticReferenceSoftware:
+//! Written from the reference software (MPEGGroup/HapticReferenceSoftware:
 //! source/IOHaptics/src/IOJson.cpp for the keys and the rules, source/Types/src/Effect.cpp for what
-//! a keyframe sounds like, source/WaveletDecoder for wavelets), and of the names of perceptions in
-//! draft-ietf-avtcore-rtp-haptics. Keys of its earlier drafts (`tracks`, `mixing_weight`) are read,
-//! too. Of a file, the first channel of the first perception that vibrates is read.
+//! a keyframe sounds like, source/WaveletDecoder for wavelets), and from the names of perceptions
+//! in draft-ietf-avtcore-rtp-haptics. Keys of its earlier drafts (`tracks`, `mixing_weight`) are
+//! also read. From a file, only the first channel of the first perception that vibrates is read.
 
 mod check;
 mod number;
@@ -30,7 +30,7 @@ pub(crate) use write::vectorial;
 #[cfg(feature = "export")]
 pub use write::{Space, waveform};
 
-/// A file.
+/// An `.hjif` file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hjif {
     #[serde(default)]
@@ -43,7 +43,7 @@ pub struct Hjif {
     pub date: String,
     #[serde(default)]
     pub description: String,
-    /// Ticks of a position in a second, or in a metre.
+    /// Number of ticks of a position in a second or in a metre.
     #[serde(default = "thousand")]
     pub timescale: u32,
     #[serde(default)]
@@ -61,7 +61,7 @@ pub struct Perception {
     #[serde(default)]
     pub description: String,
     pub perception_modality: String,
-    /// Power of ten of the unit of positions; −3 of milliseconds and millimetres.
+    /// Unit of positions, as a power of ten: −3 for milliseconds and millimetres.
     #[serde(default = "milli")]
     pub unit_exponent: i32,
     #[serde(default)]
@@ -114,7 +114,7 @@ pub struct Band {
     pub block_length: Option<f64>,
     #[serde(serialize_with = "whole")]
     pub lower_frequency_limit: f64,
-    /// Of a wavelet band, its samples in a second or in a metre.
+    /// For a wavelet band, its number of samples in a second or in a metre.
     #[serde(serialize_with = "whole")]
     pub upper_frequency_limit: f64,
     pub effects: Vec<Effect>,
@@ -134,10 +134,10 @@ pub struct Effect {
     pub effect_type: EffectType,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<i64>,
-    /// Ticks.
+    /// Position, in ticks.
     #[serde(default)]
     pub position: i64,
-    /// Radians.
+    /// Phase, radians.
     #[serde(default)]
     pub phase: f64,
     #[serde(default)]
@@ -167,12 +167,12 @@ pub enum BaseSignal {
 
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Keyframe {
-    /// Ticks after the effect's position.
+    /// Position relative to the effect's position, in ticks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_position: Option<i64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude_modulation: Option<f64>,
-    /// Hertz, or waves in a metre.
+    /// Frequency, in hertz or waves per metre.
     #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "whole_or_none")]
     pub frequency_modulation: Option<f64>,
 }
@@ -202,7 +202,7 @@ pub const TEXTURE: &str = "Vibrotactile Texture";
 /// The modality of a vibration over time.
 pub const VIBRATION: &str = "Vibrotactile";
 
-/// Modalities that are read as a vibration over time; the last are names of drafts.
+/// Modalities that are read as a vibration over time; the last ones are names from drafts.
 const OVER_TIME: [&str; 7] = [
     VIBRATION,
     "Other",
@@ -216,10 +216,11 @@ const OVER_TIME: [&str; 7] = [
 const OVER_SPACE: [&str; 4] = [TEXTURE, "VibrotactileTexture", "Texture", "User-defined Spatial"];
 
 impl Hjif {
-    /// Reads a file.
+    /// Reads an `.hjif` file.
     ///
     /// # Errors
-    /// When it is no JSON, has another shape, or a number is out of its range; with the place.
+    /// When it is not JSON, has another structure, or a number is out of range. The fault names the
+    /// place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let hjif: Self = json::read(bytes)?;
         check::check(&hjif)?;
@@ -233,7 +234,8 @@ impl Hjif {
         bytes
     }
 
-    /// Whether the vibration lies over space instead of time, so that its speed has to be given.
+    /// Whether the positions lie in space instead of time, so that the finger's speed has to be
+    /// given.
     #[must_use]
     pub fn is_over_space(&self) -> bool {
         self.chosen()
@@ -256,7 +258,7 @@ impl Hjif {
         })
     }
 
-    /// What of the file is not read, each a sentence.
+    /// What the reader ignores in this file, each as a sentence.
     #[must_use]
     pub fn left_out(&self) -> Vec<String> {
         let mut left_out = Vec::new();
@@ -276,7 +278,7 @@ impl Hjif {
     }
 }
 
-/// The channel that is read, and where it is.
+/// The channel that is read, with its place in the file.
 struct Chosen<'a> {
     perception: &'a Perception,
     channel: &'a Channel,
@@ -284,7 +286,7 @@ struct Chosen<'a> {
 }
 
 impl Chosen<'_> {
-    /// Seconds or metres of a tick.
+    /// Length of a tick, in seconds or metres.
     fn tick(&self, timescale: u32) -> f64 {
         libm::pow(10.0, f64::from(self.perception.unit_exponent + 3)) / f64::from(timescale.max(1))
     }

@@ -1,4 +1,4 @@
-//! What the bands of a channel sound like.
+//! Rendering the bands of a channel to samples.
 
 use std::collections::BTreeMap;
 
@@ -9,25 +9,26 @@ use crate::pattern::{MOST_S, check_work};
 
 /// Length of a transient, seconds: two periods of a sine (source/Types/include/Band.h).
 const TRANSIENT_S: f64 = 0.022;
-/// Operations for a coefficient of a block of wavelets, in samples.
+/// Work for each coefficient of a block of wavelets, counted in samples.
 const PER_COEFFICIENT: f64 = 4.0;
 
-/// The effects of a library that bands refer to.
+/// The effects of a library to which bands refer.
 type Library<'a> = BTreeMap<i64, &'a Effect>;
 
-/// A band at a rate, in seconds.
+/// A band with its units converted to seconds.
 struct Timed<'a> {
     band: &'a Band,
     library: &'a Library<'a>,
-    /// Seconds of a tick.
+    /// Length of a tick, seconds.
     tick_s: f64,
-    /// Hertz of a unit of frequency.
+    /// Hertz for each unit of frequency.
     per_s: f64,
     rate_hz: f64,
 }
 
 impl Hjif {
-    /// Renders the channel at a rate, within ±1. A texture over space is rendered at a speed, mm/s.
+    /// Renders the channel within ±1 at a sample rate in hertz. A texture over space is rendered at
+    /// a speed in mm/s.
     ///
     /// # Errors
     /// When it is longer than ten minutes, or its effects together take too many samples.
@@ -35,7 +36,7 @@ impl Hjif {
         let Some(chosen) = self.chosen() else {
             return Err(Fault::new("/perceptions", "no perception vibrates"));
         };
-        // A file over space is played at a speed, metres in a second.
+        // A file over space is played at this speed, in metres per second.
         let speed = if self.is_over_space() { speed_mm_s / 1e3 } else { 1.0 };
         let library = chosen.perception.effect_library.iter();
         let library: Library<'_> = library.filter_map(|e| Some((e.id?, e))).collect();
@@ -57,7 +58,7 @@ impl Hjif {
     }
 }
 
-/// Samples to the end of the last effect.
+/// Number of samples up to the end of the last effect.
 fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usize, Fault> {
     let (mut end_s, mut work) = (0.0f64, 0.0);
     for (index, band) in bands.iter().enumerate() {
@@ -76,7 +77,7 @@ fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usiz
     Ok(first_from(end_s, rate_hz))
 }
 
-/// An effect at a position: its own, or that of a reference to it.
+/// An effect at a position: its own position, or that of a reference to it.
 struct Placed<'a> {
     effect: &'a Effect,
     position: i64,
@@ -110,8 +111,8 @@ impl<'a> Timed<'a> {
         self.start_s(placed) + own_s
     }
 
-    /// Samples that an effect is added to, and its keyframes; a transient has its own samples at
-    /// each keyframe.
+    /// Number of samples to which an effect is added, plus its keyframes. A transient has samples
+    /// of its own at each keyframe.
     fn work(&self, effect: &Effect, length_s: f64) -> f64 {
         let keyframes = effect.keyframes.len() as f64;
         let samples = length_s * self.rate_hz;
@@ -122,7 +123,7 @@ impl<'a> Timed<'a> {
         }
     }
 
-    /// Length of a block of wavelets, whose rate is the upper limit.
+    /// Length of a block of wavelets, whose sample rate is the upper frequency limit, in seconds.
     fn block_s(&self, samples: usize) -> f64 {
         match self.band.upper_frequency_limit * self.per_s {
             rate if rate > 0.0 => samples as f64 / rate,
@@ -147,7 +148,7 @@ impl<'a> Timed<'a> {
         }
     }
 
-    /// A curve of the keyframes' values over seconds.
+    /// Curve of the keyframes' values over time in seconds.
     fn curve(&self, effect: &Effect, value: impl Fn(&Keyframe) -> Option<f64>) -> Vec<Point> {
         let point = |k: &Keyframe| {
             Some(Point::new(k.relative_position.unwrap_or(0) as f64 * self.tick_s, value(k)?))
@@ -165,7 +166,8 @@ impl<'a> Timed<'a> {
         let mut before_s = 0.0;
         for (index, sample) in own.iter_mut().enumerate() {
             let time_s = clock.into_s(index);
-            // Frequencies are linear between keyframes: the middle of a step has its mean.
+            // Frequencies are linear between keyframes, so the middle of a step has the step's
+            // mean.
             let hz = frequency.at(0.5 * (before_s + time_s)).unwrap_or(0.0);
             periods += hz * (time_s - before_s);
             before_s = time_s;
@@ -181,7 +183,7 @@ impl<'a> Timed<'a> {
         let block = synthesised(&coefficients);
         let per_s = self.band.upper_frequency_limit * self.per_s;
         for (index, sample) in own.iter_mut().enumerate() {
-            // The sample that is held, as the reference software plays it.
+            // Each sample is held until the next one, as the reference software plays it.
             let at = libm::floor(clock.into_s(index) * per_s + 1e-6).max(0.0) as usize;
             *sample += block.get(at).copied().unwrap_or(0.0);
         }
@@ -199,7 +201,7 @@ impl<'a> Timed<'a> {
         }
     }
 
-    /// Curves are read as lines; other kinds of curves pass through the same points.
+    /// All curves are read as straight lines; other kinds of curves pass through the same points.
     fn add_curve(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
         let curve = self.curve(effect, |k| k.amplitude_modulation);
         let mut curve = Reader::new(&curve);
@@ -209,17 +211,17 @@ impl<'a> Timed<'a> {
     }
 }
 
-/// The first sample from a time on; one that is off by rounding is at it.
+/// The first sample at or after a time. A sample that is too early only by rounding counts.
 fn first_from(time_s: f64, rate_hz: f64) -> usize {
     libm::ceil(time_s * rate_hz - 1e-6).max(0.0) as usize
 }
 
-/// The samples of an effect in time.
+/// The samples that an effect covers in time.
 #[derive(Clone, Copy)]
 struct Clock {
     from_s: f64,
     rate_hz: f64,
-    /// The first sample from its start on.
+    /// The first sample at or after the effect's start.
     first: usize,
 }
 
@@ -229,18 +231,18 @@ impl Clock {
         Self { from_s, rate_hz, first }
     }
 
-    /// Seconds from the effect's start to one of its samples.
+    /// Time from the effect's start to one of its samples, seconds.
     fn into_s(self, index: usize) -> f64 {
         (self.first + index) as f64 / self.rate_hz - self.from_s
     }
 
-    /// The first of its samples from a time after its start on.
+    /// The index of the first sample at or after a time that counts from the effect's start.
     fn index(self, into_s: f64) -> usize {
         first_from(self.from_s + into_s, self.rate_hz).saturating_sub(self.first)
     }
 }
 
-/// A base signal after some periods.
+/// The value of a base signal after some number of periods.
 fn base(signal: BaseSignal, periods: f64) -> f64 {
     let saw = 2.0 * (periods - libm::floor(periods + 0.5));
     match signal {

@@ -1,4 +1,4 @@
-//! Files of a texture: tones in bands, or samples as wavelets.
+//! Writing a texture as `.hjif`: as tones in bands, or as samples coded by wavelets.
 
 use super::{
     Band, BandType, BaseSignal, Channel, Effect, EffectType, Hjif, Keyframe, Perception,
@@ -7,23 +7,23 @@ use super::{
 use crate::curve::Point;
 use crate::profile::Profile;
 
-/// Ticks in a second, or in a metre: 1 ms, and 0.1 mm.
+/// Number of ticks in a second, or in a metre: a tick is 1 ms, or 0.1 mm.
 const TICKS_PER_S: u32 = 1_000;
 const TICKS_PER_M: u32 = 10_000;
-/// Samples of a block of wavelets.
+/// Number of samples in a block of wavelets.
 const BLOCK: usize = 512;
-/// Least rate of samples of a wavelet band, hertz: the texture's 1 kHz, and a tenth.
+/// Lowest sample rate of a wavelet band, hertz: twice the texture's 1 kHz, and a tenth more.
 const LEAST_RATE_HZ: f64 = 2_200.0;
-/// Resolution of a coefficient, in the largest of its block.
+/// Resolution of a coefficient, relative to the largest one in its block.
 const RESOLUTION: f64 = 1e-4;
-/// There is no clock in a file, so that equal inputs give equal bytes, and the format asks for a
-/// date.
+/// The format requires a date. A fixed one is written instead of the clock's, so that equal inputs
+/// give equal bytes.
 const NO_DATE: &str = "1970-01-01";
 
-/// What positions of a file are: seconds, or metres that a finger slides at a speed.
+/// What the positions in a file mean: seconds, or metres over which a finger slides at a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
-    /// Of a texture over space, mm/s; `None` of a vibration over time.
+    /// Speed of the finger over a texture in space, mm/s; `None` for a vibration over time.
     pub speed_mm_s: Option<f64>,
 }
 
@@ -42,40 +42,41 @@ impl Space {
         }
     }
 
-    /// Ticks of a time.
+    /// Converts a time to ticks.
     fn ticks(self, time_s: f64) -> i64 {
         libm::round(time_s * f64::from(self.timescale()) * self.per_s()) as i64
     }
 
-    /// Metres in a second, or 1.
+    /// Metres in a second; 1 for a vibration over time.
     fn per_s(self) -> f64 {
         self.speed_mm_s.map_or(1.0, |speed| speed / 1e3)
     }
 
-    /// Ticks of a block of wavelets: a power of two, so that the samples in a metre are a whole
-    /// number.
+    /// Length of a block of wavelets in ticks. In space it is a power of two, so that the number of
+    /// samples in a metre is whole.
     fn block_ticks(self) -> i64 {
         let most = BLOCK as f64 * f64::from(self.timescale()) * self.per_s() / LEAST_RATE_HZ;
         match self.speed_mm_s {
             None => 200,
-            // The samples in a metre of 2^13 ticks are the last that are whole.
+            // With blocks of more than 2^13 ticks, the number of samples in a metre would not be
+            // whole.
             Some(_) => 1 << libm::floor(libm::log2(most.max(1.0))).min(13.0) as i64,
         }
     }
 
-    /// Samples of a wavelet band in a second or in a metre.
+    /// Number of samples of a wavelet band in a second or in a metre.
     fn per_unit(self) -> f64 {
         BLOCK as f64 * f64::from(self.timescale()) / self.block_ticks() as f64
     }
 
-    /// Rate of the samples that [`waveform`] takes, hertz.
+    /// Returns the sample rate that [`waveform`] expects, hertz.
     #[must_use]
     pub fn rate_hz(self) -> f64 {
         self.per_unit() * self.per_s()
     }
 }
 
-/// Makes a file of tones, each with a band of its own: at most seven are of level 1.
+/// Makes a file of tones, each in a band of its own. Level 1 allows at most seven.
 pub(crate) fn vectorial(
     tones: &[Tone],
     profile: &Profile,
@@ -101,7 +102,7 @@ pub(crate) fn vectorial(
     file(bands.collect(), profile, space, description)
 }
 
-/// Makes a file of samples within ±1 at the rate of [`Space::rate_hz`].
+/// Makes a file from samples within ±1 at the sample rate [`Space::rate_hz`].
 pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &str) -> Hjif {
     let blocks = samples.chunks(BLOCK).enumerate().map(|(index, samples)| {
         let mut block = samples.to_vec();
@@ -119,13 +120,13 @@ pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &
     file(vec![band], profile, space, description)
 }
 
-/// Coefficients in parts of the largest, which is the last keyframe.
+/// Coefficients relative to the largest one, which is stored as the last keyframe.
 fn coefficients(all: &[f64]) -> Vec<Keyframe> {
     let largest = all.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let part = |x: &f64| {
         if largest > 0.0 { libm::round(x / largest / RESOLUTION) * RESOLUTION } else { 0.0 }
     };
-    // Rounded to the digits that it has.
+    // Removes the digits that come from floating-point errors.
     let digits = |x: f64| libm::round(x * 1e6) / 1e6;
     let values = all.iter().map(part).map(digits).chain([largest]);
     values

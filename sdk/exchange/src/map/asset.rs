@@ -1,4 +1,4 @@
-//! The asset of an image.
+//! Conversion of an image to an asset.
 
 use htex_author::stored_fields;
 use htex_dsp::grid::Band;
@@ -13,30 +13,30 @@ use super::image::Image;
 use crate::error::Fault;
 use crate::format::{Held, Naming};
 
-/// What a person says of an image.
+/// What the user states about an image.
 pub(crate) struct Surface<'a> {
-    /// Distance of two pixels, mm.
+    /// Distance between neighbouring pixels, mm.
     pub(crate) pitch_mm: f64,
-    /// The quantity's unit at white.
+    /// Value of white, in the quantity's unit.
     pub(crate) full_scale: f64,
     pub(crate) quantity: Quantity,
-    /// Speed and force at which the asset states its level.
+    /// Speed and force for which the asset states its level.
     pub(crate) speed_mm_s: f64,
     pub(crate) force_n: f64,
     pub(crate) naming: Naming<'a>,
 }
 
-/// Makes the asset of an image. It has no licence: the file has none.
+/// Makes the asset of an image. It has no licence, because the file states none.
 ///
 /// # Errors
-/// When there is nothing to feel in the band at the speed.
+/// When nothing can be felt in the band at this speed.
 pub(crate) fn held(image: &Image, surface: &Surface<'_>) -> Result<Held, Fault> {
     let fault = |error: &dyn std::fmt::Display| Fault::whole(error.to_string());
     let registry = Registry::builtin();
     let model = registry.find(MODEL).map_err(|error| fault(&error))?;
     let fields = stored_fields(model.descriptor());
     let grey: Vec<f64> = image.grey.iter().map(|grey| f64::from(*grey)).collect();
-    // As they are stored: a line may lie on an edge of the band.
+    // Rounded as they are stored, because a line may lie on an edge of the band.
     let [pitch_mm, speed_mm_s, force_n] =
         [surface.pitch_mm, surface.speed_mm_s, surface.force_n].map(|x| f64::from(x as f32));
     let rms = htex_map::rms(image.width, pitch_mm, speed_mm_s, &grey, Band::TACTILE);

@@ -1,4 +1,4 @@
-//! Images: PNG of one grey value a pixel, with the distance of the pixels.
+//! Images: PNG files with one grey value for each pixel, and the distance between pixels.
 
 use std::io::Cursor;
 
@@ -10,32 +10,32 @@ use png::{BitDepth, ColorType, Decoder, Limits, PixelDimensions, Transformations
 
 use crate::error::Fault;
 
-/// Most bytes of a file: far more than 255 by 255 pixels take.
+/// Largest file that is read, bytes: far more than 255 by 255 pixels take.
 const MOST_BYTES: usize = 1 << 20;
-/// Most bytes that the decoder may hold.
+/// Most memory that the decoder may use, bytes.
 const MOST_DECODED: usize = 4 << 20;
 /// Longest text that is unpacked, bytes.
 const MOST_TEXT: usize = 64 << 10;
-/// The distances of pixels that a map may have, mm, as the model states them.
+/// Distances between pixels that a map may have, mm, as the model states them.
 pub(crate) const PITCH_MM: std::ops::RangeInclusive<f64> =
     htex_map::PITCH_MM.0..=htex_map::PITCH_MM.1;
 
 /// Grey values over a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {
-    /// Pixels of a row, 1 to 255.
+    /// Number of pixels in a row, 1 to 255.
     pub width: usize,
-    /// Row by row from above, 1 to 255 rows; 255 is white.
+    /// Grey values row by row from the top, 1 to 255 rows; 255 is white.
     pub grey: Vec<u8>,
-    /// Distance of two pixels, if the file states it.
+    /// Distance between neighbouring pixels in mm, if the file states it.
     pub pitch_mm: Option<f64>,
 }
 
-/// Reads a PNG of grey values. Colours that are grey are read, too.
+/// Reads a PNG of grey values. A colour image is accepted if all of its colours are grey.
 ///
 /// # Errors
-/// When the file is no PNG, has more than 8 bits a channel, more than 255 pixels in a row or a
-/// column, colours, transparent pixels or several frames, with the place.
+/// When the file is not a PNG, has more than 8 bits a channel, more than 255 pixels in a row or a
+/// column, colours, transparent pixels or several frames. The fault names the place.
 pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     if bytes.len() > MOST_BYTES {
         let size = bytes.len();
@@ -76,7 +76,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     })
 }
 
-/// The rights in the text chunks before the pixels; none of a file without any, or that cannot be
+/// The rights stated in the text chunks before the pixels; empty if the file has none or cannot be
 /// read.
 pub(crate) fn rights(bytes: &[u8]) -> Rights {
     let limits = Limits { bytes: MOST_DECODED };
@@ -121,7 +121,7 @@ fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault>
     pixels.chunks_exact(color.samples()).enumerate().map(one).collect()
 }
 
-/// The distance of pixels; none where the file gives a shape of pixels alone.
+/// The distance between pixels; `None` if the file states only the shape of a pixel.
 fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
     if stated.unit == Unit::Unspecified {
         return Ok(None);
@@ -145,7 +145,7 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
     }
 }
 
-/// Writes an image as 8-bit grey PNG, with whole pixels in a metre.
+/// Writes an image as 8-bit grey PNG with a whole number of pixels in a metre.
 #[cfg(feature = "export")]
 pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault> {
     let failed = |error: png::EncodingError| Fault::whole(error.to_string());

@@ -1,11 +1,11 @@
-//! Friction maps: 8-bit PNG images, as displays by electroadhesion take them (TanvasTouch). A pixel
-//! is the friction there, black for the least and white for the most.
+//! Friction maps: 8-bit PNG images, as used by electroadhesion displays (TanvasTouch). Each pixel
+//! is the friction at its place: black is the least, white the most.
 //!
-//! An image is an asset of the model `org.htex.map`, which has its pixels as they are and follows
-//! the place of the finger. The distance of the pixels is that of the chunk `pHYs` (PNG, section
-//! 11.3.4.3), unless one is given. An asset with such a model goes out as its own pixels. Any other
-//! texture goes out as one row, whose waves have at a speed the magnitudes that the texture plays
-//! there.
+//! An image becomes an asset of the model `org.htex.map`, which stores its pixels unchanged and
+//! follows the place of the finger. The distance between pixels comes from the chunk `pHYs` (PNG,
+//! section 11.3.4.3), unless the user gives one. An asset with such a model is exported as its own
+//! pixels. Any other texture is exported as one row of pixels: at one speed, its waves have the
+//! magnitudes that the texture plays.
 
 mod asset;
 mod image;

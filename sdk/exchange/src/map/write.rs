@@ -1,4 +1,4 @@
-//! A texture as an image.
+//! Export of a texture as an image.
 
 use htex_author::{AuthorError, Difference, TextureSpectrum};
 use htex_dsp::grid::level_rms;
@@ -11,7 +11,7 @@ use super::image::{Image, read, to_bytes};
 use crate::error::{ExchangeError, Fault};
 use crate::loss::Loss;
 
-/// Where the fields stand in the parameters of the model.
+/// Indices of the fields in the model's parameters.
 const WIDTH: usize = 0;
 const PITCH: usize = 1;
 const SPEED: usize = 2;
@@ -22,16 +22,16 @@ const GREY: usize = 6;
 /// An image, and what it loses.
 pub(crate) struct Printed {
     pub(crate) bytes: Vec<u8>,
-    /// `None` of a texture that is a map already.
+    /// `None` if the texture is a map already.
     pub(crate) lost: Option<Loss>,
     pub(crate) notes: Vec<String>,
 }
 
-/// Writes a texture as an image: its own pixels, or pixels of a row that is fitted to what it plays
-/// at a motion (by default, at its default condition).
+/// Writes a texture as an image. A map keeps its own pixels. Any other texture becomes a row of
+/// pixels, fitted to what it plays at a motion (by default at its default condition).
 ///
 /// # Errors
-/// When the texture is silent, the speed is unknown, or 255 pixels hold nothing of it.
+/// When the texture is silent, the speed is unknown, or 255 pixels cannot hold any of it.
 pub(crate) fn written(
     asset: &Asset,
     model: Option<&str>,
@@ -50,8 +50,8 @@ pub(crate) fn written(
     }
 }
 
-/// The parameters and the level of a texture that is a map: of the model that is named, else of the
-/// one that an app plays.
+/// The parameters and the level of a texture that is a map. They come from the model that is named,
+/// or else from the one that an app plays.
 fn own(asset: &Asset, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
     match asset.loaded_model(model)?.id() {
         MODEL => Ok(Some(asset.parameters(model, None)?)),
@@ -114,7 +114,7 @@ fn fitted(
     })
 }
 
-/// What is lost from a spectrum to that of a shape at a level.
+/// The loss between a reference spectrum and a shape at a level.
 fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss, ExchangeError> {
     let other = TextureSpectrum {
         magnitude: shape.into_iter().map(|m| level * m).collect(),
@@ -130,7 +130,7 @@ fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss
     })
 }
 
-/// The image of parameters, which is read again, and how much white is at a level.
+/// Writes parameters as an image and reads it back. Also returns the value of white at the level.
 fn image(
     parameters: &[f64],
     level_rms: f64,
@@ -152,9 +152,9 @@ fn image(
     }
 }
 
-/// What the image does not say.
+/// Describes what the image does not state.
 fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
-    // 32 bits, as assets store them: no digits that mean nothing.
+    // As 32-bit floats, as assets store them, so that no meaningless digits are shown.
     let at = |index: usize| parameters.get(index).copied().unwrap_or_default() as f32;
     let white = white as f32;
     let unit = asset.quantity().unit();

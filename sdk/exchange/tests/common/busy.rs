@@ -1,8 +1,9 @@
-//! Time that a thread computed, which other programs on the machine do not lengthen.
+//! Computing time of a thread, which other programs on the machine do not lengthen.
 
 use std::time::{Duration, Instant};
 
-/// A clock of this thread's computing; where the system does not tell it, of the time that passes.
+/// A clock of this thread's computing time. If the system does not provide one, it measures elapsed
+/// time.
 pub struct Busy {
     computed: Option<Duration>,
     start: Instant,

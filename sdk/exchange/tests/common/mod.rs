@@ -1,14 +1,14 @@
-//! Files of the toolkit's shape, made of a seed.
+//! Model files like the toolkit's, generated from a seed.
 
 use htex_dsp::line_spectrum::line_spectral_frequencies;
 use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::uniform::Uniform;
 
-/// Columns and rows of the motions.
+/// Number of columns and rows in the grid of motions.
 const COLUMNS: usize = 8;
 const ROWS: usize = 5;
 
-/// A filter at a motion. Polynomials begin with 1.
+/// A filter at one motion. Its polynomials begin with 1.
 #[derive(Debug)]
 pub struct Model {
     pub ar: Vec<f64>,
@@ -19,8 +19,8 @@ pub struct Model {
     pub force: f64,
 }
 
-/// Forty models, silent where the tool does not move or press, with a zero next to the Nyquist
-/// frequency as the toolkit's have.
+/// Generates forty models. They are silent where the tool does not move or press, and have a zero
+/// next to the Nyquist frequency, like the toolkit's.
 pub fn draw(seed: u64, poles: usize, zeros: usize) -> Vec<Model> {
     let mut uniform = Uniform::new(seed);
     let mut within = |low: f64, high: f64| low + (high - low) * uniform.next_unit();
@@ -46,13 +46,13 @@ pub fn draw(seed: u64, poles: usize, zeros: usize) -> Vec<Model> {
     models
 }
 
-/// A number as the file has it.
+/// A number as rounded in the file.
 fn rounded(x: f64) -> f64 {
     format!("{x:.6}").parse().unwrap()
 }
 
-/// A polynomial with its zeros inside the circle, the last of them, if there is one, at minus a
-/// radius.
+/// A polynomial with its zeros inside the circle. If a radius is given, the last zero lies at minus
+/// that radius.
 fn polynomial(
     order: usize,
     within: &mut impl FnMut(f64, f64) -> f64,
@@ -73,7 +73,7 @@ fn polynomial(
     made
 }
 
-/// The file of forty models, with two triangles in each cell of their grid.
+/// A file with forty models, and two triangles in each cell of their grid.
 pub fn file(models: &[Model]) -> String {
     let values = |values: &mut dyn Iterator<Item = String>| -> String {
         values.map(|x| format!("<value>{x}</value>")).collect()

@@ -1,5 +1,5 @@
-//! The rules of the formats, stated once more over plain JSON: what their own readers refuse, file
-//! by file.
+//! The rules of the formats, written a second time over plain JSON: what the formats' own readers
+//! refuse.
 #![allow(clippy::panic)] // A broken rule fails a test.
 
 use serde_json::Value;
@@ -15,8 +15,8 @@ fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("{key} of {value}"))
 }
 
-/// `HapticData::validate`, strict (core/haptic_data/src/v1.rs of facebook/meta-haptics-sdk), which
-/// reads 32-bit floats.
+/// The strict `HapticData::validate` (core/haptic_data/src/v1.rs of facebook/meta-haptics-sdk),
+/// which reads 32-bit floats.
 pub fn haptic(file: &Value) {
     assert_eq!(file["version"]["major"], 1);
     for key in ["minor", "patch"] {
@@ -46,7 +46,7 @@ pub fn haptic(file: &Value) {
     }
 }
 
-/// What Core Haptics' documentation states, and what Meta's reader of `.ahap` knows
+/// The rules in Core Haptics' documentation, and what Meta's reader of `.ahap` accepts
 /// (core/haptic_data/src/ahap.rs).
 pub fn ahap(file: &Value) {
     assert_eq!(number(file, "Version"), 1.0);
@@ -107,7 +107,7 @@ pub fn android(file: &Value, most_points: usize, shortest_ms: u64) {
 }
 
 /// What `IOJson::loadFile` of the reference software (MPEGGroup/HapticReferenceSoftware) requires,
-/// and the rules of its check of conformance, of files of level 1 of the profile Main.
+/// and the rules of its conformance check for files of the profile Main, level 1.
 pub fn hjif(file: &Value) {
     let year = file["version"].as_str().unwrap_or_default();
     assert!(year.parse::<u32>().is_ok_and(|year| year >= 2023), "{year}");

@@ -1,11 +1,11 @@
-//! Textures of the simulated surfaces, at 80 mm/s and 0.4 N.
+//! Textures of the simulated surfaces at 80 mm/s and 0.4 N.
 
 use htex_author::settings::{FitSettings, ReadingSettings};
 use htex_author::{Exploration, Take, fit_asset};
 use htex_play::{Asset, Registry};
 use htex_simulate::{SimulationOptions, Surface, simulate};
 
-/// Bands of a surface.
+/// The representation by Bands of a surface.
 pub fn texture(surface: Surface) -> Asset {
     let options = SimulationOptions::new(surface).with_duration_s(4.0);
     let recording = simulate(&options).unwrap().to_recording("simulated").unwrap();

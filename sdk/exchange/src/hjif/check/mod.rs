@@ -1,4 +1,4 @@
-//! The rules of a file: those of the reference software's check of conformance
+//! Rules for `.hjif` files: the rules of the reference software's conformance check
 //! (source/IOHaptics/src/IOJson.cpp, `semanticConformanceCheck…`) that concern what is read, and
 //! limits.
 
@@ -10,20 +10,21 @@ use super::{Channel, Hjif, Perception, ReferenceDevice};
 use crate::error::Fault;
 use crate::json::within;
 
-/// Highest timescale of the profile Main, and that of the profile Simple Parametric.
+/// Highest timescale of the profile Main, then of the profile Simple Parametric.
 const MOST_TIMESCALE: f64 = 48_000.0;
 const PARAMETRIC_TIMESCALE: f64 = 1_000.0;
-/// Largest position, ticks.
+/// Largest position, in ticks.
 const MOST_TICKS: f64 = 4_294_967_295.0;
-/// Highest frequency of a band, hertz or waves in a metre.
+/// Highest frequency of a band, in hertz or waves per metre.
 const MOST_HZ: f64 = 1e7;
 /// Largest gain of a channel.
 const MOST_GAIN: f64 = 1e6;
-/// Most channels of a perception and bands of a channel, of level 1 and of level 2.
+/// Largest number of channels in a perception, and of bands in a channel: at level 1, then at level
+/// 2.
 const MOST_CHANNELS: [usize; 2] = [128, 65_536];
 const MOST_BANDS: [usize; 2] = [7, 65_536];
 
-/// Profile and level of a file.
+/// The profile and level of a file.
 #[derive(Clone, Copy)]
 struct Kind {
     is_parametric: bool,
@@ -129,7 +130,7 @@ fn check_channel(channel: &Channel, devices: &BTreeSet<i64>, at: &str) -> Result
     }
 }
 
-/// Its frequencies ascend: minimum, resonance, maximum.
+/// Checks that the frequencies of a device ascend: minimum, resonance, maximum.
 fn check_device(device: &ReferenceDevice, at: &str) -> Result<(), Fault> {
     let frequencies = [
         ("minimum_frequency", device.minimum_frequency),
@@ -146,7 +147,7 @@ fn check_device(device: &ReferenceDevice, at: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses an id that two have.
+/// Refuses an id that occurs twice.
 fn unique(at: &str, ids: impl Iterator<Item = Option<i64>>) -> Result<(), Fault> {
     let mut known = BTreeSet::new();
     for (index, id) in ids.enumerate() {

@@ -1,8 +1,8 @@
 //! Android's `VibrationEffect`: a waveform of levels, and the envelopes of API 36, written as JSON
 //! and as Kotlin.
 //!
-//! Rules from the documentation: a waveform has timings in milliseconds and amplitudes from 0 to
-//! 255. `VibratorEnvelopeEffectInfo` states the shortest duration of a control point and the
+//! Rules from the documentation: a waveform has timings in milliseconds, and amplitudes between 0
+//! and 255. `VibratorEnvelopeEffectInfo` states the shortest duration of a control point and the
 //! largest number of points in an envelope; it guarantees 16 points of 20 ms to 1 s. An envelope of
 //! `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is
 //! relative to the strongest vibration at the frequency. The JSON is this project's own, because

@@ -1,4 +1,4 @@
-//! Model of skin, rig and sensor: from the finger's motion to measured forces.
+//! Model of skin, rig and sensor: computes measured forces from the finger's motion.
 
 use htex_dsp::biquad::{Biquad, Cascade};
 use htex_dsp::normal::Normal;
@@ -12,23 +12,24 @@ use super::surface::Parameters;
 use super::track::Track;
 use htex_recording::SetupResponse;
 
-/// Speed range over which Coulomb friction reverses, mm/s: the fingertip shears before it slides.
+/// Speed range over which Coulomb friction reverses, mm/s. The fingertip shears before it slides.
 const TURN_MM_S: f64 = 5.0;
-/// Extra friction near standstill (Stribeck): as a part, and the speed over which it decays, mm/s.
+/// Extra friction near standstill (Stribeck): its fraction of the friction, and the speed over
+/// which it decays, mm/s.
 const STRIBECK: (f64, f64) = (0.15, 15.0);
 /// Low-pass of the skin: frequency in Hz and quality factor, second order.
 pub(super) const SKIN: (f64, f64) = (900.0, 0.6);
-/// Part of the texture that acts across the sweep, and the offset along the sweep at which it is
-/// read, mm.
+/// The fraction of the texture that acts across the sweep, and how far along the sweep it is read
+/// away from the finger, mm.
 pub(super) const ACROSS: (f64, f64) = (0.25, 7.3);
-/// Lateral mode of the rig: frequency in Hz, damping ratio, part of the force that passes through
-/// it. The gain is about 5 dB at the peak and 1 far below.
+/// Lateral mode of the rig: frequency in Hz, damping ratio, and the fraction of the force that
+/// passes through it. The gain is about 5 dB at the peak and 1 far below it.
 const MODE: (f64, f64, f64) = (620.0, 0.08, 0.25);
-/// Quality factors of the anti-aliasing filter: Butterworth, fourth order.
+/// Quality factors of the anti-aliasing filter, a fourth-order Butterworth.
 const ANTI_ALIAS: [f64; 2] = [0.541_196_1, 1.306_563];
-/// White noise of each force channel at 20 kHz, newtons rms.
+/// White noise of each force channel at a sample rate of 20 kHz, newtons rms.
 const NOISE_N: f64 = 0.2e-3;
-/// Step of the converter, newtons: 16 bits over 5 N.
+/// Step of the converter, newtons: 16 bits over a range of 5 N.
 const STEP_N: f64 = 5.0 / 65_536.0;
 
 /// Force on the surface at one sample, newtons.
@@ -39,7 +40,7 @@ pub(super) struct Force {
     pub(super) z: f64,
 }
 
-/// Contact of skin and relief: the friction of the finger, before the rig.
+/// Contact of skin and relief: the friction of the finger, before it passes the rig.
 pub(super) struct Contact {
     friction: f64,
     material: Material,
@@ -48,18 +49,18 @@ pub(super) struct Contact {
     skin: [Cascade; 2],
 }
 
-/// Where the texture is read.
+/// The material of the surface, which determines where the texture is read.
 pub(super) enum Material {
-    /// One piece, at the finger's position; and the path, mm, along which it is read where
-    /// frequencies do not follow the speed.
+    /// One piece of material, read at the finger's position. Where frequencies do not follow the
+    /// speed, it is read along a path of its own; the number is the length of that path, mm.
     Piece(Relief, f64),
-    /// Without end, along the path: one relief for each lateral axis.
+    /// Material without end, read along the finger's path: one relief for each lateral axis.
     Endless(Box<[Track; 2]>),
 }
 
 impl Material {
-    /// Returns the texture across and along the sweep at a finger that moves on by a distance, mm;
-    /// `as_it_lies` if that is the finger's own.
+    /// Returns the texture across and along the sweep after the reading point moves on by a
+    /// distance in mm. `as_it_lies` is true if this is the finger's own distance.
     fn read(&mut self, finger: &Finger, distance: f64, as_it_lies: bool) -> [f64; 2] {
         match self {
             Self::Piece(relief, path) => {
@@ -75,8 +76,8 @@ impl Material {
     }
 }
 
-/// Returns the place on a piece of material after a path that turns at its ends, mm; 0 is the
-/// middle.
+/// Converts the length of a path that goes back and forth on a piece of material to a position in
+/// mm; 0 is the middle.
 fn to_and_fro(path_mm: f64) -> f64 {
     let length = 2.0 * HALF_READ_MM;
     let along = path_mm % (2.0 * length);
@@ -100,7 +101,8 @@ impl Contact {
         }
     }
 
-    /// Computes Coulomb friction against the motion, modulated by the texture times a factor.
+    /// Computes Coulomb friction against the motion. The texture, multiplied by a factor, modulates
+    /// it.
     pub(super) fn tick(&mut self, finger: &Finger, level: f64) -> Force {
         let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
         let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
@@ -122,9 +124,10 @@ impl Contact {
     }
 }
 
-/// The recording rig: a resonance in both lateral axes, and an anti-aliasing filter for low rates.
+/// The recording rig: a resonance in both lateral axes, and an anti-aliasing filter for low sample
+/// rates.
 pub(super) struct Rig {
-    /// The sections of a lateral axis.
+    /// Filter sections of a lateral axis.
     lateral: Vec<Biquad>,
     x: Cascade,
     y: Cascade,
@@ -132,8 +135,8 @@ pub(super) struct Rig {
 }
 
 impl Rig {
-    /// Creates the rig. `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above
-    /// it.
+    /// Creates the rig. `inner_hz` is the sample rate of the physics. `rate_hz` is the recording's
+    /// and must not be higher.
     pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
         let (hz, damping, share) = MODE;
         let anti_alias: &[f64] = if inner_hz > rate_hz { &ANTI_ALIAS } else { &[] };
@@ -159,7 +162,7 @@ impl Rig {
     }
 
     /// Returns the rig's response to a lateral force at strictly increasing frequencies in hertz,
-    /// for the rate it was created with.
+    /// for the sample rate with which the rig was created.
     pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
         let at = |&hz: &f64| -> Complex<f64> {
             let sections = self.lateral.iter();
@@ -174,8 +177,8 @@ impl Rig {
     }
 }
 
-/// Returns the one-sided density of the noise and the quantisation of both lateral axes, newtons
-/// squared per hertz.
+/// Returns the one-sided power density of noise and quantisation for both lateral axes together,
+/// newtons squared per hertz.
 pub(super) fn noise_density(rate_hz: f64) -> f64 {
     let noise = NOISE_N * NOISE_N / 20_000.0;
     let quantisation = STEP_N * STEP_N / 12.0 / rate_hz;

@@ -1,27 +1,27 @@
-//! Hands and surfaces that do not obey the law of a rigid relief.
+//! Departures from the law of a rigid relief: hands and surfaces that do not follow it.
 //!
-//! A rigid relief that is read at the finger's position has frequencies in proportion to the speed,
-//! and friction has a level in proportion to the normal force. Recorded textures depart from both:
-//! over three speeds of four materials the level rose with the speed to the power of 0.69 to 0.82,
-//! exponents of the force lay between -0.07 and 2.6, and accelerations of tools keep their
-//! frequencies. A method that is tried on the relief alone is tried on its own assumption.
+//! A rigid relief read at the finger's position has frequencies proportional to the speed, and
+//! friction has a level proportional to the normal force. Recorded textures depart from both: over
+//! three speeds on four materials, the level rose with the speed to the power of 0.69 to 0.82;
+//! exponents of the force were between -0.07 and 2.6; and accelerations of tools keep their
+//! frequencies. A method that is tested only on a rigid relief is tested on its own assumption.
 
 use htex_dsp::normal::Normal;
 
 use super::hand::Finger;
 use super::{SimulationError, check_range};
 
-/// Motion at which nothing departs: that of the paper's recordings.
+/// The motion at which nothing departs: the paper's recording condition.
 const SPEED_MM_S: f64 = 80.0;
 const FORCE_N: f64 = 0.4;
-/// Speed below which exponents do not apply, mm/s: a finger that turns slides less.
+/// Speed below which exponents do not apply, mm/s. A turning finger slides more slowly than this.
 const SLOWEST_MM_S: f64 = 1.0;
-/// Shortest and longest time off the surface, s, and the time of a touchdown, s.
+/// Shortest and longest time off the surface, s, and the duration of a touchdown, s.
 const LIFTED_S: [f64; 2] = [0.05, 0.25];
 const TOUCHDOWN_S: f64 = 0.01;
 
-/// What differs from a rigid relief under a steady hand; by default nothing. Exponents are relative
-/// to 80 mm/s and 0.4 N.
+/// How a surface and a hand differ from a rigid relief under a steady hand; by default not at all.
+/// Exponents are relative to 80 mm/s and 0.4 N.
 ///
 /// ```
 /// use htex_simulate::{Departures, SimulationOptions, Surface, simulate};
@@ -34,15 +34,17 @@ const TOUCHDOWN_S: f64 = 0.01;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Departures {
-    /// Exponent of frequencies over the speed, -0.5 to 2; 1 for a relief, 0 where they stay.
+    /// Exponent of frequencies over the speed, -0.5 to 2: 1 for a relief, 0 if frequencies stay the
+    /// same.
     pub frequency_speed: f64,
     /// Exponent of the texture's level over the speed, -2 to 2; 0 for a relief.
     pub level_speed: f64,
     /// Exponent of the texture's level over the normal force, -1 to 3; 1 for friction.
     pub level_force: f64,
-    /// Change of the texture's level in the course of the recording, -60 to 60 dB per minute.
+    /// Drift of the texture's level during the recording, -60 to 60 dB per minute.
     pub drift_db_per_min: f64,
-    /// Part of the time that the finger is off the surface, 0 to 0.8, for 50 to 250 ms each.
+    /// Fraction of the time in which the finger is off the surface, 0 to 0.8. It lifts for 50 to
+    /// 250 ms each time.
     pub lifted: f64,
 }
 
@@ -83,7 +85,7 @@ impl Departures {
         Self { drift_db_per_min, ..self }
     }
 
-    /// Sets the part of the time without contact.
+    /// Sets the fraction of the time without contact.
     #[must_use]
     pub const fn with_lifted(self, lifted: f64) -> Self {
         Self { lifted, ..self }
@@ -101,13 +103,13 @@ impl Departures {
         ranges.try_for_each(|(option, value, low, high)| check_range(option, value, low, high))
     }
 
-    /// Whether the spectrum at a speed and a force is the same at all times.
+    /// Whether the spectrum at one speed and force stays the same throughout the recording.
     pub(super) fn is_steady(&self) -> bool {
         self.drift_db_per_min == 0.0 && self.lifted == 0.0
     }
 
-    /// Returns the factor of the texture, relative to a relief whose level is proportional to the
-    /// force.
+    /// Returns the factor of the texture's level, relative to a relief whose level is proportional
+    /// to the force.
     pub(super) fn level(&self, speed_mm_s: f64, force_n: f64) -> f64 {
         power(speed_mm_s.max(SLOWEST_MM_S) / SPEED_MM_S, self.level_speed)
             * power(force_n / FORCE_N, self.level_force - 1.0)
@@ -121,7 +123,8 @@ impl Departures {
         SPEED_MM_S * power(speed_mm_s.max(SLOWEST_MM_S) / SPEED_MM_S, self.frequency_speed)
     }
 
-    /// Returns what a file says of them, after a comma; nothing where nothing departs.
+    /// Describes the departures for the header of a file, each after a comma; empty if there are
+    /// none.
     pub(super) fn told(&self) -> String {
         let usual = Self::default();
         let parts = [
@@ -136,22 +139,23 @@ impl Departures {
     }
 }
 
-/// A power whose exponent is mostly 0.
+/// A power; the common exponent 0 takes a short cut.
 fn power(base: f64, exponent: f64) -> f64 {
     if exponent == 0.0 {
         return 1.0;
     }
-    // A force of zero has no texture, whatever its exponent.
+    // At zero force there is no texture, whatever the exponent.
     libm::pow(base.max(1e-9), exponent)
 }
 
-/// The factor of the texture in the course of a recording, and the finger that lifts.
+/// Changes during a recording: the drifting level of the texture, and the lifting finger.
 pub(super) struct Course {
     departures: Departures,
     step_s: f64,
     time_s: f64,
     random: Normal,
-    /// Time of the present contact and of the lift after it, s, and the time since its beginning.
+    /// Duration of the present contact and of the lift after it, s, and the time since the contact
+    /// began.
     contact_s: f64,
     lifted_s: f64,
     since_s: f64,
@@ -172,7 +176,8 @@ impl Course {
         course
     }
 
-    /// Lifts the finger where it is off the surface, and returns the factor of the texture.
+    /// Reduces the finger's force while it is off the surface, and returns the factor of the
+    /// texture.
     pub(super) fn tick(&mut self, finger: &mut Finger) -> f64 {
         self.time_s += self.step_s;
         self.since_s += self.step_s;
@@ -185,7 +190,7 @@ impl Course {
         self.departures.level(speed, finger.normal_n) * power(10.0, drift_db / 20.0)
     }
 
-    /// Draws the next contact and the lift after it.
+    /// Draws random durations for the next contact and the lift after it.
     fn begin_contact(&mut self) {
         self.since_s = 0.0;
         let lifted = self.departures.lifted;
@@ -198,7 +203,7 @@ impl Course {
         self.contact_s = draw(0.5 * mean_s, 1.5 * mean_s);
     }
 
-    /// Returns the part of the force: 1 in contact, 0 off the surface.
+    /// Returns the fraction of the force that acts: 1 in contact, 0 off the surface.
     fn touch(&self) -> f64 {
         if self.contact_s.is_infinite() {
             return 1.0;

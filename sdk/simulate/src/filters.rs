@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use htex_dsp::biquad::Biquad;
 
-/// Designs `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`, by the bilinear
-/// transform, exact at `hz`.
+/// Designs the filter `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1` by the bilinear transform, exact at
+/// `hz`. The unit of s is 2 pi `hz`.
 fn analog(numerator: [f64; 3], q: f64, hz: f64, rate_hz: f64) -> Biquad {
     let c = 1.0 / libm::tan(PI * hz / rate_hz);
     let [b2, b1, b0] = numerator;
@@ -27,14 +27,14 @@ pub(super) fn band_pass(q: f64, hz: f64, rate_hz: f64) -> Biquad {
     analog([0.0, 1.0 / q, 0.0], q, hz, rate_hz)
 }
 
-/// Designs a filter of unit gain with a part of the signal passing a resonance:
+/// Designs a filter with unit gain in which a fraction of the signal passes a resonance:
 /// `1 - share + share * mode`.
 pub(super) fn mode(share: f64, damping: f64, hz: f64, rate_hz: f64) -> Biquad {
     let (rest, q) = (1.0 - share, 0.5 / damping);
     analog([rest, rest / q, 1.0], q, hz, rate_hz)
 }
 
-/// First-order low-pass, `hz` well below half the rate.
+/// First-order low-pass; `hz` must be well below half the sample rate.
 #[derive(Debug, Clone)]
 pub(super) struct OnePole {
     keep: f64,
@@ -46,7 +46,7 @@ impl OnePole {
         Self { keep: libm::exp(-2.0 * PI * hz / rate_hz), state: 0.0 }
     }
 
-    /// Creates a low-pass whose output is already at a constant input.
+    /// Creates a low-pass that has already settled to a constant input.
     pub(super) fn settled(hz: f64, rate_hz: f64, state: f64) -> Self {
         Self { state, ..Self::new(hz, rate_hz) }
     }
@@ -57,7 +57,8 @@ impl OnePole {
         part * part / self.pole_power(hz, rate_hz)
     }
 
-    /// Returns the squared gain of the input minus the output at a frequency.
+    /// Returns the squared gain, at a frequency, of the high-pass that is the input minus the
+    /// output.
     pub(super) fn high_pass_power(&self, hz: f64, rate_hz: f64) -> f64 {
         // 1 - (1 - k) / (1 - k / z) = k (1 - 1 / z) / (1 - k / z).
         let difference = 2.0 - 2.0 * libm::cos(2.0 * PI * hz / rate_hz);

@@ -1,4 +1,4 @@
-//! The hand in free motion: strokes of random speed and force in both directions, without a target.
+//! A hand in free motion: strokes of random speed and force in both directions, without a target.
 
 use std::f64::consts::PI;
 
@@ -7,24 +7,24 @@ use htex_dsp::normal::Normal;
 use super::filters::OnePole;
 use super::hand::{Finger, Heading};
 
-/// Half the length of the sheet that the strokes stay on, mm: the long side of A4.
+/// Half the length of the sheet on which the strokes stay, mm: the long side of A4.
 const HALF_SHEET_MM: f64 = 148.0;
-/// Shortest and longest duration of a stroke, s; at high speed the end of the sheet ends it
-/// earlier.
+/// Shortest and longest duration of a stroke, s. At high speed the end of the sheet may end a
+/// stroke earlier.
 const STROKE_S: [f64; 2] = [0.6, 1.6];
-/// Time to reach the speed, and to stop, s.
+/// Time to reach the speed, and also to stop, s.
 const RAMP_S: f64 = 0.06;
-/// Largest change of speed and force within a stroke, relative to the stroke's own.
+/// Largest change of speed and force within a stroke, relative to the stroke's own values.
 const WANDER: f64 = 0.1;
-/// Range of the frequencies of that change, Hz: far below the texture's.
+/// Range of the frequencies of these changes, Hz: far below the texture's frequencies.
 const WANDER_HZ: [f64; 2] = [0.1, 0.4];
-/// Cutoff of the change of direction, Hz: friction turns with it, and at 20 Hz that is to be weaker
-/// than any texture.
+/// Cutoff frequency of changes of direction, Hz. Friction turns with the direction, and at 20 Hz
+/// this must be weaker than any texture.
 const HEADING_HZ: f64 = 0.3;
-/// Cutoff of the change of force between strokes, Hz.
+/// Cutoff frequency of the change of force between strokes, Hz.
 const FORCE_HZ: f64 = 8.0;
 
-/// The state of a hand that strokes freely, advanced sample by sample.
+/// The state of a freely stroking hand, advanced sample by sample.
 pub(super) struct FreeHand {
     speed: Range,
     force: Range,
@@ -50,8 +50,8 @@ struct Stroke {
 }
 
 impl FreeHand {
-    /// Creates a hand whose speed (mm/s) and force (N) stay in these ranges, from the lowest to the
-    /// highest value.
+    /// Creates a hand whose speed (mm/s) and force (N) stay within the given ranges, each from
+    /// lowest to highest value.
     pub(super) fn new(
         speed_mm_s: [f64; 2],
         force_n: [f64; 2],
@@ -91,8 +91,8 @@ impl FreeHand {
         self.finger
     }
 
-    /// Draws speed, force and duration of the next stroke, in the other direction unless the sheet
-    /// ends there.
+    /// Draws random speed, force and duration of the next stroke. It goes in the other direction,
+    /// unless the sheet ends there.
     fn begin_stroke(&mut self) {
         let random = &mut self.random;
         let log_speed = self.speed.draw(random);
@@ -111,7 +111,8 @@ impl FreeHand {
 }
 
 impl Stroke {
-    /// Returns the part of the full speed: 0 at both ends, 1 between raised-cosine ramps.
+    /// Returns the fraction of the full speed: 0 at both ends of a stroke, 1 between its
+    /// raised-cosine ramps.
     fn envelope(&self, time_s: f64) -> f64 {
         let ramp_s = RAMP_S.min(0.25 * self.duration_s);
         let from_end = time_s.min(self.duration_s - time_s);
@@ -119,13 +120,13 @@ impl Stroke {
     }
 }
 
-/// A range of speeds or forces in the logarithm, and the slow change within strokes.
+/// A range of speeds or forces as logarithms, with the slow change within strokes.
 struct Range {
     low: f64,
     high: f64,
-    /// Largest change within a stroke, in the logarithm.
+    /// Largest change within a stroke, as a logarithm.
     wander: f64,
-    /// Phase and angular frequency, radians and radians per second.
+    /// Phase in radians and angular frequency in radians per second.
     waves: [[f64; 2]; 3],
 }
 
@@ -143,7 +144,7 @@ impl Range {
         0.5 * (self.low + self.high)
     }
 
-    /// Draws a value that stays in the range with all its changes.
+    /// Draws a random value that stays in the range even with all its changes.
     fn draw(&self, random: &mut Normal) -> f64 {
         let (low, high) = (self.low + self.wander, self.high - self.wander);
         low + (high - low) * random.next_unit()

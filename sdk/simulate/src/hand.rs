@@ -7,27 +7,28 @@ use htex_dsp::normal::Normal;
 
 use super::filters::{OnePole, band_pass};
 
-/// Length of a sweep, mm; the surface is 100 mm.
+/// Length of a sweep, mm; the surface is 100 mm long.
 const SWEEP_MM: f64 = 83.0;
 /// Scatter of a sweep's end, mm (standard deviation).
 const END_SCATTER_MM: f64 = 0.8;
-/// Time to reach the speed, and to stop, s.
+/// Time to reach the speed, and also to stop, s.
 const RAMP_S: f64 = 0.1;
-/// Rest at each end, shortest and longest, s.
+/// Rest at each end, shortest and longest duration, s.
 const REST_S: [f64; 2] = [0.06, 0.11];
-/// Scatter of the speed between sweeps and within a sweep, relative.
+/// Relative scatter of the speed, between sweeps and within a sweep.
 const SPEED_SCATTER: [f64; 2] = [0.015, 0.02];
-/// Slow drift of the force, and physiological tremor (8–12 Hz), relative; their sum is kept within
-/// 10 %.
+/// Slow drift of the force, and physiological tremor (8–12 Hz), both relative. Their sum is kept
+/// within 10 %.
 const FORCE_SCATTER: [f64; 2] = [0.03, 0.012];
 const FORCE_BOUND: f64 = 0.1;
 const TREMOR_HZ: f64 = 10.0;
 const TREMOR_Q: f64 = 4.0;
-/// Scatter of the heading, radians, and the rate at which the finger returns to the middle, 1/mm.
+/// Scatter of the direction of motion, radians, and the rate at which the finger returns to the
+/// middle, 1/mm.
 const HEADING: f64 = 0.03;
 const HEADING_HZ: f64 = 1.5;
 const DRAW_BACK: f64 = 0.02;
-/// Scatter of the strength of contact between sweeps and within a sweep, relative.
+/// Relative scatter of the strength of contact, between sweeps and within a sweep.
 const CONTACT_SCATTER: [f64; 2] = [0.07, 0.08];
 
 /// State of the finger.
@@ -41,18 +42,18 @@ pub(super) struct Finger {
     pub(super) across_mm_s: f64,
     /// Normal force, newtons.
     pub(super) normal_n: f64,
-    /// Strength of contact with the texture; 1 on average.
+    /// Strength of the contact with the texture; 1 on average.
     pub(super) contact: f64,
 }
 
 impl Finger {
-    /// Makes a finger at rest, in the middle across the sweep.
+    /// Makes a finger at rest, in the middle of the surface across the sweep.
     pub(super) fn at_rest(along_mm: f64, normal_n: f64) -> Self {
         Self { along_mm, across_mm: 0.0, along_mm_s: 0.0, across_mm_s: 0.0, normal_n, contact: 1.0 }
     }
 }
 
-/// The direction of the finger, which wanders around that of the sweep.
+/// The finger's direction of motion, which wanders around the direction of the sweep.
 pub(super) struct Heading(SlowNoise);
 
 impl Heading {
@@ -61,7 +62,7 @@ impl Heading {
         Self(SlowNoise::new(hz, rate_hz))
     }
 
-    /// Moves the finger for a step at a velocity along the sweep.
+    /// Moves the finger by one step, at a velocity along the sweep.
     pub(super) fn steer(
         &mut self,
         finger: &mut Finger,
@@ -77,12 +78,12 @@ impl Heading {
     }
 }
 
-/// A rest and the sweep after it.
+/// A rest, and the sweep that follows it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sweep {
     rest_s: f64,
     ramp_s: f64,
-    /// Time from the end of the rest to standstill, s.
+    /// Time from the end of the rest until the finger stands still again, s.
     moving_s: f64,
     /// Signed speed between the ramps, mm/s.
     speed_mm_s: f64,
@@ -96,7 +97,7 @@ pub(super) struct Hand {
     step_s: f64,
     random: Normal,
     sweep: Sweep,
-    /// Time since the sweep's rest began, s.
+    /// Time since the rest before the sweep began, s.
     time_s: f64,
     direction: f64,
     finger: Finger,
@@ -171,7 +172,7 @@ impl Hand {
 }
 
 impl Sweep {
-    /// Returns the part of the full speed: 0 at rest, 1 between raised-cosine ramps.
+    /// Returns the fraction of the full speed: 0 at rest, 1 between the raised-cosine ramps.
     fn envelope(&self, time_s: f64) -> f64 {
         let from_start = time_s - self.rest_s;
         let to_end = self.moving_s - from_start;

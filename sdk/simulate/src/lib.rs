@@ -1,12 +1,13 @@
-//! Simulated recordings of a finger that sweeps back and forth over one of five surfaces.
+//! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! They serve tests, examples and first steps without a rig. The order of the surfaces' levels and
-//! the frequencies of their energy are those that the paper's Results describe of its five; they
-//! are not measured, and every file states this.
+//! Use them for tests, examples and first steps without a recording rig. The order of the surfaces'
+//! levels and the frequencies of their energy are those that the paper's Results describe for its
+//! five surfaces. They are not measured, and every file says so.
 //!
 //! The hand's speed and force vary. The friction coefficient varies along the surface as a fixed
-//! relief read at the finger's position, so the spectrum's frequencies scale with the speed and its
-//! level with the force, unless [`Departures`] say otherwise. Skin, rig and sensor follow.
+//! relief read at the finger's position. So the spectrum's frequencies scale with the speed and its
+//! level scales with the force, unless [`Departures`] say otherwise. The force then passes through
+//! models of skin, rig and sensor.
 //!
 //! ```
 //! use htex_simulate::{SimulationOptions, Surface, simulate};
@@ -49,15 +50,15 @@ use relief::Relief;
 use track::Track;
 use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
 
-/// Lowest rate of the physics, Hz.
+/// Lowest sample rate of the physics, Hz.
 const INNER_HZ: f64 = 20_000.0;
-/// Most samples of a simulation.
+/// Largest number of samples in a simulation.
 const MAX_SAMPLES: f64 = 2e7;
 
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// There is no surface of this name.
+    /// No surface has this name.
     #[error(
         "unknown surface {text:?}; the surfaces are sandpaper, fine-fabric, coarse-fabric, corrugated-paper and vinyl"
     )]
@@ -65,21 +66,21 @@ pub enum SimulationError {
         /// The given name, at most 40 characters.
         text: String,
     },
-    /// An option is out of its range.
+    /// An option is out of range.
     #[error("{option} is {value}; it must lie in {low}..={high}")]
     Range {
-        /// Name of the option, with its unit.
+        /// Name of the option, including its unit.
         option: &'static str,
         value: f64,
         low: f64,
         high: f64,
     },
-    /// The true spectrum of sweeps is not known.
+    /// The true spectrum of sweeps is not known, only that of a free motion.
     #[error(
         "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
     )]
     NoTruth,
-    /// The spectrum changes in the course of the recording.
+    /// The spectrum changes during the recording, so it has no single true value.
     #[error("the true spectrum is known without drift and lifts only; leave them out")]
     Unsteady,
 }
@@ -88,26 +89,26 @@ pub enum SimulationError {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Motion {
-    /// To-and-fro sweeps at one speed and one force, over one piece of the material.
+    /// Back-and-forth sweeps at one speed and one force, over one piece of the material.
     #[default]
     Sweeps,
-    /// Strokes of random speed and force, over material without end.
+    /// Strokes of random speed and force, over endless material.
     Free(FreeMotion),
 }
 
-/// A free motion: strokes of 0.6 to 1.6 s in both directions, each with its own speed and force,
-/// which change slowly by up to 10 %. The logarithms of both are distributed evenly over their
-/// ranges.
+/// A free motion: strokes of 0.6 to 1.6 s in both directions. Each stroke has its own speed and
+/// force, which change slowly by up to 10 %. The logarithms of speed and force are evenly
+/// distributed over their ranges.
 ///
 /// The finger is always on material that it has not touched before, and the strength of contact
 /// does not vary. The spectrum of a steady part is therefore a known function of speed and force:
-/// [`SimulationOptions::truth`].
+/// see [`SimulationOptions::truth`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FreeMotion {
-    /// Lowest and highest speed, 1 to 500 mm/s.
+    /// Lowest and highest speed in mm/s, within 1 to 500 mm/s.
     pub speed_mm_s: [f64; 2],
-    /// Lowest and highest normal force, 0.01 to 10 N.
+    /// Lowest and highest normal force in newtons, within 0.01 to 10 N.
     pub force_n: [f64; 2],
 }
 
@@ -126,8 +127,7 @@ impl FreeMotion {
 }
 
 impl Default for FreeMotion {
-    /// The speeds and forces of a recording of a bare finger that strokes freely: 36 to 280 mm/s,
-    /// 0.15 to 3.8 N.
+    /// The ranges of a recording of a freely stroking bare finger: 36 to 280 mm/s, 0.15 to 3.8 N.
     fn default() -> Self {
         Self { speed_mm_s: [36.0, 280.0], force_n: [0.15, 3.8] }
     }
@@ -137,25 +137,25 @@ impl Default for FreeMotion {
 #[non_exhaustive]
 pub struct SimulationOptions {
     pub surface: Surface,
-    /// Seed: equal seeds and options give equal samples; another seed simulates another piece of
-    /// the same material and another motion of the hand.
+    /// Random seed. Equal seeds and options give equal samples; another seed simulates another
+    /// piece of the same material and another motion of the hand.
     pub seed: u64,
     /// Sample rate, 200 to 200 000 Hz.
     pub rate_hz: f64,
-    /// Length, 0.1 to 600 s.
+    /// Duration, 0.1 to 600 s.
     pub duration_s: f64,
-    /// Speed between the turns, 1 to 500 mm/s.
+    /// Sliding speed between the turns, 1 to 500 mm/s.
     pub speed_mm_s: f64,
     /// Normal force, 0.01 to 10 N.
     pub force_n: f64,
-    /// The motion; a free one has its own ranges of speed and force.
+    /// The kind of motion; a free motion has its own ranges of speed and force.
     pub motion: Motion,
-    /// What differs from a rigid relief under a steady hand.
+    /// How surface and hand differ from a rigid relief under a steady hand.
     pub departures: Departures,
 }
 
 impl SimulationOptions {
-    /// Returns the paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; seed 1.
+    /// Returns the paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; the seed is 1.
     #[must_use]
     pub fn new(surface: Surface) -> Self {
         Self {
@@ -188,7 +188,7 @@ impl SimulationOptions {
         self
     }
 
-    /// Sets the speed between the turns, mm/s.
+    /// Sets the sliding speed between the turns, mm/s.
     #[must_use]
     pub fn with_speed_mm_s(mut self, speed_mm_s: f64) -> Self {
         self.speed_mm_s = speed_mm_s;
@@ -201,26 +201,27 @@ impl SimulationOptions {
         self
     }
 
-    /// Sets a free motion instead of sweeps.
+    /// Selects a free motion instead of sweeps.
     #[must_use]
     pub fn with_free_motion(mut self, free: FreeMotion) -> Self {
         self.motion = Motion::Free(free);
         self
     }
 
-    /// Sets what differs from a rigid relief under a steady hand.
+    /// Sets how surface and hand differ from a rigid relief under a steady hand.
     #[must_use]
     pub fn with_departures(mut self, departures: Departures) -> Self {
         self.departures = departures;
         self
     }
 
-    /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz, and for
-    /// rates below 20 kHz an anti-aliasing filter, every 5 Hz from 0 to 1000 Hz or to half the
-    /// rate. Dividing the recording by it gives the force at the finger.
+    /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz and, for
+    /// sample rates below 20 kHz, an anti-aliasing filter. It is given every 5 Hz from 0 to 1000
+    /// Hz, or to half the sample rate if that is less. Dividing the recording by it gives the force
+    /// at the finger.
     ///
     /// # Errors
-    /// When an option is out of its range.
+    /// When an option is out of range.
     ///
     /// ```
     /// use htex_simulate::{SimulationOptions, Surface};
@@ -240,12 +241,12 @@ impl SimulationOptions {
         Ok(rig.response(frequency_hz, self.inner_hz()))
     }
 
-    /// Returns the steps of the physics per sample.
+    /// Returns the number of physics steps per sample.
     fn inner_steps(&self) -> usize {
         libm::ceil(INNER_HZ / self.rate_hz) as usize
     }
 
-    /// Returns the rate of the physics, hertz.
+    /// Returns the sample rate of the physics, hertz.
     fn inner_hz(&self) -> f64 {
         self.rate_hz * self.inner_steps() as f64
     }
@@ -268,7 +269,7 @@ impl SimulationOptions {
         }
     }
 
-    /// Makes the hand, at the rate of the physics.
+    /// Creates the hand, at the sample rate of the physics.
     fn hand(&self, random: Normal) -> AnyHand {
         let rate_hz = self.inner_hz();
         match self.motion {
@@ -283,7 +284,7 @@ impl SimulationOptions {
         }
     }
 
-    /// Makes the material; `stream` returns the random numbers of a part of it.
+    /// Creates the material; `stream` returns the random numbers for a part of it.
     fn material(&self, stream: impl Fn(u64) -> Normal) -> Material {
         let parameters = self.surface.parameters();
         match self.motion {
@@ -337,13 +338,13 @@ fn check_range(
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
     pub options: SimulationOptions,
-    /// Time, seconds, from 0.
+    /// Time, seconds, starting at 0.
     pub t_s: Vec<f64>,
     /// Force across the sweeps, newtons.
     pub fx_n: Vec<f64>,
     /// Force along the sweeps, newtons.
     pub fy_n: Vec<f64>,
-    /// Normal force, newtons, positive.
+    /// Normal force, newtons; positive when pressing.
     pub fz_n: Vec<f64>,
     /// Finger position across the sweeps, mm; 0 is the middle.
     pub x_mm: Vec<f64>,
@@ -377,10 +378,11 @@ impl Simulation {
         self.y_mm.push(rounded(finger.along_mm, POSITION_DECIMALS));
     }
 
-    /// Converts to the recording that is read from the written CSV; `source` is its file name.
+    /// Converts the simulation to the same recording as is read from its written CSV; `source` is
+    /// the file name.
     ///
     /// # Errors
-    /// None within the options' ranges.
+    /// Never within the options' ranges.
     pub fn to_recording(&self, source: &str) -> Result<Recording, RecordingError> {
         let lateral = vec![self.fx_n.clone(), self.fy_n.clone()];
         let speed = speed_mm_s(&[&self.x_mm, &self.y_mm], self.rate_hz);
@@ -395,7 +397,7 @@ impl Simulation {
 /// Simulates a recording. Equal options give equal samples on every machine.
 ///
 /// # Errors
-/// When an option is out of its range.
+/// When an option is out of range.
 pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationError> {
     options.check()?;
     let parameters = options.surface.parameters();
@@ -420,9 +422,10 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     Ok(simulation)
 }
 
-/// Returns a stream of random numbers; streams of one seed with different labels are independent.
+/// Returns a stream of random numbers. Streams with the same seed and different labels are
+/// independent.
 fn stream(seed: u64, label: u64) -> Normal {
-    // The odd factor spreads small labels over all bits; the generator mixes further when it is
-    // seeded.
+    // Multiplying by an odd factor spreads small labels over all bits. The generator mixes further
+    // when it is seeded.
     Normal::new(seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15))
 }

@@ -1,4 +1,5 @@
-//! The variation of the friction coefficient along the surface, as the finger's ridges sense it.
+//! The relief: how the friction coefficient varies along the surface, as the finger's ridges sense
+//! it.
 
 use std::f64::consts::PI;
 
@@ -7,15 +8,16 @@ use htex_dsp::normal::Normal;
 use super::filters::OnePole;
 use super::surface::{Grain, Line, Parameters};
 
-/// Points per millimetre: 1000 Hz at 80 mm/s is a period of 8 points; faster sweeps have longer
-/// periods.
+/// Number of points per millimetre. At 80 mm/s, 1000 Hz has a period of 8 points; faster sweeps
+/// have longer periods.
 pub(super) const POINTS_PER_MM: f64 = 100.0;
-/// Length of the surface with a margin, mm, centred on 0.
+/// Length of the surface including a margin, mm, centred on 0.
 const LENGTH_MM: f64 = 120.0;
-/// Half the length that a finger of its own pace reads, mm.
+/// Half the length that is read when the reading point moves at its own pace instead of the
+/// finger's, mm.
 pub(super) const HALF_READ_MM: f64 = 45.0;
-/// Standard deviation of the Gaussian over which one ridge's contact averages, mm: -3 dB at 6.6
-/// periods per millimetre (530 Hz at 80 mm/s).
+/// Standard deviation of the Gaussian over which the contact of one ridge averages, mm: -3 dB at
+/// 6.6 periods per millimetre (530 Hz at 80 mm/s).
 const CONTACT_MM: f64 = 0.02;
 /// Distance across the sweep over which the grain changes completely, mm.
 const TRACK_MM: f64 = 3.0;
@@ -23,12 +25,12 @@ const TRACK_MM: f64 = 3.0;
 /// The relief of one surface: a fixed field, read at the finger's position.
 pub(super) struct Relief {
     lines: Vec<f64>,
-    /// Two independent fields; their mix rotates with the position across the sweep.
+    /// Two independent fields. Their mix changes with the position across the sweep.
     grains: [Vec<f64>; 2],
 }
 
 impl Relief {
-    /// Creates a field whose standard deviation before smoothing by the contact is
+    /// Creates a field. Before it is smoothed by the contact, its standard deviation is
     /// `parameters.relief`.
     pub(super) fn new(parameters: &Parameters, random: &mut Normal) -> Self {
         let unit = parameters.unit();
@@ -104,7 +106,7 @@ fn gaussian() -> (Vec<f64>, f64) {
     (kernel, total)
 }
 
-/// Convolves with the contact's Gaussian.
+/// Smooths values with the contact's Gaussian.
 fn smooth(values: &[f64]) -> Vec<f64> {
     let (kernel, total) = gaussian();
     let reach = kernel.len() / 2;
@@ -119,8 +121,8 @@ fn smooth(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Returns the weights of Catmull–Rom's interpolation for a position from 0 to 1 between the second
-/// and the third of four values.
+/// Returns the weights of Catmull–Rom interpolation for a position between the second and the third
+/// of four values; `t` goes from 0 to 1.
 pub(super) fn cubic_weights(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [
@@ -131,7 +133,7 @@ pub(super) fn cubic_weights(t: f64) -> [f64; 4] {
     ]
 }
 
-/// Interpolates by Catmull–Rom; constant beyond the ends.
+/// Interpolates by Catmull–Rom; beyond the ends it is constant.
 fn cubic(values: &[f64], point: f64) -> f64 {
     let last = values.len() - 3;
     let whole = libm::floor(point).clamp(1.0, last as f64);

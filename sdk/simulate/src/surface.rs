@@ -8,15 +8,15 @@ use super::SimulationError;
 /// A surface that can be simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Surface {
-    /// Strong and broad: grains of many sizes, energy up to several hundred hertz.
+    /// Strong and broadband: grains of many sizes, with energy up to several hundred hertz.
     Sandpaper,
-    /// Weak and broad: a weave of a quarter millimetre.
+    /// Weak and broadband: a weave of a quarter millimetre.
     FineFabric,
-    /// Weak and low: a weave of a millimetre.
+    /// Weak and low-frequency: a weave of a millimetre.
     CoarseFabric,
-    /// Strong and low: flutes two millimetres apart.
+    /// Strong and low-frequency: flutes two millimetres apart.
     CorrugatedPaper,
-    /// Weak and low: shallow embossing.
+    /// Weak and low-frequency: shallow embossing.
     Vinyl,
 }
 
@@ -64,12 +64,12 @@ impl FromStr for Surface {
     }
 }
 
-/// A periodic part of the relief: a weave's thread or a flute, and its harmonics.
+/// A periodic part of the relief: the thread of a weave or a flute, with its harmonics.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// Periods per millimetre; hertz at 80 mm/s are 80 times as many.
+    /// Periods per millimetre. At 80 mm/s the frequency in hertz is 80 times this number.
     pub(super) per_mm: f64,
-    /// Standard deviation relative to the other parts of the surface.
+    /// Standard deviation, relative to the other parts of the surface.
     pub(super) weight: f64,
     /// Random walk of the phase, radians per root millimetre, which sets the width of the line.
     pub(super) wander: f64,
@@ -78,22 +78,22 @@ pub(super) struct Line {
 /// An irregular part of the relief: noise with most of its power between two spatial frequencies.
 #[derive(Debug)]
 pub(super) struct Grain {
-    /// Lower edge, periods per millimetre; below it the spectrum falls by 6 dB per octave.
+    /// Lower edge, periods per millimetre. Below it the spectrum falls by 6 dB per octave.
     pub(super) from_per_mm: f64,
-    /// Upper edge, periods per millimetre; above it the spectrum falls by 12 dB per octave.
+    /// Upper edge, periods per millimetre. Above it the spectrum falls by 12 dB per octave.
     pub(super) to_per_mm: f64,
-    /// Standard deviation relative to the other parts of the surface.
+    /// Standard deviation, relative to the other parts of the surface.
     pub(super) weight: f64,
 }
 
 #[derive(Debug)]
 pub(super) struct Parameters {
-    /// Label of the random stream, so that surfaces of the same seed differ.
+    /// Label of the random stream, so that different surfaces with the same seed differ.
     pub(super) label: u64,
-    /// Coefficient of kinetic friction, without unit.
+    /// Coefficient of kinetic friction, unitless.
     pub(super) friction: f64,
-    /// Standard deviation of the friction coefficient along the surface, before smoothing by the
-    /// finger.
+    /// Standard deviation of the friction coefficient along the surface, before the finger smooths
+    /// it.
     pub(super) relief: f64,
     /// Periodic parts.
     pub(super) lines: &'static [Line],
@@ -102,7 +102,7 @@ pub(super) struct Parameters {
 }
 
 impl Parameters {
-    /// Returns the standard deviation of a part of the relief of weight 1.
+    /// Returns the standard deviation of a part of the relief whose weight is 1.
     pub(super) fn unit(&self) -> f64 {
         let lines = self.lines.iter().map(|line| line.weight * line.weight);
         let grains = self.grains.iter().map(|grain| grain.weight * grain.weight);

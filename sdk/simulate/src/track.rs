@@ -1,5 +1,5 @@
-//! A relief without end, read along the path of the finger: the material of one surface, of which
-//! no place is touched twice.
+//! An endless relief that is read along the finger's path, so that no place of the material is
+//! touched twice.
 
 use std::f64::consts::PI;
 
@@ -9,17 +9,17 @@ use super::filters::OnePole;
 use super::relief::{POINTS_PER_MM, contact_kernel, cubic_weights};
 use super::surface::{Grain, Line, Parameters};
 
-/// A relief along a path, made as the finger moves on.
+/// A relief along a path, generated while the finger moves on.
 pub(super) struct Track {
     lines: Vec<Wave>,
     grains: Vec<Noise>,
     random: Normal,
     kernel: Vec<f64>,
-    /// The latest values before smoothing by the contact, oldest first, as many as the kernel has.
+    /// The latest values before smoothing by the contact, oldest first; as many as the kernel has.
     raw: Vec<f64>,
     /// The latest smoothed values, oldest first.
     smooth: [f64; 4],
-    /// Position of the finger after the second of `smooth`, points from 0 to below 1.
+    /// How far the finger is past the second of `smooth`, in points, from 0 to below 1.
     ahead: f64,
 }
 
@@ -39,7 +39,7 @@ struct Noise {
 }
 
 impl Track {
-    /// Creates a relief whose standard deviation before smoothing by the contact is
+    /// Creates a relief. Before it is smoothed by the contact, its standard deviation is
     /// `parameters.relief`.
     pub(super) fn new(parameters: &Parameters, mut random: Normal) -> Self {
         let unit = parameters.unit();
@@ -69,7 +69,7 @@ impl Track {
         track
     }
 
-    /// Passes the beginning, in which the filters still hold their zeros.
+    /// Skips the beginning, in which the filters still contain their initial zeros.
     fn settle(&mut self, parameters: &Parameters) {
         let lowest =
             parameters.grains.iter().map(|grain| grain.from_per_mm).fold(f64::INFINITY, f64::min);
@@ -79,7 +79,7 @@ impl Track {
         }
     }
 
-    /// Moves on by a distance in mm and returns the change of the friction coefficient there.
+    /// Moves on by a distance in mm, and returns the change of the friction coefficient there.
     pub(super) fn advance(&mut self, distance_mm: f64) -> f64 {
         self.ahead += distance_mm * POINTS_PER_MM;
         while self.ahead >= 1.0 {
@@ -107,7 +107,7 @@ impl Track {
         for line in &mut self.lines {
             value += line.amplitude * libm::cos(line.phase);
             line.phase += line.step + line.wander * random.next_normal();
-            // Small phases keep the cosine exact on long paths.
+            // Keeping the phase small keeps the cosine exact on long paths.
             line.phase -= if line.phase > 2.0 * PI { 2.0 * PI } else { 0.0 };
         }
         for grain in &mut self.grains {

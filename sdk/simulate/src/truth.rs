@@ -1,10 +1,9 @@
-//! The true spectrum of a free motion over a surface, as a function of speed and force, in closed
-//! form.
+//! The true spectrum of a free motion over a surface, as a closed-form function of speed and force.
 //!
-//! The relief is a stationary process along the path with a known spectral density over spatial
-//! frequency; a speed converts it to hertz, the force multiplies it, skin and rig filter it.
-//! Through the periodic Hann window of 0.2 s the expected power at a multiple of 5 Hz is the
-//! integral of that density times the window's power transfer.
+//! The relief is a stationary process along the path, with a known spectral density over spatial
+//! frequency. The speed converts spatial frequency to hertz, the force scales it, and skin and rig
+//! filter it. Seen through the periodic Hann window of 0.2 s, the expected power at a multiple of 5
+//! Hz is the integral of that density multiplied by the window's power transfer.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -19,14 +18,14 @@ use super::relief::{POINTS_PER_MM, contact_kernel, cubic_weights};
 use super::surface::{Grain, Parameters};
 use super::{Motion, SimulationError, SimulationOptions, check_range};
 
-/// Cells per step of the grid, in which densities are constant.
+/// Number of cells in each step of the grid. Densities are constant within a cell.
 const CELLS: usize = 32;
-/// Bins on either side of a multiple of 5 Hz from which the window still takes power.
+/// Number of bins on either side of a multiple of 5 Hz from which the window takes power.
 const WINDOW_BINS: usize = 4;
 /// Largest ratio of neighbouring speeds in a written truth.
 const SPEED_RATIO: f64 = 1.02;
 
-/// The true spectra of one simulated surface and rig.
+/// The true spectra of a simulated surface and rig.
 ///
 /// ```
 /// use htex_simulate::{FreeMotion, SimulationOptions, Surface};
@@ -44,7 +43,7 @@ pub struct Truth {
     options: SimulationOptions,
     band: Band,
     cell_hz: f64,
-    /// Squared magnitude of skin and rig in each cell, from 0 Hz.
+    /// Squared magnitude of skin and rig in each cell, starting at 0 Hz.
     filters: Vec<f64>,
     noise_power: f64,
 }
@@ -54,8 +53,8 @@ impl SimulationOptions {
     /// force.
     ///
     /// # Errors
-    /// When an option is out of its range, or the motion is not free: sweeps run over one fixed
-    /// piece of the material; or the level drifts or the finger lifts.
+    /// When an option is out of range; when the motion is not free, because sweeps run over one
+    /// fixed piece of the material; or when the level drifts or the finger lifts.
     pub fn truth(&self) -> Result<Truth, SimulationError> {
         self.check()?;
         if !self.departures.is_steady() {
@@ -92,12 +91,12 @@ impl Truth {
         self.band.grid_hz()
     }
 
-    /// Returns the true magnitudes at [`Self::frequency_hz`], newtons: the root of the expected
-    /// power of a segment of 0.2 s, both lateral axes together, with the rig's response and the
-    /// sensor's noise.
+    /// Returns the true magnitudes at the frequencies [`Self::frequency_hz`], newtons: the root of
+    /// the expected power in a segment of 0.2 s, with both lateral axes together, the rig's
+    /// response and the sensor's noise.
     ///
     /// # Errors
-    /// When speed or force are out of the simulator's range.
+    /// When speed or force is out of the simulator's range.
     pub fn magnitude(&self, speed_mm_s: f64, force_n: f64) -> Result<Vec<f64>, SimulationError> {
         check_range("speed_mm_s", speed_mm_s, 1.0, 500.0)?;
         check_range("force_n", force_n, 0.01, 10.0)?;
@@ -107,7 +106,7 @@ impl Truth {
         Ok(per_newton.into_iter().map(magnitude).collect())
     }
 
-    /// Returns the texture's factor at a force relative to that at 1 N.
+    /// Returns the factor of the texture at a force, relative to a force of 1 N.
     fn force_power(&self, force_n: f64) -> f64 {
         match self.options.departures.level_force {
             1.0 => force_n,
@@ -115,14 +114,15 @@ impl Truth {
         }
     }
 
-    /// Returns the magnitudes of the texture at a force of 1 N, without the sensor's noise.
+    /// Returns the magnitudes of the texture at a force of 1 N, without sensor noise.
     fn per_newton(&self, speed_mm_s: f64) -> Vec<f64> {
         let power = self.cell_powers(speed_mm_s);
         let window = window_powers();
         let at = |bin: usize| {
             let middle = bin * CELLS;
             let taken = window.iter().enumerate().map(|(i, transfer)| {
-                // A cell and its mirror image, half a cell from the frequency on either side.
+                // A cell above the frequency and its mirror image below it; the middles of the
+                // first pair are half a cell away.
                 let above = power.get(middle + i).copied().unwrap_or(0.0);
                 let below = (middle > i).then(|| power[middle - 1 - i]);
                 transfer * (above + below.unwrap_or(0.0))
@@ -132,7 +132,7 @@ impl Truth {
         (self.band.first_bin()..=self.band.last_bin()).map(at).collect()
     }
 
-    /// Returns the power of the texture in each cell at a force of 1 N, in newtons squared.
+    /// Returns the texture's power in each cell at a force of 1 N, newtons squared.
     fn cell_powers(&self, speed_mm_s: f64) -> Vec<f64> {
         let parameters = self.options.surface.parameters();
         let unit = parameters.unit();
@@ -153,12 +153,12 @@ impl Truth {
         self.filters.iter().enumerate().map(power).collect()
     }
 
-    /// Writes a JSON object with the true magnitudes: for speeds in steps of at most 2 % over the
-    /// range of the motion, those of the texture at 1 N; the sensor's noise; and the rule to
-    /// combine them.
+    /// Writes the true magnitudes as a JSON object. It contains the texture's magnitudes at 1 N,
+    /// for speeds in steps of at most 2 % over the range of the motion; the sensor's noise; and the
+    /// rule for combining them.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write_json(&self, out: impl Write) -> io::Result<()> {
         let [low, high] = match &self.options.motion {
             Motion::Free(free) => free.speed_mm_s,
@@ -183,7 +183,7 @@ impl Truth {
 }
 
 impl Truth {
-    /// Returns how the parts of a written truth are combined.
+    /// Returns the rule for combining the parts of a written truth.
     fn rule(&self) -> String {
         let force = match self.options.departures.level_force {
             1.0 => "force_n".to_owned(),
@@ -210,10 +210,10 @@ struct TruthText {
 }
 
 /// Returns the power of the relief in a cell of spatial frequency, relative to the square of
-/// [`Parameters::unit`]; `noise` are the grains' [`Grain::noise_power`].
+/// [`Parameters::unit`]. `noise` contains each grain's [`Grain::noise_power`].
 fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64) -> f64 {
     let lines = parameters.lines.iter().map(|line| {
-        // A random walk of the phase gives a Lorentzian; its part below 0 is reflected.
+        // A phase that walks randomly gives a Lorentzian line. Its part below 0 is reflected.
         let half_width = line.wander * line.wander / (4.0 * PI);
         let below = |x: f64| libm::atan((x - line.per_mm) / half_width) / PI;
         let within = |from: f64, to: f64| below(to) - below(from);
@@ -227,8 +227,8 @@ fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64)
     lines.chain(grains).sum()
 }
 
-/// Returns the gain of smoothing by the contact and of reading between points, at a spatial
-/// frequency.
+/// Returns the gain, at a spatial frequency, of smoothing by the contact and of interpolating
+/// between points.
 fn reading(kernel: &[f64], per_mm: f64) -> f64 {
     let turn = 2.0 * PI * per_mm / POINTS_PER_MM;
     let middle = (kernel.len() / 2) as f64;
@@ -237,8 +237,8 @@ fn reading(kernel: &[f64], per_mm: f64) -> f64 {
     smoothing.sum::<f64>() * cubic_gain(turn)
 }
 
-/// Returns the gain of the cubic interpolation for `turn` radians per point: its kernel's
-/// transform, by Simpson's rule.
+/// Returns the gain of the cubic interpolation for `turn` radians per point: the transform of its
+/// kernel, by Simpson's rule.
 fn cubic_gain(turn: f64) -> f64 {
     const STEPS: usize = 16;
     let at = |t: f64| {
@@ -259,7 +259,7 @@ fn cubic_gain(turn: f64) -> f64 {
     (0..=STEPS).map(simpson).sum::<f64>() / (3.0 * STEPS as f64)
 }
 
-/// Returns the power transfer of the periodic Hann window in the middles of the cells above its
+/// Returns the power transfer of the periodic Hann window at the middles of the cells above its
 /// frequency.
 fn window_powers() -> Vec<f64> {
     let power = |cell: usize| {
@@ -280,7 +280,7 @@ impl Grain {
         high * low * low
     }
 
-    /// Returns the power of the grain's filtered noise, for white noise of power 1.
+    /// Returns the power of the grain's filtered noise when the white noise has power 1.
     pub(super) fn noise_power(&self) -> f64 {
         const CELLS: usize = 4096;
         let at = |cell: usize| self.gain((cell as f64 + 0.5) / CELLS as f64 * 0.5 * POINTS_PER_MM);

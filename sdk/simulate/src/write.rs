@@ -1,30 +1,31 @@
-//! Writer of simulations as CSV with fixed decimals: equal bytes on every machine.
+//! Writes simulations as CSV with a fixed number of decimals, so that the bytes are equal on every
+//! machine.
 
 use std::io::{self, Write};
 
 use super::{Motion, Simulation};
 
-/// Decimals of each kind of column: 1 us, 0.1 uN (the noise is 0.2 mN), 0.1 um.
+/// Number of decimals for each kind of column: 1 us, 0.1 uN (the noise is 0.2 mN), 0.1 um.
 const TIME_DECIMALS: u32 = 6;
 pub(super) const FORCE_DECIMALS: u32 = 7;
 pub(super) const POSITION_DECIMALS: u32 = 4;
-/// Bytes that are collected before they are written.
+/// Number of bytes that are collected before they are written.
 const CHUNK: usize = 1 << 16;
 
-/// Rounds to the given decimals, as the value is read back.
+/// Rounds to the given number of decimals, to the value that is read back.
 pub(super) fn rounded(value: f64, decimals: u32) -> f64 {
     let scale = 10_u32.pow(decimals) as f64;
     libm::round(value * scale) / scale
 }
 
 impl Simulation {
-    /// Writes `t_s,fx_n,fy_n,fz_n,x_mm,y_mm` after a comment that states that this is simulated,
-    /// with the surface, the seed and the version.
+    /// Writes the columns `t_s,fx_n,fy_n,fz_n,x_mm,y_mm`. A comment before them states that the
+    /// file is simulated, with the surface, the seed and the version.
     ///
     /// The forces read back bit for bit.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let options = &self.options;
         let motion = match options.motion {
@@ -74,7 +75,7 @@ impl Simulation {
     }
 }
 
-/// Appends `value` with exactly the given decimals, at most 9.
+/// Appends `value` with exactly `decimals` decimals, at most 9.
 fn push_decimal(row: &mut Vec<u8>, value: f64, decimals: u32) {
     let scale = 10_u64.pow(decimals);
     let units = libm::round(value.abs() * scale as f64) as u64;
@@ -86,7 +87,7 @@ fn push_decimal(row: &mut Vec<u8>, value: f64, decimals: u32) {
     push_digits(row, units % scale, decimals as usize);
 }
 
-/// Appends an integer, padded with zeros to the given digits.
+/// Appends an integer, padded with zeros to `width` digits.
 fn push_digits(row: &mut Vec<u8>, mut value: u64, width: usize) {
     let mut digits = [b'0'; 20];
     let mut first = digits.len();

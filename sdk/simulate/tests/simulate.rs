@@ -1,5 +1,5 @@
-//! The simulator is repeatable, its files are readable, and its hands and spectra have the
-//! properties of their surfaces.
+//! The simulator is repeatable, its files can be read, and hands and spectra have the properties of
+//! their surfaces.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -39,7 +39,7 @@ fn written_and_read_back_it_is_the_same_recording() {
     std::fs::write(&path, bytes).unwrap();
     let mut read = read_recording(Path::new(&path), &ReadOptions::default()).unwrap();
     assert!(read.simulated);
-    // What was read has the hash of its file.
+    // The recording that was read has its file's hash.
     assert!(std::mem::take(&mut read.file).blake3().is_some());
     assert_eq!(read, simulation.to_recording("coarse.csv").unwrap());
 }
@@ -55,15 +55,15 @@ fn same_options_give_the_same_bytes_everywhere() {
     assert_ne!(short(7), short(8));
 }
 
-/// Hash of the rows of a short simulation, without the first line of the file, which has the
-/// version.
+/// Hash of the rows of a short simulation. The first line of the file is left out because it
+/// contains the version.
 fn hash_of_rows(options: SimulationOptions) -> u64 {
     let bytes = csv(&simulate(&options.with_duration_s(0.5)).unwrap());
     let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
     hash(&bytes[first_row..])
 }
 
-/// Detects machines, compilers and changes of filters or generators whose results differ.
+/// Detects machines, compilers, and changes of filters or generators that give different results.
 #[test]
 fn simulations_are_bit_identical_everywhere() {
     let seven = |surface| SimulationOptions::new(surface).with_seed(7);
@@ -78,7 +78,7 @@ fn simulations_are_bit_identical_everywhere() {
             0x0461_b28a_c539_2653
         ]
     );
-    // Faster and harder; slower and lighter; at a rate that needs the anti-aliasing filter.
+    // Faster and harder; slower and lighter; and a sample rate that needs the anti-aliasing filter.
     let of_motions = [(20_000.0, 240.0, 2.5), (20_000.0, 3.0, 0.05), (2_000.0, 80.0, 0.4)].map(
         |(rate_hz, speed_mm_s, force_n)| {
             hash_of_rows(
@@ -92,7 +92,7 @@ fn simulations_are_bit_identical_everywhere() {
     assert_eq!(of_motions, [0x7582_9557_4748_7781, 0x59d5_ef30_9a60_fc85, 0x20ea_cb8b_6839_e74b]);
 }
 
-/// The rig's response at a rate that needs the anti-aliasing filter.
+/// The rig's response at a sample rate that needs the anti-aliasing filter.
 #[test]
 fn the_setup_response_is_bit_identical_everywhere() {
     let options = SimulationOptions::new(Surface::Vinyl).with_rate_hz(2_000.0);
@@ -122,7 +122,7 @@ fn the_hand_keeps_within_the_papers_tolerance() {
     }
 }
 
-/// Amplitude of the lateral force at a frequency in the middle of each sweep (Goertzel).
+/// Amplitude of the lateral force at a frequency, measured in the middle of each sweep (Goertzel).
 fn amplitude_n(simulation: &Simulation, frequency_hz: f64) -> f64 {
     let n = 4000;
     let mut sum = 0.0;
@@ -234,7 +234,8 @@ fn dividing_by_the_rigs_response_gives_the_force_at_the_finger() {
         TextureSpectrum::average(&[part], options.averaging).unwrap()
     };
     let (raw, at_finger) = (spectrum(None), spectrum(Some(written)));
-    // The spectrum of sandpaper falls smoothly from 500 to 740 Hz; the rig's resonance does not.
+    // The spectrum of sandpaper falls smoothly from 500 to 740 Hz, but the rig's resonance does
+    // not.
     let step_db = |s: &TextureSpectrum| {
         let level = |low: f64, high: f64| {
             let bins = s.frequency_hz.iter().zip(&s.magnitude);
@@ -259,7 +260,7 @@ fn free_motion_fills_its_ranges_and_turns() {
     let simulation = simulate(&options).unwrap();
     assert_eq!(simulation, simulate(&options).unwrap());
     assert_ne!(simulation.y_mm, simulate(&options.clone().with_seed(2)).unwrap().y_mm);
-    // The anti-aliasing filter starts at 0.
+    // The anti-aliasing filter starts from 0.
     let mut forces = simulation.fz_n.iter().skip(20);
     assert!(forces.all(|force| (0.14..3.9).contains(force)));
     assert!(simulation.y_mm.iter().all(|place| place.abs() < 149.0));
@@ -269,7 +270,7 @@ fn free_motion_fills_its_ranges_and_turns() {
         let inside = values.iter().filter(|x| (low..high).contains(*x)).count();
         inside as f64 / values.len() as f64
     };
-    // Thirds of the ranges in the logarithm.
+    // The ranges are cut into thirds of their logarithms.
     for (values, edges) in
         [(&speeds, [36.0, 71.4, 141.4, 280.0]), (&simulation.fz_n, [0.15, 0.441, 1.293, 3.8])]
     {
@@ -278,14 +279,14 @@ fn free_motion_fills_its_ranges_and_turns() {
             assert!((0.15..0.55).contains(&part), "{part} in {pair:?}");
         }
     }
-    // Every 0.1 s: near a turn the position is constant to its four decimals.
+    // A place every 0.1 s, since near a turn the position is constant to its four decimals.
     let places: Vec<f64> = simulation.y_mm.iter().step_by(100).copied().collect();
     let turns = places.windows(3).filter(|y| (y[1] - y[0]) * (y[2] - y[1]) < 0.0).count();
     assert!(turns > 15, "{turns} turns");
 }
 
-/// RMS of the force along the strokes above 20 Hz, newtons: of the difference to the mean of 50 ms
-/// around, at full speed.
+/// RMS of the force along the strokes above 20 Hz, newtons: the difference to the mean of the 50 ms
+/// around it. Only stretches at full speed count.
 fn texture_n(simulation: &Simulation, from_s: f64, to_s: f64) -> f64 {
     let [from, to] = [from_s, to_s].map(|s| (s * simulation.rate_hz) as usize);
     let around = (0.05 * simulation.rate_hz) as usize;
@@ -300,8 +301,8 @@ fn texture_n(simulation: &Simulation, from_s: f64, to_s: f64) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-/// A texture fades by its drift, a finger lifts for its part of the time, and a file says what
-/// departs.
+/// A drifting texture fades, a finger lifts for the requested fraction of the time, and the file
+/// says what departs.
 #[test]
 fn hands_drift_and_lift() {
     let steady = FreeMotion::default().with_speed_mm_s([80.0; 2]).with_force_n([0.4; 2]);
@@ -318,7 +319,7 @@ fn hands_drift_and_lift() {
     let lost_db = |from_s: f64, to_s: f64| {
         20.0 * (texture_n(&fading, from_s, to_s) / texture_n(&plain, from_s, to_s)).log10()
     };
-    // The middles of the first and the last 20 s.
+    // The drift at the middles of the first and the last 20 s.
     let [early, late] = [lost_db(0.0, 20.0), lost_db(40.0, 60.0)];
     println!("{early:.1} and {late:.1} dB");
     assert!((early + 2.0).abs() < 0.7 && (late + 10.0).abs() < 0.7, "{early} {late}");
@@ -332,7 +333,7 @@ fn hands_drift_and_lift() {
     assert!(first_line.contains(", lifted 0.3 of the time, 4000 Hz"), "{first_line}");
 }
 
-/// Sweeps over one piece keep their frequencies where the surface says so.
+/// The frequencies of sweeps over one piece stay the same if the surface says so.
 #[test]
 fn frequencies_of_sweeps_follow_the_speed_by_the_exponent() {
     let line_hz = |speed: f64, exponent: f64| {

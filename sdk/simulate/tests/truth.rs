@@ -1,5 +1,6 @@
-//! The truth that a simulated surface states: recordings of a steady hand have it, an independent
-//! computation agrees with it, and a program that reads the file finds it at any speed and force.
+//! The true spectrum stated by a simulated surface: recordings of a steady hand have it, an
+//! independent computation agrees with it, and a program that reads the file finds it at any speed
+//! and force.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -13,8 +14,8 @@ fn free(surface: Surface) -> SimulationOptions {
     SimulationOptions::new(surface).with_free_motion(FreeMotion::default())
 }
 
-/// A hand that keeps its speed and force has the true spectrum, over all surfaces, and where a
-/// surface departs from a relief.
+/// The recording of a hand that keeps its speed and force has the true spectrum, on all surfaces
+/// and with departures from a relief.
 #[test]
 fn a_steady_part_of_a_free_motion_has_the_true_spectrum() {
     let relief = Departures::default();
@@ -48,9 +49,9 @@ fn a_steady_part_of_a_free_motion_has_the_true_spectrum() {
     }
 }
 
-/// Numbers from a NumPy program that evaluates the same physics on a grid of frequencies:
-/// autocorrelated phases as Lorentzians, one-pole filters, the contact's Gaussian, the bilinear
-/// skin and rig, the Hann window's power transfer.
+/// The numbers come from a NumPy program that evaluates the same physics on a grid of frequencies:
+/// phases that walk randomly as Lorentzians, one-pole filters, the contact's Gaussian, the bilinear
+/// skin and rig, and the Hann window's power transfer.
 #[test]
 fn the_truth_agrees_with_an_independent_computation() {
     let bins = [0, 4, 16, 46, 96, 196];
@@ -95,7 +96,7 @@ fn the_truth_agrees_with_an_independent_computation() {
     }
 }
 
-/// The written truth, by its own rule, is the truth between its speeds.
+/// When a written truth is evaluated by its own rule, it is correct between its speeds as well.
 #[test]
 fn a_written_truth_states_any_speed_and_force() {
     let truth = free(Surface::CoarseFabric).truth().unwrap();

@@ -1,10 +1,10 @@
-//! Writes a texture report on invented data to the given path.
+//! Writes a texture report with invented data to the given path.
 //!
 //! `cargo run -p htex-report --example sample -- report.html`
 
 use htex_report::{Measure, ModelResult, Texture, TextureReport, model_color, texture_report};
 
-/// Name, frequency of the peak (hertz), width (natural log units), height (newtons).
+/// Name, peak frequency (hertz), width (natural log units), height (newtons).
 const TEXTURES: [(&str, f64, f64, f64); 5] = [
     ("Vinyl", 60.0, 0.9, 0.0021),
     ("Denim", 130.0, 0.5, 0.0124),
@@ -18,7 +18,7 @@ fn main() -> std::io::Result<()> {
     std::fs::write(path, texture_report(&report()))
 }
 
-/// Caption, and whether it is a correlation; of errors, whether they are compared with the
+/// Caption; whether the measure is a correlation; for errors, whether they are compared with the
 /// repeatability.
 const MEASURES: [(&str, bool, bool); 4] = [
     ("Spectral correlation with the recording (1 is the best, dark)", true, false),
@@ -114,7 +114,7 @@ fn model(
     }
 }
 
-/// Up to ten local maxima, (hertz, newtons).
+/// Up to ten local maxima, each as (hertz, newtons).
 fn strongest(frequency_hz: &[f64], recorded: &[f64]) -> Vec<(f64, f64)> {
     let inner = 1..recorded.len() - 1;
     let is_peak = |i: &usize| recorded[*i] > recorded[*i - 1] && recorded[*i] > recorded[*i + 1];

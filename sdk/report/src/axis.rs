@@ -14,24 +14,23 @@ pub enum Scale {
 pub struct Axis {
     /// Quantity and unit, separated by a slash: `"frequency / Hz"`.
     pub label: String,
-    /// Linear or logarithmic.
+    /// Whether the axis is linear or logarithmic.
     pub scale: Scale,
-    /// Lowest and highest value shown, in the label's unit; from the data when absent.
+    /// Lowest and highest value shown, in the label's unit. If absent, taken from the data.
     pub range: Option<(f64, f64)>,
 }
 
-/// Largest magnitude of values; larger ones are limited to it, so that spans and ratios stay
-/// finite.
+/// Values with a larger magnitude are limited to this, so that spans and ratios stay finite.
 const LARGEST: f64 = 1e140;
 const SMALLEST: f64 = 1e-140;
 
 impl Axis {
-    /// Creates a linear axis whose range is that of the data.
+    /// Creates a linear axis whose range is taken from the data.
     pub fn linear(label: &str) -> Self {
         Self { label: label.to_owned(), scale: Scale::Linear, range: None }
     }
 
-    /// Creates a logarithmic axis whose range is that of the data.
+    /// Creates a logarithmic axis whose range is taken from the data.
     pub fn log(label: &str) -> Self {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
@@ -53,7 +52,7 @@ impl Axis {
         value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
     }
 
-    /// Returns the range to draw for `values`: always finite, increasing, wide enough to divide,
+    /// Returns the range to draw for `values`: always finite, increasing, wide enough to divide by,
     /// and positive on a log axis.
     pub(crate) fn resolve(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         let given = self.range.filter(|(a, b)| self.shows(*a) && self.shows(*b));
@@ -67,8 +66,8 @@ impl Axis {
     }
 }
 
-/// Returns a valid range with a margin for a marker at either end that does not extend it across
-/// zero.
+/// Returns a valid range with a margin for markers at both ends. The margin does not extend the
+/// range across zero.
 fn with_margin((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
     const MARGIN: f64 = 0.03;
     match scale {

@@ -1,5 +1,5 @@
-//! Diagram of a chain of stages as one SVG element: the running stages with their costs, and the
-//! omitted ones in grey.
+//! Diagram of a chain of processing stages as one SVG element: running stages with their costs, and
+//! omitted stages in grey.
 
 use crate::markup::Element;
 use crate::number::{brief, px};
@@ -18,17 +18,17 @@ const NAME_PX: f64 = 13.0;
 const FILL: &str = "#f3f8fc";
 const LINE: &str = "#0072b2";
 const PALE_LINE: &str = "#c4c4c4";
-/// Contrast of 4.5 : 1 on white.
+/// A grey with a contrast of 4.5 : 1 on white.
 const PALE_INK: &str = "#767676";
 
-/// A chain of stages, to be drawn.
+/// A chain of processing stages to draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
-    /// Title above the picture, and its name for screen readers.
+    /// Title above the picture, which is also its name for screen readers.
     pub title: String,
     /// The running stages, in order.
     pub stages: Vec<ChainStage>,
-    /// The omitted stages: name and reason.
+    /// The omitted stages, each with name and reason.
     pub left_out: Vec<(String, String)>,
 }
 
@@ -37,14 +37,14 @@ pub struct ChainStage {
     pub name: String,
     /// Why the stage runs.
     pub reason: String,
-    /// Rate of its output samples, hertz.
+    /// Sample rate of its output, hertz.
     pub rate_hz: f64,
-    /// Its time, nanoseconds per sample.
+    /// Its computing time, nanoseconds per sample.
     pub ns_per_sample: f64,
 }
 
 impl Chain {
-    /// Draws the chain as an `<svg>` element, usable alone or in a page.
+    /// Draws the chain as an `<svg>` element, for use alone or in a page.
     pub fn to_svg(&self) -> String {
         let rows = self.stages.len() + self.left_out.len();
         let pale_head = if self.left_out.is_empty() { 0.0 } else { 30.0 };
@@ -97,7 +97,7 @@ impl Chain {
         boxed.children(arrow)
     }
 
-    /// Draws a stage's part of the total cost, with the number.
+    /// Draws a stage's share of the total cost as a bar with its number.
     fn bar(&self, top: f64, ns: f64) -> [Element; 2] {
         let total = self.total_ns();
         let share = if total > 0.0 { ns / total } else { 0.0 };

@@ -1,22 +1,22 @@
 //! Colours: a palette for models and series, and the scales of the heat tables.
 //!
-//! The hues are based on Okabe and Ito's set. Light ones are replaced by darker ones, so that every
-//! line has a contrast of at least 3 : 1 on white, and any two models differ in normal, protan,
-//! deutan and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about 17 or
-//! more).
+//! The hues are based on Okabe and Ito's set. Light hues are replaced by darker ones, so that every
+//! line has a contrast of at least 3 : 1 on white, and any two models can be told apart in normal,
+//! protan, deutan and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about
+//! 17 or more).
 
 /// Colour of the recording: dark grey, distinct from the models' colours.
 pub const RECORDING_COLOR: &str = "#4d4d4d";
 
-/// Colours of the models, in the order of their registry, and of series.
+/// Colours of the models, in the order of their registry; also used for series.
 const PALETTE: [&str; 6] = ["#0072b2", "#009e73", "#d55e00", "#7d1f6b", "#5b2c00", "#006b7a"];
 
-/// Colours of models beyond the palette, and of those that the registry does not have.
+/// Colours of models beyond the palette, and of models that are not in the registry.
 const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
-/// Returns the colour of the model called `short_name` (`"sbeta"`) by its place among the short
-/// names of the built-in models, the same in every picture. Any other model gets one of four
-/// further colours, chosen by its name.
+/// Returns the colour of the model `short_name` (such as `"sbeta"`). It depends on the model's
+/// place among the short names of the built-in models, so it is the same in every picture. Any
+/// other model gets one of four further colours, chosen by its name.
 pub fn model_color(short_name: &str, builtin: &[&str]) -> &'static str {
     let name = short_name.to_ascii_lowercase();
     let place = builtin.iter().position(|known| known.eq_ignore_ascii_case(&name));
@@ -25,12 +25,12 @@ pub fn model_color(short_name: &str, builtin: &[&str]) -> &'static str {
     color.unwrap_or(&OTHERS[sum % OTHERS.len()])
 }
 
-/// Returns the colour of the `index`-th of some series that are not models.
+/// Returns the colour of series number `index`, for series that are not models.
 pub fn series_color(index: usize) -> &'static str {
     PALETTE[index % PALETTE.len()]
 }
 
-/// A colour: red, green and blue, each 0 to 255.
+/// A colour: red, green and blue, each from 0 to 255.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rgb(pub(crate) [f64; 3]);
 
@@ -73,12 +73,12 @@ impl Rgb {
     }
 }
 
-/// Returns a shade from light to dark blue, for 0 to 1.
+/// Returns a shade from light blue (0) to dark blue (1).
 pub(crate) fn sequential(amount: f64) -> Rgb {
     PALE.mix(BLUE, amount.clamp(0.0, 1.0))
 }
 
-/// Returns a shade from blue over white to orange, for -1 to 1.
+/// Returns a shade from blue (-1) over white to orange (1).
 pub(crate) fn diverging(amount: f64) -> Rgb {
     let end = if amount < 0.0 { BLUE } else { ORANGE };
     WHITE.mix(end, amount.abs().min(1.0))

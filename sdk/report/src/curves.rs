@@ -1,4 +1,4 @@
-//! The data area of a plot: lines, stems, markers, hover text.
+//! The data area of a plot: lines, stems, markers and hover text.
 
 use crate::legend::stroke;
 use crate::markup::Element;
@@ -8,7 +8,7 @@ use crate::series::{Line, Series};
 use crate::svg;
 
 impl Drawing<'_> {
-    /// Draws the series in an inner picture that clips at the data area.
+    /// Draws the series in a nested picture that clips at the data area.
     pub(crate) fn data(&self) -> Element {
         let area = &self.area;
         Element::new("svg")
@@ -62,8 +62,8 @@ impl Drawing<'_> {
         shown.map(|(x, y)| svg::circle(x, y, radius).set("fill", series.marker_fill())).collect()
     }
 
-    /// Draws invisible dots that show the hover text, no closer together than a pointer can
-    /// distinguish.
+    /// Draws invisible dots that show the hover text. They are no closer together than a pointer
+    /// can distinguish.
     fn hover(&self, series: &Series) -> Element {
         let mut last = f64::NEG_INFINITY;
         let mut dots = Element::new("g").set("fill", "transparent").set("stroke", "none");
@@ -89,7 +89,7 @@ impl Drawing<'_> {
         format!("{}: {}, {}", series.name, value(x, x_unit), value(y, y_unit))
     }
 
-    /// Returns the position of a point in the data area, pixels from its top left.
+    /// Returns the position of a point in the data area, in pixels from the top left corner.
     fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let across = self.x.fraction(x)? * self.area.width;
         let down = (1.0 - self.y.fraction(y)?) * self.area.height;

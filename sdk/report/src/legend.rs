@@ -1,11 +1,11 @@
-//! Legend: the names of a plot's series with samples of their line styles.
+//! The legend of a plot: the names of its series with samples of their line styles.
 
 use crate::markup::Element;
 use crate::number::px;
 use crate::series::{Line, Series};
 use crate::svg::{self, TEXT_PX, text_width};
 
-/// Positions the series' names left to right below the title, wrapped to `width`.
+/// Places the series' names from left to right below the title, wrapped at `width`.
 pub(crate) fn places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> {
     let (mut x, mut y) = (12.0, 33.0);
     let mut out = Vec::new();
@@ -20,7 +20,7 @@ pub(crate) fn places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> 
     out
 }
 
-/// Draws a sample of the series' style at `(x, y)`, pixels, and its name.
+/// Draws a sample of the series' style at `(x, y)` in pixels, followed by its name.
 pub(crate) fn entry(x: f64, y: f64, series: &Series) -> Element {
     let sample = match series.line {
         Line::None => None,

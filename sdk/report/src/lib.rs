@@ -1,7 +1,7 @@
 //! SVG plots, heat tables and self-contained HTML reports.
 //!
-//! The crate converts data to text. It reads no files and no clock and does no signal processing:
-//! equal data gives equal bytes. Pages contain their style, use no script and load nothing.
+//! This crate converts data to text. It reads no files and no clock and does no signal processing,
+//! so equal data gives equal bytes. Pages contain their own style, use no scripts and load nothing.
 //!
 //! ```
 //! use htex_report::{Axis, Plot, Series};

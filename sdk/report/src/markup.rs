@@ -1,4 +1,4 @@
-//! Elements and escaping: the only module that writes markup.
+//! Markup elements and escaping. This is the only module that writes markup.
 
 use std::fmt::Write;
 

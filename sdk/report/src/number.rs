@@ -3,8 +3,8 @@
 /// Text for a value that is missing or not finite.
 pub(crate) const MISSING: &str = "\u{2013}";
 
-/// Formats `value` with exactly `decimals` decimals and a minus sign (U+2212); an en dash when not
-/// finite.
+/// Formats `value` with exactly `decimals` decimals and a proper minus sign (U+2212). A value that
+/// is not finite becomes an en dash.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
@@ -31,7 +31,7 @@ pub(crate) fn brief(value: f64) -> String {
     trim_zeros(&fixed(value, decimals))
 }
 
-/// Formats a coordinate in pixels, to a hundredth.
+/// Formats a coordinate in pixels, rounded to a hundredth.
 pub(crate) fn px(value: f64) -> String {
     let text = trim_zeros(&format!("{value:.2}"));
     if text == "-0" { "0".to_owned() } else { text }
@@ -49,8 +49,8 @@ pub(crate) fn bytes(count: u64) -> String {
     }
 }
 
-/// Formats the ratio of `whole` to `part` with three digits, as `570 : 1`; an en dash when `part`
-/// is zero.
+/// Formats the ratio of `whole` to `part` with three digits, such as `570 : 1`; an en dash if
+/// `part` is zero.
 pub(crate) fn ratio(whole: u64, part: u64) -> String {
     if part == 0 {
         return MISSING.to_owned();
@@ -66,7 +66,7 @@ fn three_digits(value: f64) -> f64 {
     if value < 100.0 { value } else { (value / unit).round() * unit }
 }
 
-/// Groups digits in threes by narrow no-break spaces if there are more than four.
+/// Groups digits in threes with narrow no-break spaces if there are more than four.
 fn thousands(digits: &str) -> String {
     if digits.len() <= 4 || digits.contains('.') {
         return digits.to_owned();

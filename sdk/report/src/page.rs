@@ -4,7 +4,7 @@ use crate::markup::{Element, escape};
 
 const STYLE: &str = include_str!("page.css");
 
-/// An HTML page, written from top to bottom.
+/// A self-contained HTML page, written from top to bottom.
 #[derive(Debug, Clone)]
 pub struct Page {
     title: String,
@@ -30,7 +30,7 @@ impl Page {
         self.body.push_str(html);
     }
 
-    /// Returns the page as text, to be stored as UTF-8.
+    /// Returns the page as text, which must be stored as UTF-8.
     pub fn render(&self) -> String {
         let (title, body) = (escape(&self.title), &self.body);
         format!(
@@ -47,7 +47,7 @@ pub fn paragraph(text: &str) -> String {
     Element::new("p").text(text).render()
 }
 
-/// Returns `items` as a list, or nothing when there are none.
+/// Returns `items` as a list, or nothing if there are none.
 pub fn list(items: &[impl ToString]) -> String {
     if items.is_empty() {
         return String::new();
@@ -62,14 +62,14 @@ pub fn code_block(text: &str) -> String {
     Element::new("pre").child(&code).render()
 }
 
-/// Places SVG pictures side by side, or one below another where the page is narrow.
+/// Places SVG pictures side by side, or below one another if the page is narrow.
 pub fn figures(pictures: &[String]) -> String {
     let one = |svg: &String| Element::new("figure").set("class", "wide").raw(svg);
     let figures = Element::new("div").set("class", "figures");
     figures.children(pictures.iter().map(one)).render()
 }
 
-/// Returns HTML that a click on `summary` expands.
+/// Returns HTML that expands when `summary` is clicked.
 pub fn details(summary: &str, html: &str) -> String {
     let details = Element::new("details").child(&Element::new("summary").text(summary));
     details.raw(html).render()

@@ -15,16 +15,16 @@ pub(crate) const INK: &str = "#222";
 const GRID: &str = "#e3e3e3";
 const MINOR_GRID: &str = "#f2f2f2";
 
-/// A plot with axes, series and a title.
+/// A line or scatter plot with axes, series and a title.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// Title above the plot, and its name for screen readers.
+    /// Title above the plot, which is also its name for screen readers.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// The series in drawing order, the last on top.
+    /// The series in drawing order; the last one is on top.
     pub series: Vec<Series>,
     /// Width of the whole picture, pixels.
     pub width: f64,
@@ -48,17 +48,17 @@ impl Plot {
         }
     }
 
-    /// Returns the width that the plot is drawn with, pixels.
+    /// Returns the width with which the plot is drawn, pixels.
     pub(crate) fn drawn_width(&self) -> f64 {
         size(self.width, 480.0)
     }
 
-    /// Returns the height that the plot is drawn with, pixels.
+    /// Returns the height with which the plot is drawn, pixels.
     pub(crate) fn drawn_height(&self) -> f64 {
         size(self.height, 300.0)
     }
 
-    /// Draws the plot as an `<svg>` element, usable alone or in a page.
+    /// Draws the plot as an `<svg>` element, for use alone or in a page.
     pub fn to_svg(&self) -> String {
         self.to_svg_from(0.0)
     }
@@ -68,7 +68,7 @@ impl Plot {
         Drawing::new(self, 0.0).area.left
     }
 
-    /// Draws the plot with its data area at least this far from the left, pixels.
+    /// Draws the plot with its data area at least `least_left` pixels from the left.
     pub(crate) fn to_svg_from(&self, least_left: f64) -> String {
         let drawing = Drawing::new(self, least_left);
         let (width, height) = (drawing.width, drawing.height);
@@ -93,7 +93,7 @@ impl Plot {
     }
 }
 
-/// A plot with its layout.
+/// A plot together with its layout.
 pub(crate) struct Drawing<'a> {
     pub(crate) plot: &'a Plot,
     width: f64,
@@ -187,7 +187,7 @@ impl<'a> Drawing<'a> {
     }
 }
 
-/// Returns `given` if it is a valid width or height, else `otherwise`.
+/// Returns `given` if it is a valid width or height, otherwise `otherwise`.
 fn size(given: f64, otherwise: f64) -> f64 {
     if given.is_finite() { given.clamp(120.0, 10_000.0) } else { otherwise }
 }
@@ -196,7 +196,7 @@ fn grid_line(tick: &Tick, line: Element) -> Element {
     line.set("stroke", if tick.label.is_empty() { MINOR_GRID } else { GRID })
 }
 
-/// Returns the labels of `ticks` that fit without overlap, by decreasing importance.
+/// Returns the labels of `ticks` that fit without overlap, the most important first.
 fn spaced_labels<'t>(ticks: &'t [(f64, Tick)], area: &Area) -> Vec<(f64, &'t str)> {
     let mut order: Vec<&(f64, Tick)> = ticks.iter().filter(|(_, t)| !t.label.is_empty()).collect();
     order.sort_by_key(|(_, tick)| tick.rank);

@@ -3,7 +3,7 @@
 use crate::axis::{Axis, Scale};
 use crate::ticks::{Tick, ticks};
 
-/// One axis, mapped to a length of pixels.
+/// One axis, mapped to a length in pixels.
 #[derive(Debug, Clone)]
 pub(crate) struct Projection {
     scale: Scale,
@@ -11,8 +11,8 @@ pub(crate) struct Projection {
     high: f64,
 }
 
-/// Distance outside the plot, in lengths of the axis, at which points are clamped, so that
-/// coordinates stay short.
+/// Points further outside the plot than this many axis lengths are clamped, so that coordinates
+/// stay short.
 const FAR: f64 = 20.0;
 
 impl Projection {
@@ -35,8 +35,8 @@ impl Projection {
         usable.then(|| fraction.clamp(-FAR, FAR))
     }
 
-    /// Returns the value at which stems start: zero if the axis shows it, otherwise the closest
-    /// end.
+    /// Returns the value at which stems start: zero if the axis shows it, otherwise the end of the
+    /// axis closest to zero.
     pub(crate) fn base(&self) -> f64 {
         match self.scale {
             Scale::Linear => 0f64.clamp(self.low, self.high),

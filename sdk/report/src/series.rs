@@ -1,4 +1,4 @@
-//! Series of a plot: named points and their style.
+//! Series of a plot: points with a name and a style.
 
 use crate::color::RECORDING_COLOR;
 
@@ -14,12 +14,12 @@ pub enum Line {
     Stems,
 }
 
-/// A series of points of a [`Plot`](crate::Plot).
+/// A series of points in a [`Plot`](crate::Plot).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name in the legend and in the hover text; a series without a name is not in the legend.
+    /// Name in the legend and in the hover text. A series without a name is not in the legend.
     pub name: String,
-    /// (x, y) in the axes' units. Points that are not finite are left out.
+    /// Points (x, y) in the axes' units. Points that are not finite are not drawn.
     pub points: Vec<(f64, f64)>,
     /// A CSS colour.
     pub color: String,
@@ -33,7 +33,8 @@ pub struct Series {
     pub marker_hollow: bool,
     /// Whether hovering over a point shows its values.
     pub hover: bool,
-    /// Hover texts, one per point, instead of the values; missing ones show the values.
+    /// Hover texts that replace the values, one for each point. Points without a text show their
+    /// values.
     pub notes: Vec<String>,
 }
 
@@ -53,12 +54,12 @@ impl Series {
         }
     }
 
-    /// Creates stems with a dot on each.
+    /// Creates stems with a dot at the end of each.
     pub fn stems(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self { line: Line::Stems, marker_radius_px: Some(2.5), ..Self::line(name, points) }
     }
 
-    /// Creates dots without lines.
+    /// Creates dots that are not connected.
     pub fn scatter(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self { line: Line::None, marker_radius_px: Some(3.0), ..Self::line(name, points) }
     }
@@ -74,7 +75,7 @@ impl Series {
         if self.marker_hollow { "#fff" } else { &self.color }
     }
 
-    /// Makes the series a backdrop: thin, without hover text.
+    /// Turns the series into a backdrop: thin, and without hover text.
     #[must_use]
     pub fn behind(mut self) -> Self {
         self.line_width_px = 1.0;

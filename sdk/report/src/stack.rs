@@ -1,11 +1,11 @@
-//! Several plots below each other as one SVG element.
+//! Stack of several plots as one SVG element.
 
 use crate::markup::Element;
 use crate::number::px;
 use crate::plot::Plot;
 
-/// Draws plots below each other, in their order and with their data areas aligned at the left, as
-/// one self-contained `<svg>` element; `title` is its name for screen readers.
+/// Draws plots below one another as one self-contained `<svg>` element. The plots keep their order,
+/// and their data areas are aligned at the left. `title` is the picture's name for screen readers.
 ///
 /// ```
 /// use htex_report::{Axis, Plot, stacked};

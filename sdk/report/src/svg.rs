@@ -1,9 +1,9 @@
-//! The SVG shapes of plots.
+//! The SVG shapes used in plots.
 
 use crate::markup::Element;
 use crate::number::px;
 
-/// Smallest text, pixels.
+/// Size of the smallest text, pixels.
 pub(crate) const TEXT_PX: f64 = 11.0;
 
 /// Returns an upper estimate of the width of `text` at `size_px` in common sans-serif fonts.
@@ -11,7 +11,7 @@ pub(crate) fn text_width(text: &str, size_px: f64) -> f64 {
     0.62 * size_px * text.chars().count() as f64
 }
 
-/// Shortens `text` to `width_px`, with an ellipsis if it was cut.
+/// Shortens `text` to `width_px`, with an ellipsis if something was cut off.
 pub(crate) fn fit_text(text: &str, size_px: f64, width_px: f64) -> String {
     if text_width(text, size_px) <= width_px {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! Tables whose cells show their value as a number and as a shade.
+//! Heat tables: each cell shows its value as a number and as a shade.
 
 use crate::color::{Rgb, diverging, sequential};
 use crate::markup::Element;
@@ -37,11 +37,11 @@ impl HeatScale {
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// A value shaded by the table's scale, followed by a mark (such as `"*"`, or nothing).
+    /// A value shaded by the table's scale, followed by a mark such as `"*"` (may be empty).
     Shaded(f64, &'static str),
     /// A value without a shade.
     Plain(f64),
-    /// Text, with smaller text below it if the second is not empty.
+    /// Text, with smaller text below it unless the second string is empty.
     Text(String, String),
     /// An unknown value.
     Missing,
@@ -51,7 +51,7 @@ pub enum Cell {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     pub header: String,
-    /// One cell per column.
+    /// The cells, one for each column.
     pub cells: Vec<Cell>,
 }
 
@@ -60,7 +60,7 @@ pub struct Row {
 pub struct Table {
     /// What the numbers are, with their unit.
     pub caption: String,
-    /// Header of the column of row headers.
+    /// Header of the column that holds the row headers.
     pub corner: String,
     /// The column headers.
     pub columns: Vec<String>,
@@ -72,7 +72,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Returns the table as an HTML element, in a frame that scrolls if the page is too narrow.
+    /// Returns the table as an HTML element. Its frame scrolls if the page is too narrow.
     pub fn to_html(&self) -> String {
         let table = Element::new("table")
             .child(&Element::new("caption").text(&self.caption))

@@ -14,14 +14,14 @@ pub struct Tick {
     pub(crate) rank: u8,
 }
 
-/// Returns the ticks of an axis from `low` to `high`, increasing and inside it: steps of 1, 2 or 5
-/// times a power of ten, about `count` of them labelled. A log axis has ticks at 1, 2 and 5 of each
-/// decade with minor ticks between, or at whole decades if there are many.
+/// Returns the ticks of an axis, increasing and within `low` to `high`. Steps are 1, 2 or 5 times a
+/// power of ten, and about `count` ticks have labels. A log axis has ticks at 1, 2 and 5 of each
+/// decade with minor ticks between them, or only at whole decades if there are many.
 pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
     let (low, high) = sound_range(Some((low, high)), scale);
     let count = count.clamp(2, 50) as f64;
     match scale {
-        // A range of less than a factor of three has too few of 1, 2 and 5.
+        // A range of less than a factor of three contains too few of the ticks at 1, 2 and 5.
         Scale::Log if high / low >= 3.0 => log(low, high, count),
         _ => linear(low, high, count),
     }
@@ -41,8 +41,8 @@ fn linear(low: f64, high: f64, count: f64) -> Vec<Tick> {
         .collect()
 }
 
-/// Returns the smallest of 1, 2, 5 times a power of ten that is at least `step`, as mantissa and
-/// exponent.
+/// Returns the smallest number that is 1, 2 or 5 times a power of ten and at least `step`, as
+/// mantissa and exponent.
 fn nice_step(step: f64) -> (f64, i32) {
     let exponent = step.log10().floor() as i32;
     let rest = step / 10f64.powi(exponent);
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(labels(&found), ["\u{2212}0.2", "0.0", "0.2", "0.4"]);
     }
 
-    /// Checks that no gap, at the ends or between ticks, is wider than the 1-2-5 grid allows.
+    /// Checks that no gap, between ticks or at the ends, is wider than the 1-2-5 grid allows.
     fn check(scale: Scale, low: f64, high: f64, count: usize) -> Result<(), TestCaseError> {
         let values: Vec<f64> = ticks(scale, low, high, count).iter().map(|t| t.value).collect();
         let slack = (high - low) * 1e-6;

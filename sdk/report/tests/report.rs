@@ -14,7 +14,8 @@ fn parse(markup: &str) -> roxmltree::Document<'_> {
     roxmltree::Document::parse(markup).unwrap()
 }
 
-/// Returns the page's body as XML; the head has elements that HTML does not close.
+/// Returns the page's body as XML. The head is left out because it has elements that HTML does not
+/// close.
 fn body(page: &str) -> &str {
     let start = page.find("<body>").unwrap();
     &page[start..page.find("</body>").unwrap() + "</body>".len()]
@@ -179,7 +180,7 @@ fn a_chain_shows_what_runs_by_its_cost_and_what_was_left_out_pale() {
     for text in ["40 ns a sample in all", "&lt;is&gt;", "a &amp; b", "none is wanted", "Left out"] {
         assert!(svg.contains(text), "{text}");
     }
-    // Bars proportional to the costs, and one grey box.
+    // Bars with lengths proportional to the costs, and one grey box.
     assert!(svg.contains("width=\"105\"") && svg.contains("width=\"35\""), "{svg}");
     assert_eq!(svg.matches("stroke-dasharray").count(), 1);
 }

@@ -1,20 +1,20 @@
-//! Accuracy of a spectrum against a recording's.
+//! Accuracy of a spectrum, compared with a recording's.
 
 use htex_author::{FeltError, TextureSpectrum, agreement};
 use htex_format::{Measure, Measures};
 use serde::{Deserialize, Serialize};
 
-/// Errors of a spectrum, compared with a recording's.
+/// Errors of a spectrum relative to a recording's spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Accuracy {
     /// Every measure of [`Measure::of_both`].
     pub(crate) measures: Measures,
-    /// What is felt of the difference.
+    /// How much of the difference can be felt.
     pub(crate) felt: FeltError,
 }
 
-/// Error in decibels used for silence, and when there is nothing to compare with, so that all
-/// errors are finite.
+/// Error in decibels that stands for silence, or for a missing comparison, so that all errors are
+/// finite.
 pub(crate) const FAR_DB: f64 = 200.0;
 
 pub(crate) fn accuracy(reference: &TextureSpectrum, magnitude: &[f64]) -> Accuracy {

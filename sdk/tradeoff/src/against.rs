@@ -1,4 +1,4 @@
-//! Costs and error measures that are compared.
+//! Pairs of cost and error that are plotted against each other.
 
 use htex_format::By;
 use htex_report::Axis;
@@ -8,16 +8,18 @@ use crate::front::front;
 use crate::point::Point;
 use crate::setting::Keep;
 
-/// The cost that error is compared with.
+/// The cost against which the error is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
-    /// Bytes of stored parameters; an error of what was fitted to is that of the magnitudes.
+    /// Bytes of stored parameters. The error relative to the fitted spectrum is then the error of
+    /// the magnitudes.
     Bytes,
-    /// Nanoseconds per sample; an error of what was fitted to is that of the samples.
+    /// Nanoseconds per sample. The error relative to the fitted spectrum is then the error of the
+    /// samples.
     Time,
 }
 
-/// A pair of cost and error measure.
+/// A pair of a cost and an error measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Against {
     pub cost: Cost,
@@ -32,7 +34,7 @@ impl Cost {
         }
     }
 
-    /// Whether a point's cost is comparable with that of the others.
+    /// Whether a point's cost can be compared with the cost of other points.
     pub(crate) fn compares(self, point: &Point) -> bool {
         match self {
             Self::Bytes => point.how.plays_as_default(),
@@ -56,7 +58,7 @@ impl Cost {
 }
 
 impl Against {
-    /// Returns cost and error of a point; an error that is not known is NaN.
+    /// Returns the cost and the error of a point. An unknown error is NaN.
     pub(crate) fn place(self, point: &Point) -> (f64, f64) {
         let cost = match self.cost {
             Cost::Bytes => point.bytes as f64,
@@ -70,8 +72,8 @@ impl Against {
         (cost, error)
     }
 
-    /// Returns which points are on the front. Points of the front of time whose times differ by no
-    /// more than their spreads count as one, that with the least error.
+    /// Returns which points are on the front. On the front of time, points whose times differ by no
+    /// more than their spreads count as one point: the one with the smallest error.
     pub(crate) fn on_front(self, points: &[&Point]) -> Vec<bool> {
         let places: Vec<(f64, f64)> = points.iter().map(|p| self.place(p)).collect();
         let mut on = front(&places);
@@ -91,7 +93,8 @@ impl Against {
     }
 }
 
-/// Cuts items in the order of their costs into runs that are tied with their first.
+/// Cuts items, given in the order of their costs, into runs. All items of a run are tied with its
+/// first item.
 fn ties(mut along: &[usize], tied: impl Fn(usize, usize) -> bool) -> Vec<&[usize]> {
     let mut runs = Vec::new();
     while let Some(&first) = along.first() {
@@ -110,10 +113,11 @@ mod tests {
     #[test]
     fn times_within_their_spreads_are_one_point() {
         let ns = [2.0, 2.1, 2.3, 2.5, 9.0];
-        // Each 5 %: 2.0 and 2.1 are tied, 2.3 is not tied with 2.0, 2.5 is with 2.3.
+        // Each spread is 5 %: 2.0 and 2.1 are tied, 2.3 is not tied with 2.0, and 2.5 is tied with
+        // 2.3.
         let tied = |a: usize, b: usize| ns[b] - ns[a] <= 0.05 * (ns[a] + ns[b]);
         assert_eq!(ties(&[0, 1, 2, 3, 4], tied), [&[0, 1][..], &[2, 3], &[4]]);
-        // A time that is not a number is tied with nothing, itself included.
+        // A time that is not a number is tied with nothing, not even itself.
         assert_eq!(ties(&[0, 4], |_, _| false), [&[0][..], &[4]]);
     }
 }

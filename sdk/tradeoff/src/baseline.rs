@@ -1,19 +1,19 @@
-//! The two baselines: the quantised spectrum, and the recording.
+//! The two baselines of a sweep: the quantised spectrum, and the recording itself.
 
 use htex_dsp::grid::{Band, level_rms};
 use htex_dsp::resample::Resampler;
 use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
 use htex_host::HostError;
 
-/// Quantisation steps of a byte.
+/// Number of quantisation steps in a byte.
 const STEPS: f64 = 255.0;
-/// Lower limit of a bin relative to the largest: -120 dB.
+/// Lower limit of a bin relative to the largest bin: -120 dB.
 const FLOOR: f64 = 1e-6;
-/// Bytes of the two single-precision numbers: lowest and highest logarithm.
+/// Size of the two single-precision numbers that store the lowest and highest logarithm.
 const RANGE_BYTES: usize = 8;
 
-/// Quantises magnitudes to one byte each, on a logarithmic scale from the lowest to
-/// the highest, rounded up or down. Returns the values read back, and the bytes they take.
+/// Quantises magnitudes to one byte each, on a logarithmic scale from the lowest to the highest.
+/// Each is rounded up or down. Returns the values read back, and the number of bytes.
 pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     let top = magnitude.iter().copied().fold(0.0, f64::max);
     let bytes = magnitude.len() + RANGE_BYTES;
@@ -24,8 +24,8 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     let single = |x: f64| f64::from(x as f32);
     let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
     let step = (single(libm::log(top)) - low) / STEPS;
-    // The rounding error in energy is carried to the next bin, up to half a step, so that
-    // bands keep their energies.
+    // Each bin's rounding error in energy is carried over to the next bin, up to half a step, so
+    // that bands keep their energies.
     let mut left_over = 0.0;
     let stored = |log: &f64| {
         if step <= 0.0 {
@@ -42,7 +42,7 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     (logs.iter().map(stored).collect(), bytes)
 }
 
-/// Noise of unit RMS shaped by magnitudes on the band's grid, as noise models play it.
+/// Noise of unit RMS, shaped by magnitudes on the band's grid as noise models play it.
 pub(crate) struct SpectrumNoise {
     noise: ShapedNoise,
     resampler: Option<Resampler>,
@@ -87,7 +87,7 @@ mod tests {
         let magnitude: Vec<f64> = (0..197).map(|i| 0.01 * (-0.03 * f64::from(i)).exp()).collect();
         let (stored, bytes) = quantise(&magnitude);
         assert_eq!(bytes, 205);
-        // 51 dB in 255 steps of 0.2 dB; the error of ten bins together is much smaller.
+        // 51 dB in 255 steps of 0.2 dB. Over ten bins together, the error is much smaller.
         for (a, b) in magnitude.iter().zip(&stored) {
             assert!((20.0 * (b / a).log10()).abs() < 0.201, "{a} {b}");
         }

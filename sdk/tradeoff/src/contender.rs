@@ -1,4 +1,4 @@
-//! Contenders: what can be fitted to a recording, stored and played.
+//! Contenders: everything that can be fitted to a recording, stored and played.
 
 use htex_author::{Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
@@ -9,7 +9,7 @@ use crate::baseline::quantise;
 use crate::setting::Keep;
 use crate::{Setting, Subject, TradeoffError};
 
-/// A setting of a model, or a baseline, to be measured.
+/// What is measured: a model with a setting, or a baseline.
 #[derive(Debug, Clone)]
 pub(crate) struct Contender {
     pub(crate) model: String,
@@ -19,14 +19,14 @@ pub(crate) struct Contender {
 
 #[derive(Debug, Clone)]
 pub(crate) enum ContenderKind {
-    /// A model with a value for each of its fit options.
+    /// A model, with a value for each of its fit options.
     Model(LoadedModel, Vec<f64>),
-    /// The spectrum, one byte per bin.
+    /// The spectrum, quantised to one byte per bin.
     Quantised,
     Recording,
 }
 
-/// Stored data that playing needs.
+/// The stored data needed for playing.
 pub(crate) struct Stored {
     pub(crate) parameters: Vec<f64>,
     pub(crate) level_rms: f64,
@@ -34,12 +34,12 @@ pub(crate) struct Stored {
 }
 
 impl Contender {
-    /// Returns its name, which is unique within a recording.
+    /// Returns the contender's name, which is unique within a recording.
     pub(crate) fn id(&self) -> String {
         format!("{} {}", self.model, self.setting.words())
     }
 
-    /// Fits the model to a spectrum; for a baseline, computes the stored data.
+    /// Fits the model to a spectrum. For a baseline, computes the data to store.
     pub(crate) fn fit(&self, spectrum: &TextureSpectrum) -> Result<Fit, HostError> {
         match &self.kind {
             ContenderKind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
@@ -54,7 +54,7 @@ impl Contender {
         }
     }
 
-    /// Returns the data read back after storing a fit to a spectrum of the subject, and their size.
+    /// Stores a fit to one of the subject's spectra. Returns the data as read back, and their size.
     pub(crate) fn store(
         &self,
         subject: &Subject,

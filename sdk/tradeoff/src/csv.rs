@@ -1,11 +1,12 @@
-//! The points as CSV.
+//! Writing the points as CSV.
 
 use htex_finding::as_text;
 use htex_format::{By, Measure};
 
 use crate::{Point, Tradeoff};
 
-/// Returns the cells of a point by column: what [`Point`] has in JSON, without the knobs.
+/// Returns the cells of a point with their column names: what [`Point`] has in JSON, without the
+/// knobs.
 fn cells(p: &Point) -> Vec<(&'static str, String)> {
     let mut cells = Vec::new();
     let mut add = |name: &'static str, cell: String| cells.push((name, cell));
@@ -33,7 +34,7 @@ fn cells(p: &Point) -> Vec<(&'static str, String)> {
     cells
 }
 
-/// Writes every setting on every recording, one line each, after a header line.
+/// Writes a header line, then one line for every setting on every recording.
 pub fn csv(tradeoff: &Tradeoff) -> String {
     let mut lines = Vec::new();
     for point in &tradeoff.points {
@@ -46,7 +47,7 @@ pub fn csv(tradeoff: &Tradeoff) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Formats a cell of text, quoted if necessary, and marked as text.
+/// Formats a text cell: quoted if necessary, and marked as text.
 fn text(text: &str) -> String {
     let text = &*as_text(text);
     if text.contains([',', '"', '\n', '\r']) {

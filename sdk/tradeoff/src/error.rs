@@ -4,23 +4,23 @@ use std::path::PathBuf;
 
 use htex_finding::Hint;
 
-/// An error that ended a sweep; finished points are in its journal.
+/// Why a sweep ended early. Points that were finished are in its journal.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TradeoffError {
-    /// A recording is not usable, or a model failed.
+    /// A recording cannot be used, or a model failed.
     #[error(transparent)]
     Author(#[from] htex_author::AuthorError),
     /// A model refused a setting.
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
-    /// Parameters do not fit their store.
+    /// Parameters cannot be stored in the chosen way.
     #[error(transparent)]
     Store(#[from] htex_format::WriteError),
     /// The journal could not be written.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: std::io::Error },
-    /// A recording has nothing to hold out.
+    /// Nothing can be held out of a recording.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
     /// A knob does not have this value.

@@ -1,24 +1,25 @@
-//! The error that settings are graded by: the vertical axis of figures, fronts and knees.
+//! The error by which settings are judged: the vertical axis of figures, fronts and knees.
 
 use std::fmt;
 
 use htex_format::{ErrorMeasure, Measure};
 use serde::{Serialize, Serializer};
 
-/// An error of settings.
+/// An error by which settings are judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorAxis {
-    /// Fitted to the odd blocks of a recording, played, and compared with the even ones in third
-    /// octaves: in units of the error of the odd blocks themselves, as a second recording has it.
+    /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
+    /// with the even blocks in third octaves. The unit is the error of the odd blocks themselves,
+    /// which is the error of a second recording.
     #[default]
     HeldOut,
-    /// Compared with what the setting was fitted to, in decibels: by the model's magnitudes against
-    /// bytes, by rendered samples against time.
+    /// Error relative to what the setting was fitted to, in decibels. Against bytes it is measured
+    /// on the model's magnitudes, against time on rendered samples.
     Fitted(ErrorMeasure),
 }
 
 impl ErrorAxis {
-    /// All of them.
+    /// All errors.
     pub const ALL: [Self; 4] = [
         Self::HeldOut,
         Self::Fitted(ErrorMeasure::NineBand),
@@ -34,12 +35,12 @@ impl ErrorAxis {
         }
     }
 
-    /// Returns the error with a name in JSON.
+    /// Returns the error that has this name in JSON.
     pub fn find(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|error| error.id() == id)
     }
 
-    /// Returns the name in running text: `held-out error`.
+    /// Returns the name for use in a sentence: `held-out error`.
     pub fn name(self) -> &'static str {
         match self {
             Self::HeldOut => "held-out error",
@@ -47,7 +48,7 @@ impl ErrorAxis {
         }
     }
 
-    /// Returns the unit of its values.
+    /// Returns the unit of the error's values.
     pub(crate) const fn unit(self) -> &'static str {
         match self {
             Self::HeldOut => "of a second recording",
@@ -55,7 +56,7 @@ impl ErrorAxis {
         }
     }
 
-    /// Returns a value with its unit: `1.20 dB`.
+    /// Formats a value with its unit: `1.20 dB`.
     pub(crate) fn amount(self, value: f64) -> String {
         format!("{value:.2} {}", self.unit())
     }
@@ -73,5 +74,5 @@ impl Serialize for ErrorAxis {
     }
 }
 
-/// The measure of the held-out error.
+/// The measure used for the held-out error.
 pub(crate) const HELD_OUT_MEASURE: Measure = Measure::ThirdOctave;

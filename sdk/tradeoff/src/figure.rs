@@ -21,9 +21,9 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     }
 }
 
-/// Plots error against cost: all settings as small dots, each model's own front as larger ones,
-/// both baselines, the front of all models, and the error of a second recording as the floor. Both
-/// axes are logarithmic.
+/// Plots error against cost: all settings as small dots, the points on each model's own front as
+/// larger dots, both baselines, the front of all models, and the error of a second recording as a
+/// floor. Both axes are logarithmic.
 pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
     let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
     let mut plot = Plot::new(
@@ -31,7 +31,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
         against.cost.axis(),
         Axis::log(&format!("{} / {}", against.error, against.error.unit())),
     );
-    // Narrow, so that text stays legible on a phone.
+    // Narrow, so that text stays readable on a phone.
     (plot.width, plot.height) = (440.0, 380.0);
     let front = along_front(&shown, against);
     let mut line = Series::line("front of all", steps(&front, against));
@@ -70,8 +70,8 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     plot
 }
 
-/// The error of the recording against itself, over all costs: below it, errors do not distinguish
-/// models.
+/// Line at the error of the recording against itself, across all costs. Below it, errors do not
+/// distinguish models.
 fn floor(shown: &[&Point], against: Against) -> Option<Series> {
     let recording = shown.iter().find(|p| p.model == RECORDING)?;
     let error = against.place(recording).1;
@@ -84,7 +84,7 @@ fn floor(shown: &[&Point], against: Against) -> Option<Series> {
     Some(line)
 }
 
-/// Converts a front to steps: an error is reached from its cost on.
+/// Converts a front to steps: each error can be reached from its cost on.
 fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
     let mut steps = Vec::new();
     for point in front {
@@ -114,7 +114,8 @@ fn note(p: &Point) -> String {
     )
 }
 
-/// Returns a measure, `nine bands 1.20 dB`, and that of rendered samples if it has a column.
+/// Returns a measure as text, such as `nine bands 1.20 dB`, and also the measure of rendered
+/// samples if it has a column.
 fn measured(p: &Point, measure: Measure) -> impl Iterator<Item = String> {
     let row = measure.row();
     let words = |name: &str, by| {

@@ -1,8 +1,8 @@
 //! Pareto fronts.
 
-/// Returns which points of (cost, error) are on the Pareto front: no other point has at most the
-/// cost and at most the error, and less of one. A point with a number that is not finite is never
-/// on the front; points that are equal in both are on it together.
+/// Returns which points of (cost, error) are on the Pareto front. A point is on it if no other
+/// point has at most its cost and at most its error and less of one of them. A point with a number
+/// that is not finite is never on the front. Points that are equal in both are on it together.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| finite(&points[i])).collect();
@@ -47,7 +47,7 @@ mod tests {
     proptest! {
         #[test]
         fn nothing_on_it_is_beaten_and_all_else_is(
-            // Few values, so that ties occur.
+            // Few different values, so that ties occur.
             points in prop::collection::vec((0u8..12, 0u8..12), 0..60)
         ) {
             let points: Vec<(f64, f64)> =

@@ -1,5 +1,5 @@
-//! What a contender is fitted to and what is held out of it: the odd and the even blocks of a
-//! recording.
+//! The halves of a recording for held-out errors: contenders are fitted to the odd blocks and
+//! compared with the even blocks.
 
 use htex_author::{OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
 
@@ -9,21 +9,21 @@ use crate::error_axis::HELD_OUT_MEASURE;
 use crate::measured::rms_of;
 use crate::{Subject, TradeoffError};
 
-/// The halves of a recording and their difference.
+/// The halves of a recording and the difference between them.
 #[derive(Debug, Clone)]
 pub(crate) struct HeldOut {
     pub(crate) halves: OddAndEven,
-    /// Third-octave difference of the odd blocks from the even ones, decibels: above 0.
+    /// Third-octave difference between the odd and the even blocks, decibels; always above 0.
     pub(crate) floor_db: f64,
     /// All measures of that difference.
     pub(crate) repeats: Accuracy,
 }
 
 impl HeldOut {
-    /// Cuts what is read of a recording into blocks.
+    /// Cuts what is read of a recording into odd and even blocks.
     ///
     /// # Errors
-    /// Why there is nothing to hold out.
+    /// The reason why nothing can be held out.
     pub(crate) fn new(
         part: &SegmentSpectra,
         options: &SpectrumOptions,
@@ -31,7 +31,7 @@ impl HeldOut {
         let halves = odd_and_even(std::slice::from_ref(part), options.averaging)
             .ok_or("fewer than four blocks of 0.2 s are read of it")?;
         let mut repeats = accuracy(&halves.even, &halves.odd.magnitude);
-        // The difference is the repeatability itself.
+        // This difference is the repeatability itself, so it is within it by definition.
         repeats.felt.within_repeatability = true;
         let found = agreement(halves.even.as_ref(), &halves.odd.magnitude).get(HELD_OUT_MEASURE);
         let floor_db = found.filter(|db| db.is_finite()).ok_or("half of its blocks are silent")?;
@@ -43,8 +43,9 @@ impl HeldOut {
 }
 
 impl Contender {
-    /// Fits the odd blocks, plays, and returns the third-octave difference from the even ones,
-    /// decibels; `None` without blocks. Of the recording, it is the difference of the odd blocks.
+    /// Fits the contender to the odd blocks, plays it, and returns the third-octave difference from
+    /// the even blocks in decibels; `None` if the recording has no blocks. For the recording as a
+    /// contender, it is the difference between the odd and the even blocks.
     pub(crate) fn held_out_error_db(
         &self,
         subject: &Subject,

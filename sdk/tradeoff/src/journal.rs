@@ -1,4 +1,4 @@
-//! Journal of a sweep, from which an interrupted sweep continues.
+//! Journal of a sweep, with which an interrupted sweep can continue.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
@@ -12,7 +12,7 @@ use crate::TradeoffError;
 use crate::measured::Measured;
 use crate::timing::Timed;
 
-/// Start of the first line of a journal, followed by the key.
+/// Start of a journal's first line; the key follows.
 const HEAD: &str = "htex tradeoff ";
 
 /// Result of measuring a contender on a recording.
@@ -23,17 +23,17 @@ pub(crate) enum Outcome {
     Failed { reason: String },
 }
 
-/// A finished step. A contender is named by its id within its recording.
+/// A finished step. A contender is identified by its id within its recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) enum Entry {
     /// The result of measuring a contender on a recording.
     Measured { recording: usize, contender: String, outcome: Outcome },
-    /// The times of all contenders of a recording.
+    /// The times of all contenders for a recording.
     Timed { recording: usize, times: Vec<(String, Timed)> },
 }
 
-/// A file of finished entries, one per line, with a key of the sweep's inputs.
+/// A file of finished entries, one in each line. The first line has a key of the sweep's inputs.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -42,13 +42,13 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates a journal; its file is read by the first sweep that uses it.
+    /// Creates a journal. Its file is read by the first sweep that uses it.
     pub fn new(path: &Path) -> Self {
         Self { path: path.to_owned(), file: None, entries: Vec::new() }
     }
 
-    /// Reads the entries of a file with this key; a file with another key is overwritten. Reading
-    /// stops at a truncated line.
+    /// Reads the entries of a file that has this key. A file with another key is overwritten.
+    /// Reading stops at a truncated line.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
         let key = &format!("{HEAD}{key}");
         self.entries = self.kept(self.read(key))?;
@@ -57,7 +57,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Reads the file; a file that is not a journal is an error and is not changed.
+    /// Reads the file. A file that is not a journal is an error and is not changed.
     fn read(&self, key: &str) -> io::Result<Vec<Entry>> {
         let (own, name) = self.place()?;
         let file = match own.open(&name) {
@@ -78,7 +78,7 @@ impl Journal {
         Ok(entries.collect())
     }
 
-    /// Rewrites the file with the entries that were read, and opens it for more.
+    /// Rewrites the file with the entries that were read, and keeps it open for more.
     fn rewrite(&self, key: &str) -> io::Result<File> {
         let (own, name) = self.place()?;
         own.replace(&name, |file| {
@@ -92,7 +92,8 @@ impl Journal {
         own.open_to_append(&name)
     }
 
-    /// Appends a finished entry. A line is one write, so that only the last one can be truncated.
+    /// Appends a finished entry. Each line is a single write, so only the last line can be
+    /// truncated.
     pub(crate) fn keep(&self, entry: &Entry) -> Result<(), TradeoffError> {
         let write = |file: &Mutex<File>| {
             let line = serde_json::to_string(entry)? + "\n";
@@ -102,7 +103,7 @@ impl Journal {
         self.kept(self.file.as_ref().map_or(Ok(()), write))
     }
 
-    /// Removes the file, when the results are written elsewhere.
+    /// Removes the file, once the results are written elsewhere.
     ///
     /// # Errors
     /// When it cannot be removed.
@@ -111,7 +112,7 @@ impl Journal {
         self.kept(removed)
     }
 
-    /// The folder of the file, which must be there, and the file's name in it.
+    /// The file's folder, which must exist, and the file's name in it.
     fn place(&self) -> io::Result<(OwnFolder, PathBuf)> {
         let (own, name) = OwnFolder::of_file(&self.path)?;
         if own.path().is_dir() {
@@ -124,7 +125,7 @@ impl Journal {
         }
     }
 
-    /// Names the file in an error.
+    /// Adds the file's name to an error.
     fn kept<T>(&self, result: io::Result<T>) -> Result<T, TradeoffError> {
         result.map_err(|error| TradeoffError::Journal { path: self.path.clone(), error })
     }
@@ -155,7 +156,7 @@ mod tests {
         let journal = open("one");
         journal.keep(&entry("a")).unwrap();
         journal.keep(&entry("b")).unwrap();
-        // Interrupted while writing.
+        // As if interrupted while writing.
         let mut text = std::fs::read_to_string(&path).unwrap();
         text += "{\"Measured\":{\"recor";
         std::fs::write(&path, text).unwrap();

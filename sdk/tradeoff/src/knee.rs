@@ -1,4 +1,4 @@
-//! Knees of fronts, beyond which more cost reduces the error less.
+//! Knees of Pareto fronts: the points beyond which more cost reduces the error much less.
 
 use serde::Serialize;
 
@@ -6,34 +6,35 @@ use crate::against::{Against, Cost};
 use crate::error_axis::ErrorAxis;
 use crate::point::Point;
 
-/// Smallest error reduction of a step up, in the error's unit.
+/// Smallest error reduction that counts as a step up, in the error's unit.
 const STEP: f64 = 0.05;
 
-/// The knee of a front, and the next step up.
+/// The knee of a front, and the next step up from it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Knee {
     /// The recording, or the median of all recordings.
     pub recording: String,
     /// A model's short name, or `all models`.
     pub of: String,
-    /// The cost: `bytes` or `time`.
+    /// The kind of cost: `bytes` or `time`.
     pub against: &'static str,
     /// Model and setting at the knee.
     pub at: String,
-    /// Its cost, bytes or ns per sample.
+    /// Cost at the knee, in bytes or ns per sample.
     pub cost: f64,
     pub error: ErrorAxis,
-    /// Its error: decibels, or if it is held out, in units of a second recording's.
+    /// Error at the knee, in decibels. A held-out error is in units of a second recording's error.
     pub error_value: f64,
-    /// Model and setting of the next step up, whose error is at least 0.05 smaller; `None` if there
-    /// is none.
+    /// Model and setting of the next step up, which reduces the error by at least 0.05; `None` if
+    /// there is none.
     pub next: Option<String>,
-    /// Description of the knee and of the next step's gain and cost, as a sentence.
+    /// A sentence that describes the knee, and the gain and cost of the next step.
     pub words: String,
 }
 
-/// Returns the point of a front, by increasing cost, that is furthest below the straight line
-/// between its ends, with cost on a logarithmic axis; the first point of a front of one or two.
+/// Returns the knee of a front that is sorted by increasing cost: the point furthest below the
+/// straight line between the front's ends, with cost on a logarithmic axis. For a front of one or
+/// two points, it is the first point.
 pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
     let (&(low, high_error), &(high, low_error)) = (front.first()?, front.last()?);
     let across = |cost: f64| libm::log(cost / low) / libm::log(high / low);
@@ -41,11 +42,11 @@ pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
         let line = high_error + across(cost) * (low_error - high_error);
         if high > low { line - error } else { 0.0 }
     };
-    // Of several equally low ones, the cheapest.
+    // If several points are equally far below, the cheapest counts.
     (0..front.len()).reduce(|best, i| if below(&front[i]) > below(&front[best]) { i } else { best })
 }
 
-/// Returns the knees of one recording: of all models, then of each.
+/// Returns the knees of one recording: of all models together, then of each model.
 pub(crate) fn knees(
     recording: &str,
     points: &[&Point],
@@ -101,7 +102,7 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     })
 }
 
-/// Returns the points of a front by increasing cost; of equal ones the first.
+/// Returns the points of a front by increasing cost; of equal points only the first.
 pub(crate) fn along_front<'a>(points: &[&'a Point], against: Against) -> Vec<&'a Point> {
     let places: Vec<(f64, f64)> = points.iter().map(|p| against.place(p)).collect();
     let on = against.on_front(points);

@@ -1,10 +1,10 @@
-//! The options of storing and playing that a sweep varies, and the values of a fit option whose
-//! model chooses none ([`LoadedModel::knobs`](htex_host::LoadedModel::knobs)).
+//! The knobs of a sweep: options for storing and playing, and values for fit options for which the
+//! model itself lists none ([`LoadedModel::knobs`](htex_host::LoadedModel::knobs)).
 
 use htex_host::{FitOption, Knob};
 
-/// Options of storing and playing: varied one at a time, at the fit's defaults. Ways to load a
-/// model are added to these.
+/// Options for storing and playing. They are varied one at a time, with the fit at its defaults.
+/// Ways to load a model are added to these.
 pub const PLAYING: &[Knob] = &[
     Knob::new(
         "synthesis",
@@ -15,11 +15,11 @@ pub const PLAYING: &[Knob] = &[
     Knob::new("output_rate_hz", &["4000", "8000", "48000", "192000"]),
 ];
 
-/// Values of an option whose model chooses none, less one.
+/// Number of values, less one, for an option for which the model lists none.
 const STEPS: i32 = 8;
 
-/// Returns the values of an option in a sweep, from its descriptor: its choices, or numbers over
-/// its whole range, in equal ratios if it is above 0.
+/// Returns an option's values for a sweep, from its descriptor: its choices, or numbers over its
+/// whole range. The numbers are in equal ratios if the range is above 0.
 pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
     if !option.choices.is_empty() {
         return option.choices.clone();
@@ -40,7 +40,7 @@ pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
     values
 }
 
-/// Returns the ends and the middle of a knob's values, for a quick sweep.
+/// Returns the two ends and the middle of a knob's values, for a quick sweep.
 pub(crate) fn few<T: Clone>(values: &[T]) -> Vec<T> {
     let mut few = vec![0, values.len() / 2, values.len().saturating_sub(1)];
     few.dedup();

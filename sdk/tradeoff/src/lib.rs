@@ -1,8 +1,10 @@
-//! Accuracy against cost: every model and option on recordings, in bytes and in time.
+//! Accuracy against cost: measures models and their options on recordings, by size in bytes and by
+//! time.
 //!
-//! [`sweep`] fits, measures and times the settings of the models and of [`knobs`] on some
-//! [`Subject`]s, with two baselines. [`Tradeoff::new`] finds fronts, knees and warnings in the
-//! result; [`page`] and [`csv`] write it. An interrupted sweep continues from its [`Journal`].
+//! [`sweep`] fits, measures and times all settings of the models and of [`knobs`] on some
+//! [`Subject`]s, and two baselines for comparison. [`Tradeoff::new`] finds fronts, knees and
+//! warnings in the result; [`page`] and [`csv`] write it. An interrupted sweep continues from its
+//! [`Journal`].
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

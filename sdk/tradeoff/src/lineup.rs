@@ -10,7 +10,7 @@ use crate::request::{Model, Request};
 use crate::settings::{fit_settings, playing_settings};
 use crate::{Machine, Setting, Subject, TradeoffError};
 
-/// Returns all settings of the table, and the baselines.
+/// Returns all contenders: the settings of every model, and the baselines.
 pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError> {
     let mut all = Vec::new();
     for Model { ways } in &request.models {
@@ -77,7 +77,8 @@ pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Requ
     hasher.finalize().to_hex().to_string()
 }
 
-/// Identifies the build of a program by its file's size and time; empty if they cannot be read.
+/// Identifies the build of a program by the size and time of its file. Empty if they cannot be
+/// read.
 fn build(file: &Path) -> String {
     let read = || {
         let about = file.metadata().ok()?;

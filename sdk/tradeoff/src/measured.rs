@@ -1,4 +1,4 @@
-//! Accuracy of a contender, by its magnitudes and by rendered samples.
+//! Measuring a contender's accuracy on its magnitudes and on rendered samples.
 
 use htex_author::{read_spectrum, spectrum_of_samples};
 use htex_format::Measure;
@@ -8,12 +8,12 @@ use crate::accuracy::{Accuracy, accuracy};
 use crate::contender::{Contender, ContenderKind, Stored};
 use crate::{Subject, TradeoffError};
 
-/// Number of renderings that are measured, each with its own seed.
+/// Number of renderings that are measured, each with another seed.
 const SEEDS: u64 = 3;
 /// Length of a rendering, seconds.
 const SECONDS: f64 = 20.0;
 const QUICK_SECONDS: f64 = 4.0;
-/// Most samples of a rendering; at high rates it is shorter.
+/// Largest number of samples in a rendering; at high rates a rendering is therefore shorter.
 const MOST_SAMPLES: f64 = 2e6;
 
 /// Accuracy and size of a contender.
@@ -23,16 +23,16 @@ pub(crate) struct Measured {
     pub(crate) kept_bytes: usize,
     pub(crate) by_magnitude: Accuracy,
     pub(crate) by_samples: Accuracy,
-    /// Third-octave difference of the fit to the odd blocks, played, from the even blocks,
-    /// decibels.
+    /// Held-out error in decibels: the fit to the odd blocks is played and compared with the even
+    /// blocks in third octaves.
     pub(crate) held_out_error_db: Option<f64>,
     /// Half the range of the nine-band errors of the renderings, decibels.
     pub(crate) samples_spread_db: f64,
 }
 
 impl Contender {
-    /// Fits, stores and measures. `None` for a recording of too few blocks to be compared with
-    /// itself.
+    /// Fits, stores and measures the contender. `None` for a recording that has too few blocks to
+    /// be compared with itself.
     pub(crate) fn measure(
         &self,
         subject: &Subject,
@@ -95,7 +95,8 @@ impl Contender {
         Ok(rendered)
     }
 
-    /// Returns the magnitudes as a recording of the voice reads them; of a baseline, its own.
+    /// Returns the magnitudes as a recording of the voice would read them; for a baseline, its own
+    /// magnitudes.
     fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, TradeoffError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
@@ -114,7 +115,7 @@ pub(crate) struct Rendered {
     kept_bytes: usize,
 }
 
-/// Returns the root of the mean power of several magnitudes, bin by bin.
+/// Returns the root of the mean power of several magnitude spectra, bin by bin.
 pub(crate) fn rms_of(spectra: &[Vec<f64>]) -> Vec<f64> {
     let bins = spectra.first().map_or(0, Vec::len);
     let power = |k: usize| spectra.iter().map(|m| m[k] * m[k]).sum::<f64>();

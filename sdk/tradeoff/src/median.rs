@@ -1,4 +1,4 @@
-//! Medians of each setting over several recordings, and shares of the recordings.
+//! Medians of each setting over several recordings, and the shares of recordings.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use htex_format::{By, Measure, Measures};
 
 use crate::point::{Played, Point, Shares};
 
-/// Returns a point for each setting that was measured on all of `recordings`, in the order of the
-/// first.
+/// Returns one point for each setting that was measured on all `recordings` recordings, in the
+/// order of the first recording.
 pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
     let mut settings: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
     for point in points {

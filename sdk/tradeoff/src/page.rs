@@ -1,4 +1,4 @@
-//! The report as an HTML page.
+//! The report of a sweep as an HTML page.
 
 use htex_format::{By, ErrorMeasure, Judged, Measure};
 use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
@@ -171,7 +171,7 @@ fn timed(median: f64, spread: f64) -> Cell {
     Cell::Text(format!("{median:.2}"), format!("± {:.0} %", 100.0 * spread))
 }
 
-/// Returns the table of a model fitted at its defaults, stored and played in every way.
+/// Returns the table of a model's default fit, stored and played in every way.
 fn playing(points: &[&Point], model: &str) -> Table {
     let is_own = |p: &&Point| p.how.options.is_empty() && p.model == model;
     let own: Vec<&Point> = points.iter().copied().filter(is_own).collect();

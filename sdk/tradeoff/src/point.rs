@@ -1,4 +1,4 @@
-//! Measurements of one setting on one recording.
+//! The measurements of one setting on one recording.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,9 @@ use crate::measured::Measured;
 use crate::timing::Timed;
 use crate::{Setting, Subject};
 
-/// Name of the first baseline, in place of a model's: the spectrum, one byte per bin.
+/// Model name of the first baseline: the spectrum, quantised to one byte per bin.
 pub const QUANTISED: &str = "quantised-spectrum";
-/// Name of the second baseline: the recording.
+/// Model name of the second baseline: the recording.
 pub const RECORDING: &str = "recording";
 
 /// Cost and accuracy of one setting on one recording.
@@ -23,7 +23,7 @@ pub struct Point {
     pub recording: String,
     /// Short name of the model, [`QUANTISED`] or [`RECORDING`].
     pub model: String,
-    /// All knobs, including those at their defaults.
+    /// The values of all knobs, including those at their defaults.
     pub knobs: BTreeMap<String, Value>,
     /// The knobs that are not at their defaults, as text.
     pub setting: String,
@@ -31,59 +31,60 @@ pub struct Point {
     pub how: Setting,
     /// Median time of a fit, ms.
     pub fit_ms: f64,
-    /// Half the interquartile range of the fit times over their median.
+    /// Half the interquartile range of the fit times, divided by their median.
     pub fit_spread: f64,
     /// Median time from stored parameters to the first sample, microseconds.
     pub first_sample_us: f64,
-    /// Half the interquartile range of the times to the first sample over their median.
+    /// Half the interquartile range of the times to the first sample, divided by their median.
     pub first_sample_spread: f64,
-    /// Median time per output sample, ns.
+    /// Median time per output sample, nanoseconds.
     pub ns_per_sample: f64,
-    /// Half the interquartile range of the times per sample over their median.
+    /// Half the interquartile range of the times per sample, divided by their median.
     pub spread: f64,
-    /// Bytes of the stored parameters; for the recording, of its single-precision samples.
+    /// Size of the stored parameters, bytes. For the recording, size of its single-precision
+    /// samples.
     pub bytes: usize,
-    /// Bytes of a loop or a filter that are kept while playing.
+    /// Memory of a loop or a filter that is kept while playing, bytes.
     pub kept_bytes: usize,
-    /// Error of the fit to the odd blocks, played, against the even blocks, in third octaves: in
-    /// units of the difference between them, where 1 is as good as a second recording. `None` if
-    /// there are too few blocks.
+    /// Held-out error: the fit to the odd blocks is played and compared with the even blocks in
+    /// third octaves. The unit is the difference between the odd and the even blocks, so 1 is as
+    /// good as a second recording. `None` if there are too few blocks.
     pub held_out_error: Option<f64>,
-    /// The same in decibels.
+    /// The held-out error in decibels.
     pub held_out_error_db: Option<f64>,
-    /// The measures of the model's magnitudes: [`Measure::of_both`].
+    /// The measures of the model's magnitudes: all of [`Measure::of_both`].
     #[serde(flatten, serialize_with = "of_magnitudes")]
     pub by_magnitude: Measures,
-    /// Shares of the recordings; 0 or 1 for one recording.
+    /// Shares of the recordings with a small difference; 0 or 1 for a single recording.
     #[serde(flatten)]
     pub shares: Shares,
     /// The measures of rendered samples.
     #[serde(flatten)]
     pub by_samples: Played,
-    /// Whether it is on the front of bytes and magnitude error, among settings that play
-    /// at their defaults.
+    /// Whether the point is on the front of bytes and magnitude error, among settings that play at
+    /// their defaults.
     pub on_front: bool,
-    /// Whether it is on the front of time and sample error, among settings with blocks and output
-    /// rate at their defaults.
+    /// Whether the point is on the front of time and sample error, among settings with the default
+    /// block size and output rate.
     pub on_time_front: bool,
 }
 
-/// Shares of the recordings whose difference from the model's magnitudes is small, 0 to 1.
+/// Shares of the recordings whose difference from the model's magnitudes is small, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
-    /// Below the difference threshold in every third octave, and in all together.
+    /// Share below the difference threshold, in every third octave and over all together.
     #[serde(rename = "share_below_threshold")]
     pub below_threshold: f64,
-    /// The same for a person with a sensitive finger and a soft skin.
+    /// The same for a person with a sensitive finger and soft skin.
     #[serde(rename = "share_below_threshold_if_sensitive")]
     pub below_threshold_if_sensitive: f64,
-    /// Within what the recording itself varies, which says nothing about what is felt.
+    /// Share within the recording's own variation, which says nothing about what can be felt.
     #[serde(rename = "share_within_repeatability")]
     pub within_repeatability: f64,
 }
 
 impl Shares {
-    /// Of one recording: each share is 0 or 1.
+    /// Shares of a single recording: each is 0 or 1.
     fn new(felt: &FeltError) -> Self {
         let share = |is: bool| f64::from(u8::from(is));
         Self {
@@ -93,7 +94,7 @@ impl Shares {
         }
     }
 
-    /// Returns the shares by their keys in JSON.
+    /// Returns the shares with their keys in JSON.
     pub(crate) fn keyed(&self) -> [(&'static str, f64); 3] {
         [
             ("share_below_threshold", self.below_threshold),
@@ -103,7 +104,7 @@ impl Shares {
     }
 }
 
-/// Returns the errors of points.
+/// Returns the measures of points that are errors.
 pub fn errors() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().judged == Judged::Error)
 }
@@ -116,9 +117,9 @@ pub fn others() -> impl Iterator<Item = Measure> {
 /// Accuracy of rendered samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Played {
-    /// The measures of several renderings together.
+    /// The measures over several renderings together.
     pub measures: Measures,
-    /// Half the range of the nine-band error over single renderings, dB.
+    /// Half the range of the nine-band error over the single renderings, dB.
     pub band_error_spread_db: f64,
 }
 
@@ -128,7 +129,7 @@ fn of_magnitudes<S: Serializer>(measures: &Measures, serializer: S) -> Result<S:
 }
 
 impl Played {
-    /// Returns its numbers by key, the spread after the error that it is of.
+    /// Returns the numbers with their keys. The spread comes after the error to which it belongs.
     pub(crate) fn keyed(&self) -> Keyed {
         let mut keyed = Keyed::default();
         for measure in Measure::of_both() {
@@ -197,7 +198,7 @@ impl Point {
         measures.get(measure).unwrap_or(f64::NAN)
     }
 
-    /// Returns model and setting.
+    /// Returns the model and the setting as text.
     pub fn name(&self) -> String {
         format!("{} {}", self.model, self.setting)
     }

@@ -7,11 +7,11 @@ use htex_host::LoadedModel;
 
 use crate::{ErrorAxis, Subject, TradeoffError};
 
-/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first is measured
-/// with all knobs, the others at their defaults.
+/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first way is measured
+/// with all knobs, the others with the default settings.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// Name of a way of loading, and the model loaded so; at least one.
+    /// Ways of loading, each with its name and the model loaded in this way; at least one.
     pub ways: Vec<(String, LoadedModel)>,
 }
 
@@ -19,21 +19,21 @@ pub struct Model {
 #[derive(Debug, Clone)]
 pub struct Request {
     pub models: Vec<Model>,
-    /// Whether to vary one knob at a time with three values each, and to time fewer runs.
+    /// Whether to vary only one knob at a time, with three values each, and to time fewer runs.
     pub quick: bool,
-    /// The error of fronts and knees; by default the held-out one, and the third-octave error of
-    /// what was fitted to if a recording is too short to hold anything out of it.
+    /// The error for fronts and knees. By default it is the held-out error, or the third-octave
+    /// error of the fit if a recording is too short to hold anything out.
     pub error: Option<ErrorAxis>,
-    /// The file of the program or library with this code: a journal of another build is not
+    /// The file of the running program or library. A journal from another build of it is not
     /// continued.
     pub program: PathBuf,
 }
 
 impl Request {
-    /// Returns the error that subjects are graded by.
+    /// Returns the error by which subjects are judged.
     ///
     /// # Errors
-    /// When the held-out error is asked for and nothing can be held out of a subject.
+    /// When the held-out error is requested and nothing can be held out of a subject.
     pub(crate) fn error_of(&self, subjects: &[Subject]) -> Result<ErrorAxis, TradeoffError> {
         let check = || subjects.iter().try_for_each(Subject::check_held_out);
         match self.error {

@@ -7,35 +7,35 @@ use serde_json::Value;
 
 use crate::TradeoffError;
 
-/// Storage of parameters.
+/// How parameters are stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Keep {
-    /// As the model's descriptor states.
+    /// As the model's descriptor says.
     Model,
-    /// Single precision for all.
+    /// In single precision.
     F32,
-    /// Double precision for all.
+    /// In double precision.
     F64,
 }
 
-/// The values of all knobs of one measurement.
+/// The values of all knobs for one measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// Fit options by name that are not at their defaults.
+    /// The fit options that are not at their defaults, as names and values.
     pub options: Vec<(String, String)>,
     pub synthesis: Synthesis,
     /// How parameters are stored.
     pub store: Keep,
-    /// Samples per call.
+    /// Number of samples in each call.
     pub block_samples: usize,
-    /// Rate of the samples, hertz.
+    /// Output sample rate, hertz.
     pub output_rate_hz: f64,
-    /// How the model is loaded; empty for the first way.
+    /// How the model is loaded; empty for the model's first way.
     pub loader: String,
 }
 
 impl Default for Setting {
-    /// Returns the defaults: the model's default fit and its voice, in blocks of 256 at 20 kHz.
+    /// Returns the defaults: the model's default fit and voice, in blocks of 256 samples at 20 kHz.
     fn default() -> Self {
         Self {
             options: Vec::new(),
@@ -49,13 +49,14 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// Whether it plays as [`Self::default`] does, with any fit and storage.
+    /// Whether it plays like [`Self::default`]; fit and storage may differ.
     pub fn plays_as_default(&self) -> bool {
         let other = Self { options: self.options.clone(), store: self.store, ..Self::default() };
         *self == other
     }
 
-    /// Whether times are comparable with the default's: blocks and output rate are the same.
+    /// Whether its times can be compared with those at the defaults, because block size and output
+    /// rate are the same.
     pub fn times_compare(&self) -> bool {
         let default = Self::default();
         self.block_samples == default.block_samples && self.output_rate_hz == default.output_rate_hz
@@ -75,7 +76,7 @@ impl Setting {
         Ok(self)
     }
 
-    /// Returns the values that are not at their defaults as text; `default` when all are.
+    /// Returns the values that are not at their defaults as text; `default` if there are none.
     pub fn words(&self) -> String {
         let default = Self::default();
         let mut words: Vec<String> = self.options.iter().map(|(n, v)| format!("{n}={v}")).collect();
@@ -101,7 +102,7 @@ impl Setting {
         }
     }
 
-    /// Returns all knobs with their values, including defaults.
+    /// Returns the values of all knobs, including those at their defaults.
     pub(crate) fn knobs(&self, descriptor: Option<&Descriptor>) -> BTreeMap<String, Value> {
         let mut knobs = BTreeMap::new();
         for option in descriptor.iter().flat_map(|d| &d.options) {

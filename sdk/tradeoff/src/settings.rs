@@ -1,19 +1,19 @@
-//! The settings of a sweep, from the knobs of models and of playing.
+//! The settings of a sweep, made from the knobs of models and of playing.
 
 use htex_host::{Knob, Knobs, LoadedModel, Registry};
 
 use crate::knobs::{PLAYING, few, of_range};
 use crate::{Setting, TradeoffError};
 
-/// Returns the settings of a model's fit options, the defaults first; a quick sweep varies one knob
-/// at a time.
+/// Returns the settings of a model's fit options, the defaults first. A quick sweep varies only one
+/// knob at a time.
 pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     let mut settings = vec![Setting::default()];
     let knobs = knobs(model);
     let mut add = |options: Vec<(String, String)>| {
         let options = without_defaults(model, options);
         let setting = Setting { options, ..Setting::default() };
-        // A plugin with the same name may not have all of these options.
+        // A plugin with the same name as a built-in model may lack some of these options.
         let given: Vec<(&str, &str)> =
             setting.options.iter().map(|(n, v)| (&n[..], &v[..])).collect();
         let takes = model.options(&given).is_ok();
@@ -32,8 +32,8 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     settings
 }
 
-/// The knobs of the built-in model of this name: a model that is loaded in another way, or replaces
-/// it, is swept alike.
+/// The knobs of the built-in model with the same name. Thus a model that is loaded in another way,
+/// or that replaces the built-in one, is swept in the same way.
 fn knobs(model: &LoadedModel) -> Option<&'static Knobs> {
     Registry::builtin().find(model.short_name()).ok()?.knobs()
 }
@@ -55,7 +55,7 @@ fn alone(model: &LoadedModel, knobs: Option<&Knobs>, quick: bool) -> Vec<(String
 /// Returns the settings of [`PLAYING`].
 ///
 /// # Errors
-/// When the table has an invalid value.
+/// When the table of knobs has an invalid value.
 pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
     let mut settings = Vec::new();
     for knob in PLAYING {
@@ -67,7 +67,7 @@ pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffErro
     Ok(settings)
 }
 
-/// Returns every combination of the knobs' values.
+/// Returns all combinations of the knobs' values.
 fn products(knobs: &[Knob]) -> Vec<Vec<(String, String)>> {
     knobs.iter().fold(vec![Vec::new()], |all, knob| {
         let with = |value: &'static str| {
@@ -93,7 +93,7 @@ fn without_defaults(
     options
 }
 
-/// Whether a knob has no effect because it is above the value of another.
+/// Whether a knob has no effect in this setting because its value is above another knob's.
 fn is_idle(model: &LoadedModel, knobs: &Knobs, setting: &Setting) -> bool {
     let value = |name: &str| {
         let given = setting.options.iter().find(|(n, _)| n == name);

@@ -8,7 +8,7 @@ use crate::baseline::SpectrumNoise;
 use crate::contender::{Contender, ContenderKind, Stored};
 use crate::{Setting, Subject};
 
-/// Cross-fade of the recording's loop, seconds.
+/// Duration of the cross-fade in the recording's loop, seconds.
 const FADE_S: f64 = 0.1;
 
 type Render = Box<dyn FnMut(&mut [f32]) -> Result<(), HostError>>;
@@ -20,7 +20,7 @@ pub(crate) struct Sound {
 }
 
 impl Contender {
-    /// Returns the sound of stored data, with unit RMS.
+    /// Returns the sound of stored data, with an RMS of 1.
     pub(crate) fn sound(
         &self,
         subject: &Subject,

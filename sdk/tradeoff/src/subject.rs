@@ -1,4 +1,4 @@
-//! Recordings as the subjects of a sweep.
+//! Subjects of a sweep: the recordings.
 
 use htex_author::{AuthorError, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_finding::Notice;
@@ -6,18 +6,18 @@ use htex_finding::Notice;
 use crate::TradeoffError;
 use crate::held_out::HeldOut;
 
-/// A recording with its spectrum and what it varies.
+/// A recording, with its spectrum and its variation.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// File name, or name of a simulated surface.
+    /// Name of the file, or of the simulated surface.
     pub name: String,
     /// Whether it was computed instead of recorded.
     pub simulated: bool,
-    /// The spectrum that models are fitted to.
+    /// The spectrum to which models are fitted.
     pub spectrum: TextureSpectrum,
     /// Warnings, as sentences.
     pub warnings: Vec<Notice>,
-    /// Its odd and even blocks, or why it has none.
+    /// Its odd and even blocks, or the reason why it has none.
     pub(crate) held_out: Result<HeldOut, &'static str>,
     /// The first lateral axis.
     pub(crate) samples: Vec<f32>,
@@ -27,11 +27,11 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Reads the texture of a recording; with `strict`, findings that are errors or
-    /// warnings are refused.
+    /// Reads the texture of a recording. With `strict`, refuses findings that are errors or
+    /// warnings.
     ///
     /// # Errors
-    /// When the recording is not usable.
+    /// When the recording cannot be used.
     pub fn new(take: &Take, options: &SpectrumOptions, strict: bool) -> Result<Self, AuthorError> {
         let recording = &take.recording;
         let reading = read_take(take, options, strict)?;
@@ -53,7 +53,7 @@ impl Subject {
         })
     }
 
-    /// Returns an error if it has nothing to hold out.
+    /// Returns an error if nothing can be held out of the recording.
     pub(crate) fn check_held_out(&self) -> Result<(), TradeoffError> {
         match &self.held_out {
             Ok(_) => Ok(()),
@@ -64,7 +64,7 @@ impl Subject {
     }
 }
 
-/// Returns a hash of everything that results depend on: the samples and their spectrum.
+/// Returns a hash of everything on which results depend: the samples and their spectrum.
 fn digest(axes: &[Vec<f64>], rate_hz: f64, spectrum: &TextureSpectrum) -> blake3::Hash {
     let mut hasher = blake3::Hasher::new();
     let parts = axes.iter().chain([&spectrum.magnitude, &spectrum.signal]);

@@ -18,14 +18,14 @@ use crate::{ErrorAxis, Point, Subject, TradeoffError};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LeftOut {
     pub recording: String,
-    /// Model and setting.
+    /// The model and the setting.
     pub setting: String,
     pub reason: String,
 }
 
 #[derive(Debug, Clone, Default)]
 pub struct Swept {
-    /// The error that the points are graded by.
+    /// The error by which the points are judged.
     pub error: ErrorAxis,
     /// The points by recording, in the order of the table.
     pub points: Vec<Point>,
@@ -33,14 +33,14 @@ pub struct Swept {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Callback for progress: finished steps, all steps, and the current step.
+/// Progress callback: finished steps, total steps, and the current step.
 pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 
-/// Measures every setting on every recording, on all cores, and times them on one.
+/// Measures every setting on every recording, using all cores, and then times them on one core.
 ///
 /// # Errors
-/// When the journal cannot be written, no model can be fitted to a recording, or a recording has
-/// nothing to hold out and the error asked for is held out.
+/// When the journal cannot be written, no model can be fitted to a recording, or the held-out error
+/// is requested and nothing can be held out of a recording.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,
@@ -50,7 +50,8 @@ pub fn sweep(
     let error = request.error_of(subjects)?;
     let contenders = lineup(request)?;
     journal.open(&key(subjects, &contenders, request))?;
-    // Timing a contender takes about as long as measuring it, and counts as as many steps.
+    // Timing a contender takes about as long as measuring it, so it counts as the same number of
+    // steps.
     let all = subjects.len() * 2 * contenders.len();
     let done = AtomicUsize::new(0);
     let step = |steps: usize, what: &str| {
@@ -96,10 +97,10 @@ fn nothing_fitted(subject: &Subject, swept: &Swept) -> AuthorError {
     AuthorError::NothingFitted { reasons: format!("{}: {}", subject.name, reasons.join("; ")) }
 }
 
-/// Outcomes by contender.
+/// Outcomes by the contender's name.
 type Outcomes = BTreeMap<String, Outcome>;
 
-/// Measures what is not in the journal, on all cores.
+/// Measures everything that is not yet in the journal, using all cores.
 fn measure_all(
     recording: usize,
     subject: &Subject,
@@ -153,7 +154,8 @@ fn measure_all(
     Ok(found.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
 }
 
-/// Times the contenders that could be measured, unless the journal has all of their times.
+/// Times the contenders that could be measured, unless the journal already has the times of all of
+/// them.
 fn time_all(
     recording: usize,
     subject: &Subject,

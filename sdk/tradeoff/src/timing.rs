@@ -9,7 +9,7 @@ use crate::contender::{Contender, Stored};
 use crate::sound::Sound;
 use crate::{Subject, TradeoffError};
 
-/// Samples of a run, and of the warm-up before it that fills the caches.
+/// Number of samples in a run; also in the warm-up before it, which fills the caches.
 const SAMPLES: usize = 16_384;
 const WARM_UP: usize = 1_024;
 
@@ -24,7 +24,7 @@ struct Rounds {
 const FULL: Rounds = Rounds { fit: 7, start: 9, render: 41 };
 const QUICK: Rounds = Rounds { fit: 3, start: 3, render: 9 };
 
-/// A median, and half the interquartile range relative to it.
+/// A median, and half the interquartile range divided by it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Median {
     pub(crate) median: f64,
@@ -39,10 +39,12 @@ pub(crate) struct Timed {
     pub(crate) ns_per_sample: Median,
 }
 
-/// Times contenders in interleaved runs, so that other load affects all alike.
+/// Times contenders in interleaved runs, so that other load on the machine affects all of them
+/// alike.
 ///
 /// # Errors
-/// When a contender cannot be fitted or played, which cannot happen for those that were measured.
+/// When a contender cannot be fitted or played. This cannot happen for contenders that were
+/// measured.
 pub(crate) fn time(
     subject: &Subject,
     contenders: &[&Contender],
@@ -99,7 +101,7 @@ impl Playing<'_> {
     }
 }
 
-/// Runs all items in several rounds; the first round is a warm-up.
+/// Runs all items in several rounds, of which the first is a warm-up.
 fn turns<T>(
     items: impl IntoIterator<Item = T>,
     rounds: usize,

@@ -1,4 +1,4 @@
-//! Evaluation of a sweep: fronts, knees, warnings.
+//! Evaluation of a sweep: fronts, knees and warnings.
 
 use htex_finding::Notice;
 use serde::Serialize;
@@ -51,21 +51,21 @@ impl Machine {
     }
 }
 
-/// A recording of the report.
+/// A recording that the report is about.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recorded {
     pub name: String,
     /// Whether it was computed instead of recorded.
     pub simulated: bool,
-    /// Its repeatability, nine-band RMS, dB.
+    /// Its repeatability: nine-band RMS, dB.
     pub repeatability_rms_db: Option<f64>,
-    /// Number of blocks of what is read of it, of which the even ones are held out; `None` if there
-    /// are too few.
+    /// Number of blocks, odd and even, in what is read of the recording; the even blocks are held
+    /// out. `None` if there are too few.
     pub blocks: Option<usize>,
     /// Length of a block, seconds.
     pub block_s: Option<f64>,
-    /// Third-octave difference between the odd and the even blocks, dB: the unit of the held-out
-    /// error.
+    /// Third-octave difference between the odd and the even blocks, dB. It is the unit of the
+    /// held-out error.
     pub floor_db: Option<f64>,
 }
 
@@ -75,7 +75,7 @@ pub struct Tradeoff {
     /// Program and version.
     pub tool: String,
     pub machine: Machine,
-    /// The error measure of fronts and knees.
+    /// The error used for fronts and knees.
     pub error: ErrorAxis,
     /// Description of the numbers.
     pub method: &'static str,
@@ -84,9 +84,9 @@ pub struct Tradeoff {
     pub models: Vec<String>,
     /// Every setting on every recording.
     pub points: Vec<Point>,
-    /// The median of every setting over the recordings; empty for one recording.
+    /// The medians of every setting over the recordings; empty if there is only one recording.
     pub medians: Vec<Point>,
-    /// The knees of the fronts: of the medians first, if there are any.
+    /// The knees of the fronts; if there are medians, their knees come first.
     pub knees: Vec<Knee>,
     /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,

@@ -5,42 +5,42 @@ pub struct TextureReport {
     pub title: String,
     /// Paragraphs below the title.
     pub intro: Vec<String>,
-    /// The measures of the models, a table each.
+    /// The measures of the models; each becomes a table.
     pub measures: Vec<Measure>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
-    /// Of the textures, how many each model keeps below the difference threshold; may be empty.
+    /// How many of the textures each model keeps below the difference threshold; may be empty.
     pub shares: Vec<Share>,
-    /// Further pictures, as SVG, before the spectra.
+    /// Further pictures as SVG, shown before the spectra.
     pub pictures: Vec<String>,
     /// The command that generates this page.
     pub command: String,
 }
 
-/// Of some textures, how many a model keeps below the difference threshold, and how many within
-/// what the recording varies.
+/// How many textures a model keeps below the difference threshold, and how many within the
+/// recording's own variation.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Share {
     /// The model's short name.
     pub short_name: String,
     pub textures: usize,
-    /// Those whose difference is below the difference threshold in every third octave.
+    /// Textures whose difference is below the difference threshold in every third octave.
     pub below_difference_threshold: usize,
-    /// Those of them for which that holds for a person with a sensitive finger, too.
+    /// Textures for which that also holds for a person with a sensitive finger.
     pub below_if_sensitive: usize,
-    /// Those whose nine-band error is at or below the recording's repeatability.
+    /// Textures whose nine-band error is at or below the recording's repeatability.
     pub within_repeatability: usize,
 }
 
-/// A measure of how close the models come: a table of textures by models.
+/// A measure of how close the models come to the recordings: a table of textures by models.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measure {
     /// Caption of the table.
     pub caption: String,
-    /// Whether it is a correlation, of which 1 is the best, instead of an error in decibels, of
-    /// which 0 is.
+    /// Whether the measure is a correlation, for which 1 is best. Otherwise it is an error in
+    /// decibels, for which 0 is best.
     pub is_correlation: bool,
-    /// Whether it is compared with the recording's own repeatability.
+    /// Whether the measure is compared with the recording's own repeatability.
     pub repeats: bool,
 }
 
@@ -48,15 +48,14 @@ pub struct Measure {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Texture {
     pub name: String,
-    /// Whether it was computed instead of recorded; the page states this wherever it names the
-    /// texture.
+    /// Whether it was computed instead of recorded. The page says so wherever it names the texture.
     pub simulated: bool,
-    /// The unit of its magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
+    /// Unit of the magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
     pub unit: String,
-    /// Speed and force: `"80 mm/s, 0.40 N"`.
+    /// Speed and force as text: `"80 mm/s, 0.40 N"`.
     pub condition: String,
-    /// What slid over it, and how frequencies and level follow a motion that was not recorded;
-    /// empty if it is not said.
+    /// What slid over the texture, and how frequencies and level follow motions that were not
+    /// recorded. May be empty.
     pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
@@ -68,13 +67,13 @@ pub struct Texture {
     pub frequency_hz: Vec<f64>,
     /// The recording's magnitude, in the texture's unit.
     pub recorded: Vec<f64>,
-    /// The models fitted to it.
+    /// The models fitted to the texture.
     pub models: Vec<ModelResult>,
     /// Warnings about this texture.
     pub warnings: Vec<String>,
 }
 
-/// Result of one model on one texture.
+/// Result of one model for one texture.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModelResult {
     /// The model's display name: `"sBeta"`.
@@ -85,22 +84,22 @@ pub struct ModelResult {
     pub color: String,
     /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
-    /// What the measures of the report found, in their order; one that is not known may be left out
-    /// at the end.
+    /// The values of the report's measures, in their order. Unknown values at the end may be left
+    /// out.
     pub measured: Vec<Option<f64>>,
-    /// Text below its spectrum.
+    /// Text below the model's spectrum.
     pub note: String,
-    /// Energy of the model relative to the recording's in each of the nine bands, decibels.
+    /// Energy of the model relative to the recording in each of the nine bands, decibels.
     pub band_error_db: Vec<f64>,
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,
-    /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid of a model that is
-    /// a sum of sinusoids; drawn instead of the magnitude.
+    /// For a model that is a sum of sinusoids, the frequency (hertz) and amplitude (in the
+    /// texture's unit) of each sinusoid. They are drawn instead of the magnitude.
     pub lines: Option<Vec<(f64, f64)>>,
 }
 
 impl TextureReport {
-    /// Returns the first result of each model, in the order of their first occurrence.
+    /// Returns the first result of each model, in the order in which the models first occur.
     pub(crate) fn models(&self) -> Vec<&ModelResult> {
         let mut found: Vec<&ModelResult> = Vec::new();
         for model in self.textures.iter().flat_map(|texture| &texture.models) {
@@ -113,13 +112,13 @@ impl TextureReport {
 }
 
 impl Texture {
-    /// Returns the name, marked if it is simulated.
+    /// Returns the name, marked if the texture is simulated.
     pub(crate) fn header(&self) -> String {
         if self.simulated { format!("{} (simulated)", self.name) } else { self.name.clone() }
     }
 
-    /// Returns the unit of the plots and the factor to it from the texture's unit, chosen so that
-    /// the numbers are easy to read.
+    /// Returns the unit for plots, and the factor that converts from the texture's unit to it. The
+    /// unit is chosen so that the numbers are easy to read.
     pub(crate) fn plotted(&self) -> (f64, &str) {
         match self.unit.as_str() {
             "N" => (1e3, "mN"),
@@ -130,7 +129,7 @@ impl Texture {
         }
     }
 
-    /// Returns the name and the condition, if it is given.
+    /// Returns the name, and the condition if it is given.
     pub(crate) fn title(&self) -> String {
         match self.condition.as_str() {
             "" => self.header(),
@@ -138,7 +137,7 @@ impl Texture {
         }
     }
 
-    /// Returns the result of the model called `short_name`.
+    /// Returns the result of the model `short_name`.
     pub(crate) fn model(&self, short_name: &str) -> Option<&ModelResult> {
         self.models.iter().find(|model| model.short_name == short_name)
     }

@@ -1,4 +1,4 @@
-//! Tables of errors: textures by models, and models by bands.
+//! Tables of errors: textures by models, and for each texture models by bands.
 
 use super::data::{Measure, ModelResult, Texture, TextureReport};
 use crate::markup::Element;
@@ -6,14 +6,14 @@ use crate::number::fixed;
 use crate::page::paragraph;
 use crate::table::{Cell, HeatScale, Row, Table};
 
-/// Mark of an error that does not exceed the recording's own variation.
+/// Mark of an error that is within the recording's own variation.
 const WITHIN: &str = "\u{a0}*";
 
-/// Error of the darkest shade, decibels.
+/// Error with the darkest shade, decibels.
 const DARKEST_DB: f64 = 12.0;
 const CORRELATIONS: HeatScale = HeatScale::Sequential { low: 0.0, high: 1.0 };
 
-/// A table for each measure that is known of a model.
+/// One table for each measure whose value is known for some model.
 pub(super) fn summary(report: &TextureReport) -> String {
     let measures = report.measures.iter().enumerate();
     let tables: String = measures
@@ -78,7 +78,7 @@ fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cel
     }
 }
 
-/// Tables of the nine errors of each model, one per texture.
+/// One table for each texture, with the nine band errors of each model.
 pub(super) fn bands(report: &TextureReport) -> String {
     let note = paragraph(
         "Model relative to recording in dB: orange is too much vibration in a band, blue is too little. \

@@ -1,4 +1,4 @@
-//! Report on fitted textures: spectra, errors, sizes.
+//! Report on fitted textures: spectra, errors and sizes.
 
 mod data;
 mod matrices;

@@ -1,4 +1,4 @@
-//! Spectra of several textures as one picture: a column per texture, a row per model.
+//! Spectra of several textures as one picture: one column for each texture, one row for each model.
 
 use super::data::{ModelResult, Texture};
 use super::spectra::{overlay, top};
@@ -13,7 +13,7 @@ const PANEL: (f64, f64) = (230.0, 190.0);
 const CAPTION_PX: f64 = 26.0;
 
 /// Draws each texture's recording, overlaid with each of the named models, as a self-contained SVG.
-/// The panel of a texture without a model is empty.
+/// If a texture lacks a model, its panel stays empty.
 pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
     let width = PANEL.0 * textures.len() as f64;
     let height = PANEL.1 * short_names.len() as f64 + CAPTION_PX;
@@ -39,7 +39,7 @@ pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
         + "\n"
 }
 
-/// Returns the panels of a texture with their rows; all have the same vertical axis.
+/// Returns the panels of a texture, each with its row. All have the same vertical axis.
 fn texture_panels(texture: &Texture, short_names: &[&str]) -> Vec<(usize, Plot)> {
     let rows = short_names.iter().enumerate();
     let found = rows.filter_map(|(row, name)| Some((row, texture.model(name)?)));

@@ -1,5 +1,5 @@
-//! Table of the textures that a model keeps below the difference threshold, and of those within
-//! what the recording varies.
+//! Table of how many textures a model keeps below the difference threshold, and how many within the
+//! recording's own variation.
 
 use super::data::{Share, TextureReport};
 use crate::page::paragraph;
@@ -11,7 +11,7 @@ const NOTE: &str = "Below the difference threshold: what is above a fingertip's 
     twice as far. Neither is a rating by a person. Within repeatability: the nine-band error is at or below the difference between parts \
     of the recording, which says how well the recording repeats and not what is felt.";
 
-/// Returns the table with its explanation; nothing without shares.
+/// Returns the table with an explanation; empty if there are no shares.
 pub(super) fn table(report: &TextureReport) -> String {
     if report.shares.is_empty() {
         return String::new();

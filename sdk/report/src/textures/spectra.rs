@@ -1,4 +1,5 @@
-//! A row of spectra for each texture: the recording, then the recording overlaid with each model.
+//! Spectra of each texture in a row: the recording alone, then the recording overlaid with each
+//! model.
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::axis::Axis;
@@ -12,14 +13,14 @@ use crate::svg;
 /// Size of one panel, pixels.
 const PANEL: (f64, f64) = (210.0, 190.0);
 
-/// Colour of the recording behind a model.
+/// Colour of the recording when it is drawn behind a model.
 const BACKDROP: &str = "#a3a3a3";
 
-/// A model is clipped at this multiple of the recording's maximum; beyond it the recording
+/// A model is clipped at this multiple of the recording's maximum. With higher axes the recording
 /// would be too flat to read.
 const OVERSHOOT: f64 = 2.0;
 
-/// Returns the colour key and all rows.
+/// Returns the colour key and the rows of all textures.
 pub(super) fn section(report: &TextureReport) -> String {
     let rows = report.textures.iter().map(row);
     let all: String = rows.map(|row| row.render() + "\n").collect();
@@ -62,7 +63,7 @@ fn row(texture: &Texture) -> Element {
         .child(&panels)
 }
 
-/// How the texture follows a motion that was not recorded.
+/// Paragraph on how the texture follows motions that were not recorded.
 fn law(texture: &Texture) -> Option<Element> {
     let said = (!texture.law.is_empty()).then_some(&texture.law)?;
     Some(Element::new("p").set("class", "law").text(said))
@@ -126,14 +127,15 @@ fn panel(plot: Plot, note: &str) -> Element {
     figure.child(&Element::new("figcaption").text(note))
 }
 
-/// Returns (hertz, magnitude in the unit of the plots) pairs.
+/// Returns pairs of hertz and magnitude, in the unit of the plots.
 fn curve(texture: &Texture, magnitude: &[f64]) -> Vec<(f64, f64)> {
     let pairs = texture.frequency_hz.iter().zip(magnitude);
     let (scale, _) = texture.plotted();
     pairs.map(|(f, n)| (*f, n * scale)).collect()
 }
 
-/// Returns the top of the vertical axis for some models of a texture, in the unit of the plots.
+/// Returns the upper end of the vertical axis for some models of a texture, in the unit of the
+/// plots.
 pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a ModelResult>) -> f64 {
     let (scale, _) = texture.plotted();
     let recorded = highest(texture.recorded.iter().copied(), scale);
@@ -143,14 +145,14 @@ pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a Mo
     if highest > 0.0 { 1.05 * highest } else { 1.0 }
 }
 
-/// Returns the values that a panel draws of a model, in the texture's unit.
+/// Returns the values that a model's panel draws, in the texture's unit.
 fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
     let lines = model.lines.iter().flatten().map(|(_, amplitude)| *amplitude);
     let curve = if model.lines.is_some() { &[] } else { model.magnitude.as_slice() };
     lines.chain(curve.iter().copied())
 }
 
-/// Returns the highest value above 0, times the scale.
+/// Returns the highest value above 0, multiplied by `scale`.
 fn highest(values: impl Iterator<Item = f64>, scale: f64) -> Option<f64> {
     let positive = values.filter(|v| v.is_finite() && *v > 0.0);
     positive.reduce(f64::max).map(|highest| highest * scale)

@@ -127,6 +127,7 @@ impl<'a> Recorded<'a> {
             .zip(weights)
             .map(|(one, weight)| weight * level_rms(&one.spectrum.magnitude))
             .sum();
+        // A player mixes levels, which gives another level than mixing powers.
         let now = level_rms(&magnitude);
         if now > 0.0 {
             magnitude.iter_mut().for_each(|m| *m *= level / now);
@@ -147,6 +148,7 @@ impl<'a> Recorded<'a> {
     fn moved(&self, factor: f64) -> Vec<Option<f64>> {
         let (grid, magnitude) = (&self.spectrum.frequency_hz, &self.spectrum.magnitude);
         let power = |at: usize| magnitude[at] * magnitude[at];
+        // Frequencies stretched by `factor` spread the same power over `factor` times as many bins.
         let of = |hz: &f64| {
             let from = hz / factor;
             let above = grid.partition_point(|f| *f < from);

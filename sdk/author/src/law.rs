@@ -144,6 +144,7 @@ fn frequency_exponent(
         .filter_map(|a| Some((a, differ(a)?)))
         .collect();
     let (best, least) = all.iter().min_by(|x, y| x.1.mean_square.total_cmp(&y.1.mean_square))?;
+    // At an end of the tried exponents, the difference may still be falling.
     let inside = *best > all.first()?.0 && *best < all.last()?.0;
     let [still, usual] = [0.0, assumed].map(|a| differ(a).map_or(0.0, |d| d.mean_square));
     if !inside || least.mean_square > MOST_LEFT * still.max(usual) {
@@ -220,6 +221,7 @@ fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
             let value = |i: usize| curve.at(low + i as f64 / POINTS - shift);
             let row: Vec<f64> = (0..points as usize).map(value).collect();
             let mean = row.iter().sum::<f64>() / points;
+            // Without its mean, a row no longer contains the level.
             row.iter().map(|x| x - mean).collect()
         })
         .collect();

@@ -135,6 +135,7 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     };
     let longest = (REPRESENTED_S * recording.rate_hz) as usize;
     let represented: usize = whole().map(|s| (s.end - s.start).min(longest)).sum();
+    // If the finger never rests, stretches above the threshold are not separate sweeps.
     let has_sweeps = !sweeps.is_empty() && sliding < samples;
     let represent_most = represented as f64 >= REPRESENTED * sliding as f64;
     let from_sweeps = match choice {
@@ -239,6 +240,7 @@ fn scan(friction: &Friction, shortest: usize) -> Scan {
     let (mut sweeps, mut sliding) = (Vec::new(), 0);
     let mut start = None;
     let smooth = (0..friction.samples()).map(|at| friction.smooth(at));
+    // The added value closes a sweep that reaches the end of the recording.
     for (i, r) in smooth.chain([f64::NEG_INFINITY]).enumerate() {
         sliding += usize::from(friction.slides(r));
         match (r > friction.threshold, start) {

@@ -331,8 +331,10 @@ pub(crate) fn inverse_at(
 fn inverse(h: Complex<f64>, floor: f64) -> Complex<f64> {
     let norm = magnitude(h);
     if norm == 0.0 {
+        // A response of zero has no phase that could be taken back.
         return Complex::new(1.0 / floor, 0.0);
     }
+    // The floor limits the magnitude; the phase is always taken back.
     h.conj() / (norm * norm.max(floor))
 }
 

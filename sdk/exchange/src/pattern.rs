@@ -97,6 +97,7 @@ impl Pattern {
                 break;
             };
             *sample += libm::pow(level, f64::from(self.exponent.max(1))) * libm::sin(phase);
+            // Adding up the phase keeps the sine continuous while its frequency changes.
             phase += std::f64::consts::TAU * hertz / rate_hz;
             if phase > std::f64::consts::TAU {
                 phase -= std::f64::consts::TAU * libm::floor(phase / std::f64::consts::TAU);

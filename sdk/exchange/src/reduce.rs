@@ -123,6 +123,7 @@ fn rotating(profile: &Profile, strength: f64) -> Tone {
     let felt = |hertz: f64| profile.strongest_at(hertz) / threshold(Quantity::Acceleration, hertz);
     let tone =
         |hertz: f64, is_limited: bool| Tone { amplitude: hertz / high_hz, hertz, is_limited };
+    // Silence is closer to this than the weakest vibration of the motor.
     if strength < 0.5 * felt(low_hz) {
         return Tone { amplitude: 0.0, hertz: low_hz, is_limited: false };
     }
@@ -158,6 +159,7 @@ pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
         .collect();
     let hertz = |p: &Point| Point::new(p.time_s, p.value * profile.high_hz.value);
     let frequency_hz = level.iter().map(hertz).collect();
+    // Below its lowest frequency a motor does not turn.
     let turns = |p: &Point| {
         Point::new(
             p.time_s,
@@ -226,6 +228,7 @@ pub(crate) fn drive(heard: &Heard, profile: &Profile) -> (Vec<f64>, f64) {
         }
         _ => 0.0,
     };
+    // With an odd number of taps, the delay is a whole number of samples.
     let taps = (4.0 * heard.rate_hz / RESOLUTION_HZ) as usize | 1;
     let mut filter = Fir::with_magnitude(taps, heard.rate_hz, gain);
     let delay = taps / 2;

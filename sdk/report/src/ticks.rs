@@ -30,11 +30,13 @@ pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
 fn linear(low: f64, high: f64, count: f64) -> Vec<Tick> {
     let (mantissa, exponent) = nice_step((high - low) / count);
     let step = mantissa * 10f64.powi(exponent);
+    // The tolerances keep ticks that lie on an end of the axis in spite of rounding.
     let first = (low / step - 1e-6).ceil();
     let steps = (high / step + 1e-6).floor() - first;
     (0..=steps.clamp(0.0, 200.0) as u32)
         .map(|k| {
             let value = ((first + f64::from(k)) * step).clamp(low, high);
+            // A tick that misses zero only by rounding is labelled as zero.
             let near = if (value / step).abs() < 0.5 { 0.0 } else { value };
             tick(value, label(near, exponent), 0)
         })

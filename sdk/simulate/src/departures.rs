@@ -199,6 +199,8 @@ impl Course {
         }
         let mut draw = |low: f64, high: f64| low + (high - low) * self.random.next_unit();
         self.lifted_s = draw(LIFTED_S[0], LIFTED_S[1]);
+        // With contacts of this mean duration, the finger is off the surface for the given
+        // fraction.
         let mean_s = 0.5 * (LIFTED_S[0] + LIFTED_S[1]) * (1.0 - lifted) / lifted;
         self.contact_s = draw(0.5 * mean_s, 1.5 * mean_s);
     }

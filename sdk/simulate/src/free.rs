@@ -137,6 +137,7 @@ impl Range {
             let hz = WANDER_HZ[0] + (WANDER_HZ[1] - WANDER_HZ[0]) * random.next_unit();
             [2.0 * PI * random.next_unit(), 2.0 * PI * hz]
         };
+        // The limit leaves at least half of the range to draw from.
         Self { low, high, wander: WANDER.min(0.25 * (high - low)), waves: [0; 3].map(wave) }
     }
 

@@ -149,6 +149,7 @@ impl Hand {
         self.sweep = Sweep {
             rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.next_unit(),
             ramp_s,
+            // Each ramp covers half the distance of full speed, so both take one ramp longer.
             moving_s: length / speed + ramp_s,
             speed_mm_s: self.direction * speed,
             contact: 1.0 + CONTACT_SCATTER[0] * self.random.next_normal(),

@@ -73,6 +73,7 @@ impl Track {
     fn settle(&mut self, parameters: &Parameters) {
         let lowest =
             parameters.grains.iter().map(|grain| grain.from_per_mm).fold(f64::INFINITY, f64::min);
+        // Five time constants of the slowest filter.
         let points = 5.0 * POINTS_PER_MM / (2.0 * PI * lowest);
         for _ in 0..(points as usize).min(100_000) + self.raw.len() {
             self.push();

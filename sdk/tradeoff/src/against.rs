@@ -84,6 +84,8 @@ impl Against {
             let tied = |a: usize, b: usize| places[b].0 - places[a].0 <= spread(a) + spread(b);
             on = vec![false; points.len()];
             for tie in ties(&along, tied) {
+                // Along a front the error falls as the cost rises, so the last has the smallest
+                // error.
                 if let Some(&best) = tie.last() {
                     on[best] = true;
                 }

@@ -153,10 +153,12 @@ fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
 fn is_single(values: &[f64], at: usize) -> bool {
     let corner_at = |at: usize| corner(&values[at - 1..=at + 1]);
     let own = corner_at(at);
+    // Of equal neighbouring corners, only the last one counts.
     if own < corner_at(at - 1) || own <= corner_at(at + 1) {
         return false;
     }
     let mut around: [f64; 7] = core::array::from_fn(|i| values[at + i - 3]);
+    // Repairs the sample by the cubic through two neighbours on either side.
     around[3] = (4.0 * (around[2] + around[4]) - (around[1] + around[5])) / 6.0;
     around.windows(3).all(|w| REPAIRED * corner(w) < own)
 }

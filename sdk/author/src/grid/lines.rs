@@ -89,6 +89,7 @@ impl Covered {
             return self.lines(1);
         }
         let spacings = (self.high - self.low) / libm::log(ratio);
+        // The margins at both ends cover part of the range. The small number absorbs rounding.
         let count = libm::ceil(spacings + 1.0 - 2.0 * MARGIN - 1e-9);
         self.lines((count as usize).max(2))
     }

@@ -94,6 +94,8 @@ impl<'a> Search<'a> {
             if least.is_none_or(|least| error_db < least) {
                 best = Some((gathered, error_db));
             } else if *ratio < COMPARED_RATIO {
+                // Coarse grids are all tried, but a denser one only as long as this improves the
+                // error.
                 break;
             }
         }

@@ -32,9 +32,11 @@ pub(super) enum NotFound {
 /// circle as the given polynomial.
 pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>, f64), NotFound> {
     let mut reflection: Vec<f64> = coefficients.iter().map(|b| -b).collect();
+    // The step-down recursion succeeds only if all zeros are inside already.
     if step_down_in_place(&mut reflection) {
         return Ok((coefficients.to_vec(), 1.0));
     }
+    // Zeros at the origin, from trailing coefficients of 0, are left out of the search.
     let order = coefficients.iter().rposition(|b| *b != 0.0);
     let used = order.and_then(|last| coefficients.get(..=last)).ok_or(NotFound::Here)?;
     let (mut gain, mut zeros) = (1.0, roots(used, work)?);
@@ -42,6 +44,7 @@ pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>,
         let radius = zero.norm_sqr().sqrt();
         if radius > 1.0 {
             gain *= radius;
+            // The mirror image of z at the unit circle is 1 / conj(z) = z / |z|².
             *zero /= radius * radius;
         }
         let moved = zero.norm_sqr().sqrt();
@@ -62,6 +65,7 @@ fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, Not
     let order = coefficients.len();
     let last = coefficients.last().ok_or(NotFound::Here)?.abs();
     let radius = libm::pow(last, 1.0 / order as f64).max(1e-3);
+    // The quarter keeps the starting points from being symmetric about the real axis.
     let start = |i: usize| turned(radius, TAU * (i as f64 + 0.25) / order as f64);
     let mut zeros: Vec<Complex<f64>> = (0..order).map(start).collect();
     for _ in 0..ROUNDS {

@@ -46,7 +46,7 @@ impl Gathering {
     }
 }
 
-/// Takes the recordings' spectra and averages those of the same condition.
+/// Computes the recordings' spectra and averages the spectra of each condition.
 pub(crate) fn group_takes(
     takes: &[Take],
     options: &SpectrumOptions,

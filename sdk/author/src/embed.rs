@@ -24,7 +24,7 @@ pub enum EmbedError {
 /// one is given. `registry` must have loaded the models from these files.
 ///
 /// # Errors
-/// All variants of [`EmbedError`].
+/// See [`EmbedError`].
 pub fn embed_plugins(
     asset: &mut Asset,
     registry: &Registry,

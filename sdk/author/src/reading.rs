@@ -66,7 +66,7 @@ pub fn read_take(
     })
 }
 
-/// Returns findings as sentences: those of severity info, or those above it.
+/// Returns findings as sentences: with `info` the findings of severity info, otherwise all others.
 pub(crate) fn sentences(
     source: &str,
     findings: &[Finding],

@@ -158,8 +158,8 @@ fn noise(seconds: f64, rise_db: f64) -> Take {
     }
 }
 
-/// The left-out blocks are from another time, so the held-out error of a texture that drifts is
-/// larger than that of noise.
+/// The left-out blocks are from another time, so a texture that drifts has a larger held-out error
+/// than noise has.
 #[test]
 fn what_drifts_is_in_the_left_out_error() {
     let [still, drifting] = [0.0, 8.0].map(|rise_db| {

@@ -145,7 +145,7 @@ impl Android {
     /// duration.
     ///
     /// # Errors
-    /// The envelope or point that the device would refuse.
+    /// When the device would refuse an envelope or a point; the fault names it.
     pub fn check_device(&self, profile: &Profile) -> Result<(), Fault> {
         let waveform = self.waveform_envelope.control_points.iter();
         let basic = self.basic_envelope.control_points.iter();

@@ -121,7 +121,7 @@ pub enum ExchangeError {
 pub struct Missing {
     /// The setting as a keyword, such as `full_scale`.
     pub setting: &'static str,
-    /// What it is, in words.
+    /// What it is, as a phrase for messages.
     pub words: &'static str,
 }
 

@@ -60,7 +60,7 @@ pub enum Writes {
         write: WriteSignal,
         /// The profile that is used unless the user gives another.
         profile: &'static str,
-        /// Settings in addition to those that all signals take.
+        /// Settings in addition to the settings of all signals.
         settings: &'static [&'static str],
     },
     /// The asset itself, without loss.
@@ -171,7 +171,7 @@ impl Format {
     /// Checks that an import takes the given settings, which are keywords such as `full_scale`.
     ///
     /// # Errors
-    /// The first setting that it does not take.
+    /// When a setting does not apply; the error names the first such setting.
     ///
     /// ```
     /// use htex_exchange::Format;
@@ -191,7 +191,7 @@ impl Format {
     /// import.
     ///
     /// # Errors
-    /// The first setting that it does not take.
+    /// When a setting does not apply; the error names the first such setting.
     #[cfg(feature = "export")]
     pub fn check_export<'a>(
         &self,
@@ -205,7 +205,7 @@ impl Format {
     /// from the scene.
     ///
     /// # Errors
-    /// The first setting that it does not take.
+    /// When a setting does not apply; the error names the first such setting.
     #[cfg(feature = "export")]
     pub fn check_export_of_scene<'a>(
         &self,

@@ -83,7 +83,8 @@ impl Physical {
     /// Checks that everything needed is given and in range.
     ///
     /// # Errors
-    /// What is missing, or the first number that is out of range.
+    /// When something is missing or out of range. The error names everything that is missing, or
+    /// the first such number.
     pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
         self.checked(format).map(drop)
     }

@@ -12,12 +12,12 @@ use crate::map;
 /// The place of the rights in a format, and how it is read.
 #[derive(Debug, Clone, Copy)]
 pub struct RightsPlace {
-    /// The place, in words.
+    /// Description of the place.
     pub place: &'static str,
     pub(crate) read: fn(&[u8]) -> Rights,
 }
 
-/// For a format without such a place: the file `NAME.license` beside it.
+/// For a format without such a place: the separate file `NAME.license`.
 pub(crate) const BESIDE: RightsPlace =
     RightsPlace { place: "FILE.license", read: |_| Rights::default() };
 pub(crate) const HAPTIC: RightsPlace = RightsPlace {

@@ -80,7 +80,7 @@ impl SetupResponse {
     /// that reads back to the same bits.
     ///
     /// # Errors
-    /// The errors of the writer.
+    /// When the writer fails.
     pub fn write_csv(&self, out: &mut impl io::Write) -> io::Result<()> {
         writeln!(out, "frequency_hz,magnitude,phase_rad")?;
         let numbers = self.magnitude.iter().zip(&self.phase_rad);

@@ -61,8 +61,8 @@ impl Columns {
         &name[..self.parts.get(column).copied().unwrap_or(0)]
     }
 
-    /// Returns the columns with this name: those with exactly this name; if there are none, those
-    /// with it in another case; else those whose last part it is.
+    /// Returns the columns with exactly this name. If there are none, returns columns with the name
+    /// in another case, or else columns whose last part it is.
     pub(crate) fn by_name(&self, name: &str) -> Vec<usize> {
         let all = 0..self.width();
         let exact = |column: &usize| self.names[*column] == name;

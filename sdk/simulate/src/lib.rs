@@ -382,7 +382,7 @@ impl Simulation {
     /// the file name.
     ///
     /// # Errors
-    /// Never within the options' ranges.
+    /// Never, as long as the options are within their ranges.
     pub fn to_recording(&self, source: &str) -> Result<Recording, RecordingError> {
         let lateral = vec![self.fx_n.clone(), self.fy_n.clone()];
         let speed = speed_mm_s(&[&self.x_mm, &self.y_mm], self.rate_hz);

@@ -158,7 +158,7 @@ impl Truth {
     /// rule for combining them.
     ///
     /// # Errors
-    /// The errors of the writer.
+    /// When the writer fails.
     pub fn write_json(&self, out: impl Write) -> io::Result<()> {
         let [low, high] = match &self.options.motion {
             Motion::Free(free) => free.speed_mm_s,

@@ -25,7 +25,7 @@ impl Simulation {
     /// The forces read back bit for bit.
     ///
     /// # Errors
-    /// The errors of the writer.
+    /// When the writer fails.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let options = &self.options;
         let motion = match options.motion {

@@ -23,7 +23,7 @@ impl HeldOut {
     /// Cuts what is read of a recording into odd and even blocks.
     ///
     /// # Errors
-    /// The reason why nothing can be held out.
+    /// When nothing can be held out; the error is the reason.
     pub(crate) fn new(
         part: &SegmentSpectra,
         options: &SpectrumOptions,

@@ -97,7 +97,7 @@ fn nothing_fitted(subject: &Subject, swept: &Swept) -> AuthorError {
     AuthorError::NothingFitted { reasons: format!("{}: {}", subject.name, reasons.join("; ")) }
 }
 
-/// Outcomes by the contender's name.
+/// Outcomes by the contender's id.
 type Outcomes = BTreeMap<String, Outcome>;
 
 /// Measures everything that is not yet in the journal, using all cores.

@@ -94,7 +94,7 @@ enum Finger {
     Unknown,
 }
 
-/// Compares the mean speed of a stretch with that of the recording.
+/// Compares the mean speed of a stretch with the recording's mean speed.
 fn finger(recording: &Recording, run: &Range<usize>) -> Finger {
     let Some(speed) = &recording.speed_mm_s else {
         return Finger::Unknown;

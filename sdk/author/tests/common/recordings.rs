@@ -66,7 +66,7 @@ impl Case {
     }
 }
 
-/// Columns of a simulated recording, some of which each case changes.
+/// Columns of a simulated recording; each case changes some of them.
 struct Columns {
     /// Decimals of the time.
     decimals: usize,

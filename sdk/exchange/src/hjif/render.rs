@@ -77,7 +77,7 @@ fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usiz
     Ok(first_from(end_s, rate_hz))
 }
 
-/// An effect at a position: its own position, or that of a reference to it.
+/// An effect at a position: its own position, or the position of a reference to it.
 struct Placed<'a> {
     effect: &'a Effect,
     position: i64,

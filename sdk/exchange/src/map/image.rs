@@ -12,7 +12,7 @@ use crate::error::Fault;
 
 /// Largest file that is read, bytes: far more than 255 by 255 pixels take.
 const MOST_BYTES: usize = 1 << 20;
-/// Most memory that the decoder may use, bytes.
+/// Largest amount of memory that the decoder may use, bytes.
 const MOST_DECODED: usize = 4 << 20;
 /// Longest text that is unpacked, bytes.
 const MOST_TEXT: usize = 64 << 10;

@@ -237,8 +237,8 @@ struct Append<'a> {
 }
 
 impl Append<'_> {
-    /// Appends all values of a chunk, with NaN for missing values. The inner error is that of the
-    /// limit on numbers.
+    /// Appends all values of a chunk, with NaN for missing values. The inner error means that the
+    /// limit on numbers is exceeded.
     fn all<T: DataType>(
         &mut self,
         mut reader: ColumnReaderImpl<T>,

@@ -49,7 +49,7 @@ fn step(segment: &Segment) -> String {
     match segment {
         Segment::Seq { index } => format!("/{index}"),
         Segment::Map { key } => format!("/{}", escape(key)),
-        // The variant is a key of its object here.
+        // A variant is already a key of its object. Unknown segments have no name.
         Segment::Enum { variant } => format!("/{}", escape(variant)),
         Segment::Unknown => String::new(),
     }

@@ -148,8 +148,8 @@ impl Metadata {
         self.apply_law(manifest);
     }
 
-    /// Writes contact and law into a manifest. If the contact changes, exponents that were only
-    /// assumed are assumed anew for the new contact.
+    /// Writes contact and law into a manifest. For another contact, assumed exponents are assumed
+    /// anew, and measured ones are combined with the new assumptions.
     fn apply_law(&self, manifest: &mut Manifest) {
         let (law, contact) = (manifest.law(), self.contact.unwrap_or(manifest.contact));
         let of_contact = |law: Law| law.reassumed(manifest.quantity, contact);

@@ -135,8 +135,8 @@ impl Parquet {
     }
 }
 
-/// Refuses a footer that is not a whole structure. A footer with a wrong length is left to the
-/// library, which reports it.
+/// Refuses a footer that is not a whole structure. A footer whose stated length does not fit
+/// into the file is left to the library.
 fn check_footer(source: &Shared) -> Result<()> {
     let Some(end) = source.length().checked_sub(END) else {
         return Ok(());

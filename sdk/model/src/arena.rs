@@ -1,38 +1,40 @@
-//! Allocator of a module: blocks in size classes, each class with a list of freed blocks. It has a
-//! tenth of the code of a general allocator.
+//! The memory allocator of a WASM module: blocks in size classes, each with a list of freed blocks.
+//! It needs a tenth of the code of a general allocator.
 //!
-//! Classes are at most a quarter of an octave apart, so a block is at most a quarter larger than
-//! requested. Freed blocks are reused only in their class, which suits models: they allocate the
-//! same sizes repeatedly.
+//! Sizes of neighbouring classes differ by a quarter of an octave or less, so a block is at most a
+//! quarter larger than requested. A freed block is reused only for its own class. This suits
+//! models, which allocate the same sizes again and again.
 
 use core::alloc::Layout;
 use core::ptr::null_mut;
 
-/// What WASM memory grows by, bytes.
+/// Bytes by which WASM memory grows.
 pub(crate) const PAGE_BYTES: usize = 65_536;
-/// Bytes of the smallest block, and the alignment of all: enough for every number and vector.
+/// Size of the smallest block and alignment of all blocks, bytes: enough for every number and
+/// vector.
 const ALIGN: usize = 16;
-/// Classes an octave.
+/// Size classes per octave.
 const STEPS: usize = 4;
 const CLASSES: usize = STEPS * (usize::BITS as usize + 1);
 
-/// Blocks of memory that grows and never moves.
+/// Memory that grows and never moves, divided into blocks.
 pub(crate) struct Arena {
-    /// The last freed block of each class; each contains the address of the one freed before it.
+    /// The block of each class that was freed last. A freed block contains the address of the one
+    /// that was freed before it.
     freed: [*mut u8; CLASSES],
-    /// New memory that is not in a block yet.
+    /// Start of the memory that does not belong to a block yet.
     fresh: *mut u8,
     fresh_len: usize,
 }
 
 impl Arena {
-    /// No memory yet.
+    /// Makes an arena without memory.
     pub(crate) const fn new() -> Self {
         Self { freed: [null_mut(); CLASSES], fresh: null_mut(), fresh_len: 0 }
     }
 
-    /// A block for a layout; `None` where `grow`, which returns new pages, has none, or the
-    /// alignment is above 16 bytes.
+    /// Returns a block for a layout. `grow` returns new pages. Returns `None` if `grow` has no more
+    /// pages, or if the alignment is above 16 bytes.
     pub(crate) fn take(
         &mut self,
         layout: Layout,
@@ -70,7 +72,7 @@ impl Arena {
         Some(block)
     }
 
-    /// Takes a block back.
+    /// Takes back a block, so that it can be reused.
     ///
     /// # Safety
     /// [`Self::take`] returned the block for this layout, and nothing uses it any more.
@@ -84,7 +86,7 @@ impl Arena {
     }
 }
 
-/// The class of blocks that hold `size` bytes, and how many bytes they have.
+/// Returns the size class for blocks of at least `size` bytes, and their size in bytes.
 fn class(size: usize) -> Option<(usize, usize)> {
     let size = size.max(ALIGN);
     let octave = size.ilog2() as usize;

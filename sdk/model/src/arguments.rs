@@ -1,5 +1,5 @@
-//! Checks of arguments and results, common to all models. A host uses them for models that have no
-//! C functions.
+//! Checks of the arguments and results of all models. A host also uses them for models that it
+//! calls directly, without C functions.
 
 use alloc::vec::Vec;
 
@@ -7,10 +7,10 @@ use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices_1::MAX_VOICES;
 use crate::{Band, Error, Fields, Fit, FitInput, Numbers, Status, Values, text};
 
-/// Sets that can be mixed without allocating.
+/// Largest number of sets that [`interpolate`] mixes without allocating.
 const FEW_SETS: usize = 8;
 
-/// Checks the handles of voices that are rendered together: at most [`MAX_VOICES`], and all
+/// Checks the handles of voices that are rendered in one call: at most [`MAX_VOICES`], all
 /// different.
 pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     if handles.len() > MAX_VOICES {
@@ -29,10 +29,10 @@ pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     }
 }
 
-/// Makes the band of two edges, hertz.
+/// Makes a band from its two edges, hertz.
 ///
 /// # Errors
-/// When the edges do not ascend, or are not above 0 and at most 1 MHz.
+/// If the edges are not ascending, or not above 0 Hz and at most 1 MHz.
 pub fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
         return Ok(Band { low_hz, high_hz });
@@ -46,10 +46,10 @@ pub fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     ]))
 }
 
-/// Checks the rate of a signal or a voice, hertz.
+/// Checks the sample rate of a signal or a voice, hertz.
 ///
 /// # Errors
-/// When it is not 1 Hz to 10 MHz.
+/// If the rate is not from 1 Hz to 10 MHz.
 pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
     if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
         return Ok(());
@@ -60,7 +60,7 @@ pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
 /// Checks that all numbers of an argument are finite.
 ///
 /// # Errors
-/// Names the argument and the first index that is not.
+/// Names the argument, and the index of the first number that is not finite.
 pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
@@ -68,20 +68,20 @@ pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     }
 }
 
-/// Checks the input of a fit.
+/// Checks the input of a fit against the model's descriptor.
 ///
 /// # Errors
-/// When a number is not finite, the spectrum is too short, does not ascend or is negative, the rate
-/// is invalid, or an option is missing or out of range.
+/// If a number is not finite, the spectrum is too short, its frequencies do not ascend, a magnitude
+/// is negative, the sample rate is invalid, or an option is missing or out of range.
 pub fn check_fit_input(input: &FitInput<'_>, descriptor: &dyn Fields) -> Result<(), Error> {
     check_recording(input)?;
     check_options(input.options, descriptor)
 }
 
-/// Checks what a model has fitted.
+/// Checks the result of a model's fit.
 ///
 /// # Errors
-/// When a parameter is out of range, or the level is not a number.
+/// If a parameter is out of range, or the level is not a valid number.
 pub fn check_fit(fit: &Fit, descriptor: &dyn Fields) -> Result<(), Error> {
     Values::read(descriptor, &fit.parameters)?;
     if fit.level_rms.is_finite() && fit.level_rms >= 0.0 {
@@ -91,7 +91,7 @@ pub fn check_fit(fit: &Fit, descriptor: &dyn Fields) -> Result<(), Error> {
     }
 }
 
-/// Checks the spectrum and the signal that a model is fitted to.
+/// Checks the spectrum and the signal of a fit's input.
 fn check_recording(input: &FitInput<'_>) -> Result<(), Error> {
     finite("frequency_hz", input.frequency_hz)?;
     finite("magnitude", input.magnitude)?;
@@ -151,14 +151,14 @@ fn check_weights(weights: &[f64]) -> Result<(), Error> {
     Err(Error::argument("weights must lie in 0 to 1 and sum to 1"))
 }
 
-/// A model's function that mixes sets of parameters.
+/// A model's function that interpolates parameter sets.
 type Interpolation<'a> = dyn Fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error> + 'a;
 
-/// Interpolates with a model's function: reads the sets, and checks the result. Returns the number
-/// of numbers of the result.
+/// Interpolates concatenated parameter sets with a model's function, and checks the result. Returns
+/// the length of the result.
 ///
 /// # Errors
-/// When weights or sets are invalid, the model's own error, or that of an invalid result.
+/// If weights or sets are invalid, if the model returns an error, or if its result is invalid.
 pub fn interpolate(
     descriptor: &dyn Fields,
     own: &Interpolation<'_>,
@@ -167,7 +167,8 @@ pub fn interpolate(
     parameters: &mut [f64],
 ) -> Result<i64, Error> {
     check_weights(weights)?;
-    // Hosts interpolate two or three sets, possibly while they render, so these are not allocated.
+    // Hosts interpolate two or three sets, and may do so on the render thread: no allocation for
+    // these.
     let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
     let sets = match few.get_mut(..weights.len()) {
         Some(few) => few,

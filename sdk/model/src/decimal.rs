@@ -1,9 +1,10 @@
-//! Decimal texts of numbers, without the formatting of the standard library, which takes 20 kB of a
-//! WASM module.
+//! Decimal texts of numbers, without the text formatting of the standard library, which would add
+//! 20 kB to a WASM module.
 
-/// Significant digits of [`rounded`].
+/// Significant digits of the result of [`rounded`].
 const DIGITS: i32 = 9;
-/// Decimal places and whole digits up to which numbers are written without an exponent.
+/// Smallest and largest position of the decimal point, counted from the first digit, at which a
+/// number is written without an exponent.
 const PLAIN: (i32, i32) = (-6, 17);
 
 /// `digits · 10^exponent`.
@@ -40,7 +41,8 @@ impl Short {
         }
     }
 
-    /// Writes the digits of a number, with a point after the first `whole` ones if more follow.
+    /// Writes the digits of a number. If there are more than `whole` digits, a decimal point
+    /// follows the first `whole` ones.
     const fn digits(&mut self, number: u64, whole: i32) {
         let mut unit = 1;
         while number / unit >= 10 {
@@ -66,7 +68,7 @@ pub(crate) const fn whole(number: u64) -> Short {
 }
 
 impl Decimal {
-    /// Returns the text in the syntax of JSON.
+    /// Returns the number as JSON text.
     pub(crate) const fn text(self) -> Short {
         let Self { negative, digits, .. } = self;
         let mut text = Short::EMPTY;

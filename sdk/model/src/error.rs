@@ -1,8 +1,8 @@
-//! Status codes and the error that carries one.
+//! Status codes, and the error that carries one.
 
 use alloc::string::String;
 
-/// Result of a call. The numbers are part of the ABI and frozen.
+/// Status code of a call. The numbers are part of the ABI and never change.
 ///
 /// ```
 /// use htex_model::Status;
@@ -16,15 +16,15 @@ pub enum Status {
     Ok = 0,
     /// A pointer, length, rate, band or weight is invalid.
     InvalidArgument = -1,
-    /// Parameters do not fit the descriptor's fields.
+    /// The parameters do not match the descriptor's fields.
     InvalidParameters = -2,
-    /// A fit option does not fit the descriptor's options.
+    /// A fit option does not match the descriptor's options.
     InvalidOption = -3,
-    /// The model cannot be fitted to the spectrum.
+    /// The model cannot describe the spectrum.
     CannotFit = -4,
-    /// No such voice, or a voice that was freed.
+    /// There is no such voice, or it was freed.
     BadHandle = -5,
-    /// No more voices can be made.
+    /// The model cannot make more voices.
     TooManyVoices = -6,
     /// The model panicked; the effect of the call is undefined.
     Panicked = -7,
@@ -33,7 +33,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Converts a returned number; unknown negative numbers are `Failed`.
+    /// Converts a returned number to a status. Unknown negative numbers become `Failed`.
     pub fn from_code(code: i64) -> Self {
         match code {
             0.. => Self::Ok,
@@ -49,7 +49,7 @@ impl Status {
     }
 }
 
-/// A status with a message: the error, its place, and a remedy.
+/// An error of a model: a status, and a message that says what is wrong, where, and how to fix it.
 ///
 /// ```
 /// use htex_model::{Error, Status, text};
@@ -65,24 +65,24 @@ pub struct Error {
 }
 
 impl Error {
-    /// Makes an error of any status.
+    /// Makes an error with any status.
     pub fn new(status: Status, message: impl Into<String>) -> Self {
         Self { status, message: message.into() }
     }
 
-    /// The model cannot be fitted to the spectrum.
+    /// Makes an error: the model cannot describe the spectrum.
     #[cold]
     pub fn cannot_fit(message: impl Into<String>) -> Self {
         Self::new(Status::CannotFit, message)
     }
 
-    /// An argument is invalid.
+    /// Makes an error: an argument is invalid.
     #[cold]
     pub fn argument(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidArgument, message)
     }
 
-    /// Parameters are invalid.
+    /// Makes an error: the parameters are invalid.
     #[cold]
     pub fn parameters(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidParameters, message)

@@ -1,19 +1,19 @@
-//! Decimal texts of numbers that are parsed to the same bits; computed at compile time.
+//! Decimal texts of numbers that parse to exactly the same bits; computed at compile time.
 
 use crate::decimal::Decimal;
 
-/// Powers of ten up to this one are exact in 64-bit floats.
+/// Largest exponent whose power of ten is exact in a 64-bit float.
 const EXACT_POWER: i32 = 22;
-/// Whole numbers below this are exact in 64-bit floats.
+/// Whole numbers below this one are exact in 64-bit floats.
 const EXACT_WHOLE: f64 = (1u64 << 53) as f64;
-/// Digits that distinguish all 64-bit floats.
+/// Number of digits that distinguishes all 64-bit floats.
 const ENOUGH_DIGITS: usize = 17;
-/// Limbs of nine digits for `m · 5^1074`, m < 2^53.
+/// Number of limbs, of nine digits each, that hold `m · 5^1074` for m < 2^53.
 const LIMBS: usize = 86;
 const LIMB: u64 = 1_000_000_000;
 
-/// Returns the decimal of a finite number: the shortest if one exact product or quotient gives it
-/// (Clinger 1990), else one with 17 digits.
+/// Returns a decimal that parses to the given finite number. It is the shortest one if a single
+/// exact product or quotient gives it (Clinger 1990); otherwise it has 17 digits.
 pub(crate) const fn exact(number: f64) -> Decimal {
     assert!(number.is_finite(), "a descriptor contains a number that is not finite");
     let negative = number < 0.0;
@@ -86,7 +86,7 @@ const fn multiply(limbs: &mut [u64; LIMBS], factor: u64) {
     }
 }
 
-/// Returns the first digits, and the number of further ones.
+/// Returns the first digits, and the number of digits that follow them.
 const fn leading(limbs: &[u64; LIMBS]) -> (u64, i32) {
     let mut place = 9 * LIMBS;
     while place > ENOUGH_DIGITS && digit(limbs, place - 1) == 0 {
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use std::string::String;
 
-    /// Numbers of all sizes are parsed to the same bits, and short decimals are reproduced.
+    /// Numbers of all sizes parse to the same bits, and short decimals are reproduced.
     #[test]
     fn decimals_read_as_the_number() {
         let text = |x| String::from_utf8(exact(x).text().bytes().to_vec()).unwrap();

@@ -1,15 +1,16 @@
 //! The macro that generates a model's C functions.
 
-/// Generates the table of C functions of a [`Model`](crate::Model), as `pub static TABLE`.
+/// Generates the C functions of a [`Model`](crate::Model), as the table `pub static TABLE`.
 ///
-/// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_model_…`)
-/// when the crate is built with that Cargo feature: for a native library or a WASM module, which
-/// contains one model. A WASM module also gets the two memory functions of the ABI.
+/// `symbols: "FEATURE"` names a Cargo feature of the calling crate. When this feature is on, the
+/// functions are also exported under their C names (`htex_model_…`), as a native library or a WASM
+/// module needs them. Such a library or module contains exactly one model. A WASM module also gets
+/// the two memory functions of the ABI.
 ///
-/// With `extensions: [motion]` after it, as in
-/// `export_model!(Stick, symbols: "plugin", extensions: [motion])`, the model has the extension
-/// `htex.motion/1`: its voice implements [`MotionVoice`](crate::MotionVoice), and the extension's
-/// functions are in `pub static MOTION`.
+/// Add `extensions: [motion]`, as in `export_model!(Stick, symbols: "plugin", extensions:
+/// [motion])`, if the model has the extension `htex.motion/1`. Its voice then has to implement
+/// [`MotionVoice`](crate::MotionVoice), and the functions of the extension are in `pub static
+/// MOTION`.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
@@ -71,7 +72,7 @@ macro_rules! export_model {
             render: htex_model_exports::htex_voices_1_render,
         };
 
-        /// The C functions by their ABI names; documented in `htex_model::abi`.
+        /// The C functions under their ABI names; `htex_model::abi` documents them.
         #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
         mod htex_model_exports {
             use super::HTEX_MODEL_STATE as STATE;
@@ -270,7 +271,7 @@ macro_rules! export_model {
             fit: htex_motion_exports::htex_motion_1_fit,
         };
 
-        /// The C functions of `htex.motion/1`; documented in `htex_model::motion_1`.
+        /// The C functions of `htex.motion/1`; `htex_model::motion_1` documents them.
         #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
         mod htex_motion_exports {
             use super::HTEX_MODEL_STATE as STATE;

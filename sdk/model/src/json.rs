@@ -1,16 +1,16 @@
-//! The JSON text of a descriptor, generated at compile time, so that a module contains the text and
-//! no code that writes it.
+//! The JSON text of a descriptor, generated at compile time. A WASM module thus contains the text,
+//! but no code that writes it.
 
 use crate::decimal::whole;
 use crate::exact::exact;
 use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
 
-/// Returns the length of a descriptor's text, bytes.
+/// Returns the length of a descriptor's JSON text, bytes.
 pub const fn length(descriptor: &StaticDescriptor) -> usize {
     written::<0>(descriptor).len
 }
 
-/// Returns the text; `N` is the [`length`] for the same descriptor.
+/// Returns a descriptor's JSON text; `N` is the [`length`] of the same descriptor.
 pub const fn text<const N: usize>(descriptor: &StaticDescriptor) -> [u8; N] {
     written(descriptor).bytes
 }
@@ -21,7 +21,7 @@ const fn written<const N: usize>(descriptor: &StaticDescriptor) -> Writer<N> {
     json
 }
 
-/// Writes the bytes that fit into the buffer, and counts all.
+/// Writes the bytes that fit into the buffer, and counts all bytes.
 struct Writer<const N: usize> {
     bytes: [u8; N],
     len: usize,
@@ -206,7 +206,7 @@ mod tests {
                 StaticOption::choice("c", &["x", "y", "z"], "Choice."),
             ]);
 
-    /// The text is parsed to the constants from which it is generated.
+    /// The JSON text parses to the constants from which it was generated.
     #[test]
     fn the_text_is_the_descriptor() {
         const LEN: usize = length(&ALL);

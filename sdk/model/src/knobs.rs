@@ -1,30 +1,30 @@
-//! The values of a model's fit options that a sweep of accuracy against cost takes. They do not
-//! cross the ABI: the author of a model chooses them, and without them a sweep spans the ranges of
+//! The values of a model's fit options that a sweep of accuracy against cost tries. They are not
+//! part of the ABI: the author of a model chooses them. Without them, a sweep covers the ranges of
 //! the descriptor.
 
-/// A knob and its values in a sweep, besides its default.
+/// One option of a sweep, and the values that the sweep tries in addition to the default.
 #[derive(Debug, Clone, Copy)]
 pub struct Knob {
-    /// A fit option of the model, or an option of storing and playing.
+    /// Name of the option: a fit option of the model, or an option for storing or playing.
     pub name: &'static str,
-    /// Its values, from coarse to fine, as texts: numbers or choices.
+    /// The values from coarse to fine, as text: numbers or choices.
     pub values: &'static [&'static str],
 }
 
 impl Knob {
-    /// A knob with these values.
+    /// Makes a knob with these values.
     pub const fn new(name: &'static str, values: &'static [&'static str]) -> Self {
         Self { name, values }
     }
 }
 
-/// The fit options of a model in a sweep.
+/// The options that a sweep of one model varies.
 #[derive(Debug, Clone, Copy)]
 pub struct Knobs {
-    /// Knobs that are varied in all combinations.
+    /// Knobs that the sweep varies in all combinations.
     pub together: &'static [Knob],
-    /// Knobs that are varied one at a time, with the others at their defaults.
+    /// Knobs that the sweep varies one at a time, with all others at their defaults.
     pub alone: &'static [Knob],
-    /// A knob that has no effect above the value of another.
+    /// Two knobs: the first has no effect above the value of the second.
     pub not_above: Option<(&'static str, &'static str)>,
 }

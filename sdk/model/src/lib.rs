@@ -1,14 +1,19 @@
-//! The texture model ABI: the C functions that every model exports, and the safe traits from which
-//! Rust models get these exports.
+//! The texture model ABI: the traits that a model written in Rust implements, and the C functions
+//! that every model exports.
 //!
-//! A *model* describes a magnitude spectrum by a few parameters. It has five pure functions:
-//! describe, fit, magnitude, interpolate, voice ([`Model`], [`Voice`]). Across the ABI parameters
-//! are one flat array of `f64` in the order of the descriptor's fields: one value for a scalar, the
-//! length and then the values for a list ([`Values`]). Spectra are *shapes* of unit RMS in the
-//! asset's band; the level, in the unit of the asset's quantity, is stored separately.
+//! A *model* describes a magnitude spectrum by a few parameters. It does five things: it describes
+//! itself, fits parameters to a spectrum, computes the spectrum of given parameters, interpolates
+//! parameters, and makes voices, which render samples. In Rust, these are the traits [`Model`] and
+//! [`Voice`].
 //!
-//! A Rust author implements the traits and calls [`export_model!`]; the macro makes the table of C
-//! functions ([`abi::ModelTable`]) through which every host calls the model, built in or not.
+//! A Rust author implements both traits and calls [`export_model!`]. The macro generates the
+//! model's table of C functions ([`abi::ModelTable`]). Every host calls a model through this table,
+//! even if the model is built into the host.
+//!
+//! Parameters cross the ABI as one flat array of `f64`, in the order of the descriptor's fields. A
+//! scalar is one value; a list is its length followed by its values ([`Values`]). Spectra are
+//! *shapes*: they have unit RMS in the asset's band. The asset stores their level separately, in
+//! the unit of its quantity.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -1,18 +1,19 @@
-//! Linear interpolation of parameter sets, used by most models.
+//! Linear interpolation of parameter sets, as most models use it.
 
 use crate::{Error, Numbers, Values};
 
-/// Returns the set of weight 1, if there is one.
+/// Returns the set that has weight 1, if there is one.
 pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Values<'v>> {
     let i = weights.iter().position(|&w| w == 1.0)?;
     sets.get(i)
 }
 
-/// Writes the weighted mean of sets whose fields have the same lengths. The mean is within the
-/// range of the sets; a set of weight 1 is copied unchanged. Does not allocate.
+/// Writes the weighted mean of parameter sets. The lists of all sets must have the same lengths.
+/// Each number of the mean lies within the range of the sets, and a set with weight 1 is copied
+/// unchanged. Does not allocate.
 ///
 /// # Errors
-/// When the sets differ in length.
+/// If the sets differ in length.
 pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Result<(), Error> {
     if let Some(set) = sole(sets, weights) {
         out.extend(set.flat());
@@ -25,7 +26,8 @@ pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Re
     for i in 0..len {
         let values = || sets.iter().map(|set| set.flat()[i]);
         let sum: f64 = values().zip(weights).map(|(x, weight)| weight * x).sum();
-        // The sum of weights has a rounding error, which could move a parameter out of its range.
+        // The weights sum to one only up to a rounding error, which could move a parameter out of
+        // its range.
         let low = values().fold(f64::INFINITY, f64::min);
         out.push(sum.max(low).min(values().fold(f64::NEG_INFINITY, f64::max)));
     }

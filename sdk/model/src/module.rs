@@ -1,7 +1,7 @@
-//! Replacements for parts of the standard library: a panic handler and an allocator.
+//! What a WASM module needs in place of the standard library: a panic handler and an allocator.
 //!
-//! A module links no standard library, no serializer and no formatting; `docs/modules.md` has the
-//! reasons, `tests/tests/modules.rs` the bounds of the sizes.
+//! A module links no standard library, no serializer and no text formatting. `docs/modules.md` has
+//! the reasons, and `tests/tests/modules.rs` the size limits.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::wasm32::{memory_grow, unreachable};
@@ -10,7 +10,7 @@ use core::panic::PanicInfo;
 use crate::arena::{Arena, PAGE_BYTES};
 use crate::platform::Lock;
 
-/// Traps without a message: formatting one takes more code than a small model.
+/// Ends the instance without a message, because formatting one needs more code than a small model.
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     unreachable()

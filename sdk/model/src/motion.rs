@@ -1,10 +1,9 @@
-//! The motion of a finger, for models with the extension `htex.motion/1`.
+//! The motion of a finger, as models with the extension `htex.motion/1` receive it.
 
 use crate::motion_1::{MAX_FORCE_N, MAX_POSITION_MM, MAX_SPEED_MM_S};
 use crate::{Error, Voice, text};
 
-/// The motion of a finger at one sample. The speed is constant from there until the next motion is
-/// set.
+/// The motion of a finger at one sample. The speed stays constant until the next motion is set.
 ///
 /// ```
 /// let back = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
@@ -20,19 +19,20 @@ pub struct Motion {
     pub force_n: f64,
     /// Position along the finger's path, mm, of either sign.
     pub position_mm: f64,
-    /// Place on the surface, mm, of either sign; where it is not known, the position along the
-    /// path.
+    /// First coordinate of the finger on the surface, mm, of either sign. If the coordinates are
+    /// unknown, it equals the position along the path.
     pub x_mm: f64,
-    /// Place on the surface across `x_mm`, mm, of either sign; where it is not known, 0.
+    /// Second coordinate of the finger on the surface, mm, of either sign. If the coordinates are
+    /// unknown, it is 0.
     pub y_mm: f64,
 }
 
 impl Motion {
-    /// Checks the ranges of the extension.
+    /// Checks that every number is finite and within the limits of the extension.
     ///
     /// # Errors
-    /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is not finite or
-    /// beyond its range.
+    /// [`InvalidArgument`](crate::Status::InvalidArgument) if a number is not finite or out of
+    /// range.
     ///
     /// ```
     /// let motion = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
@@ -50,7 +50,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// Clamps the numbers to the ranges of the extension; NaN is kept.
+    /// Clamps every number to the limits of the extension. NaN stays NaN.
     #[must_use]
     pub fn clamped(self) -> Self {
         let near = |mm: f64| mm.clamp(-MAX_POSITION_MM, MAX_POSITION_MM);
@@ -64,7 +64,7 @@ impl Motion {
     }
 }
 
-/// The motion at which a recording was made, as far as known.
+/// Speed and force at which a recording was made, as far as they are known.
 ///
 /// ```
 /// let condition = htex_model::FitCondition::from_numbers(80.0, f64::NAN)?;
@@ -80,11 +80,10 @@ pub struct FitCondition {
 }
 
 impl FitCondition {
-    /// Converts numbers of the ABI: NaN means unknown.
+    /// Converts the two numbers of the ABI; NaN means unknown.
     ///
     /// # Errors
-    /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is infinite or beyond
-    /// its range.
+    /// [`InvalidArgument`](crate::Status::InvalidArgument) if a number is infinite or out of range.
     pub fn from_numbers(speed_mm_s: f64, force_n: f64) -> Result<Self, Error> {
         let known = |name, x: f64, most| {
             if x.is_nan() {
@@ -98,25 +97,43 @@ impl FitCondition {
         })
     }
 
-    /// Returns speed and force as numbers of the ABI: NaN means unknown.
+    /// Returns speed and force as the two numbers of the ABI; NaN means unknown.
     pub fn numbers(self) -> (f64, f64) {
         let number = |known: Option<f64>| known.unwrap_or(f64::NAN);
         (number(self.speed_mm_s), number(self.force_n))
     }
 }
 
-/// A voice that follows the motion itself, by the extension `htex.motion/1`. A model has the
-/// extension if [`export_model!`](crate::export_model) gets `extensions: [motion]`, which requires
-/// this trait of its voice.
+/// A voice that receives the finger's motion itself, through the extension `htex.motion/1`.
 ///
-/// A host then scales neither frequencies with the speed nor the level with the force. Before its
-/// first motion a voice plays its parameters as at the motion of their recording.
+/// Implement this trait if the sound depends on more than speed and force, e.g. on the finger's
+/// position, on its direction, or on stick-slip. To declare the extension, pass `extensions:
+/// [motion]` to [`export_model!`](crate::export_model); the macro then requires this trait of
+/// [`Model::Voice`](crate::Model::Voice).
+///
+/// # How a host uses it
+///
+/// For a voice without this trait, the host scales all frequencies with the speed and the level
+/// with the force. For a voice with it, the host does neither. It only interpolates parameters
+/// between conditions, and calls [`set_motion`](Self::set_motion) before the first sample, and
+/// again before a block when the motion has changed. A host that does not know the extension never
+/// calls it: until its first motion, a voice plays its parameters as at the motion of the
+/// recording.
+///
+/// # Limits
+///
+/// Samples are finite at every motion within the limits of [`motion_1`](crate::motion_1). At the
+/// motion of the recording the samples have unit RMS; at other motions the model decides the level.
+/// `examples/model-rust-texel` is a complete model with this trait.
 pub trait MotionVoice: Voice {
-    /// Sets the motion at the next sample, which is in range. The samples depend on the motions and
-    /// on the samples at which they are set, not on the blocks. A voice changes to a new motion
-    /// without a click; the model determines the samples at a speed of 0. The order of this call
-    /// and of [`retune`](Voice::retune) before the same sample does not matter.
-    /// `[render thread, no allocation, no lock, no I/O]`
+    /// Sets the motion at the next sample. All numbers are in range: the caller has checked them.
+    ///
+    /// The voice changes to the new motion within about 10 ms and without a click. At a speed of 0
+    /// the model decides what to play. A position far from the current one is a jump of the finger:
+    /// the voice should not play what lies in between. The samples depend only on the motions and
+    /// on the samples at which they are set, not on the block sizes. Before the same sample, this
+    /// call and [`retune`](Voice::retune) may come in either order, with the same effect. `[render
+    /// thread, no allocation, no lock, no I/O]`
     fn set_motion(&mut self, motion: Motion);
 }
 

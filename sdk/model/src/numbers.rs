@@ -1,7 +1,7 @@
-//! An output buffer for the numbers that a model writes.
+//! The output buffer of a model's interpolation.
 
-/// An output buffer for numbers. Numbers that do not fit are only counted, so that the caller can
-/// provide a larger buffer.
+/// An output buffer to which a model writes numbers. Numbers that do not fit are counted but not
+/// stored, so that the caller can provide a larger buffer.
 ///
 /// ```
 /// let mut buffer = [0.0; 2];
@@ -16,12 +16,12 @@ pub struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    /// Makes an empty output.
+    /// Makes an empty output over a buffer.
     pub fn new(buffer: &'a mut [f64]) -> Self {
         Self { buffer, count: 0 }
     }
 
-    /// Writes a number, and counts it where the buffer is full.
+    /// Writes a number. If the buffer is full, it only counts the number.
     pub fn push(&mut self, number: f64) {
         if let Some(place) = self.buffer.get_mut(self.count) {
             *place = number;
@@ -34,12 +34,12 @@ impl<'a> Numbers<'a> {
         numbers.iter().for_each(|number| self.push(*number));
     }
 
-    /// Returns the count of all numbers, including those that did not fit.
+    /// Returns the number of all values, including those that did not fit.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Returns the numbers in the buffer.
+    /// Returns the values in the buffer.
     pub fn written(&self) -> &[f64] {
         &self.buffer[..self.count.min(self.buffer.len())]
     }

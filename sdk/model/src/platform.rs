@@ -1,9 +1,9 @@
-//! Platform services of the exported functions: locks, the last error, and handling of panics.
+//! What the exported functions need from the platform: locks, the last error, and catching panics.
 
 pub use here::Lock;
 pub(crate) use here::{Once, caught, with_last_error};
 
-/// With the standard library: several threads, and panics that unwind.
+/// Targets with the standard library: several threads, and panics that unwind.
 #[cfg(feature = "std")]
 mod here {
     use alloc::string::{String, ToString};
@@ -19,21 +19,22 @@ mod here {
         static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
     }
 
-    /// A mutex that ignores poisoning, for data that voices and calls of a model share.
+    /// A mutex that ignores poisoning, for data that a model's voices and calls share.
     pub struct Lock<T>(Mutex<T>);
 
     impl<T> Lock<T> {
-        /// Makes a lock of a value.
+        /// Makes a lock that contains a value.
         pub const fn new(value: T) -> Self {
             Self(Mutex::new(value))
         }
 
-        /// Locks the value; `None` if it is detected that this thread holds the lock already.
+        /// Locks the value. `None` if this thread holds the lock already, where that can be
+        /// detected.
         pub fn lock(&self) -> Option<MutexGuard<'_, T>> {
             Some(self.0.lock().unwrap_or_else(PoisonError::into_inner))
         }
 
-        /// Locks the value without waiting; `None` if the lock is held.
+        /// Locks the value without waiting. `None` if another holder has the lock.
         pub fn try_lock(&self) -> Option<MutexGuard<'_, T>> {
             match self.0.try_lock() {
                 Ok(value) => Some(value),
@@ -43,7 +44,7 @@ mod here {
         }
     }
 
-    /// Runs a call; a panic becomes an error.
+    /// Runs a call and turns a panic into an error.
     pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
         catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
             let message = panic
@@ -56,13 +57,13 @@ mod here {
         })
     }
 
-    /// Returns the text of this thread's last error; `None` while it is in use.
+    /// Passes the text of this thread's last error to `with`. `None` if the text is already in use.
     pub(crate) fn with_last_error<T>(with: impl FnOnce(&mut String) -> T) -> Option<T> {
         LAST_ERROR.with(|last| last.try_borrow_mut().ok().map(|mut text| with(&mut text)))
     }
 }
 
-/// In a module: one thread, and panics that trap.
+/// WASM modules: one thread, and panics that end the instance.
 #[cfg(not(feature = "std"))]
 mod here {
     use alloc::string::String;
@@ -72,24 +73,24 @@ mod here {
 
     static LAST_ERROR: Lock<String> = Lock::new(String::new());
 
-    /// A lock for data that voices and calls of a model share.
+    /// A lock for data that a model's voices and calls share.
     pub struct Lock<T>(RefCell<T>);
 
     // SAFETY: a module has one thread. It imports nothing, so its memory is not shared.
     unsafe impl<T> Sync for Lock<T> {}
 
     impl<T> Lock<T> {
-        /// Makes a lock of a value.
+        /// Makes a lock that contains a value.
         pub const fn new(value: T) -> Self {
             Self(RefCell::new(value))
         }
 
-        /// Locks the value; `None` if it is detected that this thread holds the lock already.
+        /// Locks the value. `None` if the lock is held already.
         pub fn lock(&self) -> Option<RefMut<'_, T>> {
             self.0.try_borrow_mut().ok()
         }
 
-        /// Locks the value without waiting; `None` if the lock is held.
+        /// Locks the value without waiting. `None` if the lock is held.
         pub fn try_lock(&self) -> Option<RefMut<'_, T>> {
             self.lock()
         }
@@ -114,12 +115,12 @@ mod here {
         }
     }
 
-    /// Runs a call; a panic ends the instance.
+    /// Runs a call. A panic ends the instance.
     pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
         call()
     }
 
-    /// Returns the text of the last error; `None` while it is in use.
+    /// Passes the text of the last error to `with`. `None` if the text is already in use.
     pub(crate) fn with_last_error<T>(with: impl FnOnce(&mut String) -> T) -> Option<T> {
         LAST_ERROR.lock().map(|mut text| with(&mut text))
     }

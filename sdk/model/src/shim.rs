@@ -1,7 +1,8 @@
-//! The layer between the C functions and the traits: checks arguments, catches panics.
+//! The layer between the C functions and the traits: it checks arguments and turns panics into
+//! errors.
 //!
-//! The functions that [`export_model!`](crate::export_model) generates call it, and hosts for
-//! models that are objects.
+//! The functions that [`export_model!`](crate::export_model) generates call it. Hosts call it for
+//! models that are Rust objects without C functions.
 
 use alloc::alloc::Layout;
 use core::marker::PhantomData;
@@ -19,7 +20,7 @@ use crate::{
     Values, Voice, text,
 };
 
-/// The state of one exported model: its descriptor as JSON, and its voices.
+/// State of one exported model: its descriptor as JSON, and its voices.
 pub struct State<M: Model> {
     json: &'static [u8],
     voices: Voices<M::Voice>,
@@ -31,7 +32,8 @@ pub struct State<M: Model> {
 pub struct Input<'a, T>(Option<&'a [T]>);
 
 impl<'a, T> Input<'a, T> {
-    /// Refuses null and misaligned pointers when `len` is above 0.
+    /// Takes the host's pointer and length. A null or misaligned pointer with a `len` above 0 is
+    /// refused.
     ///
     /// # Safety
     /// `pointer` is null, or `len` values can be read there for `'a`.
@@ -60,7 +62,8 @@ impl<'a, T> From<&'a [T]> for Input<'a, T> {
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
 impl<'a, T> Output<'a, T> {
-    /// Refuses null and misaligned pointers when `len` is above 0.
+    /// Takes the host's pointer and length. A null or misaligned pointer with a `len` above 0 is
+    /// refused.
     ///
     /// # Safety
     /// `pointer` is null, or `len` initialised values can be written there for `'a`, with exclusive
@@ -94,7 +97,7 @@ fn fits<T>(len: usize) -> bool {
     len <= isize::MAX as usize / size_of::<T>().max(1)
 }
 
-/// Arguments of a fit.
+/// Arguments of a call of `htex_model_fit`.
 #[allow(missing_docs)] // Named as in `abi::FitFn`.
 pub struct FitCall<'a> {
     pub band: (f64, f64),
@@ -108,7 +111,7 @@ pub struct FitCall<'a> {
 }
 
 impl<M: Model> State<M> {
-    /// Makes the state without voices; `json` is the model's descriptor.
+    /// Makes a state without voices; `json` is the model's descriptor.
     pub const fn new(json: &'static [u8]) -> Self {
         Self { json, voices: Voices::new(), model: PhantomData }
     }
@@ -198,7 +201,7 @@ impl<M: Model> State<M> {
     /// See [`crate::abi::VoiceRenderFn`].
     ///
     /// # Safety
-    /// No other thread uses or frees this voice meanwhile.
+    /// During the call no other thread uses or frees this voice.
     pub unsafe fn voice_render(&self, handle: i64, out: Output<'_, f32>) -> i64 {
         guarded(|| {
             let out = out.get("out")?;
@@ -212,7 +215,7 @@ impl<M: Model> State<M> {
     /// See [`crate::voices_1::VoicesRenderFn`].
     ///
     /// # Safety
-    /// No other thread uses or frees these voices meanwhile.
+    /// During the call no other thread uses or frees these voices.
     pub unsafe fn voices_render(
         &self,
         handles: Input<'_, i64>,
@@ -239,7 +242,7 @@ impl<M: Model> State<M> {
     /// See [`crate::abi::VoiceRetuneFn`].
     ///
     /// # Safety
-    /// No other thread uses or frees this voice meanwhile.
+    /// During the call no other thread uses or frees this voice.
     pub unsafe fn voice_retune(&self, handle: i64, parameters: Input<'_, f64>) -> i64 {
         guarded(|| {
             let values = self.values(parameters)?;
@@ -263,7 +266,7 @@ impl<M: Model<Voice: MotionVoice>> State<M> {
     /// See [`crate::motion_1::MotionSetFn`].
     ///
     /// # Safety
-    /// No other thread uses or frees this voice meanwhile.
+    /// During the call no other thread uses or frees this voice.
     pub unsafe fn motion_set(&self, handle: i64, motion: Motion) -> i64 {
         guarded(|| {
             motion.check()?;
@@ -282,8 +285,8 @@ fn values<'a>(
     Values::read(descriptor, parameters.get("parameters")?)
 }
 
-/// Fits with the model's function. Not generic, so that a module contains it once, at this crate's
-/// optimisation level.
+/// Fits with the model's function. Not generic: a WASM module thus contains it only once, compiled
+/// at the optimisation level of this crate.
 fn fit(
     descriptor: &StaticDescriptor,
     own: fn(&FitInput<'_>) -> Result<Fit, Error>,
@@ -321,7 +324,8 @@ pub fn alloc(len: usize) -> *mut u8 {
 /// See [`crate::abi::FreeFn`].
 ///
 /// # Safety
-/// `pointer` is null, or was returned by [`alloc`](alloc()) for the same `len` and not freed.
+/// `pointer` is null, or [`alloc`](alloc()) returned it for the same `len` and it was not freed
+/// since.
 pub unsafe fn free(pointer: *mut u8, len: usize) {
     if let (false, Some(layout)) = (pointer.is_null(), layout(len)) {
         // SAFETY: guaranteed by the caller; the layout is that of the allocation.
@@ -342,19 +346,19 @@ pub fn last_error(out: Output<'_, u8>) -> i64 {
     with_last_error(|text| copy(text.as_bytes(), out)).unwrap_or(0)
 }
 
-/// See [`crate::abi::ExtensionFn`]; `motion` says whether the model has `htex.motion/1`.
+/// See [`crate::abi::ExtensionFn`]. `motion`: whether the model has `htex.motion/1`.
 pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
     let is = |known: &str| id.0 == Some(known.as_bytes());
     let voices = is(VoicesTable::ID) && !cfg!(target_family = "wasm");
     i64::from(voices || motion && is(MotionTable::ID))
 }
 
-/// Runs a call; an error or a panic becomes a status and the last-error text.
+/// Runs a call. On an error or a panic, stores the last-error text and returns the status.
 pub fn guarded(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
     caught(call).unwrap_or_else(failed)
 }
 
-/// Stores an error's text; returns its status.
+/// Stores the text of an error and returns its status.
 fn failed(error: Error) -> i64 {
     with_last_error(|text| *text = error.message);
     error.status as i64
@@ -364,7 +368,7 @@ fn bad_handle() -> Error {
     Error::new(Status::BadHandle, "no such voice; it may have been freed")
 }
 
-/// Copies as many values as fit; returns the number of all values.
+/// Copies as many values as fit into `out`; returns the number of all values.
 pub fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
     for (out, from) in out.iter_mut().zip(from) {
         *out = *from;

@@ -1,9 +1,9 @@
-//! The descriptor as constants in a model's code, from which [`export_model!`](crate::export_model)
-//! generates the JSON text of the ABI at compile time.
+//! The descriptor as constants in a model's code. At compile time,
+//! [`export_model!`](crate::export_model) generates from it the JSON text that the ABI returns.
 
 use crate::{Kind, Store};
 
-/// A model's description.
+/// A model's description: its id, version, parameter fields and fit options.
 ///
 /// ```
 /// use htex_model::{StaticDescriptor, StaticField, StaticOption};
@@ -16,24 +16,24 @@ use crate::{Kind, Store};
 pub struct StaticDescriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.sbeta`; never changes.
     pub id: &'static str,
-    /// Name for people, e.g. `sBeta`.
+    /// Display name, e.g. `sBeta`.
     pub name: &'static str,
     /// Semantic version of the model's parameters and sound.
     pub version: &'static str,
-    /// One sentence: the properties of a spectrum that the model stores.
+    /// One sentence that says which properties of a spectrum the model stores.
     pub summary: &'static str,
-    /// Parameters, in the order of the flat array.
+    /// Parameter fields, in the order of the flat array.
     pub fields: &'static [StaticField],
-    /// Fit options, in the order of their array.
+    /// Fit options, in the order of the array of their values.
     pub options: &'static [StaticOption],
-    /// Whether the level of a fit is determined by the parameters.
+    /// Whether the parameters determine the level of a fit. If so, hosts leave the level unchanged.
     pub keeps_level: bool,
 }
 
 /// One parameter field.
 #[derive(Debug, Clone, Copy)]
 pub struct StaticField {
-    /// Name, units included, e.g. `peak_hz`.
+    /// Name, including the unit, e.g. `peak_hz`.
     pub name: &'static str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'static str,
@@ -45,16 +45,16 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value for assets of earlier minor versions, which lack the field; for scalars only.
+    /// Value for assets of earlier minor versions, which do not have the field. Only for scalars.
     pub default: Option<f64>,
     /// Meaning of the field.
     pub description: &'static str,
 }
 
-/// One fit option: a number, or one of several named choices (the number is its index).
+/// One fit option: a number, or one of several named choices (the number is the choice's index).
 #[derive(Debug, Clone, Copy)]
 pub struct StaticOption {
-    /// Name as given on the command line.
+    /// Name, as given on the command line.
     pub name: &'static str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'static str,
@@ -64,11 +64,11 @@ pub struct StaticOption {
     pub max: f64,
     /// Default value.
     pub default: f64,
-    /// Only whole numbers are allowed.
+    /// Whether only whole numbers are allowed.
     pub integer: bool,
-    /// Names of the values 0, 1, …; empty for a plain number.
+    /// Names of the choices 0, 1, …; empty if the option is a plain number.
     pub choices: &'static [&'static str],
-    /// Effect of the option, and source of its default.
+    /// Effect of the option, and the source of its default.
     pub description: &'static str,
 }
 
@@ -93,15 +93,15 @@ impl StaticDescriptor {
         Self { options, ..self }
     }
 
-    /// Declares that the level of a fit is determined by the parameters.
+    /// Declares that the parameters determine the level of a fit.
     pub const fn keeping_level(self) -> Self {
         Self { keeps_level: true, ..self }
     }
 }
 
 impl StaticField {
-    /// A parameter of one number in `min..=max`, stored as 32-bit float unless [`Self::stored`]
-    /// sets another store.
+    /// A field with one number in `min..=max`. It is stored as a 32-bit float, unless
+    /// [`Self::stored`] sets another encoding.
     pub const fn scalar(
         name: &'static str,
         unit: &'static str,
@@ -120,7 +120,7 @@ impl StaticField {
         }
     }
 
-    /// A parameter of up to `max_len` numbers in `min..=max`.
+    /// A field with a list of up to `max_len` numbers in `min..=max`.
     pub const fn list(
         name: &'static str,
         unit: &'static str,
@@ -131,19 +131,20 @@ impl StaticField {
         Self { kind: Kind::List { max_len }, ..Self::scalar(name, unit, range, description) }
     }
 
-    /// Sets the store.
+    /// Sets the encoding of the values in an asset.
     pub const fn stored(self, store: Store) -> Self {
         Self { store, ..self }
     }
 
-    /// Sets the value for assets of earlier minor versions; for scalars only.
+    /// Sets the value for assets of earlier minor versions, which do not have the field. Only for
+    /// scalars.
     pub const fn defaulted(self, value: f64) -> Self {
         Self { default: Some(value), ..self }
     }
 }
 
 impl StaticOption {
-    /// A number in `min..=max`.
+    /// An option that is a number in `min..=max`.
     pub const fn number(
         name: &'static str,
         unit: &'static str,
@@ -154,7 +155,7 @@ impl StaticOption {
         Self { name, unit, min, max, default, integer: false, choices: &[], description }
     }
 
-    /// A whole number in `min..=max`.
+    /// An option that is a whole number in `min..=max`.
     pub const fn integer(
         name: &'static str,
         (min, max): (u32, u32),
@@ -167,7 +168,7 @@ impl StaticOption {
         }
     }
 
-    /// A choice of several names; the first is the default.
+    /// An option with several named choices; the first is the default.
     pub const fn choice(
         name: &'static str,
         choices: &'static [&'static str],

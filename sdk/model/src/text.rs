@@ -1,5 +1,5 @@
-//! Error texts, built without the formatting of the standard library, which is larger than a small
-//! WASM module.
+//! Error texts, built without the text formatting of the standard library, which is larger than a
+//! small WASM module.
 
 use alloc::string::String;
 
@@ -40,7 +40,7 @@ impl From<f64> for TextPart<'_> {
     }
 }
 
-/// Concatenates the parts. [`text!`](crate::text!) is shorter to write.
+/// Concatenates the parts. The macro [`text!`](crate::text!) is shorter to write.
 #[cold]
 pub fn concat(parts: &[TextPart<'_>]) -> String {
     let mut text = String::new();
@@ -68,7 +68,7 @@ fn push_ascii(text: &mut String, bytes: &[u8]) {
     bytes.iter().for_each(|&byte| text.push(char::from(byte)));
 }
 
-/// A [`String`] of words and numbers, for the message of an [`Error`](crate::Error).
+/// Makes a [`String`] of words and numbers, for the message of an [`Error`](crate::Error).
 ///
 /// ```
 /// let (peak_hz, lines) = (0.1, 3usize);

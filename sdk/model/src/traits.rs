@@ -1,4 +1,4 @@
-//! The traits of a model in Rust, and their arguments.
+//! The traits that a model written in Rust implements, and the arguments of their methods.
 
 use alloc::vec::Vec;
 
@@ -6,29 +6,28 @@ use htex_dsp::Band;
 
 use crate::{Error, FitCondition, Numbers, StaticDescriptor, Values};
 
-/// Input of a fit.
+/// Input of [`Model::fit`]: a texture spectrum, and what else is known about the recording.
 #[derive(Debug, Clone, Copy)]
 pub struct FitInput<'a> {
-    /// Band of the texture, hertz; the fitted shape has unit RMS in it.
+    /// Band of the texture, hertz. The fitted shape has unit RMS in this band.
     pub band: Band,
-    /// Frequencies of the texture spectrum, ascending, hertz (the 5 Hz grid in the band).
+    /// Frequencies of the texture spectrum, hertz, ascending: the multiples of 5 Hz in the band.
     pub frequency_hz: &'a [f64],
-    /// Magnitudes at those frequencies, in the unit of the asset's quantity, finite and not
-    /// negative.
+    /// Magnitude at each frequency, in the unit of the asset's quantity; finite and not negative.
     pub magnitude: &'a [f64],
-    /// The recording's segments overlap-added to one signal, in the same unit, band-limited; may be
-    /// empty.
+    /// The recording's segments, overlap-added to one band-limited signal, in the unit of
+    /// `magnitude`. May be empty.
     pub signal: &'a [f64],
-    /// Rate of `signal`, hertz.
+    /// Sample rate of `signal`, hertz.
     pub signal_rate_hz: f64,
-    /// One value for each of the descriptor's options, in range.
+    /// The value of each fit option, in the descriptor's order. All are in range.
     pub options: &'a [f64],
-    /// The motion at which the recording was made. Unknown for models without the extension
-    /// `htex.motion/1`, and if the host does not know it.
+    /// Speed and force of the recording. Both are unknown if the model does not have the extension
+    /// `htex.motion/1`, or if the host does not know them.
     pub condition: FitCondition,
 }
 
-/// Result of a fit.
+/// Result of [`Model::fit`]: the parameters and the level.
 ///
 /// ```
 /// let fit = htex_model::Fit { parameters: vec![2.0, 5.0], level_rms: 0.01 };
@@ -37,35 +36,204 @@ pub struct FitInput<'a> {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The flat array of parameters.
+    /// The parameters as one flat array: a scalar is one number, a list its length and its numbers.
     pub parameters: Vec<f64>,
-    /// RMS of the fitted magnitude in the band, in the unit of [`FitInput::magnitude`]: shape ×
-    /// level is the fitted spectrum.
+    /// RMS of the fitted spectrum in the band, in the unit of [`FitInput::magnitude`]. The fitted
+    /// spectrum is the shape times this level.
     pub level_rms: f64,
 }
 
-/// A texture model: a pure description of a spectrum by a few parameters.
+/// A texture model: describes a spectrum by a few parameters, and renders it.
 ///
-/// The macro's functions check every argument before they call these methods: parameters fit the
-/// descriptor, options are in range, bands are valid, rates are finite and positive.
+/// Implement this trait, and [`Voice`] for what the model renders, to add a model to htex. Then
+/// call [`export_model!`](crate::export_model), which generates the C functions of the ABI.
+///
+/// # How a host uses a model
+///
+/// All methods are pure functions: they have no `self`, and the result depends only on the
+/// arguments. They are called in these situations:
+///
+/// * **Authoring.** The host calls [`fit`](Self::fit) once for each recorded condition, and stores
+///   the parameters in the asset.
+/// * **Plots and error measures.** The host calls [`magnitude`](Self::magnitude), which computes
+///   the spectrum without rendering.
+/// * **Opening a voice.** The host calls [`voice_rate_hz`](Self::voice_rate_hz) and then
+///   [`voice`](Self::voice), with the rate that the first call returned. It resamples the samples
+///   to the rate that it needs, and multiplies them by the level.
+/// * **Following a finger.** The host calls [`interpolate`](Self::interpolate) to get parameters
+///   between two recorded conditions, and passes them to [`Voice::retune`].
+///
+/// The functions that the macro generates check every argument before they call these methods:
+/// parameters and options are in the ranges of the descriptor, bands are valid, rates are from 1 Hz
+/// to 10 MHz, weights are from 0 to 1 and sum to one. An implementation does not repeat these
+/// checks. A panic becomes the status [`Panicked`](crate::Status::Panicked) in a native library,
+/// and ends the instance of a WASM module.
+///
+/// # Threads
+///
+/// A host may call all methods from any thread and from several threads at the same time.
+/// `interpolate` can run on the render thread. [`fit`](Self::fit), [`magnitude`](Self::magnitude)
+/// and [`voice`](Self::voice) do not, so they may allocate and take their time.
+///
+/// # Example
+///
+/// Flat noise between two frequencies, with all methods of both traits:
+///
+/// ```
+/// use std::ops::RangeInclusive;
+///
+/// use htex_dsp::grid::curve_level_rms;
+/// use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+/// use htex_model::{
+///     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, Voice,
+///     mix,
+/// };
+///
+/// struct Plateau;
+///
+/// struct PlateauVoice {
+///     noise: ShapedNoise,
+///     band: Band,
+/// }
+///
+/// /// The two frequencies, and the RMS of the curve that is 1 between them.
+/// fn plateau(values: &Values<'_>, band: Band) -> Result<(RangeInclusive<f64>, f64), Error> {
+///     let edges = values.scalar(0)..=values.scalar(1);
+///     let level = curve_level_rms(band, |hz| f64::from(edges.contains(&hz)));
+///     if level > 0.0 {
+///         return Ok((edges, level));
+///     }
+///     Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
+/// }
+///
+/// impl Model for Plateau {
+///     type Voice = PlateauVoice;
+///
+///     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+///         "org.example.plateau",
+///         "Plateau",
+///         "1.0.0",
+///         "Flat noise between two frequencies.",
+///     )
+///     .fields(&[
+///         StaticField::scalar("low_hz", "Hz", (0.0, 2_000.0), "Lowest frequency."),
+///         StaticField::scalar("high_hz", "Hz", (0.0, 2_000.0), "Highest frequency."),
+///     ]);
+///
+///     /// Finds the two frequencies between which 90 % of the power lies.
+///     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+///         let power = || input.magnitude.iter().map(|m| m * m);
+///         let total: f64 = power().sum();
+///         if total == 0.0 {
+///             return Err(Error::cannot_fit("the spectrum is zero"));
+///         }
+///         let below = |part: f64| {
+///             let mut sum = 0.0;
+///             let bin = power().position(|p| {
+///                 sum += p;
+///                 sum >= part * total
+///             });
+///             input.frequency_hz[bin.unwrap_or(input.frequency_hz.len() - 1)]
+///         };
+///         Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
+///     }
+///
+///     fn magnitude(
+///         parameters: &Values<'_>,
+///         band: Band,
+///         frequency_hz: &[f64],
+///         magnitude: &mut [f64],
+///     ) -> Result<(), Error> {
+///         let (edges, level) = plateau(parameters, band)?;
+///         for (m, hz) in magnitude.iter_mut().zip(frequency_hz) {
+///             *m = if band.contains(*hz) && edges.contains(hz) { 1.0 / level } else { 0.0 };
+///         }
+///         Ok(())
+///     }
+///
+///     fn interpolate(
+///         sets: &[Values<'_>],
+///         weights: &[f64],
+///         out: &mut Numbers<'_>,
+///     ) -> Result<(), Error> {
+///         mix::linear(sets, weights, out)
+///     }
+///
+///     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+///         economical_rate_hz(wanted_hz, band)
+///     }
+///
+///     fn voice(
+///         parameters: &Values<'_>,
+///         band: Band,
+///         rate_hz: f64,
+///         seed: u64,
+///     ) -> Result<PlateauVoice, Error> {
+///         let (edges, _) = plateau(parameters, band)?;
+///         let mut noise = ShapedNoise::new(rate_hz, band, seed);
+///         noise.start(|_, hz| f64::from(edges.contains(&hz)));
+///         Ok(PlateauVoice { noise, band })
+///     }
+/// }
+///
+/// impl Voice for PlateauVoice {
+///     fn render(&mut self, out: &mut [f32]) {
+///         self.noise.render(out);
+///     }
+///
+///     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+///         let (edges, _) = plateau(parameters, self.band)?;
+///         self.noise.retune(|_, hz| f64::from(edges.contains(&hz)));
+///         Ok(())
+///     }
+/// }
+///
+/// let values = Values::read(&Plateau::DESCRIPTOR, &[80.0, 250.0])?;
+/// let rate_hz = Plateau::voice_rate_hz(&values, Band::TACTILE, 20_000.0);
+/// let mut voice = Plateau::voice(&values, Band::TACTILE, rate_hz, 1)?;
+/// let mut block = [0.0; 64];
+/// voice.render(&mut block);
+/// assert!(block.iter().any(|x| *x != 0.0));
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// # Limits
+///
+/// * The descriptor has 1 to 32 fields, and a parameter set has at most 65,536 numbers, including
+///   the lengths of lists.
+/// * Voices have to be reproducible on every machine. The math functions of the platform are not:
+///   use `libm` or `htex_dsp`, and no fused multiply-add.
+/// * `htex plugin check FILE` checks a built plugin: the ranges, the level and spectrum of the
+///   sound, clicks, memory allocation and more.
+///
+/// # Known doubts
+///
+/// * Sound and [`magnitude`](Self::magnitude) can differ by one bin of 5 Hz at steep flanks. There
+///   the measurement's window blurs the spectrum, and a model may choose whether its voice follows
+///   the spectrum before or after this blur.
+/// * A host may replace [`Fit::level_rms`], e.g. by the RMS of the recording. A model whose
+///   parameters determine the level declares [`StaticDescriptor::keeping_level`], and hosts then
+///   leave the level unchanged.
 pub trait Model: 'static {
-    /// Renders the samples of one texture.
+    /// The voice that renders the samples of one texture.
     type Voice: Voice;
 
-    /// Id, version, fields and options, as hosts see them.
+    /// Id, version, parameter fields and fit options, as hosts see them.
     const DESCRIPTOR: StaticDescriptor;
 
-    /// Finds the parameters of a spectrum.
+    /// Finds the parameters that describe a spectrum. The same input gives the same result.
     ///
     /// # Errors
-    /// [`crate::Status::CannotFit`] when the model cannot describe the spectrum.
+    /// [`crate::Status::CannotFit`] if the model cannot describe the spectrum, e.g. if it is
+    /// silent.
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
-    /// Writes the shape's magnitude at `frequency_hz`, of unit RMS on the 5 Hz grid in the band;
-    /// zero outside the band. Does not synthesise.
+    /// Writes the magnitude of the shape at each of `frequency_hz`. The shape has unit RMS on the 5
+    /// Hz grid in the band, and is zero outside the band. The value at a frequency does not depend
+    /// on the other frequencies of the call.
     ///
     /// # Errors
-    /// When the parameters describe no spectrum.
+    /// If the parameters describe no spectrum in this band.
     fn magnitude(
         parameters: &Values<'_>,
         band: Band,
@@ -73,28 +241,30 @@ pub trait Model: 'static {
         magnitude: &mut [f64],
     ) -> Result<(), Error>;
 
-    /// Interpolates parameter sets; weights are not negative and sum to one.
-    /// `[render thread, no allocation, no lock, no I/O]`
+    /// Interpolates parameter sets. Weights are not negative and sum to one; a set with weight 1 is
+    /// returned unchanged. Most models call [`mix::linear`](crate::mix::linear). With up to eight
+    /// sets: `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// When the sets cannot be interpolated.
+    /// If the sets cannot be interpolated, e.g. because their lists differ in length.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
         out: &mut Numbers<'_>,
     ) -> Result<(), Error>;
 
-    /// Returns the rate at which a voice renders for a requested rate of `wanted_hz`; the host
-    /// converts between them.
+    /// Returns the rate in hertz at which a voice renders when the host wants `wanted_hz`. The host
+    /// resamples from this rate to its own. A model that needs only the band can return a lower
+    /// rate, which saves time.
     fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz
     }
 
-    /// Makes a voice that renders the shape at unit RMS at `rate_hz`, a rate that
-    /// [`Self::voice_rate_hz`] returned.
+    /// Makes a voice that renders the shape at unit RMS, at `rate_hz`, which is a rate that
+    /// [`Self::voice_rate_hz`] returned. `seed` selects the random numbers of the voice.
     ///
     /// # Errors
-    /// When no voice can be made of these parameters at this rate.
+    /// If the model cannot make a voice of these parameters at this rate.
     fn voice(
         parameters: &Values<'_>,
         band: Band,
@@ -103,15 +273,38 @@ pub trait Model: 'static {
     ) -> Result<Self::Voice, Error>;
 }
 
-/// An endless stream of samples. Equal parameters, rates and seeds give equal samples, for all
-/// block sizes.
+/// An endless stream of samples of one texture, made by [`Model::voice`].
+///
+/// The host renders block after block on its render thread, and between two blocks it may change
+/// the parameters. It never makes two calls for the same voice at the same time, but a voice may
+/// move to another thread. Voices of one model render at the same time on different threads.
+///
+/// # What a voice guarantees
+///
+/// * Samples are finite, and have unit RMS in the long run; the host multiplies them by the level.
+/// * The same parameters, band, rate and seed give the same samples, for all block sizes, including
+///   blocks of length 0.
+/// * [`render`](Self::render) and [`retune`](Self::retune) do not allocate, lock, wait, or do input
+///   or output. Allocate all buffers in [`Model::voice`].
+/// * State that decays is set to zero before it becomes subnormal. Arithmetic with subnormal
+///   numbers is slow on many processors.
+///
+/// # Limits
+///
+/// [`render`](Self::render) cannot fail. A voice that cannot continue writes zeros. If it panics,
+/// the content of `out` is undefined.
+///
+/// The example of [`Model`] implements this trait. The crate `htex-shaped` has a complete voice for
+/// models that are noise with a given spectrum.
 pub trait Voice: Send + 'static {
-    /// Fills `out` with the next samples. `[render thread, no allocation, no lock, no I/O]`
+    /// Fills `out` with the next samples. `out` may have any length, and earlier contents are
+    /// arbitrary. `[render thread, no allocation, no lock, no I/O]`
     fn render(&mut self, out: &mut [f32]);
 
-    /// Fills `out` with the next `frames` samples of each voice, one voice after another,
-    /// bit-identical to [`Self::render`] of each. A model that renders several voices faster in one
-    /// call than separately overrides this. `[render thread, no allocation, no lock, no I/O]`
+    /// Fills `out` with the next `frames` samples of each voice, one voice after another. The
+    /// samples are bit-identical to those of [`Self::render`]. The default calls `render` for each
+    /// voice; override it if the model can render several voices faster in one call. `[render
+    /// thread, no allocation, no lock, no I/O]`
     fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32])
     where
         Self: Sized,
@@ -122,10 +315,10 @@ pub trait Voice: Send + 'static {
         }
     }
 
-    /// Changes to other parameters without a click, beginning with the next sample.
-    /// `[render thread, no allocation, no lock, no I/O]`
+    /// Changes to other parameters from the next sample on, over about 10 ms and without a click. A
+    /// host may call this before every block. `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// When the voice cannot change to these parameters; it then continues unchanged.
+    /// If the voice cannot change to these parameters. It then continues unchanged.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 }

@@ -1,18 +1,19 @@
-//! The usual ranges of a model's parameters, for sliders. They do not cross the ABI: a descriptor
-//! has the ranges of what may be stored, which are wide (0.001 to 1,000,000 for a shape parameter
-//! of sBeta).
+//! Usual ranges of a model's parameters, for sliders. They are not part of the ABI.
+//!
+//! A descriptor contains the ranges that can be stored, which are much wider than a slider needs
+//! (0.001 to 1,000,000 for a shape parameter of sBeta).
 
-/// The scale on which a range is even.
+/// The scale of a slider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal steps are equal differences.
+    /// Equal steps of the slider are equal differences.
     Linear,
-    /// Equal steps are equal ratios.
+    /// Equal steps of the slider are equal ratios.
     Log,
 }
 
 impl Scale {
-    /// Its name in documents: `linear` or `log`.
+    /// Name of the scale in documents: `linear` or `log`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -22,27 +23,27 @@ impl Scale {
     }
 }
 
-/// The usual range of a parameter; of a list, that of each of its numbers.
+/// The usual range of a parameter. For a list, the range applies to each of its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Usual {
-    /// The parameter: a field of the descriptor.
+    /// Name of the parameter: a field of the descriptor.
     pub field: &'static str,
-    /// Its lower end.
+    /// Lower end of the range.
     pub min: f64,
-    /// Its upper end.
+    /// Upper end of the range.
     pub max: f64,
-    /// The scale on which it is even.
+    /// Scale on which a slider moves evenly.
     pub scale: Scale,
 }
 
 impl Usual {
-    /// A range in which equal differences are equally far.
+    /// A range for a linear slider.
     #[must_use]
     pub const fn linear(field: &'static str, (min, max): (f64, f64)) -> Self {
         Self { field, min, max, scale: Scale::Linear }
     }
 
-    /// A range above 0 in which equal ratios are equally far.
+    /// A range above 0 for a logarithmic slider.
     #[must_use]
     pub const fn log(field: &'static str, range: (f64, f64)) -> Self {
         Self { scale: Scale::Log, ..Self::linear(field, range) }

@@ -1,7 +1,8 @@
-//! The flat array of parameters, by field.
+//! The flat array of parameters, and access to its fields.
 //!
-//! With the descriptor an array describes itself (a scalar is one number, a list its length and its
-//! numbers), so several sets are concatenated without further lengths.
+//! A scalar field is one number; a list is its length followed by its numbers. Together with the
+//! descriptor, an array thus describes its own length, so several sets can be concatenated without
+//! further lengths.
 
 use alloc::vec::Vec;
 
@@ -9,8 +10,8 @@ use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
 use crate::text;
 use crate::{Error, Kind, StaticDescriptor};
 
-/// Names and ranges of parameters and of fit options: of a model's constants, and of a descriptor
-/// that a host has read.
+/// Names and ranges of a model's parameters and fit options. Implemented for the constants of a
+/// model and for the descriptor that a host has read.
 pub trait Fields {
     /// Reverse-DNS id of the model.
     fn id(&self) -> &str;
@@ -18,21 +19,21 @@ pub trait Fields {
     /// The number of fields.
     fn count(&self) -> usize;
 
-    /// Field `i`, which is below [`Self::count`].
+    /// The range of field `i`. `i` must be below [`Self::count`].
     fn range(&self, i: usize) -> Range<'_>;
 
     /// The number of fit options.
     fn option_count(&self) -> usize;
 
-    /// Option `i`, which is below [`Self::option_count`], and whether only whole numbers are
-    /// allowed.
+    /// The range of option `i`, and whether the option allows only whole numbers. `i` must be below
+    /// [`Self::option_count`].
     fn option(&self, i: usize) -> (Range<'_>, bool);
 }
 
-/// The properties by which the numbers of a field or of an option are checked.
+/// Name, unit and limits of a field or an option.
 #[derive(Debug, Clone, Copy)]
 pub struct Range<'a> {
-    /// Name, units included.
+    /// Name, including the unit, e.g. `peak_hz`.
     pub name: &'a str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'a str,
@@ -89,7 +90,7 @@ fields_of!(StaticDescriptor);
 #[cfg(feature = "host")]
 fields_of!(crate::Descriptor);
 
-/// Parameters, checked against a descriptor, without a copy.
+/// A parameter set that was checked against a descriptor. It borrows the array.
 ///
 /// ```
 /// use htex_model::{StaticDescriptor, StaticField, Values};
@@ -110,14 +111,15 @@ pub struct Values<'a> {
 }
 
 impl<'a> Values<'a> {
-    /// An empty value, to be replaced.
+    /// An empty set, as an initial value to be replaced.
     #[cfg(any(feature = "std", target_family = "wasm"))]
     pub(crate) const NONE: Self = Self { flat: &[], spans: [(0, 0); MAX_FIELDS] };
 
-    /// Reads an array of exactly one parameter set.
+    /// Reads an array that contains exactly one parameter set.
     ///
     /// # Errors
-    /// Names the field that is missing, too long, out of range or not finite.
+    /// Names the field that is missing, too long, out of range or not finite, or says how many
+    /// numbers are left over.
     pub fn read(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<Self, Error> {
         let (values, used) = Self::read_first(descriptor, flat)?;
         if used == flat.len() {
@@ -131,7 +133,7 @@ impl<'a> Values<'a> {
         ]))
     }
 
-    /// Reads the parameter set at the start of an array; returns its length.
+    /// Reads the parameter set at the start of an array, and returns it with its length.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -175,7 +177,7 @@ impl<'a> Values<'a> {
         Ok((Self { flat, spans }, at))
     }
 
-    /// Returns the numbers of field `i` (one for a scalar); empty if there is no such field.
+    /// Returns the numbers of field `i`: one for a scalar. Empty if there is no such field.
     pub fn list(&self, i: usize) -> &'a [f64] {
         let (start, end) = self.spans.get(i).copied().unwrap_or_default();
         &self.flat[start as usize..end as usize]
@@ -186,13 +188,13 @@ impl<'a> Values<'a> {
         self.list(i).first().copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns the flat array as it crosses the ABI.
+    /// Returns the flat array, as it crosses the ABI.
     pub fn flat(&self) -> &'a [f64] {
         self.flat
     }
 }
 
-/// Returns the numbers of fields as one flat array, the inverse of [`Values`].
+/// Concatenates the numbers of the fields to one flat array: the inverse of [`Values`].
 pub fn flatten(descriptor: &impl Fields, fields: &[&[f64]]) -> Vec<f64> {
     let mut flat = Vec::new();
     for (i, numbers) in fields.iter().enumerate().take(descriptor.count()) {

@@ -1,4 +1,6 @@
-//! Voices by handle: a stale handle is refused, a live one is found without a lock.
+//! The voices of one exported model, found by their handles.
+//!
+//! A stale handle is refused; a valid one is found without a lock.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -7,23 +9,26 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use crate::platform::{Lock, Once};
 
-/// Chunk `c` has `FIRST << c` slots, allocated with the first voice in it: the first voice of a
-/// model takes the memory of a few slots (of up to 2.8 kB each), and a thousand voices that of at
-/// most twice as many.
+/// Slots in the first chunk. Chunk `c` has `FIRST << c` slots, and is allocated when it gets its
+/// first voice. So a model with one voice needs the memory of a few slots (up to 2.8 kB each), and
+/// one with a thousand voices allocates at most twice as many slots.
 const FIRST: usize = 4;
-/// Most voices at a time: fewer in a module, whose instances have one or two.
+/// Largest number of voices at a time. It is smaller in a WASM module, whose instances have only
+/// one or two.
 const MOST: usize = if cfg!(target_family = "wasm") { 1024 } else { 65_536 };
-/// Chunks for `MOST` slots.
+/// Number of chunks for `MOST` slots.
 const CHUNKS: usize = place(MOST - 1).0 + 1;
 
-/// Returns the chunk of an index, and its place there.
+/// Returns the chunk of a slot index, and the slot's offset in that chunk.
 const fn place(index: usize) -> (usize, usize) {
     let chunk = (index / FIRST + 1).ilog2() as usize;
     (chunk, index - FIRST * ((1 << chunk) - 1))
 }
 
-/// Up to 65,536 voices, 1,024 in a module. A handle consists of a slot's index and the slot's
-/// generation, which changes when a voice is inserted or removed.
+/// A collection of up to 65,536 voices (1,024 in a WASM module), accessed by handles.
+///
+/// A handle consists of a slot's index and the slot's generation, which changes whenever a voice is
+/// inserted or removed. So the handle of a removed voice stays invalid when its slot is used again.
 pub struct Voices<V> {
     chunks: [Once<Box<[Slot<V>]>>; CHUNKS],
     free: Lock<Free>,
@@ -40,8 +45,8 @@ struct Free {
     never_used: u32,
 }
 
-// SAFETY: a slot's voice is accessed only by the thread that inserts or removes it, which holds the
-// `free` lock, and by `get`, whose caller guarantees exclusive access to that voice.
+// SAFETY: only two kinds of callers access a slot's voice: the thread that inserts or removes it,
+// which holds the `free` lock, and `get`, whose caller guarantees exclusive access to that voice.
 unsafe impl<V: Send> Sync for Voices<V> {}
 
 impl<V> Default for Voices<V> {
@@ -59,7 +64,7 @@ impl<V> Voices<V> {
         }
     }
 
-    /// Inserts a voice; `None` at the limit.
+    /// Inserts a voice and returns its handle, or `None` if there are too many voices.
     pub fn insert(&self, voice: V) -> Option<i64> {
         let mut free = self.free.lock()?;
         let index = match free.freed.pop() {
@@ -83,11 +88,11 @@ impl<V> Voices<V> {
         Some((i64::from(generation & 0x7fff_ffff) << 32) | i64::from(index + 1))
     }
 
-    /// Returns the voice of a handle; `None` if it was removed or never existed.
+    /// Returns the voice of a handle, or `None` if it was removed or never existed.
     ///
     /// # Safety
-    /// No other thread uses or frees this voice meanwhile, and the caller holds one such reference
-    /// to it at a time.
+    /// While the reference is in use, no other thread uses or frees this voice, and the caller
+    /// holds no second reference to it.
     #[allow(clippy::mut_from_ref)]
     pub unsafe fn get(&self, handle: i64) -> Option<&mut V> {
         let slot = self.live_slot(handle)?;
@@ -95,7 +100,7 @@ impl<V> Voices<V> {
         unsafe { (*slot.voice.get()).as_mut() }
     }
 
-    /// Removes a voice.
+    /// Removes a voice and returns it, or `None` if the handle is not valid.
     pub fn remove(&self, handle: i64) -> Option<V> {
         let mut free = self.free.lock()?;
         let slot = self.live_slot(handle)?;

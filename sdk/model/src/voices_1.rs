@@ -1,21 +1,21 @@
-//! The extension `htex.voices/1`: several voices of one model, rendered in one call.
+//! The extension `htex.voices/1`: renders several voices of one model in one call.
 //!
-//! In a recursive filter each sample of a voice depends on the one before, while samples of
-//! different voices are independent and can be computed in parallel. A native library exports
-//! `htex_voices_1_render`. WASM modules do not have this extension: each of their voices has a
-//! separate instance.
+//! In a recursive filter, each sample of a voice depends on the sample before it. Samples of
+//! different voices are independent, so a processor can compute them in parallel. A native library
+//! exports `htex_voices_1_render`. WASM modules do not have this extension, because each of their
+//! voices has its own instance.
 
-/// Most voices that one call takes.
+/// Largest number of voices in one call.
 pub const MAX_VOICES: usize = 16;
 
-/// Renders the next `frames` samples of each of `count` different voices, one voice after another,
-/// bit-identical to `htex_model_voice_render` of each. Returns a status; after a negative one other
-/// than [`Panicked`](crate::Status::Panicked) no voice has advanced.
-/// `[render thread, no allocation; one thread at a time for one voice]`
+/// Renders the next `frames` samples of each of `count` different voices, one voice after another.
+/// The samples are bit-identical to those of `htex_model_voice_render`. Returns a status. If it is
+/// negative, and not [`Panicked`](crate::Status::Panicked), no voice has advanced. `[render thread,
+/// no allocation; one thread at a time for one voice]`
 pub type VoicesRenderFn =
     unsafe extern "C" fn(voices: *const i64, count: usize, out: *mut f32, frames: usize) -> i64;
 
-/// The functions of the extension.
+/// The C function of the extension.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // The type documents the function.

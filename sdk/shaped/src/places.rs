@@ -1,4 +1,4 @@
-//! Positions of a voice's frequencies between the bins of a grid.
+//! Linear interpolation of a curve from the grid of a band to the frequencies of a voice.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -7,18 +7,19 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
 
-/// Positions of a voice's frequencies between the bins of the band's grid. Shared by voices of the
-/// same rate and band.
+/// Positions of a voice's frequencies between the bins of a band's grid. Voices with the same rate
+/// and band share them.
 pub struct Places(Vec<BinPosition>);
 
-/// A position between two neighbouring bins.
+/// Position between two neighbouring bins: the lower bin, and the part of the way to the next one.
 struct BinPosition {
     below: u32,
     part: f64,
 }
 
 impl Places {
-    /// Returns the positions of frequencies, hertz, by their key.
+    /// Returns the positions of these frequencies, hertz. `key` identifies the frequencies, so that
+    /// equal ones are computed only once.
     pub fn shared(frequency_hz: &[f64], key: ComponentsKey, band: Band) -> Arc<Self> {
         static PLACES: Shared<ComponentsKey, Places> = Shared::new();
         PLACES.get(key, || Arc::new(Self::new(frequency_hz, band)))
@@ -34,7 +35,7 @@ impl Places {
         Self(frequency_hz.iter().map(place).collect())
     }
 
-    /// Writes the values of a curve given on the grid, with linear interpolation between bins.
+    /// Interpolates a curve that is given on the grid, and writes its value at each frequency.
     pub fn read(&self, grid: &[f64], values: &mut [f64]) {
         let last = grid.len().saturating_sub(1);
         for (value, place) in values.iter_mut().zip(&self.0) {

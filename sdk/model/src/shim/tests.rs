@@ -1,7 +1,7 @@
 use super::*;
 use crate::{Band, Numbers};
 
-/// A model whose voices count, starting at the finger's position.
+/// A model whose voices count up, starting at the seed or the finger's position.
 struct Counting;
 struct Counter(f32);
 
@@ -98,7 +98,7 @@ fn what_is_not_known_of_a_condition_is_nan() {
     }
 }
 
-/// With one invalid array of handles no voice renders.
+/// If one handle of the array is invalid, no voice renders.
 #[test]
 fn voices_are_rendered_together_or_not_at_all() {
     let state = State::<Counting>::new(b"");

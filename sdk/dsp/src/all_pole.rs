@@ -1,9 +1,10 @@
-//! All-pole filter: a fast direct form while its coefficients are constant, a lattice, which stays
-//! stable, while they change.
+//! All-pole filter that runs as a direct form while its coefficients are constant, and as a lattice
+//! while they change. The direct form is fast; the lattice stays stable.
 //!
-//! The direct form can be unrolled for four samples. After constant coefficients for as many
-//! samples as it has stages a lattice equals it, to rounding. Mixed filters are computed from line
-//! spectral frequencies, between which every filter is stable.
+//! The direct form computes four samples at a time. Once the coefficients have been constant for as
+//! many samples as the lattice has stages, both forms are equal up to rounding. Coefficients
+//! between two filters are computed from line spectral frequencies, between which every filter is
+//! stable.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
@@ -11,21 +12,22 @@ use crate::lattice::AllPoleLattice;
 use crate::linear_prediction::{step_down_in_place, step_up};
 use crate::quad::{Quad, VOICES};
 
-/// [`GROUP`] samples, which are filtered together.
+/// [`GROUP`] samples that are filtered together.
 pub type Group = [f64; GROUP];
 
-/// Limit for the direct form. Its rounding error, relative to the output, is at most about 1e-16
-/// times the sum of the absolute coefficients times the filter's gain for noise. Up to this product
-/// the error is below the resolution of single-precision samples.
+/// Limit for the use of the direct form. Its rounding error, relative to the output, is at most
+/// about 1e-16 times the sum of the absolute coefficients times the filter's gain for noise. If the
+/// product of the last two is below this limit, the error is below the resolution of
+/// single-precision samples.
 const MAX_DIRECT_ERROR: f64 = 1e7;
 
 /// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` with coefficients that can change while it runs (f64 state).
 ///
 /// While the coefficients are constant, the filter computes four samples at a time (transposed
 /// direct form II, the recursion unrolled for four samples). While they change it runs as a
-/// lattice, which is stable as long as each reflection coefficient is inside (-1, 1). The switch is
-/// inaudible: a lattice whose coefficients have been constant for as many samples as it has stages
-/// has a state that depends on its last outputs alone.
+/// lattice, which is stable if each reflection coefficient is inside (-1, 1). The switch between
+/// the two is inaudible: after as many samples with constant coefficients as the lattice has
+/// stages, its state depends only on its last outputs.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;
@@ -38,7 +40,7 @@ const MAX_DIRECT_ERROR: f64 = 1e7;
 #[derive(Debug, Clone)]
 pub struct AllPole {
     lattice: AllPoleLattice,
-    /// Samples until the state of the lattice depends on the last outputs alone.
+    /// Number of samples until the state of the lattice depends only on the last outputs.
     unsettled: usize,
     /// The last outputs, the newest at the end.
     past: [f64; MAX_DIRECT_ORDER],
@@ -47,7 +49,7 @@ pub struct AllPole {
 }
 
 /// Four filters with constant coefficients, computed side by side. Each output is bit-identical to
-/// that of the filter run alone.
+/// the output of the filter on its own.
 #[derive(Debug)]
 pub struct AllPoles<'a>([&'a mut AllPole; VOICES]);
 
@@ -76,10 +78,10 @@ impl AllPole {
         Some(filter)
     }
 
-    /// Makes the filter one of at least this order; the new reflection coefficients are 0.
+    /// Raises the order to at least this one; the new reflection coefficients are 0.
     pub fn raise_order(&mut self, order: usize) {
         if order > self.order() {
-            // The state of the present order first.
+            // First get the state of the lattice at the present order.
             self.reflection_mut();
             self.lattice.raise_order(order);
             self.unsettled = order;
@@ -90,7 +92,7 @@ impl AllPole {
         self.lattice.order()
     }
 
-    /// The reflection coefficients. They may be changed between samples and must stay inside (-1,
+    /// The reflection coefficients. They may be changed between samples, and must stay inside (-1,
     /// 1). Does not allocate.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         if self.direct.take().is_some() {
@@ -123,7 +125,7 @@ impl AllPole {
             direct.process(self.lattice.order(), steady);
             remember(&mut self.past, steady.as_flattened());
         } else {
-            // It has settled within this block, and stays a lattice.
+            // It has settled, but the direct form would be too inaccurate for its coefficients.
             self.run_lattice(steady.as_flattened_mut());
         }
     }
@@ -139,7 +141,7 @@ impl AllPole {
         }
     }
 
-    /// Switches to the direct form if its rounding error is small enough.
+    /// Switches to the direct form, if its rounding error is small enough.
     fn settle(&mut self) {
         let order = self.order();
         if order > MAX_DIRECT_ORDER {
@@ -159,7 +161,7 @@ impl AllPole {
 }
 
 impl<'a> AllPoles<'a> {
-    /// Combines four filters; `None` if one of them still runs as a lattice because its
+    /// Combines four filters. `None` if one of them still runs as a lattice because its
     /// coefficients changed.
     pub fn new(filters: [&'a mut AllPole; VOICES]) -> Option<Self> {
         let direct = filters.iter().all(|filter| filter.direct.is_some());
@@ -270,7 +272,8 @@ mod tests {
         }
     }
 
-    /// Filters whose order or rounding error is too large for the direct form stay lattices.
+    /// A filter stays a lattice if its order or its rounding error is too large for the direct
+    /// form.
     #[test]
     fn the_direct_form_is_used_only_where_it_is_accurate() {
         let coefficients_of = |poles: usize, radius: f64| {
@@ -299,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Blocks of any length give the bits of single groups, also of a filter that stays a lattice
+    /// Blocks of any length give the same bits as single groups, even if a filter stays a lattice
     /// and settles within a block.
     #[test]
     fn blocks_of_any_length_are_single_groups() {
@@ -325,8 +328,8 @@ mod tests {
         }
     }
 
-    /// Four filters side by side give the bits of each alone, for all block lengths; a lattice is
-    /// rejected.
+    /// Four filters side by side give the same bits as each on its own, for all block lengths. A
+    /// lattice is rejected.
     #[test]
     fn four_filters_are_bit_identical_to_single_ones() {
         let order = |n: usize| -> Vec<f64> { (0..n).map(|i| 0.5 / (i + n) as f64).collect() };

@@ -1,8 +1,8 @@
-//! Steep filters at the edges of the band, for noise that is generated wider than the band.
+//! Steep filters at the edges of the band, for noise that is generated with a wider spectrum.
 //!
-//! The level of a model that is filtered is measured after its filter: the filter's ripple, and the
-//! half bin that the Nyquist frequency cuts off, change the RMS by up to 2 %. It is summed over a
-//! table of angles ([`PassedPower`]).
+//! A filter changes the RMS by up to 2 %: by its ripple, and because the Nyquist frequency cuts
+//! half a bin off. So a model that uses these filters measures its level after them, as a sum over
+//! a table of frequencies ([`PassedPower`]).
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,22 +15,22 @@ use crate::pipeline::Pipeline;
 use crate::shared::Shared;
 use crate::wide::{Work, very_wide, wide};
 
-/// 80 dB a decade, as steep at the edge as a Butterworth filter of twice the order: half a bin
-/// outside the band almost no power passes.
+/// Filter order: 80 dB per decade. At the edge it is as steep as a Butterworth filter of twice the
+/// order; half a bin outside the band almost no power passes.
 const ORDER: usize = 4;
 const RIPPLE_DB: f64 = 0.2;
-/// Bins on either side of an edge in which the response changes within one bin.
+/// Number of bins on either side of an edge in which the response changes within one bin.
 const EDGE_BINS: usize = 3;
-/// Points per bin at which the response is evaluated there.
+/// Points per bin at which the response is evaluated in these bins.
 const EDGE_POINTS: usize = 4;
 /// Distance from an edge, relative to its frequency, beyond which the attenuation is at least 30
 /// dB.
 const BESIDE: f64 = 0.5;
 
-/// Returns Chebyshev filters for `band` at the sampling rate `rate_hz`: within 0.2 dB up to an
-/// eighth of the frequency of each edge, and 3 dB down half a grid bin outside each edge. An edge
-/// at or above the Nyquist frequency gets no filter. The output is delayed by some samples
-/// ([`Pipeline`]).
+/// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. They are Chebyshev
+/// filters: within 0.2 dB from an eighth of the edge's frequency inside each edge, and 3 dB down
+/// half a grid bin outside it. An edge at or above the Nyquist frequency gets no filter. The output
+/// is delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -55,16 +55,16 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// For each grid bin in the band and some beside it: the part of a noise's power that passes
-/// [`band_limit`] and is measured by the bins of the band. Near the edges bins are subdivided. A
-/// bin that contains the Nyquist frequency counts up to it.
+/// A table of how much of a noise's power passes [`band_limit`] and is measured by the bins of the
+/// band: for each grid bin in the band, and for some bins outside. Near the edges the bins are
+/// subdivided. A bin that contains the Nyquist frequency counts only up to it.
 ///
-/// It corrects the level of filtered noise. Without the correction noise would be too weak: by the
-/// filters' ripple, by the part of the highest bin above the Nyquist frequency, and by the power
-/// that the window misses at the band's edges.
+/// The table corrects the level of filtered noise. Without it the noise would be too weak, by three
+/// losses: the filters' ripple, the part of the highest bin above the Nyquist frequency, and the
+/// power that the window misses at the band's edges.
 #[derive(Debug, Clone)]
 pub struct PassedPower {
-    /// Frequency in hertz, and the part of the power measured there, 0 to about 1.
+    /// Frequency in hertz, and the part of the power there that is measured, 0 to about 1.
     points: Vec<(f64, f64)>,
     /// The same points in groups of [`TURNS`]: cosine and sine of the phase advance per sample, and
     /// the part of the power.
@@ -83,14 +83,14 @@ struct Turns {
 const TURNS: usize = 8;
 
 impl PassedPower {
-    /// As [`Self::new`]; values of the same band and rate share one table.
+    /// As [`Self::new`]. All users of one band and rate share one table.
     pub fn shared(band: Band, rate_hz: f64) -> Arc<Self> {
         static PASSED: Shared<[u64; 3], PassedPower> = Shared::new();
         let key = [band.low_hz, band.high_hz, rate_hz].map(f64::to_bits);
         PASSED.get(key, || Arc::new(Self::new(band, rate_hz)))
     }
 
-    /// Computes the table for a band, hertz, and a sampling rate, hertz.
+    /// Computes the table for a band, hertz, and a sample rate, hertz.
     pub fn new(band: Band, rate_hz: f64) -> Self {
         Self::read_by(band, rate_hz, |hz| read_part(band, hz))
     }
@@ -118,8 +118,8 @@ impl PassedPower {
         Self { turns: points.chunks(TURNS).map(|p| Turns::of(p, rate_hz)).collect(), points }
     }
 
-    /// RMS of filtered noise whose magnitudes before the filters are `curve`, as
-    /// [`curve_level_rms`](crate::grid::curve_level_rms) of a curve in the band.
+    /// Returns the RMS of filtered noise whose magnitude before the filters is `curve`. Corresponds
+    /// to [`curve_level_rms`](crate::grid::curve_level_rms), which measures unfiltered noise.
     pub fn level_rms(&self, curve: impl Fn(f64) -> f64) -> f64 {
         let power: f64 = self
             .points
@@ -130,15 +130,15 @@ impl PassedPower {
         crate::root::sqrt(power / 3.0)
     }
 
-    /// [`Self::level_rms`] of white noise of unit magnitude behind the filter `1 / (1 - Σ A_i z⁻ⁱ)`
-    /// at this rate. Does not allocate.
+    /// As [`Self::level_rms`], for white noise of unit magnitude that passes the filter `1 / (1 - Σ
+    /// A_i z⁻ⁱ)` at this rate. Does not allocate.
     pub fn all_pole_level_rms(&self, coefficients: &[f64]) -> f64 {
         let mut power = 0.0;
         wide(AllPolePower { turns: &self.turns, coefficients, power: &mut power });
         crate::root::sqrt(power / 3.0)
     }
 
-    /// As [`Self::all_pole_level_rms`], behind a filter with zeros and poles, from the cosines of
+    /// As [`Self::all_pole_level_rms`], for a filter with zeros and poles, given by the cosines of
     /// the line spectral frequencies of both. Does not allocate.
     pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
         let mut power = 0.0;
@@ -164,7 +164,7 @@ impl Turns {
     }
 }
 
-/// The power of an all-pole filter's magnitude over all points.
+/// Sums the power of an all-pole filter over all points.
 struct AllPolePower<'a> {
     turns: &'a [Turns],
     coefficients: &'a [f64],
@@ -195,7 +195,7 @@ impl Work for AllPolePower<'_> {
     }
 }
 
-/// The power of a filter with zeros and poles over all points.
+/// Sums the power of a filter with zeros and poles over all points.
 struct RationalPower<'a> {
     turns: &'a [Turns],
     zeros: &'a [f64],
@@ -215,7 +215,7 @@ impl Work for RationalPower<'_> {
                 sums[i] += if turns.part[i] > 0.0 { heard } else { 0.0 };
             }
         }
-        // A factor for each pair of lines, exact as a power of two.
+        // Each pair of lines has a factor of 4 or 1/4, a power of two, so the products are exact.
         let [above, below] = [self.zeros, self.poles].map(|lines| lines.len() / 2);
         let power: f64 = sums.iter().sum();
         let power = (0..above).fold(power, |power, _| 4.0 * power);
@@ -223,9 +223,10 @@ impl Work for RationalPower<'_> {
     }
 }
 
-/// The squared absolute values of a polynomial at a group of points, over 4 for each pair of lines,
-/// from the cosines of its line spectral frequencies: those of the symmetric and the antisymmetric
-/// polynomial, which are a quarter turn apart.
+/// Squared absolute values of a polynomial at a group of points, divided by 4 for each pair of
+/// lines. `cosines` are those of its line spectral frequencies, alternating between the symmetric
+/// and the antisymmetric polynomial. On the unit circle these two are a quarter turn apart, so
+/// their squares add.
 #[inline(always)]
 fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
     let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);

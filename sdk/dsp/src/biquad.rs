@@ -5,8 +5,9 @@ use core::f64::consts::PI;
 
 use crate::spectrum::Complex;
 
-/// State smaller than this is set to zero, which avoids denormals: some processors handle them a
-/// hundred times slower. The threshold is some 200 decades below any perceptible amplitude.
+/// State smaller than this is set to zero, so that it does not become denormal: some processors
+/// handle denormal numbers a hundred times slower. The threshold is some 200 decades below any
+/// perceptible amplitude.
 const SMALLEST_STATE: f64 = 1e-200;
 
 /// One section: `H(z) = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²)`.
@@ -28,7 +29,7 @@ impl Biquad {
     /// The section that passes its input unchanged.
     pub const IDENTITY: Self = Self { b0: 1.0, b1: 0.0, b2: 0.0, a1: 0.0, a2: 0.0 };
 
-    /// Magnitude `|H|` at `f_hz` for the sampling rate `rate_hz`, both in hertz.
+    /// Magnitude `|H|` at `f_hz` for the sample rate `rate_hz`, both in hertz.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
         let (sine, cosine) = crate::trig::sincos(PI * f_hz / rate_hz);
         let squared = |c0: f64, c1: f64, c2: f64| {
@@ -43,7 +44,7 @@ impl Biquad {
         crate::root::sqrt(squared(self.b0, self.b1, self.b2) / squared(1.0, self.a1, self.a2))
     }
 
-    /// Complex frequency response at `f_hz` for the sampling rate `rate_hz`, both in hertz. Near 0
+    /// Complex frequency response at `f_hz` for the sample rate `rate_hz`, both in hertz. Near 0
     /// Hz, [`Self::magnitude`] is more accurate.
     ///
     /// ```
@@ -129,7 +130,7 @@ pub struct Cascade {
 }
 
 impl Cascade {
-    /// A cascade of `sections` with zero state; its capacity is their number.
+    /// Makes a cascade of `sections` with zero state.
     pub fn new(sections: &[Biquad]) -> Self {
         Self { sections: sections.iter().map(|&b| Section::at_rest(b)).collect() }
     }
@@ -142,8 +143,8 @@ impl Cascade {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Several sections at a time, sample by sample: the processor works on one section while
-        // another waits for its own last output.
+        // Four sections at a time, sample by sample: the processor computes one section while
+        // another waits for its own previous output.
         let (fours, rest) = self.sections.as_chunks_mut::<4>();
         for four in fours {
             run(four, block);
@@ -164,8 +165,7 @@ impl Cascade {
         }
     }
 
-    /// Magnitude `|H|` of the whole cascade at `f_hz` for the sampling rate `rate_hz`, both in
-    /// hertz.
+    /// Magnitude `|H|` of the whole cascade at `f_hz` for the sample rate `rate_hz`, both in hertz.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
         self.sections.iter().map(|section| section.biquad.magnitude(f_hz, rate_hz)).product()
     }

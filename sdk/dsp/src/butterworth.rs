@@ -1,6 +1,6 @@
-//! Butterworth low-pass and high-pass filters of order 1 to 20, analogue magnitudes and digital
-//! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass and names no
-//! family.
+//! Butterworth low-pass and high-pass filters of order 1 to 20: analogue magnitudes, and digital
+//! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass, but does not
+//! say which family of filters.
 //!
 //! The digital design is the bilinear transform with the cut-off prewarped, as
 //! `scipy.signal.butter(..., output="sos")` does it: at the cut-off the magnitude is 1/√2 exactly.
@@ -10,7 +10,8 @@ use core::ops::Deref;
 
 use crate::biquad::Biquad;
 
-/// Highest order that can be designed: 400 dB a decade, more than the dynamic range of a spectrum.
+/// Highest order that can be designed: 400 dB per decade, more than the dynamic range of a
+/// spectrum.
 pub const MAX_ORDER: usize = 20;
 
 /// The second-order sections of one filter, lowest Q first; dereferences to a slice. Does not
@@ -36,7 +37,7 @@ pub(crate) enum PassKind {
     HighPass,
 }
 
-/// Low-pass sections with cut-off `fc_hz` at the sampling rate `rate_hz`.
+/// Returns low-pass sections with cut-off `fc_hz` at the sample rate `rate_hz`.
 ///
 /// `None` if the order is not 1 to [`MAX_ORDER`], or the cut-off is not strictly between 0 and
 /// the Nyquist frequency `rate_hz / 2`.
@@ -44,13 +45,13 @@ pub fn low_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::LowPass, order, fc_hz, rate_hz)
 }
 
-/// High-pass sections; arguments and `None` as for [`low_pass`].
+/// Returns high-pass sections; arguments and `None` as in [`low_pass`].
 pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::HighPass, order, fc_hz, rate_hz)
 }
 
-/// Magnitude `|H|` of the analogue low-pass of any positive order at `ratio` times its cut-off:
-/// `1 / sqrt(1 + ratio^(2 order))`. The high-pass has this magnitude at `1 / ratio`.
+/// Returns the magnitude `|H|` of the analogue low-pass of any positive order, at `ratio` times its
+/// cut-off: `1 / sqrt(1 + ratio^(2 order))`. The high-pass has this magnitude at `1 / ratio`.
 ///
 /// ```
 /// use htex_dsp::butterworth::analog_low_pass_magnitude;

@@ -1,18 +1,18 @@
-//! The direct form of an all-pole filter, four samples at a time, for one voice or for four.
+//! Direct form of an all-pole filter, four samples at a time, for one voice or for four voices.
 
 use crate::biquad::without_denormals;
 use crate::quad::{Quad, Real, VOICES, beside, part};
 use crate::wide::{Work, wide};
 
-/// Samples that are filtered together.
+/// Number of samples that are filtered together.
 pub const GROUP: usize = 4;
 
-/// Orders up to this have a direct form with all state in registers.
+/// Highest order for which the direct form keeps all state in registers.
 pub(crate) const MAX_ORDER: usize = 16;
 
-/// Transposed direct form II unrolled for four samples: the contribution of each of the four
-/// inputs, together with the state it meets, to the outputs and to the next state. Entries beyond
-/// the order are zero.
+/// Transposed direct form II, unrolled for four samples. The tables contain the contribution of
+/// each of the four inputs, added to the state that it meets, to the outputs and to the next state.
+/// Entries beyond the order are zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Direct {
     outputs: [[f64; GROUP]; GROUP],
@@ -21,7 +21,7 @@ pub(crate) struct Direct {
 }
 
 impl Direct {
-    /// Makes the form from coefficients and the last outputs, the newest at the end.
+    /// Makes the form from coefficients and the last outputs, of which the newest is at the end.
     pub(crate) fn new(a: &[f64; MAX_ORDER], past: &[f64; MAX_ORDER]) -> Self {
         let mut direct = Self {
             outputs: [[0.0; GROUP]; GROUP],
@@ -34,9 +34,9 @@ impl Direct {
                 *y = tick(a, state, f64::from(u8::from(n == at)));
             }
         }
-        // The state of the filter follows from its last outputs.
+        // The last outputs determine the state of the filter.
         for &y in past {
-            // The input that gives this output.
+            // This input gives the output `y`.
             let input = y - direct.state[0];
             tick(a, &mut direct.state, input);
         }
@@ -48,8 +48,8 @@ impl Direct {
         match order {
             0..=2 => wide(One::<2>(self, groups)),
             3..=4 => wide(One::<4>(self, groups)),
-            // Not 6: of a vector and a half compilers make a loop that shuffles lanes, and a voice
-            // takes a quarter longer.
+            // Not 6: from one and a half vectors compilers make a loop that shuffles lanes, and a
+            // voice takes a quarter longer.
             5..=8 => wide(One::<8>(self, groups)),
             9..=12 => wide(One::<12>(self, groups)),
             _ => wide(One::<MAX_ORDER>(self, groups)),
@@ -124,8 +124,8 @@ fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad
     }
 }
 
-/// A separate function from the one that interleaves the voices: otherwise compilers shuffle lanes
-/// inside the loop.
+/// Separate from the function that interleaves the voices: otherwise compilers shuffle lanes inside
+/// the loop.
 struct Four<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
 
 impl<const N: usize> Work for Four<'_, N> {
@@ -158,10 +158,10 @@ impl<const N: usize> Work for Beside<'_, N> {
     }
 }
 
-/// Contents of the lanes of vector registers: samples of one voice, or one sample of each voice.
+/// What the lanes of a vector register contain: samples of one voice, or one sample of each voice.
 trait Lane: Real {
     type Outputs: Copy;
-    /// The four outputs, from the four inputs combined with the state.
+    /// Computes the four outputs from the four inputs, which already include the state.
     fn outputs(left: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP];
 }
 
@@ -175,7 +175,7 @@ impl Lane for f64 {
 }
 
 impl Lane for Quad {
-    /// Of the first input; those of the other inputs are the same, shifted.
+    /// Contributions of the first input; those of the other inputs are the same, but shifted.
     type Outputs = [Quad; GROUP];
 
     /// The same sums without multiplications by 0 or 1.

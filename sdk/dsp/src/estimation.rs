@@ -1,8 +1,8 @@
-//! Linear prediction from signals: Yule–Walker, Burg and covariance.
+//! Linear prediction from signals: Yule–Walker, Burg and covariance method.
 //!
-//! Each method takes several segments of one process and pools their sums, so neither a window nor
-//! the boundaries between segments enter; pass a single signal as `&[signal]`. Segments no longer
-//! than the order contribute nothing.
+//! Each method takes several segments of one process and adds up their sums, so no window is
+//! applied and no prediction crosses a boundary between segments. For a single signal, pass
+//! `&[signal]`. Segments that are not longer than the order contribute nothing.
 
 use alloc::vec::Vec;
 
@@ -11,8 +11,8 @@ use crate::linear_prediction::{
     LinearPrediction, Stages, coefficients_to_reflection, levinson_durbin, stabilize,
 };
 
-/// Biased autocorrelation, lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, with sums and N pooled
-/// over the segments. All zero if there are no samples.
+/// Biased autocorrelation for the lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, with the sums and
+/// N added up over all segments. All zero if there are no samples.
 pub fn autocorrelation(segments: &[&[f64]], order: usize) -> Vec<f64> {
     let total: usize = segments.iter().map(|segment| segment.len()).sum();
     (0..=order)
@@ -48,7 +48,7 @@ pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     stages.finish()
 }
 
-/// Adds the sums of all segments.
+/// Adds up the sums of all segments.
 fn added(sums: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
     sums.fold((0.0, 0.0), |(cross, power), (c, p)| (cross + c, power + p))
 }
@@ -73,8 +73,8 @@ impl BurgErrors {
         pairs.fold((0.0, 0.0), |(cross, power), (f, b)| (cross + f * b, power + f * f + b * b))
     }
 
-    /// Advances to the next stage: updates both errors and delays the backward one by a sample.
-    /// Returns the sums of that stage.
+    /// Advances to the next stage: updates both errors, and delays the backward error by one
+    /// sample. Returns the sums of that stage.
     fn advance(&mut self, k: f64) -> (f64, f64) {
         let (forward, backward) = (&mut self.forward[..], &mut self.backward[..]);
         let (mut cross, mut power) = (0.0, 0.0);
@@ -95,10 +95,10 @@ impl BurgErrors {
     }
 }
 
-/// Covariance estimate: least squares of the forward error over the samples that have all their
-/// predecessors. Exact for noiseless resonances, but possibly unstable; it is then made stable by
-/// [`stabilize`] and marked `adjusted`. `error` is the residual power per predicted sample before
-/// that.
+/// Covariance estimate: least squares of the forward error, over the samples whose predecessors are
+/// all in the segment. It is exact for noiseless resonances, but may be unstable. In that case
+/// [`stabilize`] makes it stable and it is marked `adjusted`. `error` is the residual power per
+/// predicted sample before that.
 pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let long: Vec<&[f64]> = segments.iter().copied().filter(|s| s.len() > order).collect();
     let count: usize = long.iter().map(|s| s.len() - order).sum();

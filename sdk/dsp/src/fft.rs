@@ -1,8 +1,9 @@
 //! Real FFTs of any length in double precision, bit-identical on every machine.
 //!
-//! Library FFTs choose instructions, and thereby rounding, by the processor, and take sines from
-//! the system's C library. These (Stockham, radices 2 to 5 and 7; Bluestein's algorithm for lengths
-//! with other prime factors) are plain arithmetic, with tables from `libm`.
+//! FFTs of libraries choose their instructions, and thereby their rounding, by the processor, and
+//! they take sines from the system's C library. These FFTs are plain arithmetic, with tables from
+//! `libm`. They use Stockham's algorithm (radices 2 to 5 and 7), and Bluestein's for lengths with
+//! other prime factors.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -13,7 +14,7 @@ use complex::{ComplexFft, Points};
 
 mod complex;
 
-/// FFTs of real signals of one length, with their tables and working memory.
+/// FFT of real signals of one length, with its tables and working memory.
 ///
 /// ```
 /// use htex_dsp::fft::RealFft;
@@ -25,15 +26,15 @@ mod complex;
 #[derive(Debug, Clone)]
 pub struct RealFft {
     len: usize,
-    /// Of half the length if that is even, else of the whole.
+    /// A transform of half the length if the length is even, otherwise of the whole length.
     complex: ComplexFft,
     points: Points,
-    /// `exp(2πi k / len)`, one for each `k` below half of an even length.
+    /// `exp(2πi k / len)` for each `k` below half the length, if the length is even.
     fold: Vec<Complex<f64>>,
 }
 
 impl RealFft {
-    /// Transforms of `len` samples.
+    /// Makes a transform of `len` samples.
     pub fn new(len: usize) -> Self {
         let (points, folds) = if len.is_multiple_of(2) { (len / 2, len / 2) } else { (len, 0) };
         Self {
@@ -44,7 +45,7 @@ impl RealFft {
         }
     }
 
-    /// Memory for a spectrum: `len / 2 + 1` bins, from 0 Hz to half of the rate.
+    /// Makes a buffer for a spectrum: `len / 2 + 1` bins, from 0 Hz to half the sample rate.
     pub fn make_bins(&self) -> Vec<Complex<f64>> {
         alloc::vec![Complex::ZERO; self.len / 2 + 1]
     }
@@ -67,13 +68,13 @@ impl RealFft {
         }
     }
 
-    /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`, where an even length's last bin
-    /// counts once. This is `len` times the signal whose spectrum the bins are. Missing bins are
-    /// zero. Does not allocate.
+    /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`; the last bin of an even length is
+    /// counted once instead of twice. The result is `len` times the signal that has this spectrum.
+    /// Missing bins are zero. Does not allocate.
     pub fn inverse(&mut self, bins: &[Complex<f64>], samples: &mut [f64]) {
         let len = self.len;
         let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
-        // Without the imaginary parts that a real signal's spectrum does not have.
+        // Drops imaginary parts that the spectrum of a real signal cannot have.
         let bin =
             |k: usize| if k == 0 || 2 * k == len { Complex::new(bin(k).re, 0.0) } else { bin(k) };
         if len.is_multiple_of(2) {
@@ -98,14 +99,14 @@ impl RealFft {
         }
     }
 
-    /// The spectrum of a real signal from that of the complex signal whose parts are its even and
-    /// odd samples.
+    /// Computes the spectrum of the real signal from the spectrum of the complex signal whose real
+    /// and imaginary parts are the even and the odd samples.
     fn unfold(&self, bins: &mut [Complex<f64>]) {
         let half = self.fold.len();
         for (k, bin) in bins.iter_mut().enumerate().take(half) {
             let (z, mirrored) = (self.points.at(k), self.points.at((half - k) % half).conj());
             let (even, odd) = ((z + mirrored) * 0.5, (z - mirrored) * 0.5);
-            // The turn by -i of the odd samples' sum.
+            // Division by i of the sum over the odd samples.
             let odd = Complex::new(odd.im, -odd.re) * self.fold[k].conj();
             *bin = even + odd;
         }

@@ -1,28 +1,30 @@
-//! Distances of a magnitude spectrum from a reference, by measures that no model of this project is
-//! fitted to: third-octave bands, and the bin-by-bin log-spectral distance.
+//! Distance of a model's magnitude spectrum from a reference: the error in third-octave bands, and
+//! the log-spectral distance bin by bin. No model of this project is fitted to either measure.
 //!
-//! Both measures take slices of equal length (a longer one is cut) and raise a model's magnitude to
-//! at least 1e-9 of the reference's largest, so that an empty band gives a large but finite error.
+//! Both take slices of equal length; a longer one is cut. They raise a model's magnitude to at
+//! least 1e-9 of the reference's largest magnitude, so that an empty band gives a large but finite
+//! error.
 //!
-//! The nine-band error is no such measure: it is computed from the energies that `bands` of nine
-//! stores.
+//! The nine-band error is not such a measure, because it is computed from the energies that the
+//! model `bands` stores when it has nine bands.
 
 use alloc::vec::Vec;
 
 use crate::bands::rms;
 
-/// Third-octave bands: their edges are `20 · 2^(k/3)` Hz, k from 0 to this.
+/// Number of third-octave bands: their edges are `20 · 2^(k/3)` Hz, with k from 0 to this number.
 pub const THIRD_OCTAVES: usize = 17;
 const LOWEST_HZ: f64 = 20.0;
-/// Relative tolerance within which a frequency below an edge counts as on it: edges at 40, 80, ...
-/// Hz are bins of the grid, and a computed power of 2 may be rounded up.
+/// Relative tolerance within which a frequency below an edge counts as on the edge. Edges at 40,
+/// 80, ... Hz are bins of the grid, and a computed power of 2 may be rounded up.
 const ON_EDGE: f64 = 1e-12;
 /// Smallest magnitude of a model, relative to the largest of the reference.
 const RELATIVE_FLOOR: f64 = 1e-9;
 
-/// RMS over third-octave bands of `10 log10(model energy / reference energy)`, decibels; energy is
-/// the sum of squared magnitudes. Level differences count: no gain is removed. Uses the bands that
-/// contain a bin and energy of the reference; `None` if there is no such band.
+/// Third-octave error: RMS over the bands of `10 log10(model energy / reference energy)`, decibels.
+/// The energy is the sum of squared magnitudes. No gain is removed, so differences in level count.
+/// Only bands that contain a bin and energy of the reference are used; `None` if there is no such
+/// band.
 ///
 /// ```
 /// use htex_dsp::fidelity::third_octave_error_rms_db;
@@ -50,8 +52,8 @@ pub fn third_octave_error_rms_db(
     (!errors_db.is_empty()).then(|| rms(&errors_db))
 }
 
-/// RMS over the bins in which the reference is above 0 of `20 log10(model / reference)`, decibels;
-/// `None` if there is no such bin.
+/// Log-spectral distance: RMS of `20 log10(model / reference)`, decibels, over the bins in which
+/// the reference is above 0. `None` if there is no such bin.
 pub fn log_spectral_distance_db(reference: &[f64], model: &[f64]) -> Option<f64> {
     let least = floor(reference);
     let heard = reference.iter().zip(model).filter(|(r, _)| **r > 0.0);
@@ -64,8 +66,8 @@ fn floor(reference: &[f64]) -> f64 {
     RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns the index of the third-octave band that contains a frequency; the lower edge belongs to
-/// the band, the upper one does not.
+/// Returns the index of the third-octave band that contains a frequency. A band contains its lower
+/// edge, but not its upper edge.
 pub fn third_octave(frequency_hz: f64) -> Option<usize> {
     let edge_hz = |k: usize| LOWEST_HZ * libm::exp2(k as f64 / 3.0) * (1.0 - ON_EDGE);
     (0..THIRD_OCTAVES).find(|&k| edge_hz(k) <= frequency_hz && frequency_hz < edge_hz(k + 1))

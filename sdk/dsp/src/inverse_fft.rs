@@ -1,10 +1,10 @@
-//! Inverse FFT of a half spectrum to a real signal, bit-identical on every machine.
+//! Inverse FFT from a half spectrum to a real signal, bit-identical on every machine.
 //!
-//! Library FFTs choose instructions, and thereby rounding, by the processor. This one (Stockham,
-//! radices 2 to 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and
-//! WASM modules alike.
+//! FFTs of libraries choose their instructions, and thereby their rounding, by the processor, and
+//! they are slow in WASM. This FFT (Stockham, radices 2 to 5) is plain arithmetic on arrays, which
+//! compilers vectorise in native libraries and in WASM modules.
 //!
-//! Lengths of frames have no prime factor above 5. Library FFTs are slow as WASM, too.
+//! The lengths of frames have no prime factor above 5, so these radices suffice.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -13,7 +13,7 @@ use crate::butterflies::{Butterfly, Five, Four, Three, Two};
 use crate::lanes::{Lanes, WIDTH};
 use crate::wide::{Work, wide};
 
-/// Inverse real FFT of one even length, with its precomputed tables.
+/// Inverse real FFT of one even length, with precomputed tables.
 ///
 /// ```
 /// use htex_dsp::inverse_fft::InverseRealFft;
@@ -26,7 +26,7 @@ use crate::wide::{Work, wide};
 pub struct InverseRealFft {
     half: usize,
     stages: Vec<Stage>,
-    /// `exp(2πi k / len)`, one for each `k` below `half`.
+    /// `exp(2πi k / len)` for each `k` below `half`.
     fold: Twiddles,
 }
 
@@ -37,23 +37,25 @@ pub struct Workspace {
     to: Complexes,
 }
 
-/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and
-/// writes the points `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
+/// One pass of the transform, by one radix. Butterfly `i` reads the points `i + count j` for each
+/// `j` below the radix, and writes the points `radix stride p + stride k + q` for each `k`, where
+/// `i = stride p + q`.
 #[derive(Debug, Clone)]
 struct Stage {
     radix: usize,
     stride: usize,
-    /// Butterflies of the stage.
+    /// Number of butterflies in the stage.
     count: usize,
-    /// Groups of [`WIDTH`] butterflies that follow each other and have the same twiddles. A stage
-    /// whose stride is not a multiple of the width has 1, and writes its results in groups that are
-    /// then spread.
+    /// Number of groups of [`WIDTH`] butterflies in a row that have the same twiddles. It is 1 if
+    /// the stride is not a multiple of the width. Such a stage writes its results in groups first,
+    /// and then spreads them to their places.
     groups: usize,
-    /// `exp(2πi p k / length)` for each such group and each `k`: cosines, then sines.
+    /// `exp(2πi p k / length)` for each of these groups and each `k`: cosines, then sines.
     twiddles: Vec<[Lanes; 2]>,
 }
 
-/// Real and imaginary parts apart, as vector instructions want them.
+/// Complex numbers with real and imaginary parts in separate arrays, as vector instructions need
+/// them.
 #[derive(Debug, Clone, Default)]
 struct Complexes {
     re: Vec<f32>,
@@ -64,15 +66,15 @@ type Twiddles = Vec<(f32, f32)>;
 
 const LARGEST_RADIX: usize = 5;
 
-/// The smallest number from `least` on without a prime factor above 5.
+/// Returns the smallest number from `least` on that has no prime factor above 5.
 pub(crate) fn smooth_length(least: usize) -> usize {
     let is_smooth = |n: &usize| factors(*n).is_some();
     (least.max(1)..).find(is_smooth).unwrap_or(least)
 }
 
 impl InverseRealFft {
-    /// A transform to `2 * half` samples. If `half` has a prime factor above 5, the next number
-    /// without one is used.
+    /// Makes a transform to `2 * half` samples. If `half` has a prime factor above 5, the next
+    /// number without one is used.
     pub fn new(half: usize) -> Self {
         let half = smooth_length(half);
         let (mut length, mut stride) = (half, 1);
@@ -93,9 +95,10 @@ impl InverseRealFft {
         Workspace { from: Complexes::zeros(self.half), to: Complexes::zeros(self.half) }
     }
 
-    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`. The bins from `first` on, in 1 to
-    /// `half - 1`, are directions (cosines and sines) times amplitudes; other bins are zero and
-    /// surplus values are ignored. Does not allocate.
+    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` for each sample `n`.
+    ///
+    /// The bins `X_k` from `first` on, in 1 to `half - 1`, are directions (cosines and sines) times
+    /// amplitudes. All other bins are zero, and surplus values are ignored. Does not allocate.
     pub fn run(
         &self,
         workspace: &mut Workspace,
@@ -107,8 +110,8 @@ impl InverseRealFft {
         wide(Transform { fft: self, workspace, first, directions, amplitude, out });
     }
 
-    /// Computes from the real signal's spectrum that of the complex signal whose parts are its even
-    /// and odd samples.
+    /// Computes the spectrum of the complex signal whose real and imaginary parts are the even and
+    /// the odd samples. So a real signal needs a complex transform of only half its length.
     #[inline(always)]
     fn fold(&self, to: &mut Complexes, first: usize, [cos, sin]: [&[f32]; 2], amplitude: &[f32]) {
         to.re.fill(0.0);
@@ -146,6 +149,7 @@ impl Work for Transform<'_> {
         }
         let half = self.fft.half;
         let parts = from.re[..half].iter().zip(&from.im[..half]);
+        // Each complex point is one even and one odd sample of the real signal.
         for (pair, (re, im)) in self.out.as_chunks_mut::<2>().0.iter_mut().zip(parts) {
             *pair = [*re, *im];
         }
@@ -153,7 +157,8 @@ impl Work for Transform<'_> {
 }
 
 impl Complexes {
-    /// Numbers for `len` points, and for the lanes beside the last ones of each row of a stage.
+    /// Zeros for `len` points, and for the unused lanes after the last points of each row of a
+    /// stage.
     fn zeros(len: usize) -> Self {
         let zeros = || alloc::vec![0.0; len + LARGEST_RADIX * (WIDTH - 1)];
         Self { re: zeros(), im: zeros() }
@@ -186,7 +191,7 @@ impl Stage {
         }
     }
 
-    /// Transforms the points in `from`, which uses `to` as well.
+    /// Transforms the points in `from`; `to` is used as working memory.
     #[inline(always)]
     fn run(&self, from: &mut Complexes, to: &mut Complexes) {
         match self.radix {
@@ -200,8 +205,8 @@ impl Stage {
         }
     }
 
-    /// Transforms by one radix; the results stand in `to` where the stride is a multiple of
-    /// [`WIDTH`], else in `from`.
+    /// Transforms by one radix. The results are in `to` if the stride is a multiple of [`WIDTH`],
+    /// otherwise in `from`.
     #[inline(always)]
     fn run_by<const R: usize, B: Butterfly<R>>(&self, from: &mut Complexes, to: &mut Complexes) {
         self.turn::<R, B>(from, to);
@@ -218,8 +223,8 @@ impl Stage {
         }
     }
 
-    /// Writes the butterflies of `from` to `to`, all `k` of each group of twiddles behind one
-    /// another.
+    /// Computes the butterflies of `from` and writes them to `to`. For each group of twiddles, the
+    /// results of all `k` follow each other.
     #[inline(always)]
     fn turn<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
         let run = self.groups * WIDTH;
@@ -247,12 +252,13 @@ impl Stage {
         }
     }
 
-    /// From groups of [`WIDTH`] results, all `k` of each behind one another, to the places of the
-    /// points.
+    /// Copies results from groups of [`WIDTH`], in which all `k` follow each other, to the places
+    /// of the points.
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {
-        // Results of one `p` stand and stay side by side.
+        // Results with the same `p` are neighbours before and after, so several are copied at a
+        // time.
         match self.stride {
             s if WIDTH > 4 && s.is_multiple_of(4) => self.spread_by::<4>(groups, out),
             s if s.is_multiple_of(2) => self.spread_by::<2>(groups, out),
@@ -260,7 +266,7 @@ impl Stage {
         }
     }
 
-    /// [`Self::spread`] of `N` results at a time.
+    /// As [`Self::spread`], copying `N` results at a time.
     #[inline(always)]
     fn spread_by<const N: usize>(&self, groups: &[f32], out: &mut [f32]) {
         let (groups, out) = (groups.as_chunks::<N>().0, out.as_chunks_mut::<N>().0);
@@ -280,7 +286,7 @@ impl Stage {
     }
 }
 
-/// [`Stage::spread`] of a first stage, whose stride is 1, in whole groups.
+/// As [`Stage::spread`], for a first stage, whose stride is 1. Copies whole groups.
 #[cfg_attr(target_family = "wasm", inline(never))]
 #[cfg_attr(not(target_family = "wasm"), inline(always))]
 fn spread_first<const R: usize>(groups: &[f32], out: &mut [f32]) {
@@ -295,14 +301,14 @@ fn spread_first<const R: usize>(groups: &[f32], out: &mut [f32]) {
     }
 }
 
-/// The groups of `len` numbers from `first` on. What the bounds of all rows of a loop are known by
-/// is this length: nothing is checked at each number.
+/// Returns the groups of `len` numbers from `first` on. Because all rows are cut to the same `len`,
+/// the compiler knows the bounds of all rows in a loop and omits the check of each index.
 #[inline(always)]
 fn groups(from: &[f32], first: usize, len: usize) -> &[[f32; WIDTH]] {
     &from[first..first + len].as_chunks().0[..len / WIDTH]
 }
 
-/// `R` rows of `len` numbers each.
+/// Returns `R` rows of `len` numbers each.
 #[inline(always)]
 fn rows_mut<const R: usize>(to: &mut [f32], len: usize) -> [&mut [[f32; WIDTH]]; R] {
     let mut rows = to.chunks_exact_mut(len);
@@ -314,12 +320,13 @@ fn rows_mut<const R: usize>(to: &mut [f32], len: usize) -> [&mut [[f32; WIDTH]];
 
 /// `exp(2πi k / length)` as cosine and sine.
 fn unit(k: usize, length: usize) -> (f32, f32) {
+    // `k % length` keeps the angle within one turn, where its sine is exact to rounding.
     let (sin, cos) = crate::trig::sincos(TAU * (k % length) as f64 / length as f64);
     (cos as f32, sin as f32)
 }
 
-/// The radices whose product is `n`; `None` if there is a prime above 5. Fours come first: later
-/// strides are then even.
+/// Returns the radices whose product is `n`, or `None` if `n` has a prime factor above 5. Fours
+/// come first, so that all later strides are even.
 fn factors(mut n: usize) -> Option<Vec<usize>> {
     let mut factors = Vec::new();
     for radix in [4, 2, 3, 5] {

@@ -1,13 +1,13 @@
 //! Signal processing for texture models: windows, spectra, linear prediction, mel banks, peaks,
 //! beta density, Butterworth filters, noise, oscillators, spectral shaping and resampling.
 //!
-//! This crate knows no texture asset and no file. Without the `std` feature it is `no_std + alloc`
-//! and detects no vector instructions. Elementary functions come from `libm`, and FFTs are plain
-//! arithmetic, so that the same inputs give the same bits on every processor, in native libraries
-//! and in WASM modules.
+//! This crate does not know texture assets or files. Without the `std` feature it is `no_std +
+//! alloc`, and does not detect vector instructions at run time. Elementary functions come from
+//! `libm`, and FFTs are plain arithmetic. So the same inputs give the same bits on every processor,
+//! in native libraries and in WASM modules.
 //!
-//! Frequencies are in hertz, rates in hertz, angles in radians, magnitudes in the unit of the
-//! signal unless a name says otherwise.
+//! Frequencies and sample rates are in hertz, angles in radians, magnitudes in the unit of the
+//! signal, unless a name says otherwise.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![deny(unsafe_code)] // Exception: two calls in `wide`.
 #![cfg_attr(not(feature = "std"), no_std)]

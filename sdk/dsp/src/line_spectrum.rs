@@ -1,14 +1,16 @@
-//! Line spectral frequencies: the angles of the zeros of the symmetric and antisymmetric
-//! polynomials of a stable all-pole model (Itakura 1975). They interlace, so any weighted mean of
-//! two models' frequencies is again a stable model, which makes them safe to interpolate.
+//! Line spectral frequencies of a stable all-pole model: the angles of the zeros of its symmetric
+//! and its antisymmetric polynomial (Itakura 1975).
+//!
+//! The two kinds of angles alternate. So any weighted mean of two models' frequencies is again a
+//! stable model, which makes them safe to interpolate.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 use crate::linear_prediction::coefficients_to_reflection;
 
-/// Step limit of a search: at least every third step halves the bracket, so this many steps halve
-/// `[0, π]` 56 times, below the f64 resolution there.
+/// Limit on the steps of a search. At least every third step halves the bracket, so these steps
+/// halve `[0, π]` 56 times, to below the f64 resolution there.
 const MOST_STEPS: usize = 3 * 56;
 /// Relative phase difference that is attributed to rounding.
 const NEAR: f64 = 4.0 * f64::EPSILON;
@@ -16,9 +18,9 @@ const NEAR: f64 = 4.0 * f64::EPSILON;
 /// Returns the p line spectral frequencies, radians, ascending inside (0, π); `None` if the model
 /// is unstable.
 ///
-/// They are the angles at which the phase of the lattice's all-pass, which decreases monotonically
-/// from 0 at ω = 0 to -(p + 1)π at ω = π, passes a multiple of π. The phase is an unambiguous sum
-/// over the reflection coefficients, so Newton's method inside a bracket finds each angle at any
+/// They are the angles at which the phase of the lattice's all-pass passes a multiple of π. This
+/// phase decreases monotonically, from 0 at ω = 0 to -(p + 1)π at ω = π. It is an unambiguous sum
+/// over the reflection coefficients, so Newton's method inside a bracket finds each angle, at any
 /// order.
 ///
 /// ```
@@ -33,12 +35,12 @@ pub fn line_spectral_frequencies(coefficients: &[f64]) -> Option<Vec<f64>> {
     coefficients_to_reflection(coefficients).map(|k| line_spectral_frequencies_of_reflection(&k))
 }
 
-/// As [`line_spectral_frequencies`], from reflection coefficients, each inside (-1, 1).
+/// As [`line_spectral_frequencies`], but takes reflection coefficients, each inside (-1, 1).
 pub fn line_spectral_frequencies_of_reflection(reflection: &[f64]) -> Vec<f64> {
     lines_of_reflection(reflection).collect()
 }
 
-/// As [`line_spectral_frequencies_of_reflection`], as an iterator. Does not allocate.
+/// As [`line_spectral_frequencies_of_reflection`], but returns an iterator. Does not allocate.
 pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
     let mut from = 0.0;
     (1..=reflection.len()).map(move |i| {
@@ -47,7 +49,7 @@ pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The ω in `[from, π]` at which the phase equals `target`.
+/// Finds the ω in `[from, π]` at which the phase equals `target`.
 fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
     let (mut low, mut high) = (from, PI);
     let mut at = 0.5 * (low + high);
@@ -71,8 +73,8 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
     at
 }
 
-/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed, and its slope. One stage
-/// maps the lag θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument is within ±π/2.
+/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, and its slope; `B` is `A` reversed. One stage maps the
+/// lag θ to `ω + θ + 2 arg(1 - k e^{-iθ})`. For |k| < 1, this argument is within ±π/2.
 fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     reflection.iter().fold((omega, 1.0), |(theta, slope), k| {
         let (sine, cosine) = crate::trig::sincos(theta);
@@ -83,24 +85,25 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     })
 }
 
-/// Prediction coefficients from line spectral frequencies in radians; `None` unless they are
-/// strictly ascending inside (0, π), the condition for a stable model, and at most [`MOST_LINES`].
+/// Returns prediction coefficients for line spectral frequencies in radians. `None` if there are
+/// more than [`MOST_LINES`], or if they are not strictly ascending inside (0, π), as a stable model
+/// requires.
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     let mut coefficients = alloc::vec![0.0; lsf.len()];
     coefficients_of_lines(lsf, &mut coefficients).then_some(coefficients)
 }
 
-/// As [`from_line_spectral_frequencies`], into an array of the same length; returns false instead
-/// of `None`. Does not allocate.
+/// As [`from_line_spectral_frequencies`], but writes to an array of the same length, and returns
+/// false instead of `None`. Does not allocate.
 pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
     let ascend = lsf.windows(2).all(|pair| pair[0] < pair[1]);
     inside && ascend && zeros_of_lines(lsf, coefficients)
 }
 
-/// As [`coefficients_of_lines`], of a polynomial that is no denominator: its zeros may lie on the
-/// unit circle, where two lines are equal, or one is 0 or π. Returns false if the lines descend, or
-/// there are too many.
+/// As [`coefficients_of_lines`], but for a numerator, i.e. a polynomial whose zeros may lie on the
+/// unit circle: two lines may be equal, and a line may be 0 or π. Returns false if the lines
+/// descend, or if there are too many.
 pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let mut cosines = [0.0; MOST_LINES];
     let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -114,26 +117,27 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     true
 }
 
-/// As [`zeros_of_lines`], from the cosines of at most [`MOST_LINES`] lines.
+/// As [`zeros_of_lines`], but takes the cosines of at most [`MOST_LINES`] lines.
 ///
-/// The symmetric and the antisymmetric polynomial are a fixed factor and the quadratics of every
-/// second line, whose product is a palindrome: half of it is computed, of both together.
+/// The symmetric and the antisymmetric polynomial each consist of a fixed factor and the quadratics
+/// of every second line. The product of these quadratics is a palindrome, so only half of it is
+/// computed, for both polynomials together.
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
-    // Memory for few lines is cleared in less time than for many.
+    // Clearing the memory for few lines takes less time than for many.
     match cosines.len() {
         0..=24 => Halves::<14>::of(cosines).write(coefficients),
         _ => Halves::<{ MOST_FACTORS + 2 }>::of(cosines).write(coefficients),
     }
 }
 
-/// Maximum number of line spectral frequencies that can be converted back to a model.
+/// Largest number of line spectral frequencies that can be converted back to a model.
 pub const MOST_LINES: usize = 128;
-/// Quadratics of the symmetric polynomial at most.
+/// Largest number of quadratics in the symmetric polynomial.
 const MOST_FACTORS: usize = MOST_LINES / 2;
 
-/// The first halves of two palindromes, of the symmetric and the antisymmetric polynomial, each of
-/// degree `2 factors`: `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line. The coefficient in the
-/// middle is the last.
+/// The first halves of two palindromes: of the symmetric and of the antisymmetric polynomial. Each
+/// has degree `2 factors` and is the product `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line.
+/// The last coefficient stored is the middle one.
 struct Halves<const N: usize> {
     coefficients: [[f64; 2]; N],
     factors: [usize; 2],
@@ -148,7 +152,7 @@ impl<const N: usize> Halves<N> {
             halves.multiply(pairs[i].map(|cosine| -2.0 * cosine));
         }
         if let [cosine] = last {
-            // The symmetric polynomial of an odd number has one more.
+            // With an odd number of lines, the symmetric polynomial has one more factor.
             let other = halves.coefficients;
             halves.multiply([-2.0 * cosine, 0.0]);
             let own = halves.coefficients.iter_mut();
@@ -158,7 +162,7 @@ impl<const N: usize> Halves<N> {
         halves
     }
 
-    /// Multiplies each by a quadratic with a coefficient in its middle.
+    /// Multiplies each of the two polynomials by a quadratic with the given middle coefficient.
     fn multiply(&mut self, middle: [f64; 2]) {
         let ([k, _], c) = (self.factors, &mut self.coefficients);
         // The coefficient after the middle one is its mirror image.
@@ -174,11 +178,11 @@ impl<const N: usize> Halves<N> {
         self.factors = self.factors.map(|factors| factors + 1);
     }
 
-    /// Writes the coefficients of the half of their sum, times the fixed factors: `(1 + z⁻¹)` and
-    /// `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
+    /// Writes the coefficients of half the sum of the two polynomials, each multiplied by its fixed
+    /// factor: `(1 + z⁻¹)` and `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
     fn write(&self, coefficients: &mut [f64]) {
         let (back, added) = if coefficients.len().is_multiple_of(2) { (1, 1.0) } else { (2, 0.0) };
-        // Behind two zeros, and before others.
+        // The coefficients, with two zeros before them and further zeros after them.
         let mut whole = [[[0.0; 2]; 2]; N];
         let whole = whole.as_flattened_mut();
         for (which, k) in self.factors.into_iter().enumerate() {
@@ -194,8 +198,9 @@ impl<const N: usize> Halves<N> {
     }
 }
 
-/// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the
-/// first factors would contain large binomial coefficients, which the last factors would cancel.
+/// Returns `0..n` in bit-reversed order, so that neighbours are far apart. In ascending order the
+/// product of the first factors would contain large binomial coefficients, which the last factors
+/// would cancel.
 fn spread_order(n: usize) -> impl Iterator<Item = usize> {
     let bits = n.next_power_of_two().trailing_zeros();
     let reversed = move |i: usize| i.reverse_bits().checked_shr(usize::BITS - bits).unwrap_or(0);

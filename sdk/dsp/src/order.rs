@@ -1,11 +1,11 @@
-//! Sorting by one sort for all types: each type and each comparison that is given to the standard
-//! library's takes some 6 kB of a program.
+//! Sorting of all types with one instance of the standard library's sort. Each further instance,
+//! for another type or comparison, would add some 6 kB to a program.
 
 use core::cmp::Ordering;
 
 use alloc::vec::Vec;
 
-/// Returns the indices below `len` in ascending order of what they stand for; equal ones keep their
+/// Returns the indices below `len`, sorted by the items that they stand for. Equal items keep their
 /// order.
 ///
 /// ```
@@ -18,7 +18,7 @@ pub fn order(len: usize, compare: &dyn Fn(usize, usize) -> Ordering) -> Vec<usiz
     order
 }
 
-/// Sorts values; equal ones keep their order.
+/// Sorts values by a comparison. Equal values keep their order.
 ///
 /// ```
 /// let mut values = [3.0, 1.0, 2.0];
@@ -27,7 +27,7 @@ pub fn order(len: usize, compare: &dyn Fn(usize, usize) -> Ordering) -> Vec<usiz
 /// ```
 pub fn sort_by<T>(values: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     let mut from = order(values.len(), &|a, b| compare(&values[a], &values[b]));
-    // Each cycle of the permutation is followed once; a place that is done points to itself.
+    // Follows each cycle of the permutation once. A position that is finished points to itself.
     for start in 0..from.len() {
         let mut at = start;
         while from[at] != start {
@@ -40,7 +40,7 @@ pub fn sort_by<T>(values: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     }
 }
 
-/// Sorts values in their own order; equal ones keep theirs.
+/// Sorts values by their own order. Equal values keep their order.
 pub fn sort<T: Ord>(values: &mut [T]) {
     sort_by(values, T::cmp);
 }

@@ -1,5 +1,5 @@
-//! Square roots by the machine's instruction, which rounds correctly and so gives the same bits
-//! everywhere.
+//! Square roots by the machine's instruction, which rounds correctly and therefore gives the same
+//! bits everywhere.
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 #[inline]

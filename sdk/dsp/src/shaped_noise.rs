@@ -1,14 +1,14 @@
 //! Random-phase noise with a given spectrum, streamed by overlap-add.
 //!
-//! Frames of uniformly random phases overlap by an eighth, in which one frame fades out while the
-//! next fades in. Frames are independent and the squares of the two weights add up to 1, so the
-//! power is the same at every sample. A frame is one period of its components, so nothing repeats
-//! (numeric definitions: random phase).
+//! Each frame is an inverse FFT with uniformly random phases. Neighbouring frames overlap by an
+//! eighth: one fades out while the next fades in. Frames are independent and the squares of the two
+//! fade weights add up to 1, so the power is the same at every sample. A frame is one period of its
+//! components, so nothing repeats (numeric definitions: random phase).
 //!
-//! A retune computes the current frames again with the same phases and cross-fades over 10 ms. Of
-//! the parameters that arrive during a cross-fade only the last are converted to a spectrum, at its
-//! end, so that a retune computes one frame and not two. Frames have single precision, as the
-//! output does.
+//! A retune computes the current frame again, with the same phases and the new spectrum, and
+//! cross-fades to it over 10 ms. If parameters arrive during a cross-fade, they wait for its end,
+//! and only the last of them are converted to a spectrum. In this way a retune computes one frame
+//! and not two. Frames have single precision, as the output does.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -25,80 +25,86 @@ const OVERLAP: usize = 8;
 /// Duration of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
-/// An endless stream of noise whose spectrum follows a magnitude curve, with unit RMS as measured
-/// by the bins of the band: all components are amplified to compensate for the power at the band's
-/// edges that the bins miss (1/6 of the power of an edge bin).
+/// An endless stream of noise whose spectrum follows a magnitude curve.
+///
+/// It has unit RMS as the bins of the band measure it. These bins miss some of the power at the
+/// edges of the band (1/6 of the power of an edge bin), so all components are amplified to
+/// compensate for it.
 pub struct ShapedNoise {
     frames: Arc<Frames>,
-    /// Half the amplitude of each component.
+    /// Half the amplitude of each component, because the inverse FFT doubles it.
     amplitude: Vec<f32>,
     pending: Pending,
     pending_amplitude: Vec<f64>,
-    // The generator as it stood before the frame that ends in this hop, and before the one that
-    // begins in it: a retune makes both again with the same phases.
+    // States of the generator: before it drew the phases of the frame that ends in this hop, of the
+    // frame that begins in it, and of the next frame. From these states a retune draws the phases
+    // of the first two frames again.
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
-    /// Generator state after the next hop's frame, if that hop is already in `faded`.
+    /// State of the generator after the phases of the next frame, if `faded` contains the next hop.
     prepared: Option<Uniform>,
-    /// Position in a hop from which on the next hop is computed. It depends on the seed, so that
-    /// streams that start together do not all compute their frames in the same block.
+    /// Position in the hop at which the next hop is computed. It depends on the seed. Otherwise
+    /// streams that start together would all compute a frame in the same block.
     prepare_at: usize,
-    /// Whether a change of spectrum began in this hop: another one may follow and would discard a
-    /// prepared hop.
+    /// Whether the spectrum has changed in this hop. It may then change again, which would make a
+    /// prepared hop useless, so none is prepared.
     changes: bool,
-    /// Cosines and sines of the phases of the frame that began last.
+    /// Cosines and sines of the phases that were drawn last.
     cos: Vec<f32>,
     sin: Vec<f32>,
     workspace: Workspace,
-    /// The frame that began last, with the end of the one before.
+    /// The current hop: the frame that began last, with the end of the frame before it. Followed by
+    /// the part of the frame that overlaps the next one.
     now: Vec<f32>,
-    /// The same with the new amplitudes, during a cross-fade.
+    /// During a cross-fade, the current hop with the new amplitudes. Otherwise possibly the next
+    /// hop (see `prepared`).
     faded: Vec<f32>,
     tail: Vec<f32>,
     position: usize,
     fade_position: Option<usize>,
 }
 
-/// Key of a rate and a band: the bits of the rate and of the band's edges.
+/// Identifies a sample rate and a band, by the bits of the rate and of the band's edges.
 pub type ComponentsKey = [u64; 3];
 
-/// Data shared by streams of the same rate and band.
+/// Data that streams with the same rate and band share.
 struct Frames {
     key: ComponentsKey,
     inverse: InverseRealFft,
-    /// Fade-in weights of a frame; their mirror image fades out the frame before.
+    /// Fade-in weights of a frame. In reverse order they fade out the frame before it.
     rise: Vec<f32>,
     /// Length of a frame, samples.
     len: usize,
-    /// Samples from the start of a frame to that of the next.
+    /// Distance between the starts of two frames, samples.
     hop: usize,
     fade_len: usize,
     first: usize,
     component_hz: Vec<f64>,
-    /// Part of each component's power that is measured.
+    /// Part of each component's power that the bins of the band measure.
     read: Vec<f64>,
 }
 
-/// State of a requested change of the spectrum.
+/// Whether a change of the spectrum is waiting.
 #[derive(Clone, Copy, PartialEq)]
 enum Pending {
     None,
     /// The amplitudes are in `pending_amplitude`.
     Made,
-    /// The amplitudes are computed when the change can begin.
+    /// The amplitudes will be computed when the change can begin.
     Wanted,
 }
 
-/// Rate in hertz at which a voice of [`ShapedNoise`] renders if `wanted_hz` is wanted: an integer
-/// fraction of it that contains the band and leaves a wide transition band for interpolation.
+/// Returns the rate in hertz at which a voice of [`ShapedNoise`] should render if the host wants
+/// `wanted_hz`. It is the lowest integer fraction of `wanted_hz` that contains the band and leaves
+/// a wide transition band for the interpolation to `wanted_hz`.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     let parts = libm::floor(wanted_hz / (3.7 * band.high_hz)).max(1.0);
     wanted_hz / parts
 }
 
-/// Part of a component's power that the band's bins measure, including the spectral spread of a
-/// finite frame. The spread is that of a rectangle as long as the hop between frames.
+/// Part of a component's power that the band's bins measure. Components are not lines, because
+/// frames are finite: their spread is approximated by the spread of a rectangle as long as the hop.
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     if part.at(hz - FRAME_SPREAD * spacing_hz) == 1.0
         && part.at(hz + FRAME_SPREAD * spacing_hz) == 1.0
@@ -119,29 +125,29 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     read / all
 }
 
-/// Number of component spacings on either side of a component over which its frames spread it, and
-/// points per spacing.
+/// Number of component spacings, on either side, over which a component spreads, and number of
+/// points per spacing at which the spread is evaluated.
 const FRAME_SPREAD: f64 = 4.0;
 const FRAME_STEPS: f64 = 2.0;
 
-/// Fade-in weight at sample `n` of `overlap`: `sin(π/2 sin²)`. Unlike a sine it is smooth at both
-/// ends, which keeps the noise floor of steep spectra low. With its mirror image the squares add up
-/// to 1.
+/// Fade-in weight at sample `n` of `overlap`: `sin(π/2 sin²)`. The squares of the weight and of its
+/// mirror image add up to 1. Unlike a sine it is smooth at both ends, which keeps the noise floor
+/// of steep spectra low.
 fn rise(n: usize, overlap: usize) -> f64 {
     let quarter = core::f64::consts::FRAC_PI_2;
     let sine = crate::trig::sin(quarter * (n as f64 + 0.5) / overlap as f64);
     crate::trig::sin(quarter * sine * sine)
 }
 
-/// [`ShapedNoise::prepare_at`] of a seed: multiples of the golden ratio spread consecutive seeds
-/// evenly.
+/// [`ShapedNoise::prepare_at`] for a seed. Multiples of the golden ratio spread consecutive seeds
+/// evenly over the hop.
 fn prepare_at(seed: u64, hop: usize) -> usize {
     let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
     ((part * hop as u64) >> 32) as usize
 }
 
 impl Frames {
-    /// The shared data of a rate and a band.
+    /// Returns the shared data of a rate and a band.
     fn shared(rate_hz: f64, band: Band) -> Arc<Self> {
         static FRAMES: Shared<ComponentsKey, Frames> = Shared::new();
         let key = [rate_hz, band.low_hz, band.high_hz].map(f64::to_bits);
@@ -154,7 +160,8 @@ impl Frames {
         let overlap = len.div_ceil(OVERLAP);
         let hop = len - overlap;
         let spacing = rate_hz / len as f64;
-        // Each bin of the texture spectrum represents half a bin on either side.
+        // Each bin of the texture spectrum represents half a bin on either side. The tolerance of
+        // 1e-9 keeps a component that rounding has moved just beyond the edge.
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
         let high = high.min(half - 1);
@@ -168,6 +175,7 @@ impl Frames {
             hop,
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
+            // Components up to half a bin outside the band have the magnitude of the edge.
             component_hz: components().map(|hz| hz.clamp(band.low_hz, band.high_hz)).collect(),
             read: components().map(|hz| frame_read_part(&part, hz, spacing)).collect(),
         }
@@ -175,9 +183,8 @@ impl Frames {
 }
 
 impl ShapedNoise {
-    /// Makes a stream with this seed at `rate_hz`, silent until [`Self::start`] is called.
-    ///
-    /// The rate is at least 20 Hz and at most 10 MHz (clamped).
+    /// Makes a stream with this seed at `rate_hz`, which is clamped to 20 Hz to 10 MHz. It is
+    /// silent until [`Self::start`] is called.
     pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
         let frames = Frames::shared(rate_hz.clamp(20.0, 1e7), band);
         let components = frames.component_hz.len();
@@ -202,6 +209,7 @@ impl ShapedNoise {
             fade_position: None,
             frames,
         };
+        // Two frames: the first hop contains the end of one and the beginning of the other.
         noise.draw_next();
         noise.draw_next();
         noise
@@ -212,13 +220,14 @@ impl ShapedNoise {
         &self.frames.component_hz
     }
 
-    /// Key of tables over the components: equal for streams with the same [`Self::component_hz`].
+    /// Key for tables over the components. Streams with equal keys have the same
+    /// [`Self::component_hz`].
     pub fn components_key(&self) -> ComponentsKey {
         self.frames.key
     }
 
-    /// Sets the spectrum before the first sample: `magnitude(i, f)` at `component_hz()[i] == f`, in
-    /// any scale; negative and non-finite values count as zero.
+    /// Sets the spectrum before the first sample. `magnitude(i, f)` returns the magnitude at `f`,
+    /// which is `component_hz()[i]`, in any scale. Negative and non-finite values count as zero.
     pub fn start(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
         self.fill(magnitude);
         self.normalise();
@@ -234,12 +243,15 @@ impl ShapedNoise {
         self.pending = Pending::Made;
     }
 
-    /// As [`Self::retune`], with a spectrum that is computed when it is needed: immediately, or,
-    /// during another change, at its end, in [`Self::render_with`]. Of several requests in between
-    /// only the last one counts. `make` receives [`Self::component_hz`] and writes a magnitude for
-    /// each, in any scale; negative and non-finite values count as zero. Returns false if all
-    /// magnitudes are zero in the immediate case; the stream then continues unchanged. Does not
-    /// allocate.
+    /// Cross-fades to a spectrum that is computed only when it is needed.
+    ///
+    /// If no change is in progress, the spectrum is computed at once. Otherwise it is computed at
+    /// the end of that change, in [`Self::render_with`], and only the last of several requests
+    /// counts. `make` receives [`Self::component_hz`] and writes a magnitude for each, in any
+    /// scale; negative and non-finite values count as zero. Does not allocate.
+    ///
+    /// Returns false if the spectrum was computed at once and all magnitudes are zero. The stream
+    /// then continues unchanged.
     pub fn retune_with(&mut self, make: impl FnOnce(&[f64], &mut [f64])) -> bool {
         if self.fade_position.is_some() {
             self.pending = Pending::Wanted;
@@ -263,8 +275,8 @@ impl ShapedNoise {
         self.normalise()
     }
 
-    /// Scales magnitudes to component amplitudes that together measure as unit RMS; false if there
-    /// is no power.
+    /// Scales the magnitudes to amplitudes that together measure as unit RMS. Returns false if
+    /// there is no power.
     fn normalise(&mut self) -> bool {
         let mut power = 0.0;
         for (a, read) in self.pending_amplitude.iter_mut().zip(&self.frames.read) {
@@ -290,7 +302,7 @@ impl ShapedNoise {
         self.render_with(out, &mut |_, magnitude| magnitude.fill(0.0));
     }
 
-    /// As [`Self::render`]; `make` is the function of [`Self::retune_with`].
+    /// As [`Self::render`]. `make` computes a spectrum that [`Self::retune_with`] has postponed.
     pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&[f64], &mut [f64])) {
         let mut rest = out;
         while !rest.is_empty() {
@@ -308,7 +320,7 @@ impl ShapedNoise {
         }
     }
 
-    /// Renders samples of the current hop up to its end; returns their number. The result does not
+    /// Renders samples up to the end of the current hop; returns their number. The samples do not
     /// depend on the block size, even while a change waits for the next hop.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
         if self.position >= self.prepare_at && !self.changes && self.prepared.is_none() {
@@ -320,13 +332,14 @@ impl ShapedNoise {
         run
     }
 
-    /// Renders samples of a cross-fade of which `done` are finished; returns their number.
+    /// Renders samples of a cross-fade, `done` samples after its start; returns their number.
     fn run_fade(&mut self, done: usize, out: &mut [f32]) -> usize {
         let fade_len = self.frames.fade_len;
         let run = out.len().min(fade_len - done);
         let old = &self.now[self.position..self.position + run];
         let new = &self.faded[self.position..self.position + run];
         for (i, ((out, old), new)) in out.iter_mut().zip(old).zip(new).enumerate() {
+            // Linear, because both have the same phases: their amplitudes add, not their powers.
             let weight = (done + i + 1) as f32 / fade_len as f32;
             *out = old + weight * (new - old);
         }
@@ -339,8 +352,8 @@ impl ShapedNoise {
         run
     }
 
-    /// Starts a cross-fade to the pending spectrum, unless one is in progress or too little of the
-    /// hop is left.
+    /// Starts a cross-fade to the pending spectrum. It waits if another cross-fade is in progress,
+    /// or if the rest of the hop is too short: a frame that is computed again covers only this hop.
     fn begin_fade(&mut self, make: &mut dyn FnMut(&[f64], &mut [f64])) {
         if self.fade_position.is_some() || self.position + self.frames.fade_len > self.frames.hop {
             return;
@@ -380,7 +393,8 @@ impl ShapedNoise {
         self.blend();
     }
 
-    /// Discards a prepared hop and draws the phases of the current frame again.
+    /// Discards a prepared hop, because a cross-fade needs its buffer, and draws the phases of the
+    /// current frame again.
     fn discard_prepared(&mut self) {
         if self.prepared.take().is_some() {
             self.draw(self.beginning.clone());
@@ -394,7 +408,7 @@ impl ShapedNoise {
         self.next.fill_directions(&mut self.cos, &mut self.sin);
     }
 
-    /// Generates the phases of a frame from a copy of the generator.
+    /// Draws the phases of a frame from a copy of the generator, which itself stays unchanged.
     fn draw(&mut self, mut phases: Uniform) {
         phases.fill_directions(&mut self.cos, &mut self.sin);
     }
@@ -402,6 +416,7 @@ impl ShapedNoise {
     /// Computes the rest of the current hop again into `faded`, with the same phases and the
     /// current amplitudes.
     fn remake_hop(&mut self) {
+        // Behind the overlap only one frame sounds, so only that one is computed.
         let overlaps = self.position < self.frames.rise.len();
         if overlaps {
             self.draw(self.ending.clone());
@@ -415,7 +430,7 @@ impl ShapedNoise {
         }
     }
 
-    /// Computes a frame from the last phases into `faded`.
+    /// Computes a frame into `faded`, from the phases that were drawn last.
     fn make_frame(&mut self) {
         self.frames.inverse.run(
             &mut self.workspace,
@@ -426,7 +441,7 @@ impl ShapedNoise {
         );
     }
 
-    /// Fades in the frame in `faded` and fades out the one that ends in `tail`.
+    /// Fades in the frame in `faded`, and fades out the frame whose end is in `tail`.
     fn blend(&mut self) {
         let rise = &self.frames.rise;
         let falling = rise.iter().rev().zip(&self.tail);

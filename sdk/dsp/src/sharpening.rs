@@ -1,14 +1,16 @@
-//! Sharpening of a power spectrum against the blur of the Hann window, for noise that is to measure
-//! as stated.
+//! Sharpens a power spectrum against the blur of the Hann window, so that noise with the sharpened
+//! spectrum measures as intended.
 
-/// Rounds of sharpening.
+/// Number of sharpening steps.
 const SHARPENINGS: usize = 2;
 
-/// Writes a power spectrum on the band's grid that approximately measures as `power` through the
-/// Hann window. The window distributes the power of noise over bins: two thirds in its own and a
-/// sixth in each neighbour. Sharpening inverts this by two Richardson–Lucy steps; next to flanks
-/// steeper than the window's, some blur remains. All slices have the length of `power`, which may
-/// be empty; `before` is scratch. Does not allocate.
+/// Writes a power spectrum on the band's grid that measures approximately as `power` through the
+/// Hann window.
+///
+/// The window distributes the power of noise over bins: two thirds stay in a bin, and a sixth goes
+/// to each neighbour. Two Richardson–Lucy steps invert this. Next to flanks that are steeper than
+/// the window's, some blur remains. All slices have the length of `power`, which may be 0; `before`
+/// is working memory. Does not allocate.
 ///
 /// ```
 /// let (mut before, mut sharp) = ([0.0; 3], [0.0; 3]);
@@ -34,8 +36,8 @@ pub fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
     }
 }
 
-/// Power of a bin after a round; `[below, here, above]` is the power before in the bin and its
-/// neighbours.
+/// Power of a bin after one step. `[below, here, above]` is the power before the step, in the bin
+/// and its two neighbours.
 fn sharpened(power: f64, [below, here, above]: [f64; 3]) -> f64 {
     let read = (below + 4.0 * here + above) / 6.0;
     if read > 0.0 { here * (power / read) } else { here }

@@ -1,22 +1,21 @@
 //! A bank of sine oscillators without phase drift.
 //!
-//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so that the phase
-//! after a day of samples is as accurate as at the start. Between anchors a recurrence generates
-//! the samples; at each anchor it restarts from the counted phase. While nothing changes, an
-//! oscillator generates eight samples at a time from the previous sixteen:
-//! `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`, each lane independently, which suits vector
-//! instructions. While amplitudes or frequencies change, oscillators rotate sample by sample.
+//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so the phase after a
+//! day of samples is as accurate as at the start: a day drifts by less than a millionth of a cycle.
 //!
-//! A day of samples drifts by less than a millionth of a cycle.
+//! Recurrences generate the samples, and restart from the counted phase at regular anchors. While
+//! nothing changes, an oscillator generates eight samples at a time from the previous sixteen:
+//! `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are independent, which suits vector
+//! instructions. While amplitudes or frequencies change, oscillators rotate sample by sample.
 
 use alloc::vec::Vec;
 
-/// Samples between two anchors; within them the recurrences drift by less than 1e-10 of an
+/// Samples between two anchors. In this time the recurrences drift by less than 1e-10 of an
 /// amplitude.
 const ANCHOR_INTERVAL: u32 = 4096;
-/// Samples that an oscillator generates at a time.
+/// Number of samples that an oscillator generates at a time.
 const LANES: usize = 8;
-/// Samples generated ahead while nothing changes; anchors are at chunk boundaries.
+/// Samples generated ahead while nothing changes. Anchors are at the boundaries of such chunks.
 const CHUNK: usize = 64;
 /// Duration of a change of amplitudes and frequencies, seconds.
 const RAMP_S: f64 = 0.010;
@@ -29,7 +28,7 @@ pub struct Sine {
     pub frequency_hz: f64,
     /// Amplitude, in the unit of the signal.
     pub amplitude: f64,
-    /// Phase at the first sample, cycles in `[0, 1)`. Only read when the oscillator starts.
+    /// Phase at the first sample, cycles in `[0, 1)`. Used only when the oscillator starts.
     pub phase_cycles: f64,
 }
 
@@ -49,13 +48,13 @@ struct Oscillators {
     amplitude: Vec<f64>,
     step: Vec<f64>,
     target: Vec<f64>,
-    /// The last samples and the next ones, while nothing changes.
+    /// The last samples and the next ones; used while nothing changes.
     wave: Vec<[[f64; LANES]; 2]>,
     /// `2 cos(LANES w)`.
     recur: Vec<f64>,
 }
 
-/// A sum of oscillators.
+/// A bank of oscillators that renders their sum.
 ///
 /// ```
 /// use htex_dsp::sine_bank::{Sine, SineBank};
@@ -78,9 +77,8 @@ pub struct SineBank {
 }
 
 impl SineBank {
-    /// A bank of up to `capacity` oscillators at `rate_hz`, playing `sines`.
-    ///
-    /// Sines at or above the Nyquist frequency are silent.
+    /// Makes a bank of up to `capacity` oscillators at the sample rate `rate_hz`, which plays
+    /// `sines`. Sines at or above the Nyquist frequency are silent.
     pub fn new(rate_hz: f64, capacity: usize, sines: &[Sine]) -> Self {
         let zeros = || alloc::vec![0.0; capacity];
         let mut bank = Self {
@@ -119,7 +117,7 @@ impl SineBank {
     }
 
     /// Changes to `sines` from the next sample on. Amplitudes and frequencies ramp linearly over 10
-    /// ms; phases are continuous. Oscillators are matched by index. Does not allocate.
+    /// ms; phases are continuous. The oscillator with index i changes to sine i. Does not allocate.
     pub fn retune(&mut self, sines: &[Sine]) {
         self.advance();
         self.heard = self.heard.max(sines.len()).min(self.osc.phase.len());
@@ -224,7 +222,8 @@ impl SineBank {
 }
 
 impl Oscillators {
-    /// Current point of the rotation, and its angle per sample.
+    /// Restarts the rotation of oscillator `i` from its counted phase: sets the point and the angle
+    /// per sample.
     fn anchor(&mut self, i: usize) {
         (self.sin[i], self.cos[i]) = crate::trig::sincos(fixed_to_radians(self.phase[i]));
         (self.turn_sin[i], self.turn_cos[i]) =
@@ -232,7 +231,7 @@ impl Oscillators {
         (self.bend_sin[i], self.bend_cos[i]) = crate::trig::sincos(fixed_to_radians(self.bend[i]));
     }
 
-    /// The samples around an anchor, and the factor of the recurrence.
+    /// Computes the samples around an anchor, and the factor of the recurrence.
     fn anchor_wave(&mut self, i: usize) {
         let start = (self.amplitude[i] * self.cos[i], self.amplitude[i] * self.sin[i]);
         let turn = (self.turn_cos[i], self.turn_sin[i]);
@@ -252,7 +251,7 @@ impl Oscillators {
         self.recur[i] = 2.0 * stride.0;
     }
 
-    /// The next samples of the first `heard` oscillators, which are constant.
+    /// Renders a chunk of the first `heard` oscillators, while nothing changes.
     fn steady_chunk(&mut self, heard: usize) -> [f32; CHUNK] {
         let mut sum = [[0.0; LANES]; CHUNK / LANES];
         for (wave, &recur) in self.wave[..heard].iter_mut().zip(&self.recur) {
@@ -274,7 +273,8 @@ impl Oscillators {
         chunk
     }
 
-    /// One sample of the first `n` oscillators; their amplitudes and frequencies are then advanced.
+    /// Renders one sample of the first `n` oscillators, and advances their amplitudes and
+    /// frequencies.
     #[inline]
     fn changing_sample(&mut self, n: usize) -> f64 {
         let (cos, sin) = (&mut self.cos[..n], &mut self.sin[..n]);

@@ -7,10 +7,10 @@ pub use num_complex::Complex;
 use crate::fft::RealFft;
 use crate::window::hann_periodic;
 
-/// Error: a buffer's length does not match the analyser.
+/// Error: a buffer does not have the length that the analyser needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WrongLength {
-    /// The buffer with the wrong length.
+    /// Name of the buffer with the wrong length.
     pub what: &'static str,
     /// Length needed.
     pub expected: usize,
@@ -46,27 +46,27 @@ pub struct SegmentAnalyzer {
 }
 
 impl SegmentAnalyzer {
-    /// An analyser for segments of `len` samples.
+    /// Makes an analyser for segments of `len` samples.
     pub fn new(len: usize) -> Self {
         Self { window: hann_periodic(len), fft: RealFft::new(len), input: alloc::vec![0.0; len] }
     }
 
-    /// A buffer for one spectrum: `len / 2 + 1` bins, from 0 Hz to Nyquist.
+    /// Makes a buffer for one spectrum: `len / 2 + 1` bins, from 0 Hz to the Nyquist frequency.
     pub fn make_bins(&self) -> Vec<Complex<f64>> {
         self.fft.make_bins()
     }
 
-    /// Factor from a windowed bin's magnitude to the amplitude of a sinusoid: `2 / Σw`, which is
-    /// `4 / len`.
+    /// Factor from the magnitude of a windowed bin to the amplitude of a sinusoid: `2 / Σw`, which
+    /// is `4 / len`. The 2 adds the half of the amplitude that is at the negative frequency.
     pub fn amplitude_scale(&self) -> f64 {
         2.0 / self.window.iter().sum::<f64>()
     }
 
-    /// Removes the segment's mean, applies the window and transforms. Bins are unscaled DFT sums.
-    /// Does not allocate.
+    /// Removes the mean of the segment, applies the window, and transforms. Bins are unscaled DFT
+    /// sums. Does not allocate.
     ///
     /// # Errors
-    /// If `segment` or `bins` has another length than the analyser's.
+    /// If `segment` or `bins` does not have the length of the analyser.
     pub fn analyze(
         &mut self,
         segment: &[f64],
@@ -74,6 +74,7 @@ impl SegmentAnalyzer {
     ) -> Result<(), WrongLength> {
         self.check("segment", self.window.len(), segment.len())?;
         self.check("spectrum buffer", self.window.len() / 2 + 1, bins.len())?;
+        // The mean is removed first: the window would spread it into the bin next to 0 Hz.
         let mean = segment.iter().sum::<f64>() / segment.len() as f64;
         for ((input, sample), weight) in self.input.iter_mut().zip(segment).zip(&self.window) {
             *input = (sample - mean) * weight;
@@ -82,11 +83,11 @@ impl SegmentAnalyzer {
         Ok(())
     }
 
-    /// Transforms the segment unchanged: no mean removal, no window. Otherwise as
+    /// Transforms the segment without removing the mean and without a window. Otherwise as
     /// [`Self::analyze`].
     ///
     /// # Errors
-    /// If `segment` or `bins` has another length than the analyser's.
+    /// If `segment` or `bins` does not have the length of the analyser.
     pub fn transform(
         &mut self,
         segment: &[f64],
@@ -103,9 +104,9 @@ impl SegmentAnalyzer {
     }
 }
 
-/// Combines the spectra of several axes: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X + Y + …`
-/// (DFT321, Landin et al. 2010). Where the sum is zero the phase is 0. A single axis is unchanged;
-/// the shortest one sets the length.
+/// Combines the spectra of several axes into one: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X +
+/// Y + …` (DFT321, Landin et al. 2010). Where the sum is zero the phase is 0. A single axis is
+/// returned unchanged. The shortest axis determines the length.
 pub fn dft321(axes: &[Vec<Complex<f64>>]) -> Vec<Complex<f64>> {
     let bins = axes.iter().map(Vec::len).min().unwrap_or(0);
     match axes {
@@ -121,8 +122,7 @@ fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
     if length > 0.0 { sum / length * folded } else { Complex::new(folded, 0.0) }
 }
 
-/// Magnitude of a complex number, with the same bits on every machine, which `Complex::norm` does
-/// not have.
+/// Magnitude of a complex number. Unlike `Complex::norm`, it has the same bits on every machine.
 pub fn magnitude(z: Complex<f64>) -> f64 {
     libm::hypot(z.re, z.im)
 }

@@ -1,13 +1,13 @@
-//! All-zero filter: the inverse of an all-pole filter of the same coefficients.
+//! All-zero filter: the inverse of an all-pole filter with the same coefficients.
 
 use crate::wide::{Work, wide};
 
-/// Highest order.
+/// Highest order of the filter.
 pub const MAX_ORDER: usize = 64;
-/// Samples that are filtered together.
+/// Number of samples that are filtered together.
 const CHUNK: usize = 128;
 
-/// `H(z) = 1 - Σ A_i z⁻ⁱ` with coefficients that can change while it runs (f64 state).
+/// The filter `H(z) = 1 - Σ A_i z⁻ⁱ`, whose coefficients can change while it runs (f64 state).
 ///
 /// ```
 /// use htex_dsp::all_zero::AllZero;
@@ -26,7 +26,7 @@ pub struct AllZero {
 }
 
 impl AllZero {
-    /// Returns a filter with zero state; `None` for more than [`MAX_ORDER`] coefficients.
+    /// Returns a filter with zero state. `None` if there are more than [`MAX_ORDER`] coefficients.
     pub fn new(coefficients: &[f64]) -> Option<Self> {
         let mut filter = Self {
             coefficients: [0.0; MAX_ORDER],
@@ -38,8 +38,8 @@ impl AllZero {
         Some(filter)
     }
 
-    /// Makes the filter one of at least this order, at most [`MAX_ORDER`]; the new coefficients are
-    /// 0.
+    /// Raises the order to at least this one, but at most [`MAX_ORDER`]. The new coefficients
+    /// are 0.
     pub fn raise_order(&mut self, order: usize) {
         self.order = self.order.max(order.min(MAX_ORDER));
     }
@@ -49,7 +49,7 @@ impl AllZero {
         &mut self.coefficients[..self.order]
     }
 
-    /// Filters one sample; for use while coefficients change. The sums are those of
+    /// Filters one sample; for use while coefficients change. Gives the same sums as
     /// [`Self::process`].
     pub fn tick(&mut self, input: f64) -> f64 {
         let own = self.coefficients[..self.order].iter();
@@ -75,10 +75,10 @@ impl AllZero {
     }
 }
 
-/// Subtracts the past inputs, one coefficient after the other, from all samples of a chunk.
+/// Subtracts the weighted past inputs from all samples of a chunk, one coefficient after the other.
 struct Sums<'a> {
     coefficients: &'a [f64],
-    /// The inputs before the chunk and in it.
+    /// The inputs before the chunk, and in the chunk.
     inputs: &'a [f64; MAX_ORDER + CHUNK],
     block: &'a mut [f64],
 }
@@ -102,7 +102,7 @@ mod tests {
     use crate::noise::GaussianNoise;
     use alloc::vec::Vec;
 
-    /// Single samples, blocks of any length and a raised order give the same bits.
+    /// Single samples, blocks of any length, and a raised order all give the same bits.
     #[test]
     fn blocks_are_single_samples() {
         for order in [0, 1, 5, 18, MAX_ORDER] {

@@ -1,7 +1,7 @@
-//! Comparing two texture spectra: energies in overlapping log-spaced bands, and correlation.
+//! Comparison of two texture spectra: energies in overlapping log-spaced bands, and correlation.
 //!
-//! Nine bands over 20 to 1000 Hz are the project's measure of a model's fidelity; `energy` is
-//! the sum of weight times squared magnitude, in the squared unit of the magnitudes.
+//! The project measures a model's fidelity in nine bands over 20 to 1000 Hz. An *energy* is the sum
+//! of weight times squared magnitude, in the squared unit of the magnitudes.
 
 use alloc::vec::Vec;
 
@@ -9,15 +9,15 @@ use crate::beta::log_unit;
 use crate::grid::Band;
 use crate::triangles::TriangleBank;
 
-/// Bands in the standard comparison.
+/// Number of bands in the standard comparison.
 pub const BAND_COUNT: usize = 9;
 
-/// Added to both energies before a ratio is taken, relative to the largest reference band, so that
-/// an empty band gives a large but finite error.
+/// Added to both energies before their ratio is taken, relative to the largest reference band. It
+/// keeps the error of an empty band large but finite.
 const RELATIVE_FLOOR: f64 = 1e-12;
 
-/// Triangular bands, log-spaced, half overlapping, with flanks linear in the logarithm of
-/// frequency.
+/// A bank of triangular, log-spaced, half-overlapping bands. Their flanks are linear in the
+/// logarithm of the frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BandBank {
     edges_hz: Vec<f64>,
@@ -45,8 +45,8 @@ impl BandBank {
         Self { edges_hz, bank: TriangleBank::new(&edges, &axis) }
     }
 
-    /// The `count + 2` edges, hertz: band `i` extends from edge `i` to edge `i + 2` with its apex
-    /// at edge `i + 1`.
+    /// The `count + 2` edges, hertz. Band `i` extends from edge `i` to edge `i + 2` and has its
+    /// apex at edge `i + 1`.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
@@ -65,9 +65,9 @@ impl BandBank {
     }
 }
 
-/// Error of each band in dB, `10 log10((model + tiny) / (reference + tiny))`, from band *energies*;
-/// `tiny` is 1e-12 of the largest reference band. If all energies on both sides are zero, the
-/// errors are 0 dB; a model with energy against an all-zero reference gives +∞.
+/// Error of each band in dB, from band *energies*: `10 log10((model + tiny) / (reference + tiny))`,
+/// where `tiny` is 1e-12 of the largest reference band. If all energies of both are zero, the
+/// errors are 0 dB. If only the reference is all zero, they are +∞ where the model has energy.
 pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
     let tiny = RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max);
     reference
@@ -81,11 +81,11 @@ fn ratio_db(model: f64, reference: f64) -> f64 {
     if model == reference { 0.0 } else { 10.0 * libm::log10(model / reference) }
 }
 
-/// Returns the gain that gives a model's *magnitudes* the total energy of the reference:
-/// `sqrt(Σ reference² / Σ model²)`; 1 if either sum is zero or not finite.
+/// Returns the gain that gives a model's *magnitudes* the total energy of the reference: `sqrt(Σ
+/// reference² / Σ model²)`. It is 1 if either sum is zero or not finite.
 ///
-/// Multiply the model's band energies by its square to compare spectral shapes independently of
-/// level.
+/// To compare spectral shapes independently of level, multiply the model's band energies by the
+/// square of this gain.
 pub fn energy_matching_gain(reference_magnitude: &[f64], model_magnitude: &[f64]) -> f64 {
     let total = |magnitude: &[f64]| magnitude.iter().map(|m| m * m).sum::<f64>();
     let gain = crate::root::sqrt(total(reference_magnitude) / total(model_magnitude));
@@ -100,11 +100,11 @@ pub fn rms(values: &[f64]) -> f64 {
     crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
-/// Pearson correlation of two slices, in `[-1, 1]`; a longer slice is cut to the length of the
+/// Pearson correlation of two slices, in `[-1, 1]`. A longer slice is cut to the length of the
 /// other.
 ///
-/// Never NaN for finite input. If either slice is constant the correlation is undefined and the
-/// result is 0, except that two equal slices give 1.
+/// The result is never NaN for finite input. If either slice is constant, the correlation is
+/// undefined and the result is 0, except that two equal slices give 1.
 ///
 /// ```
 /// use htex_dsp::bands::pearson_correlation;
@@ -118,7 +118,8 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
         return 1.0;
     }
     let (a, b) = (deviations(a), deviations(b));
-    // Each side is scaled by its largest deviation, so that squares neither under- nor overflow.
+    // Each side is scaled by its largest deviation, so that the squares neither underflow nor
+    // overflow.
     let product: f64 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
     let norm = |values: &[f64]| crate::root::sqrt(values.iter().map(|v| v * v).sum());
     let correlation = product / (norm(&a) * norm(&b));

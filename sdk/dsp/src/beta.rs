@@ -2,8 +2,8 @@
 
 use crate::Band;
 
-/// Position of `f_hz` on the band's normalised logarithmic axis: 0 at the lower edge, 1 at the
-/// upper edge, `ln(f / low) / ln(high / low)`. Outside `[0, 1]` for frequencies outside the band.
+/// Position of `f_hz` on the band's normalised logarithmic axis, `ln(f / low) / ln(high / low)`: 0
+/// at the lower edge, 1 at the upper edge, and outside `[0, 1]` for frequencies outside the band.
 ///
 /// ```
 /// use htex_dsp::{Band, beta::log_unit};
@@ -34,8 +34,9 @@ impl LogAxis {
 
 /// Density of the beta distribution, `u^(α-1) (1-u)^(β-1) / B(α, β)`, 0 outside `[0, 1]`.
 ///
-/// At an edge the value is the limit: 0 for a parameter above 1, finite for exactly 1, +∞ below 1.
-/// Relative error: about 1e-13 for parameters below 100, 1e-8 at a million.
+/// At an edge the value is the limit: 0 if the parameter is above 1, finite if it is exactly 1, and
+/// +∞ if it is below 1. The relative error is about 1e-13 for parameters below 100, and 1e-8 at a
+/// million.
 ///
 /// ```
 /// use htex_dsp::beta::BetaDensity;
@@ -52,8 +53,8 @@ pub struct BetaDensity {
 }
 
 impl BetaDensity {
-    /// Makes the density. `alpha` and `beta` must be positive and finite, otherwise the density is
-    /// NaN everywhere.
+    /// Makes the density. If `alpha` and `beta` are not positive and finite, the density is NaN
+    /// everywhere.
     pub fn new(alpha: f64, beta: f64) -> Self {
         let valid = [alpha, beta].iter().all(|p| *p > 0.0 && p.is_finite());
         let log_scale = if valid {
@@ -76,9 +77,9 @@ impl BetaDensity {
         libm::exp(left + right - self.log_scale)
     }
 
-    /// Writes the density at points given by finite `ln u` and `ln (1 - u)`, with the accuracy of
-    /// [`exponentials`](crate::exponential::exponentials). The shortest slice sets the number of
-    /// points.
+    /// Writes the density at points that are given by finite `ln u` and `ln (1 - u)`, with the
+    /// accuracy of [`exponentials`](crate::exponential::exponentials). The shortest slice
+    /// determines the number of points.
     pub fn fill(&self, log: &[f64], log_rest: &[f64], density: &mut [f64]) {
         let (left, right) = (self.alpha - 1.0, self.beta - 1.0);
         for ((d, log), log_rest) in density.iter_mut().zip(log).zip(log_rest) {
@@ -88,7 +89,7 @@ impl BetaDensity {
     }
 }
 
-/// `factor * log`, where a factor of zero gives zero even for a logarithm of -∞.
+/// `factor * log`, but zero for a factor of zero, even if the logarithm is -∞.
 fn times_log(factor: f64, log: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { factor * log }
 }

@@ -1,12 +1,12 @@
-//! Transforms of two to seven numbers.
+//! Fourier transforms of two to seven numbers: the butterflies of the FFTs.
 
 use core::ops::{Add, Sub};
 
 use crate::lanes::Lanes;
 
-/// A number, or several side by side.
+/// One number, or several numbers side by side.
 pub(crate) trait Number: Copy + Add<Output = Self> + Sub<Output = Self> {
-    /// The product with a constant, which is rounded to the precision of the number first.
+    /// Multiplies by a constant, which is first rounded to the precision of the number.
     fn times(self, factor: f64) -> Self;
 }
 
@@ -24,8 +24,9 @@ impl Number for f64 {
     }
 }
 
-/// A transform of `R` numbers with positive exponents, real and imaginary parts apart. A trait, as
-/// functions that are passed are not always compiled into the one that has the wide registers.
+/// A transform of `R` numbers with positive exponents; real and imaginary parts are separate. It is
+/// a trait, because functions that are passed as arguments are not always compiled into the
+/// function that has the wide registers.
 pub(crate) trait Butterfly<const R: usize> {
     fn turn<T: Number>(re: [T; R], im: [T; R]) -> ([T; R], [T; R]);
 }
@@ -99,14 +100,14 @@ fn sums<T: Number>(x: [T; 5]) -> [T; 2] {
     [x[1] + x[4], x[2] + x[3]]
 }
 
-/// By the cosines of one and of two fifths of a turn.
+/// Sums weighted by the cosines of one and two fifths of a turn.
 #[inline(always)]
 fn fifths<T: Number>(first: T, [a, b]: [T; 2]) -> [T; 2] {
     const COS: [f64; 2] = [0.309_016_994_374_947_45, -0.809_016_994_374_947_5];
     [first + (a.times(COS[0]) + b.times(COS[1])), first + (a.times(COS[1]) + b.times(COS[0]))]
 }
 
-/// By the sines of one and of two fifths of a turn.
+/// Sums weighted by the sines of one and two fifths of a turn.
 #[inline(always)]
 fn turned<T: Number>(x: [T; 5]) -> [T; 2] {
     const SIN: [f64; 2] = [0.951_056_516_295_153_5, 0.587_785_252_292_473_1];
@@ -132,7 +133,7 @@ impl Butterfly<7> for Seven {
     }
 }
 
-/// By the cosines of `k`, `2 k` and `3 k` sevenths of a turn.
+/// Sum weighted by the cosines of `k`, `2 k` and `3 k` sevenths of a turn.
 #[inline(always)]
 fn sevenths<T: Number>(x: [T; 7], k: usize) -> T {
     const COS: [f64; 4] =
@@ -143,7 +144,7 @@ fn sevenths<T: Number>(x: [T; 7], k: usize) -> T {
     })
 }
 
-/// By the sines of `k`, `2 k` and `3 k` sevenths of a turn.
+/// Sum weighted by the sines of `k`, `2 k` and `3 k` sevenths of a turn.
 #[inline(always)]
 fn seventh_turns<T: Number>(x: [T; 7], k: usize) -> T {
     const SIN: [f64; 7] = [

@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use crate::biquad::Biquad;
 use crate::butterworth::{PassKind, in_range, second_order};
 
-/// Returns the sections of a filter whose magnitude is within half of `ripple_db` of 1 in the pass
-/// band and 3 dB down at `edge_hz`, at the sampling rate `rate_hz` (bilinear transform, prewarped
-/// edge). `order` must be even and `ripple_db` in (0, 3).
+/// Returns the sections of a Chebyshev filter of type I, at the sample rate `rate_hz` (bilinear
+/// transform, prewarped edge). In the pass band the magnitude is within half of `ripple_db` of 1;
+/// at `edge_hz` it is 3 dB down. `order` must be even, and `ripple_db` in (0, 3).
 ///
 /// `None` if the edge is not strictly between 0 and the Nyquist frequency `rate_hz / 2`.
 pub(crate) fn chebyshev(
@@ -22,8 +22,8 @@ pub(crate) fn chebyshev(
     }
     let n = order as f64;
     let ripple = crate::root::sqrt(libm::pow(10.0, 0.1 * ripple_db) - 1.0);
-    // Poles of an analogue low-pass whose ripple band ends at 1, scaled to be 3 dB down at the
-    // edge.
+    // Poles of an analogue low-pass whose ripple band ends at 1, scaled so that it is 3 dB down at
+    // the edge.
     let spread = libm::asinh(1.0 / ripple) / n;
     let down = libm::cosh(libm::acosh(1.0 / ripple) / n);
     let tangent = crate::trig::tan(core::f64::consts::PI * edge_hz / rate_hz);
@@ -40,7 +40,7 @@ pub(crate) fn chebyshev(
             second_order(kind, 2.0 * libm::atan(cut), real / radius)
         })
         .collect();
-    // Each section has magnitude 1 at the far end of the pass band, where the ripple is at its
+    // Each section has magnitude 1 at the far end of the pass band. There the ripple is at its
     // minimum.
     let middle = libm::pow(10.0, -ripple_db / 40.0);
     if let Some(section) = sections.first_mut() {
@@ -56,8 +56,8 @@ mod tests {
     use super::*;
     use crate::biquad::Cascade;
 
-    /// The squared magnitude is `1 / (1 + ε² T_n²(f))` at frequencies warped by the bilinear
-    /// transform's tangent.
+    /// The squared magnitude is `1 / (1 + ε² T_n²(f))`, at frequencies that the tangent of the
+    /// bilinear transform has warped.
     #[test]
     fn the_magnitude_follows_the_chebyshev_polynomial() {
         let (order, ripple_db, rate_hz) = (4, 0.2, 4_000.0);

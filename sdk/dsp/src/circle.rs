@@ -1,9 +1,9 @@
 //! Pseudo-random points on the unit circle.
 
-/// Angle in radians of one step of a signed 32-bit number whose full range spans half a turn.
+/// Radians per step of a signed 32-bit number whose full range is half a turn.
 const QUARTER: f32 = core::f32::consts::FRAC_PI_2 / (1u32 << 31) as f32;
 const TERMS: usize = 7;
-/// Taylor coefficients, in the square of the angle, of the cosine and of the sine divided by its
+/// Taylor coefficients of the cosine, and of the sine divided by the angle, in the square of the
 /// angle. Up to a quarter turn the truncation error is below 1e-8.
 const TAYLOR: [[f32; 2]; TERMS] = taylor();
 
@@ -21,10 +21,11 @@ const fn taylor() -> [[f32; 2]; TERMS] {
     terms
 }
 
-/// Cosines and sines of angles made from random bits, uniform on the circle; error below 3e-7.
+/// Cosines and sines of random angles, uniform on the circle, made from random bits. The error is
+/// below 3e-7.
 ///
-/// The signed bits give an angle in the right half plane; the lowest bit flips both signs. Two
-/// short series suffice and there are no branches.
+/// The signed bits give an angle in the right half plane, and the lowest bit flips both signs. So
+/// two short series suffice, and there are no branches.
 #[inline(always)]
 pub(crate) fn directions<const N: usize>(bits: [u32; N]) -> ([f32; N], [f32; N]) {
     let mut angle = [0.0; N];

@@ -1,11 +1,11 @@
-//! The orthonormal cosine transform that turns log band energies into cepstral coefficients.
+//! The orthonormal cosine transform, which turns log band energies into cepstral coefficients.
 //!
-//! Plain sums: for tens of bands an FFT is not faster.
+//! It is computed as plain sums: for tens of bands, an FFT is not faster.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// The first `out.len()` coefficients of the orthonormal DCT-II of `values`
+/// Computes the first `out.len()` coefficients of the orthonormal DCT-II of `values`
 /// (`scipy.fft.dct(values, type=2, norm="ortho")[:k]`). Coefficients beyond `values.len()` are 0.
 pub fn dct_ii(values: &[f64], out: &mut [f64]) {
     let n = values.len();
@@ -15,7 +15,7 @@ pub fn dct_ii(values: &[f64], out: &mut [f64]) {
     }
 }
 
-/// Inverse of [`dct_ii`] with a precomputed table for a fixed number of output values.
+/// Inverse of [`dct_ii`], with a precomputed table for a fixed number of output values.
 ///
 /// ```
 /// use htex_dsp::dct::{InverseDct, dct_ii};
@@ -42,8 +42,8 @@ impl InverseDct {
         }
     }
 
-    /// Writes the values of the first coefficients. Missing coefficients count as zero, and those
-    /// beyond the number of values are ignored; elements of `out` beyond that number are left
+    /// Computes the values from the first coefficients. Missing coefficients count as zero;
+    /// coefficients beyond the number of values are ignored, and elements of `out` beyond it stay
     /// unchanged. Does not allocate.
     pub fn run(&self, coefficients: &[f64], out: &mut [f64]) {
         let rows = self.cosines.chunks(self.scale.len().max(1));

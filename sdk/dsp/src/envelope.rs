@@ -1,13 +1,15 @@
-//! Level, mean frequency and powers in bands of a stream of samples.
+//! Measures a stream of samples: its level, its mean frequency, and its power in bands.
 //!
-//! The level is that of the samples of a block, exactly and without delay. Mean frequency and bands
-//! are those of Hann windows (periodic) of `N` samples, the least power of two that lasts 40 ms (20
-//! kHz: 1024 samples, 51.2 ms; 48 kHz: 2048, 42.7 ms), of which one ends every `N / 4` samples;
-//! samples before the first are 0. With `X[k]` the transform of the windowed samples and `W` the
-//! sum of the squared window, bin `k` at `k * rate / N` has the power `|X[k]|² / (N * W)`, twice
-//! that for all bins but the first and the last, so that the powers of all bins are the mean square
-//! of the windowed samples, as a share of the window's. A block has the mean of the windows that
-//! end in it, and the numbers of the block before if none does.
+//! The level is computed from the samples of a block, exactly and without delay. Mean frequency and
+//! bands are computed from periodic Hann windows of `N` samples, where `N` is the smallest power of
+//! two that lasts at least 40 ms (at 20 kHz: 1024 samples, 51.2 ms; at 48 kHz: 2048, 42.7 ms). One
+//! window ends every `N / 4` samples. Samples before the first one are 0.
+//!
+//! Let `X[k]` be the transform of the windowed samples, and `W` the sum of the squared window. Bin
+//! `k`, at `k * rate / N`, has the power `|X[k]|² / (N * W)`; all bins but the first and the last
+//! count twice. The powers of all bins then add up to the mean square of the windowed samples,
+//! divided by the mean square of the window. The result for a block is the mean over the windows
+//! that end in it. If none does, it is the result of the block before.
 
 use alloc::vec::Vec;
 
@@ -17,20 +19,20 @@ use crate::fft::RealFft;
 use crate::grid::Band;
 use crate::window::hann_periodic;
 
-/// Shortest window, seconds: two periods of 50 Hz, and nearly one of 20 Hz, the lowest frequency of
-/// a texture.
+/// Shortest window, seconds: two periods of 50 Hz, and nearly one of 20 Hz, which is the lowest
+/// frequency of a texture.
 const WINDOW_S: f64 = 0.040;
-/// Windows that overlap at each sample.
+/// Number of windows that overlap at each sample.
 const OVERLAP: usize = 4;
 
-/// What a stream was since it was last asked.
+/// Measurements of a stream since the last call of [`Analyser::read`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
-    /// RMS of the samples; 0 for none.
+    /// RMS of the samples; 0 if there are none.
     pub level_rms: f64,
     /// Mean frequency, weighted by power, hertz; 0 for silence.
     pub centroid_hz: f64,
-    /// Samples.
+    /// Number of samples.
     pub frames: u64,
 }
 
@@ -45,7 +47,7 @@ struct Sums {
     moment: f64,
 }
 
-/// Measures a stream of samples.
+/// Measures the level, mean frequency and band powers of a stream of samples.
 ///
 /// ```
 /// use htex_dsp::envelope::Analyser;
@@ -63,27 +65,28 @@ struct Sums {
 pub struct Analyser {
     rate_hz: f64,
     edges_hz: Vec<f64>,
-    /// The band of each bin.
+    /// Index of the band that each bin belongs to.
     band_of: Vec<usize>,
     window: Vec<f64>,
-    /// The power of a bin, in its squared magnitude.
+    /// Factor from the squared magnitude of a bin to its power.
     scale: f64,
     fft: RealFft,
     bins: Vec<Complex<f64>>,
     windowed: Vec<f64>,
-    /// The last samples, the oldest at `at`.
+    /// The last samples; the oldest one is at index `at`.
     ring: Vec<f32>,
     at: usize,
-    /// Samples that the ring has had since its last one that is not 0.
+    /// Number of samples since the last one that was not 0.
     quiet: usize,
     sums: Sums,
-    /// Of the windows that ended since the last call; then of the last window.
+    /// Sums over the windows that ended since the last call. After a call, the values of the last
+    /// window.
     bands: Vec<f64>,
     centroid_hz: f64,
 }
 
 impl Analyser {
-    /// Makes an analyser of `count` bands (at least one) of equal ratio within a band.
+    /// Makes an analyser with `count` bands (at least one), which divide `band` in equal ratios.
     pub fn new(count: usize, band: Band, rate_hz: f64) -> Self {
         let count = count.max(1);
         let len = libm::ceil(WINDOW_S * rate_hz) as usize;
@@ -93,7 +96,8 @@ impl Analyser {
         let edges_hz: Vec<f64> = (0..=count).map(edge).collect();
         let fft = RealFft::new(len);
         let bins = fft.make_bins();
-        // All below the second edge is of the first band, all above the last but one of the last.
+        // Bins below the second edge belong to the first band; bins above the last edge but one
+        // belong to the last band.
         let inner = &edges_hz[1..count];
         let band_at = |hz: f64| inner.partition_point(|edge| *edge <= hz);
         let window = hann_periodic(len);
@@ -121,13 +125,13 @@ impl Analyser {
         self.bands.len()
     }
 
-    /// Returns the edges of the bands, one more than bands, ascending, hertz. The first band
-    /// reaches down to 0 Hz, and the last up to half the rate.
+    /// Returns the edges of the bands, ascending, hertz: one more than there are bands. The first
+    /// band nevertheless reaches down to 0 Hz, and the last one up to half the rate.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
 
-    /// Takes the next samples.
+    /// Adds the next samples of the stream.
     pub fn push(&mut self, samples: &[f32]) {
         let mut rest = samples;
         while !rest.is_empty() {
@@ -143,7 +147,7 @@ impl Analyser {
         }
     }
 
-    /// Takes samples that are 0.
+    /// Adds `count` samples that are 0.
     pub fn push_zeros(&mut self, mut count: usize) {
         const ZEROS: [f32; 64] = [0.0; 64];
         while count > 0 && self.quiet < self.ring.len() {
@@ -151,7 +155,7 @@ impl Analyser {
             self.push(&ZEROS[..now]);
             count -= now;
         }
-        // All windows that end in the rest are silent.
+        // All windows that end in the remaining samples are silent.
         let hop = self.hop();
         let ended = (self.at % hop + count) / hop;
         if ended > 0 {
@@ -166,12 +170,12 @@ impl Analyser {
         self.ring.len() / OVERLAP
     }
 
-    /// Samples until a window ends.
+    /// Number of samples until the next window ends.
     fn to_window(&self) -> usize {
         self.hop() - self.at % self.hop()
     }
 
-    /// Advances by at most as many samples as until a window ends.
+    /// Advances by `count` samples, which must not go beyond the end of the next window.
     fn advance(&mut self, count: usize) {
         self.sums.frames += count as u64;
         self.at += count;
@@ -181,14 +185,14 @@ impl Analyser {
         }
     }
 
-    /// Forgets the last window when another one ends.
+    /// Drops the values of the last window when a new one ends.
     fn begin_window(&mut self) {
         if self.sums.windows == 0 {
             self.bands.fill(0.0);
         }
     }
 
-    /// Adds the powers of the window that ends here.
+    /// Adds the powers of the window that ends at this sample.
     fn add_window(&mut self) {
         self.begin_window();
         self.sums.windows += 1;
@@ -211,8 +215,8 @@ impl Analyser {
         }
     }
 
-    /// Returns what was taken since the last call; writes the mean square of each band, as far as
-    /// there are places.
+    /// Returns the measurements since the last call, and writes the mean square of each band to
+    /// `bands`, as far as there is room.
     pub fn read(&mut self, bands: &mut [f64]) -> Measured {
         let sums = core::mem::take(&mut self.sums);
         if sums.windows > 0 {

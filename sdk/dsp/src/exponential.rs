@@ -1,18 +1,18 @@
-//! Exponentials of slices of numbers, vectorised.
+//! Exponentials of slices of numbers, computed with vector instructions.
 
 use core::f64::consts::{LN_2, LOG2_E};
 
 use crate::wide::{Work, wide};
 
-/// Adding this to a number of magnitude below 2⁵¹ leaves the nearest integer in the low bits of the
-/// sum.
+/// If this is added to a number of magnitude below 2⁵¹, the low bits of the sum are the nearest
+/// integer.
 const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
-/// Numbers that are worked on side by side: in a module, whose loops are not made to by the
-/// compiler (`xtask/src/wasm.rs`).
+/// Numbers that are computed side by side. Only WASM modules need this, because they are compiled
+/// without the vectorisation of loops (`xtask/src/wasm.rs`).
 const GROUP: usize = if cfg!(target_family = "wasm") { 4 } else { 1 };
-/// Range to which inputs are clamped; exponentials at both ends are normal numbers.
+/// Range to which inputs are clamped. The exponentials at both ends are normal numbers.
 const RANGE: (f64, f64) = (-700.0, 700.0);
-/// Taylor coefficients, highest first; for arguments up to half of ln 2 the truncation error is
+/// Taylor coefficients, highest first. For arguments up to half of ln 2 the truncation error is
 /// below 3e-10.
 const TAYLOR: [f64; 9] = taylor();
 
@@ -29,8 +29,8 @@ const fn taylor() -> [f64; 9] {
 }
 
 /// Replaces each number by its exponential, with a relative error below 1e-9. Inputs are clamped to
-/// ±700; NaN counts as -700. Branch-free, so that compilers vectorise it; bit-identical on every
-/// machine.
+/// ±700; NaN counts as -700. There are no branches, so compilers vectorise it. The results are
+/// bit-identical on every machine.
 ///
 /// ```
 /// let mut numbers = [0.0, 1.0];

@@ -9,16 +9,16 @@ const CHUNK: usize = 256;
 /// A streaming linear-phase FIR filter.
 #[derive(Debug, Clone)]
 pub struct Fir {
-    /// Symmetric, padded with zeros to a multiple of eight.
+    /// The symmetric kernel, padded with zeros to a multiple of eight.
     kernel: Vec<f32>,
-    /// The last `kernel.len() - 1` samples, followed by buffer space for one chunk.
+    /// The last `kernel.len() - 1` samples, followed by space for one chunk.
     history: Vec<f32>,
 }
 
 impl Fir {
-    /// Makes a filter of `taps` coefficients (rounded up to an odd number) that approximates
-    /// `magnitude(hertz)` from 0 to half of `rate_hz`. Frequency sampling with a Hann window: the
-    /// resolution is about `4 · rate_hz / taps` hertz. The delay is half the length.
+    /// Makes a filter whose magnitude approximates `magnitude(hertz)` from 0 to half of `rate_hz`.
+    /// `taps` is rounded up to an odd number. The design is frequency sampling with a Hann window,
+    /// so the resolution is about `4 · rate_hz / taps` hertz. The delay is half the length.
     pub fn with_magnitude(taps: usize, rate_hz: f64, magnitude: impl Fn(f64) -> f64) -> Self {
         let taps = taps.max(1) | 1;
         let half = taps / 2;
@@ -43,13 +43,13 @@ impl Fir {
         Self::new(kernel)
     }
 
-    /// An identity filter: no change, no delay.
+    /// Makes a filter that changes nothing and has no delay.
     pub fn through() -> Self {
         Self::new(alloc::vec![1.0])
     }
 
     fn new(mut kernel: Vec<f32>) -> Self {
-        // The newest sample is multiplied by the last coefficient.
+        // Reversed, because the newest sample is multiplied by the last coefficient.
         kernel.reverse();
         let padded = kernel.len().next_multiple_of(8);
         let mut front = alloc::vec![0.0; padded - kernel.len()];

@@ -1,6 +1,6 @@
-//! A gain that changes linearly, without clicks.
+//! A gain that changes linearly, to avoid clicks.
 
-/// A gain that moves to each new target along a straight line of fixed length.
+/// A gain that moves to each new target along a straight line of fixed duration.
 ///
 /// ```
 /// use htex_dsp::glide::Glide;
@@ -18,12 +18,12 @@ pub struct Glide {
 }
 
 impl Glide {
-    /// A constant gain of `value`; later changes take `len` samples (at least one).
+    /// Makes a constant gain of `value`. Later changes take `len` samples (at least one).
     pub fn new(value: f32, len: u32) -> Self {
         Self { value, target: value, step: 0.0, len: len.max(1), left: 0 }
     }
 
-    /// Sets the gain at once.
+    /// Sets the gain at once, without a ramp.
     pub fn restart(&mut self, value: f32) {
         (self.value, self.target, self.left) = (value, value, 0);
     }
@@ -33,12 +33,12 @@ impl Glide {
         self.left == 0 && self.value == value
     }
 
-    /// Ends a change at once.
+    /// Sets the gain to its target at once.
     pub fn finish(&mut self) {
         self.restart(self.target);
     }
 
-    /// Samples of [`Self::apply`] after which the gain stays 0; `None` if it does not.
+    /// Number of samples of [`Self::apply`] after which the gain stays 0. `None` if it does not.
     pub fn until_zero(&self) -> Option<u32> {
         (self.target == 0.0 && (self.left > 0 || self.value == 0.0)).then_some(self.left)
     }
@@ -48,7 +48,7 @@ impl Glide {
         self.len
     }
 
-    /// Starts a change to `target`; no effect if `target` is already the target.
+    /// Starts a change to `target`. Has no effect if `target` is already the target.
     pub fn set(&mut self, target: f32) {
         self.set_within(target, self.len);
     }
@@ -72,7 +72,7 @@ impl Glide {
         self.value
     }
 
-    /// Multiplies `block` by the gain, the first sample by the current one.
+    /// Multiplies `block` by the gain. The first sample gets the current gain.
     pub fn apply(&mut self, block: &mut [f32]) {
         let moving = block.len().min(self.left as usize);
         let (moving, steady) = block.split_at_mut(moving);

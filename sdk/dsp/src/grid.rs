@@ -1,15 +1,16 @@
-//! The frequency grid of texture spectra.
+//! The band of a texture, and the grid of frequencies on which its spectrum is given.
 //!
-//! Unit RMS is that of the band's bins. The window spreads a component at 20 Hz partly into bins
-//! outside the band: with unit RMS over all bins each copy of a texture with much energy there
-//! would lose up to 0.1 dB, with this definition 300 s of three copies stay within 0.1 dB.
+//! Unit RMS is the RMS of the bins in the band. The window spreads a component at 20 Hz partly into
+//! bins outside the band. If unit RMS were defined over all bins, each copy of a texture with much
+//! energy at 20 Hz would lose up to 0.1 dB. With this definition, 300 s of three copies stay within
+//! 0.1 dB.
 
 use alloc::vec::Vec;
 
 /// Spacing of the texture spectrum's grid: 4000 samples at 20 kHz (paper, Texture processing).
 pub const GRID_HZ: f64 = 5.0;
 
-/// The band a texture spectrum covers, inclusive at both ends, in hertz.
+/// The band that a texture spectrum covers, hertz, including both edges.
 ///
 /// ```
 /// use htex_dsp::Band;
@@ -33,7 +34,7 @@ impl Band {
         (self.low_hz, self.high_hz)
     }
 
-    /// Grid index (multiples of [`GRID_HZ`]) of the lowest bin in the band.
+    /// Grid index (in multiples of [`GRID_HZ`]) of the lowest bin in the band.
     pub fn first_bin(&self) -> usize {
         libm::ceil(self.low_hz / GRID_HZ - 1e-9) as usize
     }
@@ -60,16 +61,16 @@ impl Band {
 }
 
 /// Part of a component's power that the bins of a band measure through the periodic Hann window: 1
-/// well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin and the first one
-/// outside, 0 far outside.
+/// well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin and the first bin
+/// outside, and 0 far outside.
 ///
-/// Over all bins the window measures 1.5 times a component's power; bins outside the band do not
-/// contribute. Noise that is to have a given level in the band is amplified to compensate.
+/// All bins together would measure 1.5 times the power of a component, but bins outside the band do
+/// not contribute. Noise with a given level in the band is amplified to compensate.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
     ReadPart::new(band).at(frequency_hz)
 }
 
-/// [`read_part`] precomputed for one band.
+/// [`read_part`], precomputed for one band.
 pub(crate) struct ReadPart {
     first: f64,
     last: f64,
@@ -95,7 +96,7 @@ impl ReadPart {
     }
 }
 
-/// Bins on either side of a component beyond which the Hann window measures almost nothing: 2e-5 of
+/// Distance in bins beyond which the Hann window measures almost nothing of a component: 2e-5 of
 /// its power in total.
 const WINDOW_BINS: f64 = 4.0;
 
@@ -119,15 +120,14 @@ impl From<(f64, f64)> for Band {
     }
 }
 
-/// RMS of a texture spectrum given on the grid. Each bin is measured through the periodic Hann
-/// window, so its power is `magnitude² / (2 · 1.5)` (equivalent noise bandwidth 1.5 bins).
-///
-/// Unit: that of the magnitudes.
+/// RMS of a texture spectrum on the grid, in the unit of the magnitudes. Each bin is measured
+/// through the periodic Hann window, so its power is `magnitude² / (2 · 1.5)` (equivalent noise
+/// bandwidth 1.5 bins).
 pub fn level_rms(magnitude: &[f64]) -> f64 {
     crate::root::sqrt(magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0)
 }
 
-/// [`level_rms`] of a curve evaluated on the band's grid, without storing the values.
+/// [`level_rms`] of a curve, evaluated on the band's grid without storing the values.
 pub fn curve_level_rms(band: Band, curve: impl Fn(f64) -> f64) -> f64 {
     let power: f64 = (band.first_bin()..=band.last_bin())
         .map(|bin| curve(bin as f64 * GRID_HZ))
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::spectrum::SegmentAnalyzer;
 
-    /// Compared with the analyser itself, with components on bins and between them.
+    /// Compares with the analyser itself, with components on bins and between them.
     #[test]
     fn read_part_matches_the_analyser() {
         let (band, len) = (Band::TACTILE, 2_000);
@@ -151,7 +151,8 @@ mod tests {
         for hz in
             [9.0, 12.5, 15.0, 17.5, 18.7, 20.0, 22.5, 31.0, 500.0, 998.0, 1000.0, 1002.5, 1011.0]
         {
-            // Two phases a quarter turn apart, whose mean power is that of noise of this frequency.
+            // Two phases a quarter turn apart: their mean power is the power of noise at this
+            // frequency.
             let power: f64 = [0.0, 0.25]
                 .map(|turn| {
                     let wave = |n: usize| {

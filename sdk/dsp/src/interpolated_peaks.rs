@@ -1,11 +1,12 @@
-//! Peaks of a spectrum between its bins: frequency and amplitude of the sinusoid whose line, read
-//! through the periodic Hann window, has the heights of a local maximum and its larger neighbour.
+//! Peaks of a spectrum between its bins. A peak is the frequency and amplitude of a sinusoid.
+//! Measured through the periodic Hann window, this sinusoid would give a local maximum and its
+//! larger neighbour exactly their heights.
 //!
-//! Of a line `d` bins from the maximum the neighbour on its side is `(1 + d) / (2 - d)` times as
-//! high; averages of magnitudes over segments keep this ratio. The ratio of two bins was compared
-//! with a formula of three bins, `d = 2 (R - L) / (L + 2 C + R)`, and with a parabola through three
-//! logarithms; errors as RMS and largest, of averages of 10 segments in power, from 60 Hz to 900
-//! Hz:
+//! For a sinusoid `d` bins from the maximum, the neighbour on its side is `(1 + d) / (2 - d)` times
+//! as high as the maximum. Magnitudes averaged over segments keep this ratio. This ratio of two
+//! bins was compared with a formula for three bins, `d = 2 (R - L) / (L + 2 C + R)`, and with a
+//! parabola through three logarithms. The table has the RMS error and the largest error, for
+//! averages of 10 segments in power, from 60 Hz to 900 Hz:
 //!
 //! | spectrum | two bins | three bins | parabola |
 //! |---|---|---|---|
@@ -21,15 +22,15 @@ use crate::grid::GRID_HZ;
 use crate::peaks::{Peak, local_maxima, select_distinct};
 use crate::window::hann_main_lobe;
 
-/// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency, as
-/// [`select_peaks`](crate::peaks::select_peaks) does, by their frequencies and magnitudes between
-/// the bins.
+/// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency. Works
+/// as [`select_peaks`](crate::peaks::select_peaks), but with frequencies and magnitudes
+/// interpolated between the bins.
 ///
-/// An edge bin counts as a maximum where it is above its only neighbour: its peak is at the edge or
+/// An edge bin counts as a maximum if it is above its only neighbour; its peak is at the edge or
 /// inside. A spectrum of one value has no peak.
 ///
-/// `frequency_hz` is the 5 Hz grid of a band, in hertz, and as long as `magnitude`; the longer
-/// slice is cut.
+/// `frequency_hz` is the 5 Hz grid of a band, in hertz, and as long as `magnitude`; a longer slice
+/// is cut.
 ///
 /// ```
 /// use htex_dsp::interpolated_peaks::select_interpolated_peaks;
@@ -50,7 +51,7 @@ pub fn select_interpolated_peaks(
     select_distinct(peaks, max_count, jnd)
 }
 
-/// Indices of the local maxima, as of values between zeros.
+/// Returns the indices of the local maxima, as if the spectrum continued with zeros on both sides.
 fn maxima_with_edges(magnitude: &[f64]) -> Vec<usize> {
     if magnitude.windows(2).all(|pair| pair[0] == pair[1]) {
         return Vec::new();
@@ -60,7 +61,7 @@ fn maxima_with_edges(magnitude: &[f64]) -> Vec<usize> {
     maxima.map(|place| place - 1).collect()
 }
 
-/// The line of a local maximum, between its bin and the larger neighbour.
+/// Returns the peak between the bin of a local maximum and its larger neighbour.
 fn peak_near(bin: usize, frequency_hz: &[f64], magnitude: &[f64]) -> Peak {
     let neighbour = |at: Option<usize>| at.and_then(|at| magnitude.get(at)).copied().unwrap_or(0.0);
     let (below, above) = (neighbour(bin.checked_sub(1)), neighbour(bin.checked_add(1)));
@@ -77,8 +78,9 @@ fn peak_near(bin: usize, frequency_hz: &[f64], magnitude: &[f64]) -> Peak {
     }
 }
 
-/// Distance of a line from the bin of a maximum towards a neighbour, from the neighbour's height
-/// over the maximum's; 0 for a neighbour lower than half, as no line has two of.
+/// Distance in bins from a maximum towards its neighbour at which the sinusoid is. `ratio` is the
+/// neighbour's height divided by the maximum's. The result is 0 for a ratio below one half, which a
+/// single sinusoid cannot have.
 fn line_distance_bins(ratio: f64) -> f64 {
     ((2.0 * ratio - 1.0) / (1.0 + ratio)).max(0.0)
 }

@@ -1,4 +1,4 @@
-//! Windowed-sinc kernels, made once and shared.
+//! Windowed-sinc kernels, computed once and shared.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -8,19 +8,19 @@ use crate::shared::Shared;
 /// Stop-band attenuation of the filters, decibels.
 pub(crate) const ATTENUATION_DB: f64 = 70.0;
 
-/// Length, number of phases, whether the rows are exact, and the bits of the cut-off.
+/// Length, number of phases, whether the rows are exact, and the bits of the cut-off frequency.
 type Key = (usize, u64, bool, u64);
 
-/// Returns the kernel of [`windowed_sinc`]. With `std`, kernels in use are shared: all voices of
-/// the same rates read the same coefficients.
+/// Returns the kernel of [`windowed_sinc`]. With `std`, all voices with the same rates share one
+/// kernel.
 pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
     static KERNELS: Shared<Key, [f32]> = Shared::new();
     let key = (taps, phases, exact, cutoff.to_bits());
     KERNELS.get(key, || windowed_sinc(taps, phases, exact, cutoff).into())
 }
 
-/// Windowed sinc, one row per phase, plus one row if rows are interpolated; `cutoff` in cycles per
-/// sample.
+/// Computes a windowed sinc, with one row per phase, and one row more if rows are interpolated.
+/// `cutoff` is in cycles per sample.
 fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
@@ -31,12 +31,12 @@ fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32>
         let shift = row as f64 / phases as f64;
         let mut values: Vec<f64> = (0..taps)
             .map(|j| {
-                // Input j of the window is at time j - (taps/2 - 1) relative to the base.
+                // Input j of the window is at the time j - (taps/2 - 1), relative to the base.
                 let t = j as f64 - (half - 1.0) - shift;
                 sinc(2.0 * cutoff * t) * window.at(t / half)
             })
             .collect();
-        // Unit gain at DC in every phase, so that a constant input gives a constant output.
+        // Every phase has unit gain at DC, so a constant input gives a constant output.
         let sum: f64 = values.iter().sum();
         values.iter_mut().for_each(|v| *v /= sum);
         all.extend(values.iter().map(|&v| v as f32));
@@ -44,7 +44,7 @@ fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32>
     all
 }
 
-/// Kaiser's estimate of the taps needed for a transition of `width` (cycles per sample).
+/// Kaiser's estimate of the number of taps for a transition of `width` (cycles per sample).
 pub(crate) fn kaiser_length(width: f64) -> usize {
     let n = (ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
     libm::ceil(n).min(1e6) as usize + 1
@@ -55,7 +55,7 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { crate::trig::sin(a) / a }
 }
 
-/// Kaiser's window.
+/// The Kaiser window.
 struct Kaiser {
     beta: f64,
     scale: f64,

@@ -2,14 +2,15 @@
 
 use core::ops::{Add, Mul, Sub};
 
-/// Numbers side by side: those of a register of 256 bits, or, in a WASM module, of 128.
+/// Number of lanes: the f32 numbers in a register of 256 bits, or of 128 bits in a WASM module.
 pub(crate) const WIDTH: usize = if cfg!(target_family = "wasm") { 4 } else { 8 };
 
-/// What compilers make vector registers of.
+/// Numbers in an array, which compilers turn into a vector register.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Lanes(pub(crate) [f32; WIDTH]);
 
-// Loops, as closures are not always compiled into the function that has the wide registers.
+// Loops instead of closures, because closures are not always compiled into the function that has
+// the wide registers.
 
 impl Add for Lanes {
     type Output = Self;

@@ -1,15 +1,16 @@
-//! All-pole lattice filter: unlike a direct form, stable while its coefficients change, as long as
-//! each reflection coefficient is inside (-1, 1).
+//! All-pole lattice filter. Unlike a direct form, it stays stable while its coefficients change, as
+//! long as each reflection coefficient is inside (-1, 1).
 //!
-//! A module checks its time limit at the head of every loop, and values that one round passes to
-//! the next go through memory there. The lattice therefore has a few fixed lengths with all state
-//! in registers; [`crate::biquad`] and [`crate::sine_bank`] are unrolled for the same reason.
+//! A WASM module checks its time limit at the start of every loop, and there the values that one
+//! iteration passes to the next go through memory. So the lattice has a few fixed lengths, with all
+//! state in registers. [`crate::biquad`] and [`crate::sine_bank`] are unrolled for the same reason.
 
 use alloc::vec::Vec;
 
 use crate::biquad::without_denormals;
 
-/// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` in reflection coefficients (two-multiplier lattice, f64 state).
+/// The filter `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)`, given by reflection coefficients (two-multiplier
+/// lattice, f64 state).
 ///
 /// ```
 /// use htex_dsp::lattice::AllPoleLattice;
@@ -24,13 +25,13 @@ pub struct AllPoleLattice {
 }
 
 impl AllPoleLattice {
-    /// A filter with zero state. Stable for coefficients inside (-1, 1).
+    /// Makes a filter with zero state. It is stable for coefficients inside (-1, 1).
     pub fn new(reflection: &[f64]) -> Self {
         Self { reflection: reflection.to_vec(), delayed: alloc::vec![0.0; reflection.len()] }
     }
 
-    /// Makes the filter one of at least this order; the new coefficients are 0, so that it stays
-    /// the same filter. Does not allocate after [`Self::reserve`] of this order.
+    /// Raises the order to at least this one. The new coefficients are 0, so the filter stays the
+    /// same. Does not allocate after [`Self::reserve`] with this order.
     pub fn raise_order(&mut self, order: usize) {
         let order = order.max(self.order());
         self.reflection.resize(order, 0.0);
@@ -53,7 +54,8 @@ impl AllPoleLattice {
         &self.reflection
     }
 
-    /// The reflection coefficients, to be changed in place between samples; the state is kept.
+    /// The reflection coefficients, to be changed in place between samples. The state stays
+    /// unchanged.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         &mut self.reflection
     }
@@ -67,8 +69,8 @@ impl AllPoleLattice {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Stages with zero coefficients above the others change nothing, so a few fixed lengths,
-        // with all state in registers, cover every order.
+        // Further stages with zero coefficients change nothing. So a few fixed lengths, with all
+        // state in registers, cover every order.
         match self.order() {
             0..=2 => self.run::<2>(block),
             3..=4 => self.run::<4>(block),
@@ -80,7 +82,7 @@ impl AllPoleLattice {
         }
     }
 
-    /// As [`Self::run_any`], for `N` stages or fewer.
+    /// As [`Self::run_any`], for at most `N` stages.
     fn run<const N: usize>(&mut self, block: &mut [f64]) {
         let order = self.order();
         let (mut k, mut delayed) = ([0.0; N], [0.0; N]);
@@ -99,16 +101,16 @@ impl AllPoleLattice {
         self.delayed.iter_mut().for_each(|x| *x = without_denormals(*x));
     }
 
-    /// Stores the state after a block. Small values become zero before they reach denormals, which
-    /// slow down arithmetic.
+    /// Stores the state after a block. Small values become zero before they become denormal, which
+    /// would slow down the arithmetic.
     fn keep(&mut self, delayed: &[f64]) {
         for (kept, x) in self.delayed.iter_mut().zip(delayed) {
             *kept = without_denormals(*x);
         }
     }
 
-    /// Sets the state of a filter with constant coefficients from its last outputs, the newest at
-    /// the end; `past` has at least as many elements as the order.
+    /// Sets the state of a filter with constant coefficients from its last outputs, of which the
+    /// newest is at the end. `past` has at least as many elements as the order.
     pub(crate) fn set_past(&mut self, past: &[f64]) {
         self.reset();
         for &y in past {
@@ -128,7 +130,7 @@ impl AllPoleLattice {
     }
 }
 
-/// One sample through all stages, from the last to the first.
+/// Filters one sample by all stages, from the last to the first.
 #[inline(always)]
 fn stages(input: f64, k: &[f64], delayed: &mut [f64]) -> f64 {
     let mut forward = input;

@@ -4,16 +4,16 @@
 
 use alloc::vec::Vec;
 
-/// Maximum number of Jacobi sweeps; the method converges quadratically, in about ten.
+/// Maximum number of Jacobi sweeps. The method converges quadratically, in about ten sweeps.
 const MAX_SWEEPS: usize = 60;
 
-/// Columns count as orthogonal when the cosine of their angle is below this.
+/// Columns count as orthogonal if the cosine of the angle between them is below this.
 const ORTHOGONAL: f64 = 1e-15;
 
 /// The Moore–Penrose inverse of a matrix, stored for repeated use.
 ///
-/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest count as zero, so that zero
-/// or dependent rows are handled.
+/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest one count as zero, so zero
+/// or dependent rows are allowed.
 ///
 /// ```
 /// use htex_dsp::least_squares::PseudoInverse;
@@ -32,10 +32,10 @@ pub struct PseudoInverse {
 }
 
 impl PseudoInverse {
-    /// Inverts a matrix of `rows` by `columns`; elements missing from `matrix` count as zero.
+    /// Inverts a matrix of `rows` by `columns`. Elements missing from `matrix` count as zero.
     pub fn new(matrix: &[f64], rows: usize, columns: usize) -> Self {
         let element = |r: usize, c: usize| matrix.get(r * columns + c).copied().unwrap_or(0.0);
-        // Finds the singular vectors by rotating pairs of the shorter side's vectors.
+        // Rotates pairs of vectors of the shorter side until they are the singular vectors.
         let wide = rows < columns;
         let vectors: Vec<Vec<f64>> = if wide {
             let row = |r| (0..columns).map(|c| element(r, c)).collect();
@@ -69,7 +69,7 @@ impl PseudoInverse {
         self.rank
     }
 
-    /// `out = pinv(matrix) · values`: `values` has `rows` elements, `out` has `columns`.
+    /// Writes `out = pinv(matrix) · values`. `values` has `rows` elements, `out` has `columns`.
     pub fn apply(&self, values: &[f64], out: &mut [f64]) {
         for (out, row) in out.iter_mut().zip(self.inverse.chunks(self.rows.max(1))) {
             *out = row.iter().zip(values).map(|(w, v)| w * v).sum();
@@ -77,8 +77,8 @@ impl PseudoInverse {
     }
 }
 
-/// Result of the one-sided Jacobi method: orthogonal `vectors`, each of length sigma, and the
-/// rotation that makes them.
+/// Result of the one-sided Jacobi method: orthogonal `vectors`, whose lengths are the singular
+/// values, and the rotation that makes them.
 struct Factors {
     vectors: Vec<Vec<f64>>,
     rotation: Vec<Vec<f64>>,
@@ -113,11 +113,11 @@ impl Factors {
     }
 }
 
-/// Cosine and sine of the rotation that makes `a` and `b` orthogonal; `None` if they already are.
+/// Cosine and sine of the rotation that makes `a` and `b` orthogonal. `None` if they already are.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     let limit = ORTHOGONAL * crate::root::sqrt(aa) * crate::root::sqrt(bb);
-    // The comparison is false if either is NaN.
+    // This comparison is false if either side is NaN.
     (ab.abs() > limit).then(|| {
         let zeta = (bb - aa) / (2.0 * ab);
         let tangent = libm::copysign(1.0, zeta) / (zeta.abs() + libm::hypot(1.0, zeta));

@@ -1,19 +1,19 @@
 //! Linear prediction: `x[t] = Σ A_i x[t-i] + e[t]`, so `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` (paper,
-//! Autoregressive model). A model of order p is p coefficients, or equally p reflection
-//! coefficients; it is stable exactly when all of these lie inside (-1, 1).
+//! Autoregressive model).
 //!
-//! The sign of reflection coefficients is that of the last prediction coefficient of each stage:
-//! `k_m = A_m` of the model of order m.
+//! A model of order p has p prediction coefficients, or, equivalently, p reflection coefficients.
+//! It is stable exactly if all reflection coefficients are inside (-1, 1). Their sign is the sign
+//! of the last prediction coefficient of each stage: `k_m = A_m` of the model of order m.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 /// Largest absolute value of an estimated reflection coefficient. A stage that would exceed it has
-/// a completely predicted signal (a pure sinusoid, or rounding); the limit corresponds to a
+/// predicted the signal completely (a pure sinusoid, or rounding). The limit corresponds to a
 /// resonance of 10¹⁰ samples.
 pub const MAX_REFLECTION: f64 = 1.0 - 1e-10;
 
-/// An all-pole model, always stable.
+/// An all-pole model; always stable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearPrediction {
     /// `A_1 ..= A_p`.
@@ -22,12 +22,12 @@ pub struct LinearPrediction {
     pub reflection: Vec<f64>,
     /// Power of the prediction error, in the squared unit of the signal.
     pub error: f64,
-    /// Stages that the data determine. Fewer than p if the signal is completely predicted earlier:
-    /// the last usable coefficient is then limited to [`MAX_REFLECTION`] and the later ones are
-    /// zero.
+    /// Number of stages that the data determine. It is below p if the signal is completely
+    /// predicted earlier. The last usable coefficient is then limited to [`MAX_REFLECTION`], and
+    /// the later ones are zero.
     pub usable_stages: usize,
-    /// Whether the estimate was changed to be stable (see `usable_stages`, and [`stabilize`] for
-    /// the covariance method).
+    /// Whether the estimate was changed to make it stable (see `usable_stages`, and [`stabilize`]
+    /// for the covariance method).
     pub adjusted: bool,
 }
 
@@ -44,7 +44,7 @@ impl LinearPrediction {
     }
 }
 
-/// Builds a model stage by stage and stops before it becomes unstable.
+/// Builds a model stage by stage, and stops before the model becomes unstable.
 pub(crate) struct Stages {
     model: LinearPrediction,
     open: bool,
@@ -76,7 +76,7 @@ impl Stages {
         self.open && self.model.usable_stages < self.model.coefficients.len()
     }
 
-    /// Adds a stage. A coefficient too close to ±1 is limited, and no stage follows.
+    /// Adds a stage. A coefficient too close to ±1 is limited, and no further stage can be added.
     pub(crate) fn push(&mut self, reflection: f64) {
         if !self.is_open() || reflection.is_nan() {
             self.open = false;
@@ -100,8 +100,8 @@ impl Stages {
 
 /// Solves the Yule–Walker equations for autocorrelation lags `0..=order` (Levinson–Durbin).
 ///
-/// Missing lags count as zero. Any autocorrelation gives a stable model; without power, or from the
-/// first lag that is not finite, the coefficients are zero.
+/// Missing lags count as zero. Every autocorrelation gives a stable model. Coefficients are zero if
+/// there is no power, and from the first lag on that is not finite.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::levinson_durbin;
@@ -123,7 +123,7 @@ pub fn levinson_durbin(autocorrelation: &[f64], order: usize) -> LinearPredictio
     stages.finish()
 }
 
-/// Prediction coefficients from reflection coefficients.
+/// Converts reflection coefficients to prediction coefficients.
 pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
     let mut coefficients = alloc::vec![0.0; reflection.len()];
     for (stage, &k) in reflection.iter().enumerate() {
@@ -132,17 +132,18 @@ pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
     coefficients
 }
 
-/// Reflection coefficients of a stable model; `None` if it is unstable or not finite.
+/// Converts the prediction coefficients of a stable model to reflection coefficients. `None` if the
+/// model is unstable or not finite.
 ///
-/// Each stage divides by `1 - k` and `1 + k`: with several poles very close to the unit circle
-/// precision is lost.
+/// Each stage divides by `1 - k` and `1 + k`, so precision is lost if several poles are very close
+/// to the unit circle.
 pub fn coefficients_to_reflection(coefficients: &[f64]) -> Option<Vec<f64>> {
     let mut a = coefficients.to_vec();
     step_down_in_place(&mut a).then_some(a)
 }
 
-/// As [`coefficients_to_reflection`], in place and without allocating; `false` if the model is
-/// unstable or not finite, in which case the contents of `a` are unspecified.
+/// As [`coefficients_to_reflection`], in place and without allocating. `false` if the model is
+/// unstable or not finite; the contents of `a` are then unspecified.
 pub fn step_down_in_place(a: &mut [f64]) -> bool {
     for m in (0..a.len()).rev() {
         let k = a[m];
@@ -160,9 +161,9 @@ pub fn is_stable(coefficients: &[f64]) -> bool {
     coefficients_to_reflection(coefficients).is_some()
 }
 
-/// Makes an unstable model stable by scaling its poles: `A_i g^i` with the g that moves the
-/// outermost pole to its mirror image in the unit circle, where its magnitude peak is the same.
-/// Stable models are returned unchanged; a model that is not finite becomes zeros.
+/// Makes an unstable model stable by scaling its poles: `A_i g^i`, with the g that moves the
+/// outermost pole to its mirror image in the unit circle, where its magnitude peak is the same. A
+/// stable model is returned unchanged. A model that is not finite becomes zeros.
 pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(coefficients) {
         return coefficients.to_vec();
@@ -175,14 +176,14 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(&mirrored) {
         mirrored
     } else {
-        // Poles on the circle itself: their mirror images lie on the circle too.
+        // Poles on the circle itself would stay there, because they are their own mirror images.
         scale_poles(coefficients, stable * stable * (1.0 - 1e-6))
     }
 }
 
-/// Limits the radius of every pole to `radius` (below 1): returns the model unchanged if no pole
-/// lies farther out, else `A_i g^i` with the g that moves the outermost pole to that radius. Also
-/// corrects poles that rounding of the coefficients moved outside the unit circle. A model that is
+/// Limits the radius of every pole to `radius` (below 1). If a pole lies farther out, the result is
+/// `A_i g^i`, with the g that moves the outermost pole to that radius. This also corrects poles
+/// that have moved outside the unit circle because their coefficients were rounded. A model that is
 /// not finite becomes zeros.
 ///
 /// ```
@@ -201,8 +202,8 @@ pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
     scale_poles(coefficients, largest * radius)
 }
 
-/// Largest factor up to `unstable` by which the poles can be scaled with a stable result, 1 /
-/// outermost radius, by bisection: factor 0 is always stable.
+/// Largest factor up to `unstable` by which the poles can be scaled so that the result is stable: 1
+/// divided by the outermost radius. Found by bisection, since factor 0 is always stable.
 fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     let mut stable = 0.0;
     for _ in 0..60 {
@@ -216,7 +217,7 @@ fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     stable
 }
 
-/// Multiplies every pole's radius by `factor` (bandwidth expansion): `A_i factor^i`.
+/// Multiplies the radius of every pole by `factor` (bandwidth expansion): `A_i factor^i`.
 pub fn scale_poles(coefficients: &[f64], factor: f64) -> Vec<f64> {
     let mut power = 1.0;
     coefficients
@@ -228,8 +229,8 @@ pub fn scale_poles(coefficients: &[f64], factor: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Magnitude `|H|` at `f_hz` for a model at the rate `rate_hz`, both in hertz: the output magnitude
-/// for white noise of unit magnitude. Unbounded towards a pole on the unit circle.
+/// Magnitude `|H|` of a model at `f_hz`, at the sample rate `rate_hz`, both in hertz: the magnitude
+/// of the output for white noise of unit magnitude. Without bound near a pole on the unit circle.
 pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     let omega = 2.0 * PI * f_hz / rate_hz;
     let (mut re, mut im) = (1.0, 0.0);
@@ -241,7 +242,7 @@ pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     1.0 / libm::hypot(re, im)
 }
 
-/// Turns the coefficients of order m - 1 (all but the last element) into those of order m.
+/// Converts the coefficients of order m - 1 (all elements but the last) to coefficients of order m.
 pub(crate) fn step_up(a: &mut [f64], k: f64) {
     let Some((last, previous)) = a.split_last_mut() else {
         return;
@@ -255,8 +256,8 @@ pub(crate) fn step_up(a: &mut [f64], k: f64) {
     }
 }
 
-/// Inverse of [`step_up`] on all but the last coefficient: `(front + k back) / (1 - k²)`, computed
-/// from sum and difference, which stay precise when |k| is nearly 1.
+/// Inverse of [`step_up`], for all coefficients but the last: `(front + k back) / (1 - k²)`. It is
+/// computed from sum and difference, which stay precise if |k| is nearly 1.
 fn step_down(previous: &mut [f64], k: f64) {
     let m = previous.len();
     let (of_sum, of_difference) = (0.5 / (1.0 - k), 0.5 / (1.0 + k));

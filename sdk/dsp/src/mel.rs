@@ -14,8 +14,8 @@ pub fn mel_to_hz(mel: f64) -> f64 {
     700.0 * (libm::pow(10.0, mel / 2595.0) - 1.0)
 }
 
-/// Triangular filters with apex 1, linear in hertz, between edges equally spaced in mel. Matches
-/// `librosa.filters.mel(htk=True, norm=None)`.
+/// A bank of triangular filters with apex 1, linear in hertz, between edges that are equally spaced
+/// in mel. Matches `librosa.filters.mel(htk=True, norm=None)`.
 ///
 /// ```
 /// use htex_dsp::{Band, mel::MelBank};
@@ -44,7 +44,7 @@ impl MelBank {
         }
     }
 
-    /// The `bands + 2` edges, hertz: filter `i` has its apex at edge `i + 1`.
+    /// The `bands + 2` edges, hertz. Filter `i` has its apex at edge `i + 1`.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
@@ -61,13 +61,15 @@ impl MelBank {
         energies
     }
 
-    /// Writes a power spectrum interpolated from band energies. At each filter's apex the power is
-    /// the filter's energy divided by the sum of its weights; between apexes it is linear in hertz,
-    /// beyond the first and last apex constant. Empty filters are skipped. `power` has as many
-    /// elements as the bank has frequencies.
+    /// Interpolates a power spectrum from band energies.
     ///
-    /// Smoother than the pseudo-inverse and never negative; the `energies` of the result differ
-    /// slightly from the ones given.
+    /// At the apex of each filter, the power is the filter's energy divided by the sum of its
+    /// weights. Between the apexes it is linear in hertz; beyond the first and the last one it is
+    /// constant. Empty filters are skipped. `power` has as many elements as the bank has
+    /// frequencies.
+    ///
+    /// The result is smoother than the pseudo-inverse and never negative, but its own `energies`
+    /// differ slightly from the given ones.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self
             .bank
@@ -96,8 +98,8 @@ fn mel_edges(bands: usize, band: Band) -> Vec<f64> {
         .collect()
 }
 
-/// Value at `x` of the polyline through `points` (ascending), constant beyond its ends; 0 if there
-/// are no points.
+/// Value at `x` of the line through `points` (ascending). It is constant beyond the ends, and 0 if
+/// there are no points.
 fn interpolate_linearly(points: &[(f64, f64)], x: f64) -> f64 {
     let above = points.partition_point(|point| point.0 <= x);
     match (above.checked_sub(1).and_then(|i| points.get(i)), points.get(above)) {

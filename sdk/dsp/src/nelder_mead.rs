@@ -1,16 +1,16 @@
 //! Nelder–Mead simplex minimisation with the standard coefficients, as in SciPy's `fmin` and
 //! MATLAB's `fminsearch` (Lagarias et al. 1998).
 //!
-//! It is the project's own, since the maintained library in Rust reads a clock, which a sandboxed
-//! model must not import.
+//! The project has its own implementation, because the maintained Rust library reads a clock, and a
+//! sandboxed model must not import one.
 
 /// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Stop when no vertex is farther than this from the best one along any axis and `f_tolerance`
-    /// is met.
+    /// Stop when no vertex is farther than this from the best one along any axis, and `f_tolerance`
+    /// is also met.
     pub x_tolerance: f64,
-    /// Stop when no vertex value exceeds the best one by more than this and `x_tolerance` is met.
+    /// Stop when no vertex exceeds the best value by more than this, and `x_tolerance` is also met.
     pub f_tolerance: f64,
     /// Maximum number of function calls.
     pub max_evaluations: usize,
@@ -21,7 +21,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// SciPy's initial simplex; tolerances near the f64 resolution at a smooth minimum.
+    /// SciPy's initial simplex, and tolerances near the f64 resolution at a smooth minimum.
     fn default() -> Self {
         Self {
             x_tolerance: 1e-10,
@@ -38,15 +38,15 @@ impl Default for Options {
 pub struct Minimum<const N: usize> {
     /// Position.
     pub x: [f64; N],
-    /// Function value there; +∞ if it was NaN at every evaluated point.
+    /// Function value at `x`; +∞ if the function was NaN at every evaluated point.
     pub value: f64,
     /// Number of function calls.
     pub evaluations: usize,
-    /// Whether both tolerances were met before the evaluations ran out.
+    /// Whether both tolerances were met within the allowed number of function calls.
     pub converged: bool,
 }
 
-/// Minimises `f` from `start`. NaN counts as +∞, so `f` may exclude a region by returning either.
+/// Minimises `f` from `start`. NaN counts as +∞, so `f` may return either to exclude a region.
 ///
 /// Deterministic: the same function, start and options evaluate the same points. Reaching
 /// `max_evaluations` is not an error: the best point so far is returned.
@@ -145,7 +145,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
         })
     }
 
-    /// Centroid of all vertices but the worst, moved by `factor` away from the worst.
+    /// The centroid of all vertices except the worst, moved by `factor` away from the worst.
     fn away_from_worst(&self, factor: f64) -> [f64; N] {
         let mut x = self.best.x;
         for vertex in &self.others[..N - 1] {

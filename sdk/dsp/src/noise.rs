@@ -1,8 +1,9 @@
 //! Seeded Gaussian noise.
 //!
-//! Box and Muller's transform, eight pairs at a time, with series of its own for the logarithm,
-//! sine and cosine: without branches compilers use all lanes, and the results are bit-identical on
-//! every machine. Two streams share a register of 512 bits where there is one.
+//! It uses the Box–Muller transform, eight pairs at a time, with its own series for the logarithm,
+//! sine and cosine. The series have no branches, so compilers use all lanes, and the results are
+//! bit-identical on every machine. On processors with registers of 512 bits, two streams share a
+//! register.
 
 use crate::root::sqrt_f32;
 
@@ -10,11 +11,11 @@ use crate::circle::directions;
 use crate::random_lanes::{LANES, RandomLanes};
 use crate::wide::{Work, very_wide, wide};
 
-/// Samples of Gaussian noise generated together; rendering is fastest in whole groups.
+/// Number of noise samples that are generated together. Rendering is fastest in whole groups.
 pub const GROUP: usize = 2 * LANES;
 
-/// White Gaussian noise of zero mean and unit variance, by the Box–Muller transform in single
-/// precision; no absolute value exceeds 6.6.
+/// White Gaussian noise with zero mean and unit variance, by the Box–Muller transform in single
+/// precision. No absolute value exceeds 6.6.
 ///
 /// ```
 /// use htex_dsp::noise::GaussianNoise;
@@ -43,10 +44,10 @@ impl GaussianNoise {
         one[0]
     }
 
-    /// Fills a block of each of two streams, which may be faster than one after the other; the
-    /// samples are those of [`Self::fill`]. Does not allocate.
+    /// Fills one block for each of two streams. The samples are the same as with [`Self::fill`],
+    /// but this may be faster. Does not allocate.
     pub fn fill_both([a, b]: [&mut Self; 2], [x, y]: [&mut [f32]; 2]) {
-        // First up to the nearer end of the two current groups.
+        // First up to the end of one of the two current groups, whichever is nearer.
         let head = (GROUP - a.taken.max(b.taken)).min(x.len()).min(y.len());
         let ((x_head, x), (y_head, y)) = (x.split_at_mut(head), y.split_at_mut(head));
         a.fill(x_head);
@@ -72,8 +73,8 @@ impl GaussianNoise {
     }
 }
 
-/// Fills whole groups of two streams that are both at the start of a group, if registers are wide
-/// enough for both; returns the number of samples filled in each.
+/// Fills whole groups of two streams, if both are at the start of a group and registers are wide
+/// enough for both. Returns the number of samples filled in each.
 fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
     if a.taken < GROUP || b.taken < GROUP {
         return 0;
@@ -107,8 +108,8 @@ impl Work for Normals<'_> {
     }
 }
 
-/// Groups computed before the two streams are separated: otherwise compilers compute in half
-/// registers.
+/// Number of groups that are computed before their two streams are separated. If each group were
+/// separated at once, compilers would use only half of each register.
 const PARTED: usize = 8;
 
 /// Groups of normally distributed numbers of two streams.
@@ -140,12 +141,12 @@ impl Work for TwoNormals<'_> {
     }
 }
 
-/// Radii of points whose two coordinates are normally distributed.
+/// Radii of random points in the plane whose two coordinates are normally distributed.
 #[inline(always)]
 fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
     let mut radii = [0.0; N];
     for i in 0..N {
-        // In (0, 1], in steps of 2⁻³¹: the bits are signed, which leaves 31.
+        // In (0, 1], in steps of 2⁻³¹. The bits are signed, so 31 of them remain.
         let uniform = ((bits[i] >> 1) as i32 as f32 + 1.0) * (1.0 / (1u32 << 31) as f32);
         radii[i] = -2.0 * ln(uniform);
     }
@@ -155,10 +156,10 @@ fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
     radii
 }
 
-/// Natural logarithm of a number up to 1, with an error below 2e-7 relative plus 2e-7 absolute.
+/// Natural logarithm of a number up to 1. The error is below 2e-7 relative plus 2e-7 absolute.
 ///
-/// Splits the number into `m 2ᵉ` with `m` in √½ to √2. The series for `m` (Moshier, Cephes) is
-/// summed in independent pairs.
+/// The number is split into `m 2ᵉ`, with `m` from √½ to √2. The series for `m` (Moshier, Cephes) is
+/// summed in pairs that do not depend on each other.
 #[inline(always)]
 fn ln(x: f32) -> f32 {
     const SQRT_HALF: u32 = core::f32::consts::FRAC_1_SQRT_2.to_bits();
@@ -194,8 +195,8 @@ mod tests {
         assert_eq!(ln(1.0), 0.0);
     }
 
-    /// Two streams filled together equal the two streams filled alone, at any position within their
-    /// groups.
+    /// Two streams that are filled together equal two streams that are filled separately, at any
+    /// position within their groups.
     #[test]
     fn two_streams_filled_together_are_bit_identical() {
         let mut alone = [GaussianNoise::new(1), GaussianNoise::new(2)];
@@ -226,7 +227,7 @@ mod tests {
             let moments = [cos, sin, cos * cos - sin * sin, 2.0 * cos * sin];
             sums.iter_mut().zip(moments).for_each(|(sum, x)| *sum += x);
         }
-        // Standard error 224 each.
+        // The standard error of each sum is 224.
         assert!(sums.iter().all(|sum| sum.abs() < 1_100.0), "{sums:?}");
     }
 

@@ -1,29 +1,29 @@
-//! Non-negative power spectra from the energies of triangular filters.
+//! Finds non-negative power spectra that have given energies in triangular filters.
 //!
-//! With fewer bands than bins least squares alone has many solutions. A ridge of 10^-6 leaves one,
-//! which Newton's method finds with a tridiagonal matrix in a few steps, and any solver of
-//! non-negative least squares finds as well.
+//! With fewer bands than bins, least squares has many solutions. A ridge term of 10^-6 makes the
+//! solution unique. Newton's method finds it in a few steps with a tridiagonal matrix; any other
+//! solver of non-negative least squares would find the same one.
 
 use alloc::vec::Vec;
 
 use crate::triangles::TriangleBank;
 
-/// Weight of the squared norm of the power. It makes the solution unique and changes attainable
-/// energies by about a millionth.
+/// Weight of the squared norm of the power, the ridge term. It makes the solution unique, and
+/// changes energies that can be reached by about a millionth.
 pub const RIDGE: f64 = 1e-6;
-/// Maximum number of Newton steps; energies of recordings take three to eight.
+/// Maximum number of Newton steps; energies of recordings need three to eight.
 const STEPS: usize = 100;
 /// Maximum number of halvings of a step.
 const HALVINGS: usize = 40;
-/// Slope along a step, relative to that at its start, that is attributed to rounding.
+/// Slope along a step, relative to the slope at its start, that is attributed to rounding.
 const FLAT: f64 = 1e-9;
 
 /// Finds the powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular
 /// filters and energies `e`. The solution is unique.
 ///
-/// It has the form `p = max(0, Wᵀ s)` with one number `s` per filter, and `s` solves
-/// `RIDGE s + W max(0, Wᵀ s) = e`, which is piecewise linear: Newton's method is exact on each
-/// piece. Its matrix is tridiagonal, since only neighbouring filters overlap.
+/// It has the form `p = max(0, Wᵀ s)`, with one number `s` per filter, where `s` solves `RIDGE s +
+/// W max(0, Wᵀ s) = e`. This equation is piecewise linear, so Newton's method is exact on each
+/// piece. Its matrix is tridiagonal, because only neighbouring filters overlap.
 ///
 /// ```
 /// use htex_dsp::non_negative::{NonNegative, Scratch};
@@ -46,11 +46,11 @@ struct Column {
     weight: [f64; 2],
 }
 
-/// Working memory of [`NonNegative::solve`] for one number of filters.
+/// Working memory of [`NonNegative::solve`] for a given number of filters.
 #[derive(Debug, Clone)]
 pub struct Scratch {
     wanted: Vec<f64>,
-    /// The current solution, and the step from it.
+    /// The current solution, and the next step from it.
     at: Vec<f64>,
     step: Vec<f64>,
     residual: Vec<f64>,
@@ -85,9 +85,9 @@ impl NonNegative {
         Self { columns: (0..bank.columns()).map(column).collect(), rows }
     }
 
-    /// Writes the power of `energies`, which must not be negative; `scratch` must be made for the
-    /// same number of filters. The energy of a filter without weights is ignored. Does not
-    /// allocate.
+    /// Writes the power for these `energies`, which must not be negative. `scratch` must have been
+    /// made for the same number of filters. The energy of a filter without weights is ignored. Does
+    /// not allocate.
     pub fn solve(&self, energies: &[f64], power: &mut [f64], scratch: &mut Scratch) {
         let largest = energies.iter().copied().fold(0.0, f64::max);
         self.start(energies, largest, scratch);
@@ -101,7 +101,8 @@ impl NonNegative {
         }
     }
 
-    /// Scales the energies by the largest and solves without the constraint as a starting point.
+    /// Scales the energies by the largest one. The starting point is the solution without the
+    /// constraint.
     fn start(&self, energies: &[f64], largest: f64, scratch: &mut Scratch) {
         scratch.wanted.fill(0.0);
         for column in &self.columns {
@@ -116,8 +117,8 @@ impl NonNegative {
         solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.at);
     }
 
-    /// One Newton step, halved until the slope along it is no longer positive; false at the
-    /// solution.
+    /// Makes one Newton step, halved until the slope along it is no longer positive. Returns false
+    /// at the solution.
     fn advance(&self, scratch: &mut Scratch) -> bool {
         scratch.measure(&self.columns, 0.0);
         let Scratch { residual, step, .. } = scratch;
@@ -208,8 +209,8 @@ impl Scratch {
     }
 }
 
-/// Solves a symmetric positive definite tridiagonal system in place; `beside[i]` couples `i` and
-/// `i + 1`.
+/// Solves a symmetric positive definite tridiagonal system in place. `beside[i]` is the element
+/// that couples `i` and `i + 1`.
 fn solve_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mut [f64]) {
     for i in 1..values.len() {
         let ratio = beside[i - 1] / diagonal[i - 1];
@@ -230,8 +231,8 @@ mod tests {
     use crate::mel::MelBank;
     use crate::uniform::Uniform;
 
-    /// Optimality conditions of a convex cost: its gradient is zero where the power is positive,
-    /// and not negative where the power is zero.
+    /// Tests the optimality conditions of a convex cost: the gradient is zero where the power is
+    /// positive, and not negative where the power is zero.
     #[test]
     fn the_solution_is_the_minimum() {
         let grid = Band::TACTILE.grid_hz();
@@ -241,7 +242,7 @@ mod tests {
             let (solver, mut scratch) = (NonNegative::new(mel.filters()), Scratch::new(bands));
             let mut power = alloc::vec![0.0; grid.len()];
             for round in 0..20 {
-                // Up to 100 dB apart, so that most energies are unattainable.
+                // Energies up to 100 dB apart, most of which cannot be reached.
                 let spread = f64::from(round);
                 let energies: Vec<f64> =
                     (0..bands).map(|_| libm::exp(spread * uniform.next_unit())).collect();

@@ -3,8 +3,8 @@
 use crate::root::sqrt;
 use crate::uniform::Uniform;
 
-/// A seeded generator of normal numbers of zero mean and unit variance, by Marsaglia's polar
-/// method; the same seed gives the same bits on every machine.
+/// A seeded generator of normal random numbers with zero mean and unit variance (Marsaglia's polar
+/// method). The same seed gives the same bits on every machine.
 /// [`GaussianNoise`](crate::noise::GaussianNoise) is several times faster, in single precision.
 ///
 /// ```

@@ -1,5 +1,5 @@
-//! Spectral peaks, and the selection of those that differ perceptibly in frequency (paper, Spectral
-//! peaks).
+//! Peaks of a spectrum, and the selection of those whose frequencies differ perceptibly (paper,
+//! Spectral peaks).
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
@@ -16,9 +16,9 @@ pub struct Peak {
     pub magnitude: f64,
 }
 
-/// Indices of the strict interior local maxima, ascending. A plateau counts once, at its middle
-/// (the lower of two), and only if the values fall on both sides; the first and last value are
-/// never maxima. Matches `scipy.signal.find_peaks`.
+/// Returns the indices of the local maxima, ascending. A plateau counts once, at its middle (the
+/// lower of two), and only if the values fall on both sides. The first and the last value are never
+/// maxima. Matches `scipy.signal.find_peaks`.
 ///
 /// ```
 /// use htex_dsp::peaks::local_maxima;
@@ -45,10 +45,10 @@ pub fn local_maxima(values: &[f64]) -> Vec<usize> {
 
 /// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency.
 ///
-/// Candidates are taken strongest first (the lower frequency wins a tie); a peak at f is kept if
-/// `|f - g| / min(f, g) >= jnd` for every g kept before it, until `max_count` are kept.
-/// `frequency_hz` is ascending, in hertz, and as long as `magnitude`; the longer slice is cut. A
-/// spectrum without local maxima gives an empty list.
+/// Candidates are taken in order of strength; of equally strong ones, the lower frequency comes
+/// first. A peak at f is kept if `|f - g| / min(f, g) >= jnd` for every g that was kept before it.
+/// The selection ends at `max_count` peaks. `frequency_hz` is ascending, in hertz, and as long as
+/// `magnitude`; a longer slice is cut. A spectrum without local maxima gives an empty list.
 pub fn select_peaks(
     frequency_hz: &[f64],
     magnitude: &[f64],
@@ -66,7 +66,7 @@ pub(crate) fn select_distinct(
     max_count: usize,
     jnd: f64,
 ) -> Vec<Peak> {
-    // A heap has less code than a sort, and few of the peaks are needed.
+    // A heap needs less code than a sort, and only few of the peaks are needed.
     let mut candidates: BinaryHeap<Candidate> = peaks.map(Candidate).collect();
     let mut kept: Vec<Peak> = Vec::new();
     while let Some(Candidate(peak)) = candidates.pop() {
@@ -81,7 +81,8 @@ pub(crate) fn select_distinct(
     kept
 }
 
-/// A peak, ordered by magnitude; of equal magnitudes the lower frequency is greater.
+/// A peak, ordered by magnitude. Of two equal magnitudes, the one with the lower frequency is
+/// greater.
 #[derive(PartialEq)]
 struct Candidate(Peak);
 

@@ -1,4 +1,4 @@
-//! Cascaded filter sections, pipelined to run side by side in vector registers.
+//! Filter sections in series that run side by side in vector registers, as a pipeline.
 
 use alloc::vec::Vec;
 
@@ -6,16 +6,16 @@ use crate::biquad::Biquad;
 use crate::quad::{Quad, Real, VOICES, beside, part};
 use crate::wide::{Work, wide};
 
-/// Sections per row, except a shorter last row.
+/// Sections per row; the last row may be shorter.
 const LANES: usize = 4;
 const FEW: usize = 2;
-/// Samples processed per step.
+/// Number of samples per step.
 const PAIR: usize = 2;
 
-/// Sections in series, as [`crate::biquad::Cascade`], but pipelined: each section works on the two
-/// samples that the section before it finished last. All sections compute at the same time, and the
-/// output is delayed by six samples per four sections. For streams in which a delay of a few
-/// samples does not matter.
+/// Filter sections in series, as [`crate::biquad::Cascade`], but pipelined: in each step, a section
+/// processes the two samples that the section before it finished in the last step. So all sections
+/// compute at the same time, and the output is delayed by six samples for every four sections. Use
+/// it for streams in which a delay of a few samples does not matter.
 ///
 /// ```
 /// use htex_dsp::{biquad::Biquad, pipeline::Pipeline};
@@ -31,13 +31,12 @@ pub struct Pipeline {
 }
 
 /// Four pipelines with the same number of sections, computed side by side. Each output is
-/// bit-identical to that of the pipeline run alone.
+/// bit-identical to the output of the pipeline on its own.
 #[derive(Debug)]
 pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 
-/// Sections side by side: transposed direct form II unrolled for two samples, so that the new state
-/// is the sum of the contributions of the inputs and of the old state, which are independent of
-/// each other.
+/// Sections side by side: transposed direct form II, unrolled for two samples. The new state is the
+/// sum of contributions of the inputs and of the old state, which can be computed independently.
 #[derive(Debug, Clone, Copy)]
 struct Row<T, const N: usize> {
     /// Product of all `b0`; the other numerator coefficients are divided by it.
@@ -45,8 +44,8 @@ struct Row<T, const N: usize> {
     /// Contributions of the first and the second input to the two state variables.
     first: [[T; N]; 2],
     second: [[T; N]; 2],
-    /// Contributions of the first and the second state variable to both, the second with its sign
-    /// changed.
+    /// Contributions of the first and the second state variable to both. The second has its sign
+    /// reversed.
     kept: [[T; N]; 2],
     crossed: [[T; N]; 2],
     state: State<T, N>,
@@ -60,8 +59,8 @@ struct State<T, const N: usize> {
 }
 
 impl Pipeline {
-    /// Makes a pipeline of `sections` with zero state; every `b0` must be nonzero. Rows are padded
-    /// with sections that pass their input.
+    /// Makes a pipeline of `sections` with zero state. Every `b0` must be nonzero. Incomplete rows
+    /// are filled with sections that pass their input.
     pub fn new(sections: &[Biquad]) -> Self {
         let (rows, last) = match sections.len() % LANES {
             few @ 1..=FEW => sections.split_at(sections.len() - few),
@@ -85,7 +84,7 @@ impl Pipeline {
 }
 
 impl<'a> Pipelines<'a> {
-    /// Combines four pipelines; `None` if they differ in their number of rows.
+    /// Combines four pipelines. `None` if their numbers of rows differ.
     pub fn new(pipelines: [&'a mut Pipeline; VOICES]) -> Option<Self> {
         let shape = |pipeline: &Pipeline| (pipeline.rows.len(), pipeline.last.is_some());
         let [first, others @ ..] = &pipelines;
@@ -141,8 +140,8 @@ impl<const N: usize> Work for Beside<'_, N> {
     }
 }
 
-/// A separate function from the one that interleaves the rows: otherwise compilers shuffle lanes
-/// inside the loop.
+/// Separate from the function that interleaves the rows: otherwise compilers shuffle lanes inside
+/// the loop.
 struct Run<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
 
 impl<const N: usize> Work for Run<'_, N> {
@@ -196,7 +195,7 @@ impl<const N: usize> State<Quad, N> {
     }
 }
 
-// Loops, not closures: closures would not be compiled for the wider registers.
+// Loops instead of closures, because closures would not be compiled for the wider registers.
 impl<T: Real, const N: usize> Row<T, N> {
     #[inline(always)]
     fn run(&mut self, pairs: &mut [[T; PAIR]]) {
@@ -204,7 +203,8 @@ impl<T: Real, const N: usize> Row<T, N> {
         for pair in pairs {
             *pair = self.tick(&mut state, *pair);
         }
-        // Small values become zero before they reach denormals, which slow down arithmetic.
+        // Small values become zero before they become denormal, which would slow down the
+        // arithmetic.
         self.state = State {
             s1: state.s1.map(T::without_denormals),
             s2: state.s2.map(T::without_denormals),
@@ -230,7 +230,8 @@ impl<T: Real, const N: usize> Row<T, N> {
     }
 }
 
-/// Inputs of all sections: the input of the row, or the last output of the section before.
+/// Returns the inputs of all sections: the input of the row, and the last output of each section
+/// for the next one.
 #[inline(always)]
 #[allow(clippy::manual_memcpy)] // A copied slice goes through memory, and takes a quarter longer.
 fn behind<T: Copy, const N: usize>(input: T, given: &[T; N]) -> [T; N] {
@@ -248,7 +249,7 @@ mod tests {
     use crate::butterworth::high_pass;
     use crate::noise::GaussianNoise;
 
-    /// Equals sections run one after the other, with a delay.
+    /// Equals sections that run one after the other, apart from the delay.
     #[test]
     fn a_pipeline_is_a_delayed_cascade() {
         for (order, late) in [(1, 2), (4, 2), (5, 6), (8, 6), (12, 8), (14, 12)] {
@@ -267,8 +268,8 @@ mod tests {
         }
     }
 
-    /// Four pipelines side by side give the bits of each alone; different numbers of rows are
-    /// rejected.
+    /// Four pipelines side by side give the same bits as each on its own. Different numbers of rows
+    /// are rejected.
     #[test]
     fn four_pipelines_are_bit_identical_to_single_ones() {
         for order in [2, 4, 6, 8, 12] {

@@ -4,32 +4,32 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// Number of phases of an interpolated kernel; it has one row more.
+/// Number of phases in an interpolated kernel, which has one row more.
 pub(crate) const INTERPOLATED_PHASES: u64 = 512;
 const CHUNK: usize = 256;
 
-/// One polyphase filter: output k stands at input time k·M/L.
+/// One polyphase filter. Output k is at the input time k·M/L.
 #[derive(Debug, Clone)]
 pub(crate) struct Polyphase {
     /// L.
     up: usize,
-    /// Integer and remaining part of M/L.
+    /// Integer and fractional part of M/L, the latter in units of 1/L.
     step: (usize, usize),
     taps: usize,
-    /// Phase-major; one row more than phases if rows are interpolated. Shared by all converters of
-    /// the same rates.
+    /// The kernel, one row per phase, and one row more if rows are interpolated. All converters
+    /// with the same rates share it.
     kernel: Arc<[f32]>,
     exact: bool,
     phase: usize,
-    /// Source samples; `kernel` rows are applied to `history[start..start + taps]`.
+    /// Source samples. A kernel row is applied to `history[start..start + taps]`.
     history: Vec<f32>,
     start: usize,
     filled: usize,
 }
 
 impl Polyphase {
-    /// `step` is the integer and the remaining part of M/L; `taps` is a multiple of eight. The
-    /// kernel has one row per phase, or [`INTERPOLATED_PHASES`] rows plus one.
+    /// Makes a filter. `step` is the integer and the remaining part of M/L; `taps` is a multiple of
+    /// eight. The kernel has one row per phase, or [`INTERPOLATED_PHASES`] rows plus one.
     pub(crate) fn new(up: usize, step: (usize, usize), taps: usize, kernel: Arc<[f32]>) -> Self {
         Self {
             up,
@@ -44,8 +44,8 @@ impl Polyphase {
         }
     }
 
-    /// A filter between equal rates whose outputs are `phase` of `phases` parts of a sample behind
-    /// the source's.
+    /// Makes a filter between equal rates whose outputs are `phase / phases` of a sample behind the
+    /// source samples.
     pub(crate) fn at(phase: usize, phases: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
         Self { phase, ..Self::new(phases, (1, 0), taps, kernel) }
     }
@@ -67,11 +67,11 @@ impl Polyphase {
         }
     }
 
-    /// Pulls a few more samples; when the buffer is full, first moves those still needed to its
-    /// start.
+    /// Pulls a few more samples. If the buffer is full, the samples that are still needed are first
+    /// moved to its start.
     fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start + self.taps > self.filled {
-            // Small pulls keep parameter changes low in latency.
+            // Small pulls keep the latency of parameter changes low.
             let wanted = (self.start + self.taps - self.filled).max(8);
             if self.filled + wanted > self.history.len() {
                 let keep_from = self.start.min(self.filled);
@@ -99,7 +99,7 @@ impl Polyphase {
     }
 }
 
-/// Dot product in eight lanes; both slices have the same length, a multiple of eight.
+/// Dot product in eight lanes. Both slices have the same length, a multiple of eight.
 #[inline(always)]
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     let mut lanes = [0.0f32; 8];
@@ -111,8 +111,8 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     sum(&lanes)
 }
 
-/// Not inlined: its additions across lanes would keep the loop of [`dot`] from being compiled to
-/// vectors, which takes half as long again.
+/// Not inlined: its additions across lanes would keep compilers from vectorising the loop of
+/// [`dot`], which would then take half as long again.
 #[inline(never)]
 fn sum(lanes: &[f32; 8]) -> f32 {
     (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))

@@ -1,5 +1,5 @@
-//! Numbers of four voices side by side. Recursive filters, whose samples depend on each other, fill
-//! the lanes of a vector register with voices instead of samples.
+//! Numbers of four voices side by side. In a recursive filter each sample depends on the one
+//! before, so the lanes of a vector register are filled with voices instead of samples.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -13,7 +13,7 @@ pub const VOICES: usize = 4;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quad(pub [f64; VOICES]);
 
-/// Number type of a filter: the same operations in the same order, for one voice or for four.
+/// Number type of a filter: one voice or four, with the same operations in the same order.
 pub(crate) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
@@ -31,20 +31,20 @@ impl Real for f64 {
 }
 
 impl Quad {
-    /// Interleaves one single-precision row per voice, multiplied by its gain. The shortest slice
-    /// sets the length.
+    /// Interleaves one single-precision row per voice, and multiplies it by the voice's gain. The
+    /// shortest slice determines the length.
     pub fn gather(rows: [&[f32]; VOICES], gains: Self, to: &mut [Self]) {
         wide(Gather(rows, gains, to));
     }
 
-    /// Writes each voice's numbers to its row in single precision. The shortest slice sets the
-    /// length.
+    /// Writes each voice's numbers to its row, in single precision. The shortest slice determines
+    /// the length.
     pub fn scatter(from: &[Self], rows: [&mut [f32]; VOICES]) {
         wide(Scatter(from, rows));
     }
 }
 
-/// Interleaves the first `N` of `M` numbers of each of four voices.
+/// Interleaves the first `N` of the `M` numbers of each of four voices.
 #[inline(always)]
 pub(crate) fn beside<const N: usize, const M: usize>(
     [a, b, c, d]: [&[f64; M]; VOICES],
@@ -56,7 +56,7 @@ pub(crate) fn beside<const N: usize, const M: usize>(
     quads
 }
 
-/// The numbers of one voice.
+/// Returns the numbers of one voice.
 #[inline(always)]
 pub(crate) fn part<const N: usize>(quads: &[Quad; N], voice: usize) -> [f64; N] {
     let mut own = [0.0; N];

@@ -5,8 +5,8 @@ use crate::uniform::Uniform;
 /// Number of generators, and of numbers per step.
 pub(crate) const LANES: usize = 8;
 
-/// Eight xoshiro128++ generators (Blackman and Vigna 2021), whose states are drawn from a seed. The
-/// period of each is 2¹²⁸ - 1.
+/// Eight xoshiro128++ generators (Blackman and Vigna 2021). A seed determines their states. Each
+/// has a period of 2¹²⁸ - 1.
 #[derive(Debug, Clone)]
 pub(crate) struct RandomLanes<const N: usize = LANES>([[u32; N]; 4]);
 

@@ -1,35 +1,35 @@
-//! Level and mean frequency as motors and parametric interfaces take them: strengths, frequencies
-//! and points from 0 to 1.
+//! Level and mean frequency in the form that motors and parametric haptic interfaces take:
+//! strengths, frequencies and points, with values from 0 to 1.
 //!
-//! An interface that is told in points interpolates linearly between them. A block has one point,
-//! at its end, with its level: the level of a block is then reached when the block ends, half a
-//! block later on average than with steps.
+//! An interface that takes points interpolates linearly between them. Each block of samples gives
+//! one point at its end, with the level of the block. So the level of a block is reached when the
+//! block ends, on average half a block later than with steps.
 
 use crate::envelope::Measured;
 
-/// Mean frequency up to which the large motor of a gamepad has all of the strength, hertz.
+/// Mean frequency up to which the large motor of a gamepad gets the whole strength, hertz.
 const LARGE_MOTOR_HZ: f64 = 60.0;
-/// Mean frequency from which the small motor has all of it, hertz.
+/// Mean frequency from which on the small motor gets the whole strength, hertz.
 const SMALL_MOTOR_HZ: f64 = 420.0;
 
-/// How a level becomes a strength, and a mean frequency a share of a range.
+/// Conversion from a level to a strength, and from a mean frequency to a place in a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Strength of a level of 1; more than 1 is 1.
+    /// Strength for a level of 1. Strengths above 1 are cut to 1.
     pub gain: f64,
-    /// Frequency that is 0, hertz.
+    /// Frequency at place 0, hertz.
     pub low_hz: f64,
-    /// Frequency that is 1, hertz.
+    /// Frequency at place 1, hertz.
     pub high_hz: f64,
 }
 
 impl Scale {
-    /// Returns the strength of a level, 0 to 1.
+    /// Returns the strength for a level, 0 to 1.
     pub fn strength(&self, level_rms: f64) -> f64 {
         unit(self.gain * level_rms)
     }
 
-    /// Returns the place of a frequency in the range, 0 to 1; 0.5 in an empty range.
+    /// Returns the place of a frequency in the range, 0 to 1; 0.5 if the range is empty.
     pub fn place(&self, hz: f64) -> f64 {
         if self.high_hz > self.low_hz {
             unit((hz - self.low_hz) / (self.high_hz - self.low_hz))
@@ -39,14 +39,14 @@ impl Scale {
     }
 }
 
-/// Returns a number from 0 to 1; 0 for what is none.
+/// Clamps a number to 0 to 1; NaN becomes 0.
 fn unit(x: f64) -> f64 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
-/// Returns the parts of a strength that the large and the small motor of a gamepad have at a mean
-/// frequency: all on the large one up to 60 Hz, all on the small one from 420 Hz, in between in
-/// proportion.
+/// Divides a strength between the large and the small motor of a gamepad, by mean frequency. Up to
+/// 60 Hz the large motor gets all of it, from 420 Hz on the small motor; in between both get a part
+/// that is linear in the frequency.
 ///
 /// ```
 /// use htex_dsp::reduced::two_motors;
@@ -57,18 +57,18 @@ pub fn two_motors(strength: f64, centroid_hz: f64) -> [f64; 2] {
     [strength * (1.0 - small), strength * small]
 }
 
-/// A point of a stream.
+/// A point of the stream that goes to an interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Time since the start of the stream, nanoseconds.
     pub time_ns: i64,
     /// Strength, 0 to 1.
     pub strength: f32,
-    /// Mean frequency, as a place in the range of the scale.
+    /// Mean frequency as a place in the range of the scale, 0 to 1.
     pub place: f32,
 }
 
-/// Makes a stream of points out of blocks.
+/// Converts blocks to a stream of points.
 ///
 /// ```
 /// use htex_dsp::envelope::Measured;
@@ -84,14 +84,15 @@ pub struct Point {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Points {
-    /// Samples so far.
+    /// Number of samples so far.
     pub frames: u64,
-    /// The last place: silence has no frequency and keeps it.
+    /// The last place. Silence has no frequency, so the place stays unchanged during silence.
     pub place: f32,
 }
 
 impl Points {
-    /// Returns the points of the next block: one at its end, and before the first one at 0.
+    /// Returns the points for the next block: one at its end, and for the first block also one at
+    /// time 0.
     pub fn block(
         &mut self,
         measured: &Measured,
@@ -109,7 +110,7 @@ impl Points {
         first.into_iter().chain(Some(point))
     }
 
-    /// Returns the point that ends the stream: silence where the last block ended.
+    /// Returns the point that ends the stream: silence, at the end of the last block.
     pub fn end(&self, rate_hz: f64) -> Point {
         Point {
             time_ns: libm::round(self.frames as f64 / rate_hz * 1e9) as i64,
@@ -125,8 +126,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Whatever is measured, the points keep what takers of points ask for: numbers from 0 to
-        /// 1, in the order of time.
+        /// For any measured values, the points meet the requirements of interfaces: numbers from 0
+        /// to 1, in order of time.
         #[test]
         fn points_are_in_range_and_in_order(
             blocks in prop::collection::vec((any::<f64>(), any::<f64>(), 0..1_000_u64), 1..50),

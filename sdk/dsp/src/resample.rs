@@ -1,12 +1,12 @@
 //! Streaming sample-rate conversion by polyphase windowed-sinc filters.
 //!
-//! A texture voice renders at a low rate of its own; the converter brings it to the device's rate.
-//! The converter pulls exactly the samples it needs from its source, never allocates while it runs,
-//! and gives the same samples for any block size.
+//! A texture voice renders at its own, low rate, and the converter brings it to the rate of the
+//! device. The converter pulls exactly the samples that it needs from its source, never allocates
+//! while it runs, and gives the same samples for any block size. Resamplers of libraries work in
+//! chunks of their own size, so this one is the project's own.
 //!
-//! A voice states the rate at which it renders. Textures end at 1 kHz, so noise is generated at 2
-//! to 4 kHz: five to eight times fewer samples, and the steep filter at the top of the band is the
-//! converter's. It is not a library's, since those work in chunks of their own size.
+//! Textures end at 1 kHz, so noise is generated at 2 to 4 kHz. This needs five to eight times fewer
+//! samples, and the converter's filter is also the steep filter at the top of the band.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,14 +15,14 @@ use crate::kernels;
 use crate::polyphase::{INTERPOLATED_PHASES, Polyphase};
 use crate::upsample::Upsampler;
 
-/// Number of phases beyond which the kernel table is interpolated instead of exact.
+/// Number of phases up to which the kernel table is exact. Above it, the kernel is interpolated.
 const MAX_EXACT_PHASES: u64 = 1024;
-/// Half the width of the transition band around the source's Nyquist frequency, relative to that
+/// Half the width of the transition band around the source's Nyquist frequency, as a part of that
 /// frequency.
 const TRANSITION: f64 = 0.02;
-/// Kernel length beyond which rates are refused, to bound memory.
+/// Longest kernel; rates that need a longer one are refused, to bound the memory.
 const MAX_TAPS: usize = 16_384;
-/// Maximum ratio of the rates.
+/// Largest ratio of the two rates.
 const MAX_RATIO: u64 = 10_000;
 
 /// Error: no converter exists between these rates.
@@ -30,7 +30,7 @@ const MAX_RATIO: u64 = 10_000;
 pub struct UnusableRates {
     /// Rate of the source, hertz.
     pub from_hz: f64,
-    /// Rate wanted, hertz.
+    /// Requested rate, hertz.
     pub to_hz: f64,
 }
 
@@ -47,7 +47,7 @@ impl core::fmt::Display for UnusableRates {
 
 impl core::error::Error for UnusableRates {}
 
-/// Converts a stream from one rate to another.
+/// Converts a stream of samples from one rate to another.
 ///
 /// ```
 /// use htex_dsp::resample::Resampler;
@@ -62,19 +62,21 @@ pub struct Resampler {
 }
 
 impl Resampler {
-    /// Makes a converter from `from_hz` to `to_hz` for a source without content above `top_hz`, all
-    /// in hertz; `None` if the rates are equal (to a millihertz) and no conversion is needed.
+    /// Makes a converter from `from_hz` to `to_hz`, for a source without content above `top_hz`,
+    /// all in hertz. `None` if the rates are equal to a millihertz, so that no conversion is
+    /// needed.
     ///
     /// # Errors
-    /// Rates outside 1 mHz to 10 MHz, or that differ by more than a factor of 10,000.
+    /// If a rate is outside 1 mHz to 10 MHz, or the rates differ by more than a factor of 10,000.
     pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Option<Self>, UnusableRates> {
         Self::of(specs(from_hz, to_hz, top_hz)?)
     }
 
-    /// As [`Self::new`], for a source that has `from_hz` whichever rate is wanted, such as a
-    /// filter. Its level is the same at all rates that hold its content. Near half its own rate it
-    /// loses up to half its power at high rates, so it loses as much at low ones: where the rates
-    /// are equal ([`OwnRate`]), and where the wanted one is lower.
+    /// As [`Self::new`], for a source whose rate is fixed at `from_hz`, whatever rate is wanted,
+    /// such as a filter. Its level is the same at all rates that can hold its content: near half
+    /// its own rate the source loses up to half its power in a conversion to high rates, and this
+    /// converter makes it lose the same power if the rates are equal ([`OwnRate`]) or the wanted
+    /// rate is lower.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -91,8 +93,8 @@ impl Resampler {
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
-    /// Returns the work of such a converter; `None` if no conversion is needed. `own_rate`: of
-    /// [`Self::of_own_rate`].
+    /// Returns the work of a converter for these rates; `None` if no conversion is needed.
+    /// `own_rate`: whether the converter is made by [`Self::of_own_rate`].
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -123,14 +125,14 @@ impl Resampler {
         Ok((!specs.is_empty()).then_some(work))
     }
 
-    /// Fills `out`, pulling source samples through `source`, which must fill the whole slice that
-    /// it is given. Does not allocate.
+    /// Fills `out` with the next samples. Calls `source` for the samples it needs; `source` must
+    /// fill the whole slice that it gets. Does not allocate.
     pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         run(&mut self.stages, out, source);
     }
 }
 
-/// Work of a converter for each sample of its output, on average.
+/// Average work of a converter for each sample of its output.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
     /// Stages that raise the rate by an integer factor.
@@ -139,19 +141,18 @@ pub struct Work {
     pub rational: Part,
 }
 
-/// Samples that stages of a kind give for each sample of a converter's output, and their
-/// multiply-accumulates.
+/// Work of all stages of one kind for each sample of a converter's output.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Part {
-    /// Samples.
+    /// Number of samples that the stages compute.
     pub samples: f64,
-    /// Multiply-accumulates of all of them.
+    /// Number of multiply-accumulates for all these samples.
     pub macs: f64,
 }
 
-/// What a conversion to high rates passes of a source that has a rate of its own, and content up to
-/// the transition band around half that rate: in the middle of it, half the amplitude, beside an
-/// image of the same amplitude.
+/// What a conversion to high rates passes of a source with its own, fixed rate, whose content
+/// extends into the transition band around half that rate. In the middle of the transition band
+/// half the amplitude passes, and an image of the same amplitude appears.
 #[derive(Debug, Clone)]
 pub struct OwnRate {
     rate_hz: f64,
@@ -159,12 +160,12 @@ pub struct OwnRate {
     taps: usize,
 }
 
-/// Phases of the kernel of [`OwnRate`].
+/// Number of phases in the kernel of [`OwnRate`].
 const OWN_PHASES: u64 = 4;
 
 impl OwnRate {
-    /// Takes the rate and the highest frequency of the source, hertz; `None` if the content ends
-    /// below the transition band, which passes whole.
+    /// Takes the rate and the highest frequency of the source, hertz. `None` if the content ends
+    /// below the transition band, since it then passes unchanged.
     pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
         let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
         Some(Self { rate_hz, kernel: spec.own_kernel(), taps: spec.taps() })
@@ -175,8 +176,8 @@ impl OwnRate {
         self.rate_hz
     }
 
-    /// Returns the amplitude that passes at a frequency, hertz, which is an image above half the
-    /// rate.
+    /// Returns the amplitude that passes at a frequency, hertz. A frequency above half the rate is
+    /// an image.
     pub fn amplitude(&self, hz: f64) -> f64 {
         let middle = 0.5 * self.taps as f64 - 1.0;
         let turn = core::f64::consts::TAU * hz / self.rate_hz;
@@ -196,7 +197,8 @@ impl OwnRate {
     }
 }
 
-/// Specification of a stage: rates in millihertz, edges of its transition band in hertz.
+/// Specification of a stage: its two rates in millihertz, and the edges of its transition band in
+/// hertz.
 struct Spec {
     from: u64,
     to: u64,
@@ -215,7 +217,8 @@ fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, Unusabl
     if to_hz >= from_hz || !is_cut {
         return Ok(all);
     }
-    // All of the content fits below half the lower rate, and passes as at a high rate.
+    // All of the content fits below half the lower rate, and passes as in a conversion to high
+    // rates.
     let edges = |spec: Spec| {
         let nyquist = 0.5 * from_hz;
         let pass_hz = top_hz.min(nyquist * (1.0 - TRANSITION));
@@ -230,7 +233,8 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
     let (Some(from), Some(mut to)) = (millihertz(from_hz), millihertz(to_hz)) else {
         return Err(unusable);
     };
-    // A divided rate is seldom a whole number of millihertz.
+    // A rate that is the other rate divided by a whole number is seldom a whole number of
+    // millihertz.
     let ratio = libm::round(to_hz / from_hz);
     if ratio >= 2.0 && (to_hz / from_hz / ratio - 1.0).abs() < 1e-9 {
         to = from * ratio as u64;
@@ -243,7 +247,8 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
     }
     let spec = |from, to, pass_hz, stop_hz| Spec { from, to, pass_hz, stop_hz };
     let nyquist = 0.5 * from_hz.min(to_hz);
-    // The transition band is wide if the source's highest content is far below its first image.
+    // The transition band is wide if the highest content of the source is far below its first
+    // image.
     let pass = top_hz.min(nyquist * (1.0 - TRANSITION));
     let stop = (from_hz.min(to_hz) - pass).max(nyquist * (1.0 + TRANSITION));
     let narrow = stop - pass < 0.5 * nyquist;
@@ -259,7 +264,7 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
 }
 
 impl Spec {
-    /// The filter of a source at its own rate; `None` if its content ends below the transition
+    /// The filter of a source at its own rate. `None` if the content ends below the transition
     /// band.
     fn of_own_rate(rate_hz: f64, rate: u64, top_hz: f64) -> Option<Self> {
         let nyquist = 0.5 * rate_hz;
@@ -272,12 +277,12 @@ impl Spec {
         })
     }
 
-    /// The kernel of that filter, in quarters of a sample.
+    /// The kernel of this filter, in steps of a quarter of a sample.
     fn own_kernel(&self) -> Arc<[f32]> {
         kernels::kernel(self.taps(), OWN_PHASES, true, self.cutoff())
     }
 
-    /// Cycles per sample of the source.
+    /// The cut-off in cycles per sample of the source.
     fn cutoff(&self) -> f64 {
         0.5 * (self.pass_hz + self.stop_hz) / self.source_hz()
     }
@@ -290,12 +295,12 @@ impl Spec {
         self.from / gcd(self.from, self.to)
     }
 
-    /// Whether the rate is raised by an integer factor.
+    /// Whether this stage raises the rate by an integer factor.
     fn is_whole(&self) -> bool {
         self.from != self.to && self.down() == 1 && self.is_exact()
     }
 
-    /// Whether each phase has its own row.
+    /// Whether each phase has its own row in the kernel table.
     fn is_exact(&self) -> bool {
         self.up() <= MAX_EXACT_PHASES
     }
@@ -311,7 +316,7 @@ impl Spec {
     }
 }
 
-/// Runs the last stage, which pulls from the ones before it.
+/// Runs the last stage, which pulls from the stages before it.
 fn run(stages: &mut [Stage], out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
     match stages.split_last_mut() {
         None => source(out),
@@ -333,8 +338,9 @@ enum Stage {
 impl Stage {
     fn new(spec: &Spec) -> Self {
         if spec.from == spec.to {
-            // A quarter of a sample from the source's, a frequency and its image add up in power,
-            // as at other rates: their phases are a quarter turn apart.
+            // The output is a quarter of a sample away from the source's samples. There the phases
+            // of a frequency and its image are a quarter turn apart, so their powers add up, as at
+            // other rates.
             let kernel = spec.own_kernel();
             return Self::Rational(Polyphase::at(1, OWN_PHASES as usize, spec.taps(), kernel));
         }
@@ -364,7 +370,7 @@ fn gcd(a: u64, b: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Converts a sine and returns the largest error against the same sine at the other rate.
+    /// Converts a sine, and returns its largest error against the same sine at the other rate.
     fn sine_error(from_hz: f64, to_hz: f64, f_hz: f64) -> f64 {
         let mut resampler = Resampler::new(from_hz, to_hz, 1000.0).unwrap().unwrap();
         let mut n = 0usize;
@@ -378,7 +384,7 @@ mod tests {
         for block in out.chunks_mut(33) {
             resampler.process(block, &mut source);
         }
-        // Each stage's first output is at the centre of its first window.
+        // The first output of each stage is at the centre of its first window.
         let stages = specs(from_hz, to_hz, 1000.0).unwrap().into_iter().zip(&resampler.stages);
         let delay_s: f64 = stages
             .map(|(spec, stage)| {
@@ -415,7 +421,7 @@ mod tests {
                 assert!(error < 2e-3, "{from} -> {to} at {f}: {error}");
             }
         }
-        // 17 times, though not in millihertz.
+        // The ratio is 17, but not when both rates are rounded to millihertz.
         let whole = specs(2_594.117_647, 44_100.0, 900.0).unwrap();
         assert!(whole.iter().all(Spec::is_whole));
     }
@@ -433,7 +439,7 @@ mod tests {
         assert!(macs(20_000.0) < 0.2 * macs(4_000.0) + 12.0);
     }
 
-    /// Noise in the transition band of a source at 2 kHz has one power at all rates, which is what
+    /// Noise in the transition band of a source at 2 kHz has the same power at all rates, as
     /// [`OwnRate`] states.
     #[test]
     fn a_source_of_its_own_rate_has_one_level_at_all_rates() {

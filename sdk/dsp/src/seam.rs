@@ -1,7 +1,7 @@
 //! Seamless loops of samples.
 //!
-//! A loop is closed at constant power: the gains of its cross-fade depend on the correlation of the
-//! two pieces, so that noise and tones alike keep their power.
+//! A loop is closed at constant power: the gains of the cross-fade depend on the correlation of the
+//! two pieces. So noise and tones both keep their power.
 
 use alloc::vec::Vec;
 
@@ -24,12 +24,12 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Makes a loop of `samples`. The last `fade` of them (at most half) are cross-faded over the
-    /// first ones, so that the loop is shorter than `samples` by `fade`.
+    /// Makes a loop of `samples`. The last `fade` samples (at most half) are cross-faded over the
+    /// first ones, so the loop is shorter than `samples` by `fade`.
     ///
-    /// The cross-fade gains are a sine and a cosine divided by the square root of the power of the
-    /// sum, given the correlation of the two pieces: noise keeps its power, and a sound with the
-    /// period of the loop is unchanged.
+    /// The gains of the cross-fade are a sine and a cosine, divided by the square root of the power
+    /// that the sum would have, given the correlation of the two pieces. Noise keeps its power, and
+    /// a sound whose period is the loop stays unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;
@@ -50,7 +50,7 @@ impl Loop {
         &self.samples
     }
 
-    /// The loop scaled to another RMS; a silent loop stays silent.
+    /// Scales the loop to another RMS. A silent loop stays silent.
     #[must_use]
     pub fn with_rms(mut self, rms: f64) -> Self {
         let squares = self.samples.iter().map(|&x| f64::from(x) * f64::from(x));
@@ -78,7 +78,7 @@ impl Loop {
     }
 }
 
-/// Correlation of two pieces of the same length, without removing means.
+/// Correlation of two pieces of the same length; means are not removed.
 fn correlation(a: &[f32], b: &[f32]) -> f32 {
     let sum = |x: &[f32], y: &[f32]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f32>();
     let both = libm::sqrtf(sum(a, a) * sum(b, b));

@@ -1,14 +1,14 @@
-//! Tables that depend on a few parameters alone: computed once, shared while in use, and the last
-//! few cached.
+//! A cache of tables that depend only on a few parameters. A table is computed once and shared
+//! while it is in use; the last few tables stay cached.
 
 use alloc::sync::Arc;
 
-/// Number of unused tables of one kind that stay cached, so that an app that opens one texture
-/// after another computes them once.
+/// Number of tables of one kind, the last ones requested, that stay in memory even if no one uses
+/// them. An app that opens one texture after another then computes them only once.
 #[cfg(feature = "std")]
 const KEPT: usize = 4;
 
-/// A cache of tables by key. Without `std` nothing is shared: each user has a table of its own.
+/// A cache of tables by key. Without `std` nothing is shared, and each user has its own table.
 #[cfg(feature = "std")]
 pub struct Shared<K, V: ?Sized>(std::sync::Mutex<Tables<K, V>>);
 
@@ -29,9 +29,9 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
         }))
     }
 
-    /// Returns the table of a key; calls `make` if it is neither in use nor cached.
+    /// Returns the table for a key. Calls `make` if the table is neither in use nor cached.
     pub fn get(&self, key: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
-        // A panic in another thread leaves the lists valid.
+        // After a panic in another thread the lists are still valid, so a poisoned lock is ignored.
         let mut tables = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let Tables { in_use, kept } = &mut *tables;
         let found = in_use.iter().find(|(known, _)| *known == key);

@@ -10,8 +10,8 @@ struct Triangle {
     weights: Vec<f64>,
 }
 
-/// Triangular filters with apex 1. Filter `i` extends from edge `i` to edge `i + 2` with its apex
-/// at edge `i + 1`. A sparse matrix of `rows()` filters by `columns()` frequencies.
+/// A bank of triangular filters with apex 1: a sparse matrix of `rows()` filters by `columns()`
+/// frequencies. Filter `i` extends from edge `i` to edge `i + 2` and has its apex at edge `i + 1`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleBank {
     triangles: Vec<Triangle>,
@@ -19,9 +19,9 @@ pub struct TriangleBank {
 }
 
 impl TriangleBank {
-    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and in
-    /// the same unit, in which the flanks are linear. A filter between two neighbouring positions
-    /// is empty.
+    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and
+    /// have the same unit; flanks are linear in this unit. A filter that falls between two
+    /// neighbouring positions is empty.
     pub fn new(edges: &[f64], axis: &[f64]) -> Self {
         let triangles =
             edges.windows(3).map(|edge| Triangle::new([edge[0], edge[1], edge[2]], axis)).collect();
@@ -54,8 +54,8 @@ impl TriangleBank {
         self.triangles.iter().map(|triangle| triangle.weights.iter().sum()).collect()
     }
 
-    /// `out = bank · values`: `values` has `columns()` elements, `out` has `rows()`. Missing values
-    /// count as zero; surplus elements are ignored.
+    /// Writes `out = bank · values`. `values` has `columns()` elements, `out` has `rows()`. Missing
+    /// values count as zero, and surplus values are ignored.
     pub fn apply(&self, values: &[f64], out: &mut [f64]) {
         for (sum, triangle) in out.iter_mut().zip(&self.triangles) {
             let under = values.get(triangle.first..).unwrap_or(&[]);

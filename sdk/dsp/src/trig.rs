@@ -1,4 +1,4 @@
-//! Sines, cosines and tangents of bounded angles: those of `libm`, bit for bit, without its
+//! Sines, cosines and tangents of bounded angles, with the same bits as `libm`. They omit the
 //! reduction of large arguments, which takes 2 kB of a WASM module.
 //!
 //! The series and the reduction are those of FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
@@ -8,10 +8,11 @@
 
 use crate::wide::{Work, wide};
 
-/// Angles below this have the bits of `libm`, radians; the error of larger ones grows with them.
+/// Angles below this, radians, give the same bits as `libm`. Above it the error grows with the
+/// angle.
 pub const LARGEST: f64 = 1_647_099.0;
 
-/// The sine of an angle in radians; NaN where it is not finite.
+/// Sine of an angle in radians; NaN if the angle is not finite.
 ///
 /// ```
 /// use htex_dsp::trig::{LARGEST, sin};
@@ -23,12 +24,12 @@ pub fn sin(x: f64) -> f64 {
     sincos(x).0
 }
 
-/// The cosine of an angle in radians; NaN where it is not finite.
+/// Cosine of an angle in radians; NaN if the angle is not finite.
 pub fn cos(x: f64) -> f64 {
     sincos(x).1
 }
 
-/// Sine and cosine of an angle in radians; NaN where it is not finite.
+/// Sine and cosine of an angle in radians; NaN if the angle is not finite.
 #[inline(never)]
 pub(crate) fn sincos(x: f64) -> (f64, f64) {
     let high = high_word(x);
@@ -46,7 +47,7 @@ pub(crate) fn sincos(x: f64) -> (f64, f64) {
     }
 }
 
-/// The tangent of an angle in radians; NaN where it is not finite.
+/// Tangent of an angle in radians; NaN if the angle is not finite.
 pub fn tan(x: f64) -> f64 {
     let high = high_word(x);
     if high < TINY_TANGENT {
@@ -60,8 +61,8 @@ pub fn tan(x: f64) -> f64 {
 }
 
 /// Writes the cosines of angles from 0 to π, each within 3e-16, into an array of the same length.
-/// The series has no branches, so that several angles are computed at a time; the bits are not
-/// those of [`cos`].
+/// The series has no branches, so several angles are computed at a time. The bits differ from those
+/// of [`cos`].
 ///
 /// ```
 /// use htex_dsp::trig::{cos, half_turn_cosines};
@@ -80,7 +81,7 @@ struct HalfTurn<'a> {
     cosines: &'a mut [f64],
 }
 
-/// Angles that are computed at a time.
+/// Number of angles that are computed at a time.
 const LANES: usize = 8;
 
 impl Work for HalfTurn<'_> {
@@ -98,7 +99,7 @@ impl Work for HalfTurn<'_> {
     }
 }
 
-/// Sines of a quarter turn less the angles, by Taylor's series: what follows its last term is below
+/// Sines of a quarter turn minus the angles, by Taylor's series. The terms that it omits are below
 /// 2e-18.
 #[inline(always)]
 fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
@@ -129,26 +130,26 @@ fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     cosines
 }
 
-/// High words of π/4, and of 2⁻²⁷ √2, below which the sine is the angle.
+/// High words of π/4, and of 2⁻²⁷ √2. Below the latter, the sine equals the angle.
 const QUARTER_PI: u32 = 0x3fe9_21fb;
 const TINY: u32 = 0x3e46_a09e;
-/// The high word of 2⁻²⁷, below which the tangent is the angle.
+/// High word of 2⁻²⁷. Below it, the tangent equals the angle.
 const TINY_TANGENT: u32 = 0x3e40_0000;
-/// High words of the angles up to which it is by how many quarter turns they are reduced: 3π/4,
-/// 5π/4, 7π/4, 9π/4.
+/// High words of 3π/4, 5π/4, 7π/4 and 9π/4. Up to each of these, an angle is reduced by one, two,
+/// three or four quarter turns.
 const TURNS: [u32; 4] = [0x4002_d97c, 0x400f_6a7a, 0x4015_fdbc, 0x401c_463b];
-/// High words that whole quarter turns have, where more digits of π/2 are needed: π/2, π, 3π/2, 2π.
+/// High words of π/2, π, 3π/2 and 2π. Near these, the reduction needs more digits of π/2.
 const WHOLE: [u32; 4] = [0x3ff9_21fb, 0x4009_21fb, 0x4012_d97c, 0x4019_21fb];
 
-/// Exponent and first digits, without the sign.
+/// The upper 32 bits of a number without its sign: the exponent and the first digits.
 fn high_word(x: f64) -> u32 {
     (x.to_bits() >> 32) as u32 & 0x7fff_ffff
 }
 
-/// An angle above π/4 as quarter turns and what is left, in two parts.
+/// Splits an angle above π/4 into quarter turns and a rest, which is returned in two parts.
 fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
     const ROUND: f64 = 1.5 / f64::EPSILON;
-    /// π/2 in parts of 33 bits, and what is left behind each.
+    /// π/2 in parts of 33 bits, each with the rest that follows it.
     const PARTS: [[f64; 2]; 3] = [
         [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
         [6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21],
@@ -163,7 +164,7 @@ fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
     let mut w = turns * PARTS[0][1];
     let mut y = r - w;
     if near.is_none() || WHOLE.contains(&high) {
-        // What has cancelled comes back out of further digits.
+        // Digits that have cancelled are replaced by further digits of π/2.
         for ([part, rest], lost) in PARTS[1..].iter().zip([16, 49]) {
             let exponent = |x: f64| (high_word(x) >> 20) as i32;
             if exponent(x) - exponent(y) <= lost {
@@ -188,13 +189,13 @@ const SINE: [f64; 6] = [
     1.589_690_995_211_55e-10,
 ];
 
-/// The sine of an angle up to π/4.
+/// Sine of an angle up to π/4.
 fn short_sine(x: f64) -> f64 {
     let (z, r) = sine_series(x);
     x + z * x * (SINE[0] + z * r)
 }
 
-/// The sine of `x + rest`, up to π/4.
+/// Sine of `x + rest`, up to π/4.
 fn sine(x: f64, rest: f64) -> f64 {
     let (z, r) = sine_series(x);
     let v = z * x;
@@ -207,7 +208,7 @@ fn sine_series(x: f64) -> (f64, f64) {
     (z, r)
 }
 
-/// The cosine of `x + rest`, up to π/4.
+/// Cosine of `x + rest`, up to π/4.
 fn cosine(x: f64, rest: f64) -> f64 {
     const C: [f64; 6] = [
         4.166_666_666_666_66e-2,
@@ -225,7 +226,7 @@ fn cosine(x: f64, rest: f64) -> f64 {
     w + (((1.0 - w) - half) + (z * r - x * rest))
 }
 
-/// The tangent of `x + rest`, up to π/4, or -1 over it.
+/// Tangent of `x + rest`, up to π/4, or -1 divided by it if `inverse` is set.
 fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
     const T: [f64; 13] = [
         3.333_333_333_333_341e-1,
@@ -243,7 +244,7 @@ fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
         2.590_730_518_636_337e-5,
     ];
     const PI_4: [f64; 2] = [core::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17];
-    /// The high word of an angle of 0.6744, from which on the series is that of π/4 less the angle.
+    /// High word of 0.6744. For angles above it, the series is evaluated at π/4 minus the angle.
     const LARGE: u32 = 0x3fe5_9428;
     let sign = f64::copysign(1.0, x);
     let is_large = high_word(x) >= LARGE;
@@ -265,7 +266,7 @@ fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
     if !inverse {
         return w;
     }
-    // A quotient of rounded numbers is off by two units of the last digit.
+    // A quotient of rounded numbers would be wrong by two units of the last digit.
     let short = |x: f64| f64::from_bits(x.to_bits() & 0xffff_ffff_0000_0000);
     let w0 = short(w);
     let v = r - (w0 - x);
@@ -291,7 +292,7 @@ mod tests {
         }
     }
 
-    /// At whole and half quarter turns the ways to reduce an angle change, and digits cancel.
+    /// At whole and half quarter turns, the method of reduction changes and digits cancel.
     #[test]
     fn the_bits_are_those_of_libm_around_all_quarter_turns() {
         let mut uniform = Uniform::new(1);

@@ -5,7 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::circle::directions;
 
-/// Directions per step.
+/// Number of directions per step.
 const DIRECTIONS: usize = 4;
 
 /// A seeded generator of uniform numbers; the same seed gives the same bits on every machine.
@@ -34,8 +34,8 @@ impl Uniform {
         self.0.next_u64()
     }
 
-    /// Writes cosines and sines of angles uniform on the circle, with errors below 3e-7. The
-    /// shorter slice sets the number.
+    /// Writes cosines and sines of random angles, uniform on the circle, with errors below 3e-7.
+    /// The shorter slice determines the number of angles.
     pub fn fill_directions(&mut self, cos: &mut [f32], sin: &mut [f32]) {
         for (cos, sin) in cos.chunks_mut(DIRECTIONS).zip(sin.chunks_mut(DIRECTIONS)) {
             let mut bits = [0; DIRECTIONS];

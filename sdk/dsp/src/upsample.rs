@@ -1,7 +1,7 @@
 //! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
 //! A few source samples are converted to all their outputs at a time. The outputs of one phase are
-//! side by side in vector registers, so no sum runs across the lanes of a register, and the output
+//! side by side in vector registers. So no sum runs across the lanes of a register, and the output
 //! does not depend on the block sizes.
 //!
 //! Samples are pulled in multiples of eight, so that chains with different stages retune at the
@@ -12,12 +12,12 @@ use alloc::vec::Vec;
 
 use crate::wide::{Work, wide};
 
-/// Source samples pulled at a time. Few, as they delay a change of parameters; twice as many where
-/// their duration is half as long.
+/// Number of source samples pulled at a time. It is small, because pulled samples delay a change of
+/// parameters. It is doubled if the samples take half as long.
 const FEW: usize = 8;
 const MANY: usize = 16;
 const MANY_HZ: f64 = 3_500.0;
-/// Products summed before they are added to the total.
+/// Number of products that are summed before they are added to the total.
 const PART: usize = 12;
 
 #[derive(Debug, Clone)]
@@ -27,11 +27,12 @@ pub(crate) struct Upsampler {
     taps: usize,
     /// One row of `taps` for each of the `up` phases.
     kernel: Arc<[f32]>,
-    /// Index of the only nonzero coefficient, 1, in the row of phase 0, if there is one.
+    /// Index of the only nonzero coefficient, 1, in the row of phase 0, if there is one. The output
+    /// is then a copy of an input.
     copies: Option<usize>,
-    /// The samples covered by `steps` windows of `taps`, preceded by as many as make the length of
-    /// a pull a multiple of `steps`, so that an intermediate stage that pulls in the same way never
-    /// runs ahead.
+    /// The samples that `steps` windows of `taps` cover. Some more samples precede them, so that
+    /// the length of a pull is a multiple of `steps`. An intermediate stage that pulls in the same
+    /// way then never runs ahead.
     history: Vec<f32>,
     primed: bool,
     ready: Vec<f32>,
@@ -70,7 +71,7 @@ impl Upsampler {
         }
     }
 
-    /// Samples of the source before the window of the first output.
+    /// Number of source samples before the window of the first output.
     pub(crate) fn skipped(&self) -> usize {
         self.history.len() - self.steps - (self.taps - 1)
     }
@@ -114,8 +115,8 @@ impl<const STEPS: usize> Work for Outputs<'_, STEPS> {
     }
 }
 
-/// Applies a row at `STEPS` neighbouring positions. The sum is split into parts: a long
-/// single-precision sum would lose precision, and the parts are independent of each other.
+/// Applies a row at `STEPS` neighbouring positions. The sum is split into parts: a long sum in
+/// single precision would lose precision, and the parts can be computed independently.
 #[inline(always)]
 fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     let mut sums = [0.0f32; STEPS];
@@ -134,7 +135,7 @@ fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     sums
 }
 
-/// Index of the only coefficient that is not 0 within rounding, if it is 1.
+/// Returns the index of the only coefficient that is not 0 up to rounding, if it is 1.
 fn only_one(row: &[f32]) -> Option<usize> {
     let one = row.iter().position(|x| (x - 1.0).abs() < 1e-7)?;
     let others = row.iter().enumerate().filter(|(i, _)| *i != one);

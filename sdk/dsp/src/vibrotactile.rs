@@ -1,17 +1,18 @@
-//! What a fingertip feels of a vibration: the detection threshold of displacements, and the skin
-//! that turns a force into one.
+//! What a fingertip feels of a vibration: the detection threshold of displacements, and the
+//! impedance of the skin, which converts a force to a displacement.
 //!
-//! The threshold is that of a vibrating contact of 2.9 cm² on the hand's glabrous skin: constant up
-//! to 40 Hz, then falling by 12 dB an octave to its smallest value at 250 Hz, where the Pacinian
-//! channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35, 1962–1966, as summarised by
-//! Gescheider & Verrillo 1979), and rising by 9 dB an octave above (Verrillo 1966, *Psychonomic
-//! Science* 4, 135–136). Its smallest value is −20 dB re 1 µm, 0.1 µm peak (Bolanowski, Gescheider,
-//! Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). People differ by some 10 dB,
-//! and a small contact raises the Pacinian part by 3 dB for each halving of its area.
+//! The threshold applies to a vibrating contact of 2.9 cm² on the hand's glabrous skin. It is
+//! constant up to 40 Hz, and then falls by 12 dB per octave to its smallest value at 250 Hz, where
+//! the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35, 1962–1966, as
+//! summarised by Gescheider & Verrillo 1979). Above, it rises by 9 dB per octave (Verrillo 1966,
+//! *Psychonomic Science* 4, 135–136). Its smallest value is −20 dB re 1 µm, 0.1 µm peak
+//! (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). People
+//! differ by some 10 dB. A smaller contact raises the Pacinian part by 3 dB for each halving of its
+//! area.
 //!
-//! The two papers on slopes were read in their abstracts; the smallest value and the values of
-//! [`Skin`] are those that are commonly quoted of the papers named, to one or two digits. A
-//! laboratory that has measured its participants gives its own [`Listener`].
+//! Of the two papers on slopes, only the abstracts were read. The smallest threshold and the values
+//! of [`Skin`] are the values that are commonly quoted from these papers, to one or two digits. A
+//! laboratory that has measured its participants should use its own [`Listener`].
 
 /// Frequency up to which the threshold is constant, hertz.
 pub const FLAT_HZ: f64 = 40.0;
@@ -19,12 +20,12 @@ pub const FLAT_HZ: f64 = 40.0;
 pub const MOST_SENSITIVE_HZ: f64 = 250.0;
 /// The smallest threshold, metres, peak.
 pub const SMALLEST_THRESHOLD_M: f64 = 1e-7;
-/// Slopes of the threshold, powers of the frequency: −12 dB and +9 dB an octave.
+/// Exponents of the frequency in the threshold: −12 dB and +9 dB per octave.
 const FALL: f64 = -2.0;
 const RISE: f64 = 1.5;
 
-/// Returns the detection threshold of a sinusoidal displacement, metres, peak, at a frequency in
-/// hertz above 0.
+/// Returns the detection threshold of a sinusoidal displacement, metres, peak. The frequency is in
+/// hertz, above 0.
 ///
 /// ```
 /// use htex_dsp::vibrotactile::detection_threshold_m;
@@ -38,8 +39,8 @@ pub fn detection_threshold_m(frequency_hz: f64) -> f64 {
     SMALLEST_THRESHOLD_M * libm::pow(ratio, slope)
 }
 
-/// The mechanical impedance of a fingertip: spring, damper and mass in parallel, which a force
-/// along the surface moves.
+/// Mechanical impedance of a fingertip against a force along the surface: spring, damper and mass
+/// in parallel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skin {
     pub stiffness_n_m: f64,
@@ -49,16 +50,17 @@ pub struct Skin {
 }
 
 impl Default for Skin {
-    /// A fingertip that is pressed with about 0.5 N: elastic up to about 100 Hz and viscous above
+    /// A fingertip that is pressed with about 0.5 N: elastic up to about 100 Hz, and viscous above
     /// (Wiertlewski & Hayward 2012, *J. Biomech.* 45, 1869–1874, seven people, 20 to 500 Hz). The
-    /// values are rounded; people and forces differ by a factor of about two, 6 dB.
+    /// values are rounded. Between people and forces they differ by a factor of about two, 6 dB.
     fn default() -> Self {
         Self { stiffness_n_m: 1_000.0, damping_n_s_m: 1.5, mass_kg: 1.5e-4 }
     }
 }
 
 impl Skin {
-    /// Returns the displacement by a sinusoidal force of 1 N, metres, at a frequency in hertz.
+    /// Returns the displacement that a sinusoidal force of 1 N causes, metres, at a frequency in
+    /// hertz.
     ///
     /// ```
     /// use htex_dsp::vibrotactile::Skin;
@@ -73,18 +75,18 @@ impl Skin {
     }
 }
 
-/// A person who feels: a skin, and a detection threshold relative to [`detection_threshold_m`].
+/// A listener: the skin, and the detection threshold relative to [`detection_threshold_m`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Listener {
     /// Impedance of the fingertip.
     pub skin: Skin,
-    /// Threshold relative to [`detection_threshold_m`], decibels; negative for a person who feels
+    /// Threshold relative to [`detection_threshold_m`], decibels; negative for a listener who feels
     /// weaker vibrations.
     pub threshold_shift_db: f64,
 }
 
 impl Listener {
-    /// A person at the sensitive end of both ranges: a threshold 10 dB lower, and a skin that
+    /// A listener at the sensitive end of both ranges: the threshold is 10 dB lower, and the skin
     /// yields twice as far.
     ///
     /// ```
@@ -106,13 +108,13 @@ impl Listener {
         }
     }
 
-    /// Returns the displacement by a sinusoidal force of 1 N, relative to the threshold, at a
-    /// frequency in hertz above 0.
+    /// Returns the displacement that a sinusoidal force of 1 N causes, divided by the threshold, at
+    /// a frequency in hertz above 0.
     pub fn sensation(&self, frequency_hz: f64) -> f64 {
         self.skin.displacement_m(frequency_hz) / self.threshold_m(frequency_hz)
     }
 
-    /// Returns this person's detection threshold, metres, peak, at a frequency in hertz above 0.
+    /// Returns this listener's detection threshold, metres, peak, at a frequency in hertz above 0.
     pub fn threshold_m(&self, frequency_hz: f64) -> f64 {
         detection_threshold_m(frequency_hz) * libm::pow(10.0, self.threshold_shift_db / 20.0)
     }

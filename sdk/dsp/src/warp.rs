@@ -1,11 +1,11 @@
-//! Variable-rate playback of a stream: reads it faster or slower at a ratio that may change at any
-//! sample.
+//! Playback of a stream at a variable rate: reads it faster or slower, by a ratio that may change
+//! at any sample.
 //!
-//! A texture is read faster after its resampler, at a cost only once the motion leaves the one for
-//! which the voice was created, whose ratio is part of the resampler's: until then samples pass
-//! through bit by bit ([`Warp::when_needed`]). The source is pulled, so reading ahead causes no
-//! delay. The reader has as many taps as the gap between the source's top frequency and its image
-//! requires, 8 to 32.
+//! A texture is read faster or slower when the motion differs from the motion of the voice. The
+//! ratio at which the voice was created is part of its resampler. As long as the motion stays
+//! there, samples pass through this reader bit by bit and at no cost ([`Warp::when_needed`]). The
+//! source is pulled, so reading ahead causes no delay. The reader has 8 to 32 taps, as many as it
+//! needs to separate the source's highest frequency from its image.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -13,23 +13,23 @@ use alloc::vec::Vec;
 use crate::kernels::{self, kaiser_length};
 use crate::wide::{Work, wide};
 
-/// Maximum number of source samples per output; the stop-band attenuation is about 60 dB from the
+/// Maximum number of source samples per output. The stop-band attenuation is about 60 dB from the
 /// source's Nyquist frequency on.
 const MOST_TAPS: usize = 32;
 /// The number of taps is a multiple of this.
 const LANES: usize = 8;
-/// Bits of a position that select the row of the kernel table; between two rows the kernel is
+/// Bits of a position that select the row of the kernel table. Between two rows the kernel is
 /// interpolated.
 const PHASE_BITS: u32 = 8;
 /// Maximum number of outputs read at a time.
 const CHUNK: usize = 64;
-/// Row bits of a reader that starts on demand. The interpolation error between its rows is -60 dB
-/// at 0.4 of the source's rate and -98 dB at 0.05, and the table takes an eighth of the time to
-/// compute.
+/// As [`PHASE_BITS`], for a reader that starts on demand. Its table takes an eighth of the time to
+/// compute. The interpolation error between its rows is -60 dB at 0.4 of the source's rate, and -98
+/// dB at 0.05.
 const FEW_PHASE_BITS: u32 = 5;
 
-/// Reads its source at a variable ratio by windowed-sinc interpolation. Pull-based like
-/// [`crate::resample::Resampler`]; gives the same samples for any block size.
+/// Reads its source at a variable ratio, by windowed-sinc interpolation. It pulls from the source,
+/// as [`crate::resample::Resampler`] does, and gives the same samples for any block size.
 ///
 /// ```
 /// use htex_dsp::warp::Warp;
@@ -50,25 +50,25 @@ pub struct Warp {
     history: Vec<f32>,
     start: usize,
     filled: usize,
-    /// Whether it interpolates; otherwise it passes its source through.
+    /// Whether it interpolates. Otherwise the source passes through.
     reads: bool,
 }
 
 impl Warp {
     /// Makes a reader for a source without content above `top` times its rate (0 to 0.5). A change
-    /// of ratio takes effect with a delay of half a kernel (4 to 16 source samples).
+    /// of the ratio takes effect after half a kernel (4 to 16 source samples).
     pub fn new(top: f64) -> Self {
         Self::of(taps(top), PHASE_BITS)
     }
 
-    /// Makes a reader for a ratio of 1 only: it passes its source through without delay.
+    /// Makes a reader for a ratio of 1 only. The source passes through without delay.
     pub fn through() -> Self {
         Self::of(1, 0)
     }
 
-    /// Makes a reader that passes its source through, bit-identical and without delay, while the
-    /// ratio is 1. From the first other ratio on it interpolates, as [`Self::new`] does, starting
-    /// at the current position.
+    /// Makes a reader that starts to interpolate only when it is needed. While the ratio is 1, the
+    /// source passes through bit-identical and without delay. From the first other ratio on, the
+    /// reader interpolates as [`Self::new`] does, starting at the current position.
     pub fn when_needed(top: f64) -> Self {
         let mut warp = Self::of(taps(top), FEW_PHASE_BITS);
         warp.filled = warp.before();
@@ -89,14 +89,14 @@ impl Warp {
         }
     }
 
-    /// Samples of a window before the position that is read.
+    /// Number of samples in a window before the position that is read.
     fn before(&self) -> usize {
         self.taps / 2 - 1
     }
 
-    /// Fills `out`; each sample is `ratio` source samples (0 to 1,000) after the one before. A
-    /// `ratio` above 1 aliases source content above the output's Nyquist frequency. Pulls no more
-    /// than `out` needs. Does not allocate.
+    /// Fills `out`. Each sample is `ratio` source samples (0 to 1,000) after the one before. With a
+    /// `ratio` above 1, source content above the output's Nyquist frequency is aliased. Pulls no
+    /// more samples than `out` needs. Does not allocate.
     pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         if !self.reads {
             if ratio == 1.0 {
@@ -106,7 +106,7 @@ impl Warp {
             self.reads = true;
         }
         let whole = ratio as usize;
-        // In units of 2⁻⁶⁴; below 1 the product cannot round up to 2⁶⁴.
+        // In units of 2⁻⁶⁴. The factor is below 1, so the product cannot round up to 2⁶⁴.
         let step = (whole, ((ratio - whole as f64) * 18_446_744_073_709_551_616.0) as u64);
         let mut rest = out;
         while !rest.is_empty() {
@@ -115,7 +115,7 @@ impl Warp {
         }
     }
 
-    /// Reads as many samples as have their windows within one pull; returns their number.
+    /// Reads as many samples as the windows in one pull allow; returns their number.
     fn piece(
         &mut self,
         (whole, part): (usize, u64),
@@ -149,7 +149,8 @@ impl Warp {
         self.history[before - new..before].copy_from_slice(&block[block.len() - new..]);
     }
 
-    /// Drops samples before the next window; reads and discards source samples up to it.
+    /// Drops samples before the next window. If the window is ahead, reads and discards source
+    /// samples.
     fn skip(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start > self.filled {
             let end = self.history.len().min(self.start - self.filled);
@@ -169,14 +170,14 @@ impl Warp {
     }
 }
 
-/// Window length for a source without content above `top` of its rate: its images begin at
-/// `1 - top`.
+/// Window length for a source without content above `top` times its rate. Its images begin at `1 -
+/// top`.
 fn taps(top: f64) -> usize {
     let taps = kaiser_length((1.0 - 2.0 * top).max(1e-6)).next_multiple_of(LANES);
     taps.min(MOST_TAPS)
 }
 
-/// Position of a sample: start of its window in the history, and the fraction of the way to the
+/// Position of a sample: the start of its window in the history, and the fraction of the way to the
 /// next sample.
 #[derive(Debug, Clone, Copy, Default)]
 struct ReadPosition {

@@ -1,17 +1,17 @@
-//! Run-time selection of AVX2 and AVX-512 code on x86-64.
+//! Selects AVX2 and AVX-512 code on x86-64 at run time.
 //!
-//! Inner loops are compiled for 128 and 256 bits, and noise for 512 as well. The operations and
-//! their order are the same, so the results are bit-identical. The calls into these versions are
-//! the only unsafe code of this crate.
+//! Inner loops are compiled for 128 and 256 bits, and noise also for 512 bits. The operations and
+//! their order are the same, so the results are bit-identical. The calls of these versions are the
+//! only unsafe code of this crate.
 
 /// A computation that is compiled for several register widths; `run` is always inlined.
 pub(crate) trait Work {
     fn run(self);
 }
 
-/// Runs `work` compiled for AVX2 (256-bit registers) if the processor has it, else as compiled for
-/// the target. The result is bit-identical: the same operations in the same order, on several
-/// numbers at a time.
+/// Runs `work` as compiled for AVX2 (256-bit registers) if the processor has it, otherwise as
+/// compiled for the target. The result is bit-identical, because the operations and their order are
+/// the same.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]
@@ -27,15 +27,15 @@ pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Runs `work`; other targets have one version only.
+/// Runs `work`. Other targets have only one version.
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
 #[inline(always)]
 pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Runs `work` compiled for AVX-512 (512-bit registers) if the processor has it, else returns it:
-/// work of that width is faster as two halves then.
+/// Runs `work` as compiled for AVX-512 (512-bit registers) if the processor has it. Otherwise
+/// returns `work`, because two halves are then faster than work of this width.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]
@@ -56,7 +56,7 @@ pub(crate) fn very_wide<W: Work>(work: W) -> Result<(), W> {
     Ok(())
 }
 
-/// Returns the work; other targets have no 512-bit version.
+/// Returns the work, because other targets have no 512-bit version.
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
 #[inline(always)]
 pub(crate) fn very_wide<W: Work>(work: W) -> Result<(), W> {

@@ -1,5 +1,5 @@
-//! The periodic Hann window, `0.5 - 0.5 cos(2π x) = sin²(π x)`: a sinusoid on the grid leaks into
-//! its two neighbouring bins only, at half its height.
+//! The periodic Hann window, `0.5 - 0.5 cos(2π x) = sin²(π x)`. A sinusoid on the grid leaks only
+//! into its two neighbouring bins, at half its height.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -15,8 +15,9 @@ pub fn hann_periodic(n: usize) -> Vec<f64> {
     (0..n).map(|i| sine_squared(i, n)).collect()
 }
 
-/// Height of the window's transform `bins` away from a sinusoid, within its main lobe, of two bins
-/// on either side: 1 at its centre, `sin(πd) / (πd (1 - d²))`, and 0 beyond.
+/// Height of the window's transform at a distance of `bins` from a sinusoid: `sin(πd) / (πd (1 -
+/// d²))`, which is 1 at the centre. Only the main lobe is returned; beyond two bins on either side
+/// the result is 0.
 ///
 /// ```
 /// use htex_dsp::window::hann_main_lobe;
@@ -38,8 +39,8 @@ pub fn hann_main_lobe(bins: f64) -> f64 {
     crate::trig::sin(a) / (a * (1.0 - d * d))
 }
 
-/// `sin²(π i / period)`, computed by reflection at the middle, so that the window is exactly
-/// symmetric.
+/// `sin²(π i / period)`. The second half is a reflection of the first, so that the window is
+/// exactly symmetric.
 fn sine_squared(i: usize, period: usize) -> f64 {
     let i = i.min(period - i);
     let sine = crate::trig::sin(PI * i as f64 / period as f64);

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-//! Holds the crate to the workspace's golden vectors, which were made with other software
-//! (each case says with which): `|got - expected| <= atol + rtol |expected|` for every element.
+//! Compares the crate with the golden vectors of the workspace, which were made with other software
+//! (each case names it). The condition is `|got - expected| <= atol + rtol |expected|` for every
+//! element.
 
 use htex_dsp::bands::{BandBank, band_error_db, energy_matching_gain, pearson_correlation};
 use htex_dsp::beta::{BetaDensity, log_unit};
@@ -74,7 +75,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     }
 }
 
-/// The cases of one file whose names start with one of `prefixes`; fails if there are none.
+/// Returns the cases of one file whose names start with one of `prefixes`; fails if there are none.
 fn cases(file: &str, prefixes: &[&str]) -> Vec<Case> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
     let text = std::fs::read_to_string(format!("{folder}/{file}.json")).unwrap();
@@ -86,7 +87,7 @@ fn cases(file: &str, prefixes: &[&str]) -> Vec<Case> {
     chosen
 }
 
-/// The smooth spectrum several cases share, on the 197 grid frequencies.
+/// The smooth spectrum that several cases share, on the 197 grid frequencies.
 fn smooth_spectrum() -> Vec<f64> {
     let m = |f: f64| {
         0.01 * (-(f / 150.0).ln().powi(2)).exp() + 0.002 * (-((f - 600.0) / 120.0).powi(2)).exp()
@@ -193,7 +194,7 @@ fn measures_that_no_model_is_fitted_to() {
 #[test]
 fn band_comparison() {
     let frequencies = Band::TACTILE.grid_hz();
-    // A high-pass is a low-pass of the inverse frequency.
+    // A high-pass is a low-pass at the inverse frequency.
     let butterworth = |f: &f64| {
         0.02 * butterworth::analog_low_pass_magnitude(150.0 / f, 1.0)
             * butterworth::analog_low_pass_magnitude(f / 150.0, 2.0)
@@ -267,8 +268,8 @@ fn cepstra_there_and_back() {
         let mut back = vec![0.0; spectrum.len()];
         inverse.apply(&energies, &mut back);
         back.iter_mut().for_each(|p| *p = p.max(0.0).sqrt());
-        // At the band's two ends every weight is zero, and so is the result; the golden vector has
-        // the square root of the rounding error of its edges there, 2e-10.
+        // At both ends of the band every weight is zero, and so is the result. The golden vector
+        // has the square root of the rounding error of its edges there, 2e-10.
         let ends = [0, spectrum.len() - 1];
         let mut with_ends = back.clone();
         for i in ends {
@@ -313,7 +314,7 @@ fn beta_density() {
     }
 }
 
-/// The complete fit, a difficult problem for the simplex search.
+/// The complete fit, which is a difficult problem for the simplex search.
 #[test]
 fn beta_fits() {
     let options = Options { x_tolerance: 1e-10, f_tolerance: 1e-16, ..Options::default() };

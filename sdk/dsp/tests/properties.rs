@@ -28,7 +28,7 @@ fn power_spectrum() -> impl Strategy<Value = Vec<f64>> {
 /// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist
 /// inclusive: `r[m] = Σ P_k cos(π k m / (bins - 1))`.
 ///
-/// The power is one-sided (a bin includes the power of its negative frequency), so `r[0]` is the
+/// The power is one-sided: a bin includes the power of its negative frequency. So `r[0]` is the
 /// total power. Bins outside the band have zero power, and the model approximates zero there.
 fn autocorrelation_from_power(power: &[f64], order: usize) -> Vec<f64> {
     let nyquist = power.len().saturating_sub(1).max(1);
@@ -116,7 +116,8 @@ proptest! {
         matrix in vec(-1.0..1.0f64, 24),
         y in vec(-1.0..1.0f64, 4),
     ) {
-        // Wide, and almost surely of full rank: the pseudo-inverse solves every right side.
+        // A wide matrix, almost surely of full rank: the pseudo-inverse solves every right-hand
+        // side.
         let inverse = PseudoInverse::new(&matrix, 4, 6);
         prop_assume!(inverse.rank() == 4);
         let mut x = [0.0; 6];

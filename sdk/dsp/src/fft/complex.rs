@@ -9,7 +9,8 @@ use super::unit;
 use crate::butterflies::{Butterfly, Five, Four, Seven, Three, Two};
 use crate::wide::{Work, wide};
 
-/// Complex numbers, real and imaginary parts apart, as vector instructions want them.
+/// Complex numbers with real and imaginary parts in separate arrays, as vector instructions need
+/// them.
 #[derive(Debug, Clone)]
 pub(super) struct Points {
     re: Vec<f64>,
@@ -21,7 +22,7 @@ impl Points {
         Self { re: alloc::vec![0.0; len], im: alloc::vec![0.0; len] }
     }
 
-    /// Takes over these points; the rest is zero.
+    /// Replaces the points by these; remaining points become zero.
     pub(super) fn fill(&mut self, points: impl Iterator<Item = [f64; 2]>) {
         let points = points.chain(core::iter::repeat([0.0; 2]));
         let parts = self.re.iter_mut().zip(&mut self.im);
@@ -37,12 +38,12 @@ impl Points {
     }
 }
 
-/// Complex FFTs of one length.
+/// Complex FFT of one length.
 #[derive(Debug, Clone)]
 pub(super) enum ComplexFft {
-    /// Of a product of 2, 3, 5 and 7.
+    /// For a length whose prime factors are 2, 3, 5 and 7.
     Stages { stages: Vec<Stage>, to: Points },
-    /// Of any other length.
+    /// For any other length.
     Chirp(Box<Chirp>),
 }
 
@@ -62,7 +63,8 @@ impl ComplexFft {
 
     /// Replaces `x_n` by `Σ x_n exp(-2πi k n / len)`.
     pub(super) fn forward(&mut self, points: &mut Points) {
-        // With the parts exchanged, sums with positive exponents are those with negative ones.
+        // If real and imaginary parts are exchanged, the sums with positive exponents become the
+        // sums with negative exponents.
         points.swap_parts();
         self.inverse(points);
         points.swap_parts();
@@ -100,13 +102,14 @@ impl Work for Transform<'_> {
     }
 }
 
-/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and
-/// writes the points `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
+/// One pass of the transform, by one radix. Butterfly `i` reads the points `i + count j` for each
+/// `j` below the radix, and writes the points `radix stride p + stride k + q` for each `k`, where
+/// `i = stride p + q`.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
     radix: usize,
     stride: usize,
-    /// Butterflies of the stage.
+    /// Number of butterflies in the stage.
     count: usize,
     /// `exp(2πi p k / length)` for each `p` and each `k`.
     twiddles: Vec<Complex<f64>>,
@@ -145,32 +148,33 @@ impl Stage {
     }
 }
 
-/// `R` rows of `len` numbers each.
+/// Returns `R` rows of `len` numbers each.
 #[inline(always)]
 fn rows<const R: usize>(from: &[f64], len: usize) -> [&[f64]; R] {
     core::array::from_fn(|j| &from[j * len..][..len])
 }
 
-/// The parts `p` of rows, of `len` numbers each.
+/// Returns the part `p` of each row, `len` numbers each.
 #[inline(always)]
 fn parts<const R: usize>(rows: [&[f64]; R], p: usize, len: usize) -> [&[f64]; R] {
     core::array::from_fn(|j| &rows[j][p * len..][..len])
 }
 
-/// `R` rows of `len` numbers each.
+/// Returns `R` rows of `len` numbers each.
 #[inline(always)]
 fn rows_mut<const R: usize>(to: &mut [f64], len: usize) -> [&mut [f64]; R] {
     let mut rows = to.chunks_exact_mut(len);
     core::array::from_fn(|_| &mut rows.next().unwrap_or_default()[..len])
 }
 
-/// Bluestein's algorithm: with `k n = (k² + n² - (k - n)²) / 2`, a transform is a convolution with
-/// the chirp `exp(-πi n² / len)`, which transforms of a longer length compute.
+/// Bluestein's algorithm. Because `k n = (k² + n² - (k - n)²) / 2`, a transform is a convolution
+/// with the chirp `exp(-πi n² / len)`. The convolution is computed by transforms of a longer
+/// length.
 #[derive(Debug, Clone)]
 pub(super) struct Chirp {
     /// `exp(πi n² / len)`.
     chirp: Vec<Complex<f64>>,
-    /// The conjugate chirp's transform over the longer length, divided by that length.
+    /// The transform of the conjugate chirp over the longer length, divided by that length.
     kernel: Points,
     longer: ComplexFft,
     work: Points,
@@ -213,8 +217,8 @@ impl Chirp {
     }
 }
 
-/// The radices whose product is `n`, and none for 0; `None` if there is a prime above 7. Large ones
-/// come first: strides are then long early.
+/// Returns the radices whose product is `n`; none for 0, and `None` if `n` has a prime factor
+/// above 7. Large radices come first, so that strides become long early.
 fn radices(mut n: usize) -> Option<Vec<usize>> {
     let mut radices = Vec::new();
     for radix in [4, 7, 5, 3, 2] {

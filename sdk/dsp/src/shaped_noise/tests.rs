@@ -36,12 +36,12 @@ fn power_is_one_and_stationary() {
     for phase in [0, 125, 250, 499] {
         assert!((power(phase) - 1.0).abs() < 0.1, "{phase}: {}", power(phase));
     }
-    // Above 1 by the power that the bins of the band miss at its lower edge.
+    // Above 1, because the bins of the band miss some power at its lower edge.
     let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
     assert!((1.0..1.03).contains(&total), "{total}");
 }
 
-/// At any position in a hop, before a change of spectrum and after it.
+/// At any position in a hop, before and after a change of the spectrum.
 #[test]
 fn a_frame_made_early_is_the_same_frame() {
     let hop = noise(0).frames.hop;
@@ -67,7 +67,7 @@ fn a_frame_made_early_is_the_same_frame() {
     }
 }
 
-/// The result does not depend on block sizes either.
+/// The result does not depend on the block sizes.
 #[test]
 fn a_retune_fades_to_the_voice_of_the_new_spectrum() {
     let (hop, fade, overlap) = {
@@ -86,7 +86,7 @@ fn a_retune_fades_to_the_voice_of_the_new_spectrum() {
         out[..at].chunks_mut(7).for_each(|part| voice.render(part));
         voice.retune(|_, f| libm::exp(-f / 50.0));
         voice.render(&mut out[at..begun + 3]);
-        // This has to wait for the other.
+        // This change has to wait for the end of the other one.
         voice.retune(|_, f| libm::exp(-f / 400.0));
         voice.render(&mut out[begun + 3..]);
         for (n, y) in out.iter().enumerate() {

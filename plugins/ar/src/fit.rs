@@ -1,8 +1,8 @@
 //! Estimation of the filter coefficients.
 //!
-//! No resonance is narrower than a bin: the spectrum cannot show one, and such a resonance, which
-//! Yule–Walker finds for a tone, takes hours to reach its level and is misread by the bins by tens
-//! of decibels.
+//! No resonance is narrower than a bin, because the spectrum cannot show one. Yule–Walker finds
+//! such a resonance for a tone. It would take hours to reach its level, and the bins would misread
+//! it by tens of decibels.
 
 use alloc::vec::Vec;
 
@@ -17,10 +17,10 @@ use crate::{Filter, flat};
 const ORDER: usize = 0;
 const RATE: usize = 1;
 const METHOD: usize = 2;
-/// Equivalent noise bandwidth of a bin, hertz: magnitude² = 2 · P · this.
+/// Equivalent noise bandwidth of a bin, hertz: magnitude² = 2 · P · bandwidth.
 const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
-/// Half-power width of the narrowest resonance of a fit, hertz. A spectrum in bins cannot resolve
-/// narrower ones, and their level cannot be measured from bins.
+/// Half-power width of the narrowest resonance of a fit, hertz. Bins can neither resolve narrower
+/// resonances nor measure their level.
 const NARROWEST_HZ: f64 = GRID_HZ;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -28,7 +28,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         return Err(Error::cannot_fit("the spectrum is silent: there is no filter to find"));
     }
     let order = input.options[ORDER] as usize;
-    // A band that ends below the tactile one was recorded at twice its upper edge.
+    // A recording whose band ends below the tactile band was sampled at twice the band's upper
+    // edge.
     let rate_hz = if input.band.high_hz < Band::TACTILE.high_hz {
         input.options[RATE].min(2.0 * input.band.high_hz)
     } else {
@@ -41,9 +42,9 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     }
 }
 
-/// Yule–Walker on the power spectrum; the prediction error gives the level.
+/// Yule–Walker on the power spectrum. The prediction error determines the level.
 fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit, Error> {
-    // Relative to the largest bin, so that no power over- or underflows.
+    // Relative to the largest bin, so that no power overflows or underflows.
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
     let lags: Vec<f64> = (0..=order)
         .map(|lag| autocorrelation(input, largest, lag as f64 / rate_hz, rate_hz))
@@ -53,7 +54,8 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     let filter = Filter { coefficients: &coefficients, rate_hz };
     let level = filter.level(input.band)?;
     if coefficients != model.coefficients {
-        // The error belongs to the filter before it was changed.
+        // The prediction error belongs to the filter before it was changed, so it cannot give the
+        // level.
         return Ok(Fit {
             parameters: flat(&coefficients, rate_hz),
             level_rms: recorded_level(input),
@@ -75,8 +77,8 @@ fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64)
         .sum()
 }
 
-/// Estimates from the signal at the model rate. Overlap-adding windowed segments changes their
-/// power, so the level is that of the recording in the band.
+/// Estimates the coefficients from the signal at the model rate. The level is the recording's in
+/// the band, because overlap-adding windowed segments changes their power.
 fn from_signal(
     input: &FitInput<'_>,
     rate_hz: f64,
@@ -100,13 +102,13 @@ fn from_signal(
 
 /// RMS of the recording in the band.
 fn recorded_level(input: &FitInput<'_>) -> f64 {
-    // Relative to the largest bin, so that no power over- or underflows.
+    // Relative to the largest bin, so that no power overflows or underflows.
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
     largest * level_rms(&relative)
 }
 
-/// Widens resonances narrower than [`NARROWEST_HZ`].
+/// Widens resonances that are narrower than [`NARROWEST_HZ`].
 fn resolved(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
     let radius = libm::exp(-core::f64::consts::PI * NARROWEST_HZ / rate_hz);
     within_radius(coefficients, radius)

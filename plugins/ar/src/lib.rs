@@ -1,4 +1,4 @@
-//! Autoregressive model: the spectrum is that of white noise filtered by an all-pole filter (paper,
+//! Autoregressive model (`org.htex.ar`): white noise filtered by an all-pole filter (paper,
 //! Auto-regression; after Culbertson et al. 2014).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
@@ -92,7 +92,8 @@ impl Model for Autoregression {
         Ok(())
     }
 
-    /// Interpolates line spectral frequencies; every weighted mean of them gives a stable filter.
+    /// Interpolates line spectral frequencies, because every weighted mean of them gives a stable
+    /// filter.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -180,7 +181,7 @@ impl<'a> Filter<'a> {
     }
 }
 
-/// Checks that a level is usable as a divisor of magnitudes and samples.
+/// Checks that magnitudes and samples can be divided by this level.
 fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);

@@ -1,7 +1,7 @@
-//! A cache of line spectral frequencies of filters.
+//! A cache of the line spectral frequencies of filters.
 //!
 //! Computing them takes about ten times as long as the rest of a parameter change, and a motion
-//! between conditions mixes the same few filters repeatedly.
+//! between conditions interpolates the same few filters again and again.
 
 use htex_dsp::line_spectrum::lines_of_reflection;
 use htex_dsp::linear_prediction::step_down_in_place;
@@ -9,15 +9,16 @@ use htex_model::Lock;
 
 use crate::MAX_ORDER;
 
-/// Largest order of a cached filter.
+/// Highest order of a filter that is cached.
 const KEPT_ORDER: usize = 32;
-/// Number of cached filters: `HASHES` buckets of a few filters each.
+/// Number of buckets of a few cached filters each.
 const HASHES: usize = 16;
 const PLACES: usize = 4;
 
 static KEPT: Lock<Kept> = Lock::new(Kept::NONE);
 
-/// The filters of one bucket with their line spectral frequencies; the oldest is replaced next.
+/// The filters of one bucket, with their line spectral frequencies. The next filter replaces the
+/// oldest one.
 struct Kept {
     filters: [[Filter; PLACES]; HASHES],
     oldest: [u8; HASHES],
@@ -37,9 +38,9 @@ impl Kept {
     };
 }
 
-/// Writes the line spectral frequencies of a filter, radians, as many as it has coefficients; false
-/// if it is not stable. The result does not depend on whether they are cached. Does not allocate or
-/// wait.
+/// Writes the line spectral frequencies of a filter, radians, one for each coefficient. Returns
+/// false if the filter is not stable. The result does not depend on whether it was cached. Does not
+/// allocate or wait.
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
     let kept = if (1..=KEPT_ORDER).contains(&order) { KEPT.try_lock() } else { None };

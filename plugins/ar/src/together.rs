@@ -1,6 +1,6 @@
 //! Rendering of four voices side by side.
 //!
-//! The operations and their order are those of one voice, so the samples are bit-identical.
+//! The operations and their order are the same as for one voice, so the samples are bit-identical.
 
 use htex_dsp::all_pole::{AllPoles, GROUP};
 use htex_dsp::noise::GaussianNoise;
@@ -10,16 +10,16 @@ use htex_model::Voice;
 
 use crate::AutoregressionVoice;
 
-/// Groups of samples per step.
+/// Number of groups of samples per step.
 const BLOCK: usize = 64;
-/// Minimum number of groups for which rendering side by side is faster.
+/// Smallest number of groups for which rendering side by side is faster.
 const LEAST: usize = 16;
 
 /// Fills one row for each of four voices.
 pub(crate) fn render(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOICES]) {
     let frames = rows[0].len();
     let [first, others @ ..] = &*voices;
-    // First the rest of the last group, then whole groups.
+    // Renders the rest of the current group first, and then whole groups.
     let head = (GROUP - first.taken).min(frames);
     let body = (frames - head) / GROUP * GROUP;
     let steady = |voice: &AutoregressionVoice| voice.ramp_left == 0;
@@ -47,8 +47,8 @@ fn alone(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOI
     }
 }
 
-/// Renders whole groups of each voice; returns false without effect if the filters cannot run side
-/// by side.
+/// Renders whole groups of each voice. Returns false, without an effect, if the filters cannot run
+/// side by side.
 fn groups(
     voices: &mut [&mut AutoregressionVoice; VOICES],
     rows: &mut [&mut [f32]; VOICES],
@@ -61,7 +61,7 @@ fn groups(
         return false;
     };
     let gains = Quad([a.gain, b.gain, c.gain, d.gain]);
-    // The output buffer first holds the noise.
+    // The output buffer is first used for the noise.
     let [r0, r1, r2, r3] = rows;
     GaussianNoise::fill_both([&mut a.noise, &mut b.noise], [r0, r1]);
     GaussianNoise::fill_both([&mut c.noise, &mut d.noise], [r2, r3]);

@@ -14,17 +14,17 @@ use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, finite_level, together,
 
 /// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's
-/// transient has decayed by then.
+/// Duration that is rendered and discarded before the first sample, seconds, with a limit in
+/// samples. After it the filter's transient has decayed.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
-/// Groups of samples per step.
+/// Number of groups of samples per step.
 const BLOCK: usize = 32;
 
 /// An endless stream of filtered noise.
 pub struct AutoregressionVoice {
     rate_hz: f64,
-    /// Power that passes `edges`.
+    /// How much power passes `edges`.
     passed: Arc<PassedPower>,
     pub(crate) noise: GaussianNoise,
     pub(crate) filter: AllPole,
@@ -62,7 +62,8 @@ impl AutoregressionVoice {
                 " Hz",
             ]));
         }
-        // A filter without energy in the band may have some just outside it.
+        // Checked without the band's edges, because a filter without energy in the band may have
+        // some just outside it.
         Filter::new(parameters)?.level(band)?;
         let passed = PassedPower::shared(band, rate_hz);
         let target = Target::new(parameters, &passed)?;
@@ -96,7 +97,7 @@ impl AutoregressionVoice {
         let mut block = [[0.0; GROUP]; BLOCK];
         for out in steady.chunks_mut(BLOCK) {
             let block = &mut block[..out.len()];
-            // The output buffer first holds the noise.
+            // The output buffer is first used for the noise.
             self.noise.fill(out.as_flattened_mut());
             let noise = out.as_flattened().iter();
             for (x, noise) in block.as_flattened_mut().iter_mut().zip(noise) {
@@ -122,7 +123,7 @@ impl AutoregressionVoice {
         out[0]
     }
 
-    /// Limits the filter's output to the band.
+    /// Limits the filter's output to the band, and stores it as output samples.
     fn finish(&mut self, block: &mut [Group], out: &mut [[f32; GROUP]]) {
         self.edges.process(block.as_flattened_mut().as_chunks_mut().0);
         let out = out.as_flattened_mut().iter_mut();

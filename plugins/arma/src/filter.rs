@@ -1,4 +1,4 @@
-//! The filter of a parameter set.
+//! The filter that a parameter set describes.
 
 use core::f64::consts::PI;
 
@@ -11,16 +11,16 @@ use htex_model::{Error, Values};
 
 use crate::{MAX_ORDER, MODEL_RATE, POLE_LINES, ZERO_LINES};
 
-/// `(1 - Σ B_i z⁻ⁱ) / (1 - Σ A_i z⁻ⁱ)`.
+/// The filter `(1 - Σ B_i z⁻ⁱ) / (1 - Σ A_i z⁻ⁱ)`.
 pub(crate) struct Filter {
     poles: Polynomial,
     zeros: Polynomial,
-    /// Of the denominator.
+    /// Reflection coefficients of the denominator.
     reflection: [f64; MAX_ORDER],
     rate_hz: f64,
 }
 
-/// `1 - Σ A_i z⁻ⁱ`, and the cosines of its lines.
+/// A polynomial `1 - Σ A_i z⁻ⁱ`, with the cosines of its line spectral frequencies.
 struct Polynomial {
     coefficients: [f64; MAX_ORDER],
     cosines: [f64; MAX_ORDER],
@@ -30,7 +30,7 @@ struct Polynomial {
 impl Polynomial {
     const ONE: Self = Self { coefficients: [0.0; MAX_ORDER], cosines: [0.0; MAX_ORDER], order: 0 };
 
-    /// Becomes that of some lines; false if there are too many.
+    /// Sets the polynomial from its line spectral frequencies. Returns false if there are too many.
     fn set(&mut self, lines: &[f64]) -> bool {
         let order = lines.len();
         let Some(cosines) = self.cosines.get_mut(..order) else {
@@ -53,7 +53,7 @@ impl Polynomial {
 }
 
 impl Filter {
-    /// The filter that changes nothing, at a rate.
+    /// Makes a filter that changes nothing, at this sample rate.
     pub(crate) fn one(rate_hz: f64) -> Self {
         Self {
             poles: Polynomial::ONE,
@@ -75,8 +75,8 @@ impl Filter {
         Ok(filter)
     }
 
-    /// Becomes the filter of some parameters, of the same rate. Copies no filter: voices do this
-    /// for each motion. After an error it is none.
+    /// Sets the filter from parameters with the same rate. Works in place, because voices call it
+    /// for each motion. After an error the filter is unusable.
     pub(crate) fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.set_lines(parameters.list(POLE_LINES), parameters.list(ZERO_LINES))
     }
@@ -101,27 +101,27 @@ impl Filter {
         if step_down_in_place(own) { Ok(()) } else { Err(unstable()) }
     }
 
-    /// `A_1` to `A_p`.
+    /// Prediction coefficients of the denominator, `A_1` to `A_p`.
     pub(crate) fn poles(&self) -> &[f64] {
         self.poles.coefficients()
     }
 
-    /// `B_1` to `B_q`.
+    /// Coefficients of the numerator, `B_1` to `B_q`.
     pub(crate) fn zeros(&self) -> &[f64] {
         self.zeros.coefficients()
     }
 
-    /// As [`Self::zeros`], and zeros beyond their order.
+    /// As [`Self::zeros`], followed by zeros up to the highest order.
     pub(crate) fn zeros_of_any_order(&self) -> &[f64; MAX_ORDER] {
         &self.zeros.coefficients
     }
 
-    /// Reflection coefficients of the denominator, and zeros beyond its order.
+    /// Reflection coefficients of the denominator, followed by zeros up to the highest order.
     pub(crate) fn reflection(&self) -> &[f64; MAX_ORDER] {
         &self.reflection
     }
 
-    /// The level of its noise behind the filters at the band's edges.
+    /// RMS of white noise behind this filter and the filters at the band's edges.
     pub(crate) fn passed_level(&self, passed: &PassedPower) -> Result<f64, Error> {
         finite_level(passed.rational_level_rms(self.zeros.cosines(), self.poles.cosines()))
     }
@@ -140,7 +140,7 @@ impl Filter {
     }
 }
 
-/// Checks that a level is usable as a divisor of magnitudes and samples.
+/// Checks that magnitudes and samples can be divided by this level.
 fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);

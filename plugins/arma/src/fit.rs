@@ -1,10 +1,11 @@
 //! Estimation of poles and zeros from a power spectrum.
 //!
-//! The poles of a spectrum that is divided by that of the zeros are found by Yule–Walker, and the
-//! zeros as the poles of the inverse spectrum, multiplied by that of the poles; in turns, since
-//! each depends on the other. Of all rounds the one is kept under which the spectrum is likeliest
-//! as that of Gaussian noise (the Itakura–Saito distance, whatever the level). No resonance is
-//! narrower than a bin, as in AR: the spectrum cannot show one.
+//! Poles and zeros depend on each other, so they are estimated in turns. The poles are found by
+//! Yule–Walker, from the spectrum divided by the spectrum of the zeros. The zeros are found in the
+//! same way, as poles of the inverse spectrum multiplied by the spectrum of the poles. The result
+//! is the round that makes the spectrum most likely, if it is a spectrum of Gaussian noise (the
+//! Itakura–Saito distance, at whatever level). As in AR, no resonance is narrower than a bin,
+//! because the spectrum cannot show one.
 
 use alloc::vec::Vec;
 
@@ -22,10 +23,10 @@ const ZEROS: usize = 1;
 const RATE: usize = 2;
 /// Half-power width of the narrowest resonance of a fit, hertz.
 const NARROWEST_HZ: f64 = GRID_HZ;
-/// Rounds in which poles and zeros are estimated.
+/// Number of rounds in which poles and zeros are estimated.
 const ROUNDS: usize = 12;
-/// Least power of a bin, relative to the largest: the inverse of an empty bin would be all there
-/// is.
+/// Smallest power of a bin, relative to the largest. Otherwise an empty bin would dominate the
+/// inverse spectrum.
 const FLOOR: f64 = 1e-8;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -33,7 +34,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     if largest == 0.0 {
         return Err(Error::cannot_fit("the spectrum is silent: there is no filter to find"));
     }
-    // A band that ends below the tactile one was recorded at twice its upper edge.
+    // A recording whose band ends below the tactile band was sampled at twice the band's upper
+    // edge.
     let rate_hz = if input.band.high_hz < Band::TACTILE.high_hz {
         input.options[RATE].min(2.0 * input.band.high_hz)
     } else {
@@ -47,12 +49,12 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         [&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat();
     let filter = Filter::of_lines(&poles, &zeros, rate_hz).map_err(|_| too_close())?;
     filter.level(input.band)?;
-    // Relative to the largest bin, so that no power over- or underflows.
+    // Relative to the largest bin, so that no power overflows or underflows.
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
     Ok(Fit { parameters, level_rms: largest * level_rms(&relative) })
 }
 
-/// The lines of a stable polynomial as a file holds them.
+/// Line spectral frequencies of a stable polynomial, rounded as in a file.
 fn stored_lines(coefficients: &[f64]) -> Result<Vec<f64>, Error> {
     let mut reflection = coefficients.to_vec();
     if !step_down_in_place(&mut reflection) {
@@ -68,13 +70,13 @@ fn too_close() -> Error {
     )
 }
 
-/// The power of the bins up to the Nyquist frequency, relative to the largest. Bins below the band
-/// have that of its first bin: as empty ones they would draw zeros.
+/// Power of the bins up to the Nyquist frequency, relative to the largest bin. Bins below the band
+/// get the power of its first bin: if they were empty, they would attract zeros.
 struct Spectrum {
     frequency_hz: Vec<f64>,
     power: Vec<f64>,
-    /// Part of each bin in correlations: half at 0 Hz and at the Nyquist frequency, whose mirror
-    /// images are themselves.
+    /// Weight of each bin in correlations: one half at 0 Hz and at the Nyquist frequency, because
+    /// these bins are their own mirror images.
     part: Vec<f64>,
     rate_hz: f64,
 }
@@ -97,7 +99,7 @@ impl Spectrum {
         Self { part: frequency_hz.iter().map(part).collect(), frequency_hz, power, rate_hz }
     }
 
-    /// The likeliest poles and zeros of these orders.
+    /// Returns the most likely poles and zeros with these orders.
     fn likeliest(&self, [poles, zeros]: [usize; 2]) -> (Vec<f64>, Vec<f64>) {
         let mut above = Vec::new();
         let mut best = (f64::INFINITY, Vec::new(), Vec::new());
@@ -115,7 +117,7 @@ impl Spectrum {
         (best.1, best.2)
     }
 
-    /// `1 / |1 - Σ A_i z⁻ⁱ|²` at the bins.
+    /// Returns `1 / |1 - Σ A_i z⁻ⁱ|²` at the bins.
     fn inverse_power(&self, coefficients: &[f64]) -> Vec<f64> {
         let at = |hz: &f64| {
             let m = ar_magnitude(coefficients, *hz, self.rate_hz);
@@ -124,7 +126,7 @@ impl Spectrum {
         self.frequency_hz.iter().map(at).collect()
     }
 
-    /// The all-pole filter of a power spectrum, by Yule–Walker.
+    /// Returns the all-pole filter of a power spectrum, by Yule–Walker.
     fn poles_of(&self, power: impl Fn(usize) -> f64, order: usize) -> Vec<f64> {
         let largest = (0..self.power.len()).map(&power).fold(0.0, f64::max);
         let lag = |lag: usize| -> f64 {
@@ -138,9 +140,9 @@ impl Spectrum {
         within_radius(&levinson_durbin(&lags, order).coefficients, radius)
     }
 
-    /// The Itakura–Saito distance of the spectrum from a filter's at its best level, up to a
-    /// constant: of the ratios of their powers, the logarithm of the mean less the mean of the
-    /// logarithms.
+    /// Itakura–Saito distance of the spectrum from the spectrum of a filter at its best level, up
+    /// to a constant. From the ratios of both powers it is the logarithm of their mean, minus the
+    /// mean of their logarithms.
     fn distance(&self, denominator: &[f64], numerator: &[f64]) -> f64 {
         let filter = denominator.iter().zip(numerator).map(|(d, n)| d / n);
         let ratios: Vec<f64> = self.power.iter().zip(filter).map(|(p, h)| p / h).collect();

@@ -1,9 +1,9 @@
-//! Poles and zeros: the spectrum is that of white noise through a filter with poles and zeros
-//! (ARMA; the models of the Penn Haptic Texture Toolkit, Culbertson et al. 2014).
+//! ARMA model: white noise filtered by a filter with poles and zeros, as in the Penn Haptic Texture
+//! Toolkit (Culbertson et al. 2014).
 //!
-//! Both polynomials are stored as line spectral frequencies, of which every weighted mean is again
-//! a stable filter. Zeros outside the unit circle are none of the parameters: noise through them
-//! has the spectrum of noise through their mirror images inside.
+//! Both polynomials are stored as line spectral frequencies, because every weighted mean of these
+//! is again a stable filter. The parameters cannot have zeros outside the unit circle, and need
+//! not: noise has the same spectrum if these zeros are replaced by their mirror images inside.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -32,9 +32,9 @@ const POLE_LINES: usize = 0;
 const ZERO_LINES: usize = 1;
 const MODEL_RATE: usize = 2;
 
-/// Highest number of poles, and of zeros.
+/// Largest number of poles, and of zeros.
 pub(crate) const MAX_ORDER: usize = all_zero::MAX_ORDER;
-/// The highest line: π, as 32-bit floats have it, which is more.
+/// Highest line spectral frequency: π rounded to a 32-bit float, which is slightly more than π.
 const MAX_LINE: f64 = core::f32::consts::PI as f64;
 
 pub struct PolesAndZeros;

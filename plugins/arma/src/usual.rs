@@ -1,5 +1,5 @@
-//! The usual ranges of the parameters: lines anywhere in half a turn, and the rates of the Penn
-//! Haptic Texture Toolkit (1 kHz) and of the sweep (`knobs`).
+//! The usual ranges of the parameters: lines from 0 to π, and the rates of the Penn Haptic Texture
+//! Toolkit (1 kHz) and of the sweep (`knobs`).
 
 use htex_model::Usual;
 

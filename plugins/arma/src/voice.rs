@@ -1,7 +1,7 @@
 //! The voice: white noise through the zeros, then through the poles.
 //!
-//! A change of parameters moves the coefficients of the zeros and the reflection coefficients of
-//! the poles in a straight line, so that each filter on the way is stable.
+//! When parameters change, the coefficients of the zeros and the reflection coefficients of the
+//! poles move linearly to their new values. So every filter on the way is stable.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -19,17 +19,17 @@ use crate::{MAX_ORDER, MODEL_RATE};
 
 /// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's
-/// transient has decayed by then.
+/// Duration that is rendered and discarded before the first sample, seconds, with a limit in
+/// samples. After it the filter's transient has decayed.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
-/// Groups of samples per step.
+/// Number of groups of samples per step.
 const BLOCK: usize = 32;
 
 /// An endless stream of filtered noise.
 pub struct ArmaVoice {
     rate_hz: f64,
-    /// Power that passes `edges`.
+    /// How much power passes `edges`.
     passed: Arc<PassedPower>,
     noise: GaussianNoise,
     zeros: AllZero,
@@ -37,7 +37,8 @@ pub struct ArmaVoice {
     edges: Pipeline,
     gain: f64,
     target: Box<Target>,
-    /// What becomes the target with the next change, if it can.
+    /// Working memory in which the next target is made. It replaces the target if the parameters
+    /// are valid.
     spare: Box<Target>,
     step: Step,
     ramp_len: u32,
@@ -53,8 +54,8 @@ struct Target {
     gain: f64,
 }
 
-/// What is added for each sample of a change to the coefficients of the zeros, the reflection
-/// coefficients of the poles, and the gain.
+/// What is added for each sample during a change: to the coefficients of the zeros, to the
+/// reflection coefficients of the poles, and to the gain.
 struct Step {
     zeros: [f64; MAX_ORDER],
     reflection: [f64; MAX_ORDER],
@@ -78,7 +79,8 @@ impl ArmaVoice {
             ]));
         }
         let filter = Filter::new(parameters)?;
-        // A filter without energy in the band may have some just outside it.
+        // Checked without the band's edges, because a filter without energy in the band may have
+        // some just outside it.
         filter.level(band)?;
         let passed = PassedPower::shared(band, rate_hz);
         let gain = gain(&filter, rate_hz, &passed)?;
@@ -113,7 +115,7 @@ impl ArmaVoice {
         let mut block = [[0.0; GROUP]; BLOCK];
         for out in steady.chunks_mut(BLOCK) {
             let block = &mut block[..out.len()];
-            // The output buffer first holds the noise.
+            // The output buffer is first used for the noise.
             self.noise.fill(out.as_flattened_mut());
             let noise = out.as_flattened().iter();
             for (x, noise) in block.as_flattened_mut().iter_mut().zip(noise) {
@@ -141,7 +143,7 @@ impl ArmaVoice {
         out[0]
     }
 
-    /// Limits the filter's output to the band.
+    /// Limits the filter's output to the band, and stores it as output samples.
     fn finish(&mut self, block: &mut [Group], out: &mut [Sounded]) {
         self.edges.process(block.as_flattened_mut().as_chunks_mut().0);
         let out = out.as_flattened_mut().iter_mut();
@@ -218,14 +220,14 @@ impl Voice for ArmaVoice {
     }
 }
 
-/// Writes the steps from the present coefficients to others.
+/// Writes the steps per sample from the current coefficients to other coefficients.
 fn spread(step: &mut [f64; MAX_ORDER], (now, to): (&[f64], &[f64; MAX_ORDER]), scale: f64) {
     for ((step, now), to) in step.iter_mut().zip(now).zip(to) {
         *step = (to - now) * scale;
     }
 }
 
-/// The gain of the noise before a filter that makes samples of unit RMS.
+/// Returns the gain of the noise before the filter that gives samples of unit RMS.
 fn gain(filter: &Filter, rate_hz: f64, passed: &PassedPower) -> Result<f64, Error> {
     // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
     let level = filter.passed_level(passed)?;

@@ -6,32 +6,32 @@ use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
 use htex_dsp::shared::Shared;
 
-/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Knots are nearly equally spaced in
-/// hertz below it and in octaves above it: 30 knots over 20 to 1000 Hz are 4.9 Hz apart at 20 Hz,
-/// where the bin spacing is 5 Hz. Of values from 0 to 60 Hz, those around 20 Hz gave the smallest
-/// third-octave error.
+/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Below this frequency the knots are
+/// nearly equally spaced in hertz, above it in octaves. So 30 knots over 20 to 1000 Hz are 4.9 Hz
+/// apart at 20 Hz, where the bins are 5 Hz apart. Of the values from 0 to 60 Hz, those around 20 Hz
+/// gave the smallest third-octave error.
 const CORNER_HZ: f64 = 20.0;
-/// Number of bands from which the default layout is [`Layout::Edges`].
+/// From this number of bands on, the default layout is [`Layout::Edges`].
 const EDGES_FROM: usize = 20;
 
 /// Distribution of the knots over the band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
-    /// Equally spaced in the logarithm of frequency, within the band: at the apexes of
-    /// half-overlapping triangles whose outermost feet are the band's edges (paper, Linear
-    /// regression).
+    /// Equally spaced in the logarithm of the frequency, inside the band. The knots are the apexes
+    /// of half-overlapping triangles; the outermost triangles end at the edges of the band (paper,
+    /// Linear regression).
     Within,
     /// From edge to edge, equally spaced in `ln(f + 20 Hz)`.
     Edges,
 }
 
 impl Layout {
-    /// The default layout for this number of bands.
+    /// Returns the default layout for this number of bands.
     pub(crate) fn of(bands: usize) -> Self {
         if bands < EDGES_FROM { Self::Within } else { Self::Edges }
     }
 
-    /// The value of the layout's parameter.
+    /// Returns the parameter value of the layout.
     pub(crate) fn number(self) -> f64 {
         match self {
             Self::Within => 0.0,
@@ -39,8 +39,8 @@ impl Layout {
         }
     }
 
-    /// The layout of a parameter value. Interpolation between conditions gives values in between;
-    /// the nearer layout is used.
+    /// Returns the layout of a parameter value. Interpolation between conditions gives values in
+    /// between; these select the nearer layout.
     pub(crate) fn from_number(number: f64) -> Self {
         if number < 0.5 { Self::Within } else { Self::Edges }
     }
@@ -55,7 +55,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Position of a frequency of the band on the axis.
+    /// Position on the axis of a frequency in the band.
     fn place(&self, frequency_hz: f64) -> f64 {
         match self.layout {
             Layout::Within => log_unit(frequency_hz, self.band) * (self.knots + 1) as f64 - 1.0,
@@ -69,14 +69,14 @@ impl Axis {
         }
     }
 
-    /// Interpolation weights of the band's bins. Shared by voices with the same axis.
+    /// Interpolation weights of the band's bins. Voices with the same axis share them.
     pub(crate) fn grid_points(&self) -> Arc<[Point]> {
         static POINTS: Shared<Axis, [Point]> = Shared::new();
         let points = || self.band.grid_hz().iter().map(|&f| self.point(f)).collect();
         POINTS.get(*self, points)
     }
 
-    /// Interpolation weights of a frequency of the band.
+    /// Interpolation weights of a frequency in the band.
     pub(crate) fn point(&self, frequency_hz: f64) -> Point {
         let (place, last) = (self.place(frequency_hz), (self.knots - 1) as f64);
         let inside = place.clamp(0.0, last);
@@ -90,19 +90,21 @@ impl Axis {
     }
 }
 
-/// Interpolation weights at a frequency: `share` of knot `knot`, the rest of knot `next`.
+/// Interpolation weights at a frequency: `share` for the knot `knot`, and the rest for the knot
+/// `next`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Point {
     pub(crate) knot: usize,
     pub(crate) next: usize,
     pub(crate) share: f64,
-    /// Sum of the triangles' weights: below 1 outside the outermost knots, and 0 at the edges of a
-    /// band with [`Layout::Within`].
+    /// Sum of the triangles' weights. It is below 1 outside the outermost knots, and 0 at the edges
+    /// of a band with [`Layout::Within`].
     pub(crate) weight: f64,
 }
 
 impl Point {
-    /// Value here of a curve that is linear between knots and constant outside the outermost ones.
+    /// Value at this frequency of a curve that is linear between the knots and constant outside the
+    /// outermost ones.
     pub(crate) fn between(&self, knots: &[f64]) -> f64 {
         self.share * knots[self.knot] + (1.0 - self.share) * knots[self.next]
     }

@@ -1,17 +1,19 @@
-//! Band energies: the energy of a spectrum in log-spaced bands, in three to six bits per band.
+//! Band energies (`org.htex.bands`): the energy of a spectrum in log-spaced bands, with three to
+//! six bits per band.
 //!
-//! Not a model of the paper, and not evaluated in perception experiments. In the paper's regression
-//! of ratings on energy differences, r², which the paper calls low, levels off at nine such bands
-//! (Linear regression); thirty bands keep a spectrum within about 0.3 dB of the recording in
-//! third-octave bands. Stored is the piecewise linear curve with these energies: in decibels, with
-//! knots at the bands' apexes, over the axis on which the bands are equally spaced.
+//! This model is not from the paper, and was not evaluated in perception experiments. The paper
+//! regresses ratings on energy differences; its r², which the paper calls low, levels off at nine
+//! such bands (Linear regression). Thirty bands keep a spectrum within about 0.3 dB of the
+//! recording in third-octave bands. Files store the piecewise linear curve that has these energies.
+//! It is linear in decibels, over the axis on which the bands are equally spaced, and its knots are
+//! at the bands' apexes.
 //!
-//! The default is thirty knots from edge to edge in steps of 1 dB, packed. Medians of the
-//! third-octave error over 15 simulated recordings: 9 bands in 11 bytes 3.7 dB, 19 in 21 bytes 1.4
-//! dB, 22 from edge to edge 0.8 dB, and on the axis ln(f + 20 Hz), which spaces low knots at least
-//! one bin apart, 0.5 dB, all with one byte per band. Differences in a Rice code take two thirds of
-//! a byte, and 30 bands have 0.3 dB in 21 bytes. Entropy codes with longer tails take a byte more,
-//! steps of 0.5 dB two or three more.
+//! The default is thirty knots from edge to edge, in steps of 1 dB, packed. Medians of the
+//! third-octave error over 15 simulated recordings, all with one byte per band: 9 bands in 11 bytes
+//! 3.7 dB, 19 in 21 bytes 1.4 dB, 22 from edge to edge 0.8 dB, and 22 on the axis ln(f + 20 Hz),
+//! which keeps low knots at least one bin apart, 0.5 dB. Stored as differences in a Rice code, a
+//! band needs only two thirds of a byte, and 30 bands have 0.3 dB in 21 bytes. Entropy codes with
+//! longer tails need one byte more, and steps of 0.5 dB two or three more.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -51,20 +53,20 @@ const BANDS_OPTION: usize = 0;
 const STEP_OPTION: usize = 1;
 const LAYOUT_OPTION: usize = 2;
 
-/// Thirty bands in steps of 1 dB took 21 bytes, 23 at most, for 15 simulated recordings, with a
-/// median third-octave error of 0.33 dB; 9 bands have an error of 3.7 dB, 64 bands 0.18 dB in 35
-/// bytes.
+/// For 15 simulated recordings, thirty bands in steps of 1 dB took 21 bytes, at most 23, with a
+/// median third-octave error of 0.33 dB. With 9 bands the error is 3.7 dB; with 64 bands it is 0.18
+/// dB, in 35 bytes.
 const DEFAULT_BANDS: u32 = 30;
 const DEFAULT_STEP_DB: f64 = 1.0;
 const MAX_BANDS: u32 = 64;
-/// Maximum number of steps below the highest knot: the range of a byte.
+/// Largest number of steps below the highest knot: the range of a byte.
 const MAX_STEPS: f64 = 255.0;
-/// Resolution of the step in a file, dB.
+/// Resolution with which files store the step, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// Largest distance of a band from the loudest one and of a knot from the highest one, dB. A band
-/// without energy is 120 dB below, as in the band-error measure, which adds 1e-12 of the largest
-/// energy.
+/// Largest distance between a band and the loudest one, and between a knot and the highest one, dB.
+/// A band without energy is at this distance. It is the same as in the measure of band errors,
+/// which adds 1e-12 of the largest energy.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {
@@ -154,7 +156,7 @@ impl Model for BandEnergies {
         let below: Vec<f64> = below_db.iter().map(round).collect();
         let spectrum = Spectrum::of(&below, step_db, axis)?;
         let made: Vec<f64> = spectrum.magnitude.iter().map(|m| m * m).collect();
-        // The total energy of the bands equals the recording's.
+        // The level is chosen so that the total energy of the bands equals the recording's.
         let energy = |power: &[f64]| total_energy(&axis, input.frequency_hz, power);
         let gain = htex_dsp::root::sqrt(energy(&power) / energy(&made));
         let count = [below.len() as f64];
@@ -211,29 +213,29 @@ impl Model for BandEnergies {
     }
 }
 
-/// The wanted step rounded to the file's resolution, or the smallest step that reaches the quietest
-/// band.
+/// Returns the wanted step, rounded to the resolution of files, or, if it is larger, the smallest
+/// step that reaches the quietest band.
 fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
     let reach_db = below_db.iter().copied().fold(0.0, f64::max);
     let least = libm::ceil(reach_db / (MAX_STEPS * STEP_UNIT_DB) - 1e-9);
     libm::round(wanted_db / STEP_UNIT_DB).max(least) * STEP_UNIT_DB
 }
 
-/// The curve of a set of parameters, on the grid.
+/// The curve that a parameter set describes, on the grid.
 pub struct Spectrum {
     axis: Axis,
     points: Arc<[Point]>,
-    /// The parameters: steps below the highest knot, and the step.
+    /// The parameters: the numbers of steps below the highest knot, and the step.
     below: Vec<f64>,
     step_db: f64,
     /// Logarithms of magnitude; 0 is the largest possible value.
     knots: Vec<f64>,
     magnitude: Vec<f64>,
     power: Vec<f64>,
-    /// Power spectrum of the voice, sharpened so that measured through the window, as recordings
-    /// are, it equals `magnitude`.
+    /// Power spectrum of the voice. It is sharpened so that, measured through the window as
+    /// recordings are, it equals `magnitude`.
     played: Vec<f64>,
-    /// `played` before a round of sharpening.
+    /// Working memory: `played` before a step of sharpening.
     before: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
@@ -320,7 +322,7 @@ impl Curve for Spectrum {
         Ok(())
     }
 
-    /// Linear between bins.
+    /// Linear interpolation between bins.
     fn at(&self, frequency_hz: f64) -> f64 {
         let last = self.played.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);

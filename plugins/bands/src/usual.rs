@@ -1,6 +1,6 @@
-//! The usual ranges of the parameters: nine tenths of the knots of 15 simulated recordings of five
-//! surfaces lie 42 dB below the highest or less, and all but a few 60. The steps are those of the
-//! sweep (`knobs`).
+//! The usual ranges of the parameters. In the fits to 15 simulated recordings of five surfaces,
+//! nine tenths of the knots are at most 42 dB below the highest one, and all but a few at most 60
+//! dB. The steps are those of the sweep (`knobs`).
 
 use htex_model::Usual;
 

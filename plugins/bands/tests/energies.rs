@@ -1,4 +1,4 @@
-//! Properties of the model: bands keep their energies, and the curve adds no structure between
+//! Properties of the model: bands keep their energies, and the curve does not add structure between
 //! knots.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -34,7 +34,7 @@ fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
     magnitude
 }
 
-/// Magnitude of shape and level together on the grid.
+/// Magnitude on the grid of the shape times the level.
 fn played(fit: &Fit, band: Band) -> Vec<f64> {
     let shape = shape(&fit.parameters, band);
     shape.iter().map(|m| m * fit.level_rms).collect()
@@ -59,8 +59,8 @@ fn noisy(band: Band) -> impl Strategy<Value = Vec<f64>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
 
-    /// Rounding moves a knot by up to half a step; the gain that restores the total energy adds up
-    /// to half a step.
+    /// Rounding moves a knot by up to half a step. The gain that restores the total energy adds up
+    /// to half a step more.
     #[test]
     fn few_bands_keep_their_energies_to_a_step(
         magnitude in noisy(Band::TACTILE), bands in 1usize..=19, step_db in 0.05..2.0,
@@ -161,13 +161,15 @@ fn lines_over_noise_nearly_keep_the_energies_of_nine_bands() {
         let fit = fit(&magnitude, band, [9.0, 0.5, WITHIN]).unwrap();
         rms_db.push(rms(&errors_db(&magnitude, &fit, band, 9)));
     }
-    // Bands at the edges have energies that only knots hundreds of decibels apart would match.
+    // At the edges of the band, some bands have energies that could only be met by knots hundreds
+    // of decibels apart.
     rms_db.sort_by(f64::total_cmp);
     let (median, most) = (rms_db[rms_db.len() / 2], rms_db[rms_db.len() - 1]);
     assert!(median < 0.3 && most < 4.0, "{median} dB, {most} dB");
 }
 
-/// The window measures two thirds of a bin's noise power in the bin and a sixth in each neighbour.
+/// The window measures two thirds of the noise power of a bin in the bin, and a sixth in each
+/// neighbour.
 #[test]
 fn the_voice_measures_as_the_stated_magnitude() {
     let (band, descriptor) = (Band::TACTILE, BandEnergies::DESCRIPTOR);
@@ -179,7 +181,7 @@ fn the_voice_measures_as_the_stated_magnitude() {
     for (read, stated) in power.windows(3).zip(&stated[1..]) {
         let read = (read[0] + 4.0 * read[1] + read[2]) / 6.0;
         let off = 10.0 * (read / (stated * stated)).log10();
-        // Without sharpening the difference is twice as large.
+        // Without sharpening the difference would be twice as large.
         assert!(off.abs() < 0.25, "{off} dB");
     }
 }

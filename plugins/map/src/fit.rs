@@ -1,4 +1,4 @@
-//! A map of one row whose waves are those of a spectrum at the speed of its recording.
+//! Fit of a map with one row: its waves give the spectrum at the speed of the recording.
 
 use alloc::vec::Vec;
 
@@ -10,7 +10,7 @@ use crate::{FORCE_N, MOST_GREY, MOST_SIDE, SPEED_MM_S};
 
 /// Assumed speed of a recording of unknown speed, mm/s.
 const USUAL_SPEED_MM_S: f64 = 100.0;
-/// Pixels of the shortest wave.
+/// Number of pixels in the shortest wave.
 const FINEST: f64 = 4.0;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -19,7 +19,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         return Err(Error::cannot_fit("the spectrum is silent: there is nothing to fit"));
     }
     let known = input.condition.speed_mm_s.filter(|speed| *speed > 0.0);
-    // 32 bits, as assets store it: a line may lie on an edge of the band.
+    // Rounded to 32 bits, as assets store it: a line may be exactly on an edge of the band.
     let speed_mm_s = known.unwrap_or(USUAL_SPEED_MM_S).clamp(SPEED_MM_S.0, SPEED_MM_S.1);
     let speed_mm_s = f64::from(speed_mm_s as f32);
     let force_n = input.condition.force_n.unwrap_or(0.0).clamp(FORCE_N.0, FORCE_N.1);
@@ -44,8 +44,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     Ok(Fit { parameters, level_rms: level_rms(input.magnitude) })
 }
 
-/// Waves of the band of a spectrum, each with the powers of the bins that are nearest to it, and
-/// with phases that are the same each time.
+/// Heights of a row with waves in the band. Each wave gets the power of the bins that are nearest
+/// to it. The phases are the same every time.
 fn heights(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> {
     let mut phases = Uniform::new(1);
     let mut heights = vec![0.0; MOST_SIDE];
@@ -60,8 +60,8 @@ fn heights(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> 
     heights
 }
 
-/// Powers of no wave in the row, one, and so on, of magnitudes over the largest; a bin goes to the
-/// nearest wave in the band.
+/// Powers of the waves with 0, 1, … periods in the row, from magnitudes relative to the largest. A
+/// bin is assigned to the nearest wave in the band.
 fn powers(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> {
     let first = libm::ceil(input.band.low_hz / fundamental_hz).max(1.0);
     let last = libm::floor(input.band.high_hz / fundamental_hz).min((MOST_SIDE / 2) as f64);
@@ -105,7 +105,7 @@ mod tests {
         let values = Values::read(&FrictionMap::DESCRIPTOR, &fit.parameters).unwrap();
         let mut seen = vec![0.0; frequency_hz.len()];
         FrictionMap::magnitude(&values, Band::TACTILE, &frequency_hz, &mut seen).unwrap();
-        // Third octaves from 100 Hz on; lines lie 16 Hz apart.
+        // Third octaves from 100 Hz on; the lines are 16 Hz apart.
         let mut low = 100.0;
         while low < 900.0 {
             let level = |all: &[f64], scale: f64| -> f64 {

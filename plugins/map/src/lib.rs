@@ -1,12 +1,12 @@
-//! Friction map: grey values over a surface, 0 for the least friction and 255 for the most, as
-//! displays by electroadhesion take them (TanvasTouch: 8-bit PNG).
+//! Friction map: grey values over a surface, where 0 is the lowest and 255 the highest friction.
+//! Displays with electroadhesion take such maps (TanvasTouch: 8-bit PNG).
 //!
-//! Pixels lie `pitch_mm` apart, in rows from above, and the map repeats beyond its edges. Between
-//! pixels the friction is a cubic (Catmull and Rom), so that a finger crosses them without a step.
-//! The voice follows the finger's place (`htex.motion/1`); what it renders is the friction there
-//! without its mean, between the edges of the band. A voice that is told no motion reads row after
-//! row at the speed of the parameters, which is also the way along which spectra and levels are
-//! stated.
+//! Neighbouring pixels are `pitch_mm` apart, rows follow each other from the top, and the map
+//! repeats beyond its edges. Between pixels the friction is a cubic (Catmull and Rom), so that
+//! there is no step when a finger crosses them. The voice follows the finger's place
+//! (`htex.motion/1`). It renders the friction at that place without its mean, limited to the band.
+//! Without motion input, it scans the map row by row at the speed of the parameters. Spectra and
+//! levels also refer to this scan.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -39,26 +39,27 @@ const FORCE: usize = 3;
 const RMS: usize = 4;
 const GREY: usize = 5;
 
-/// Most pixels of a row, and rows.
+/// Largest number of pixels in a row, and largest number of rows.
 pub const MOST_SIDE: usize = 255;
-/// The distances that pixels may have, mm.
+/// Allowed distances between neighbouring pixels, mm.
 pub const PITCH_MM: (f64, f64) = (0.0009765625, 64.0);
 pub(crate) const SPEED_MM_S: (f64, f64) = (1.0, 2000.0);
 pub(crate) const FORCE_N: (f64, f64) = (0.0, 1000.0);
-/// Weights that differ by less are equal.
+/// Weights that differ by less than this count as equal.
 const EQUAL: f64 = 1e-9;
 const MOST_GREY: f64 = 255.0;
 
-/// The model.
+/// The model `org.htex.map`.
 pub struct FrictionMap;
 
 htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 
-/// Returns the parameter `rms` of a map: RMS of the grey values along the rows at a speed, between
-/// the edges of a band.
+/// Returns the parameter `rms` of a map: the RMS of the grey values along the rows, at this speed
+/// and within the band.
 ///
 /// # Errors
-/// When the grey values are no rows of a width, or nothing lies in the band.
+/// If the number of grey values is not a multiple of the width, or if the map has nothing in the
+/// band.
 pub fn rms(
     width: usize,
     pitch_mm: f64,
@@ -131,7 +132,7 @@ impl Model for FrictionMap {
         Ok(())
     }
 
-    /// Takes the set of the largest weight, the first of equals: maps are not mixed.
+    /// Returns the set with the largest weight; of equal weights, the first. Maps are not mixed.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],

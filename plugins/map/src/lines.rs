@@ -1,4 +1,4 @@
-//! The spectrum along the rows: a line for each whole number of waves in the width of the map.
+//! The spectrum along the rows of a map: one line for each whole number of waves in its width.
 
 use alloc::vec::Vec;
 
@@ -8,29 +8,30 @@ use htex_model::{Error, text};
 
 use crate::map::Map;
 
-/// Smallest RMS, in grey values: rounding of a map without differences is below, and a pixel that
-/// differs by one is above.
+/// Smallest RMS, in grey values. A map without differences has a smaller one, by rounding; a map in
+/// which one pixel differs by one has a larger one.
 const LEAST: f64 = 1e-9;
-/// Largest difference of the stated RMS from that of the grey values, in the latter: assets store
-/// 32-bit floats.
+/// Largest difference between the stated RMS and the RMS of the grey values, relative to the
+/// latter. Assets store 32-bit floats.
 const TOLERANCE: f64 = 1e-6;
-/// Half of the width of the window's main lobe, hertz.
+/// Half the width of the window's main lobe, hertz.
 const LOBE_HZ: f64 = 2.0 * GRID_HZ;
 
-/// Mean squares of the lines in the band, over all rows.
+/// Mean squares of the lines in the band, averaged over all rows.
 pub(crate) struct Lines {
     fundamental_hz: f64,
-    /// Of one wave in the width, two, and so on, as the voice plays them; 0 outside the band.
+    /// Mean squares of the lines with one wave in the width, two, and so on, as the voice plays
+    /// them; 0 outside the band.
     power: Vec<f64>,
-    /// RMS of all, as the Hann window reads it in the band.
+    /// RMS of all lines in the band, as the Hann window measures it.
     pub(crate) rms: f64,
 }
 
 impl Lines {
-    /// Those of a map that states its RMS.
+    /// Returns the lines of a map, and checks the RMS that the map states.
     ///
     /// # Errors
-    /// As [`Self::of`], and when the stated RMS is not that of the grey values.
+    /// As in [`Self::of`], and if the stated RMS differs from the RMS of the grey values.
     pub(crate) fn stated(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let lines = Self::of(map, band)?;
         if (map.rms - lines.rms).abs() <= TOLERANCE * lines.rms {
@@ -45,8 +46,10 @@ impl Lines {
         }
     }
 
+    /// Returns the lines of a map.
+    ///
     /// # Errors
-    /// When no line with a power lies in the band.
+    /// If no line in the band has power.
     pub(crate) fn of(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let fundamental_hz = map.fundamental_hz();
         let most = map.width / 2;
@@ -80,7 +83,8 @@ impl Lines {
         ]))
     }
 
-    /// RMS of the lines behind a filter that passes parts of their power, over that before it.
+    /// RMS of the lines behind a filter, divided by the RMS before it. `passed` returns the part of
+    /// the power that passes at a frequency in hertz.
     pub(crate) fn rms_behind(&self, passed: impl Fn(f64) -> f64) -> f64 {
         let behind =
             |(i, power): (usize, &f64)| power * passed((i + 1) as f64 * self.fundamental_hz);
@@ -88,9 +92,9 @@ impl Lines {
         libm::sqrt(self.power.iter().enumerate().map(behind).sum::<f64>() / all)
     }
 
-    /// Magnitude of unit RMS as the Hann window measures it; powers are added.
+    /// Magnitude at unit RMS, as the Hann window measures it; powers of lines are added.
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
-        // Those in the window's main lobe.
+        // Only lines in the window's main lobe contribute.
         let first = libm::ceil((frequency_hz - LOBE_HZ) / self.fundamental_hz).max(1.0);
         let last = libm::floor((frequency_hz + LOBE_HZ) / self.fundamental_hz).max(0.0);
         let waves = first as usize..=(last as usize).min(self.power.len());
@@ -105,7 +109,7 @@ impl Lines {
     }
 }
 
-/// Mean square of the waves of a number in the width, over all rows.
+/// Mean square of the wave with this number of periods in the width, averaged over all rows.
 fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
     let width = map.width;
     let rows = map.grey.chunks_exact(width);
@@ -123,13 +127,13 @@ fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
             re * re + im * im
         })
         .sum();
-    // A wave at half of the pixels' rate is its own mirror image.
+    // A wave at half the sample rate of the pixels is its own mirror image.
     let sides = if 2 * waves == width { 1.0 } else { 2.0 };
     sides * power / (count * (width * width) as f64)
 }
 
-/// Part of the power of waves, in cycles a pixel, that the cubic between pixels passes (Keys 1981,
-/// equation 18 with a = -1/2).
+/// Part of the power of a wave, given in cycles per pixel, that the cubic between pixels passes
+/// (Keys 1981, equation 18 with a = -1/2).
 fn passed(cycles: f64) -> f64 {
     let sinc = |x: f64| {
         let a = core::f64::consts::PI * x;

@@ -1,10 +1,10 @@
-//! The grey values of given parameters, and the friction between pixels.
+//! The grey values of a parameter set, and the interpolation between pixels.
 
 use htex_model::{Error, Values, text};
 
 use crate::{FORCE, GREY, MOST_SIDE, PITCH, RMS, SPEED, WIDTH};
 
-/// A map as its parameters state it.
+/// A map as its parameters describe it.
 pub(crate) struct Map<'a> {
     pub(crate) width: usize,
     pub(crate) pitch_mm: f64,
@@ -27,8 +27,10 @@ impl<'a> Map<'a> {
         .checked()
     }
 
+    /// Checks that the grey values form whole rows.
+    ///
     /// # Errors
-    /// When the grey values are no rows of the width.
+    /// If the number of grey values is not a multiple of the width, or if there are too many rows.
     pub(crate) fn checked(self) -> Result<Self, Error> {
         let rows = self.grey.len() / self.width.max(1);
         if self.width == 0 || rows == 0 || rows > MOST_SIDE || rows * self.width != self.grey.len()
@@ -49,7 +51,8 @@ impl<'a> Map<'a> {
     }
 }
 
-/// Weights of the four pixels around a place, `part` of the way from the second to the third.
+/// Interpolation weights of the four pixels around a place, which is `part` of the way from the
+/// second to the third pixel.
 pub(crate) fn cubic(part: f64) -> [f64; 4] {
     let (t, u) = (part, 1.0 - part);
     [

@@ -1,45 +1,46 @@
-//! The finger's place at each sample, on a smooth curve to the places that were told.
+//! The finger's place at each sample, on a smooth curve to the places that the host sets.
 
 use htex_model::Motion;
 
-/// Duration of the way from one motion to another, seconds.
+/// Duration of the transition from one motion to another, seconds.
 const BLEND_S: f64 = 0.010;
-/// Distance of a place that was told, mm, from which on the finger has jumped.
+/// Distance between a new place and the current one, mm, above which the finger has jumped.
 const JUMP_MM: f64 = 1.0;
-/// Distance of a place from the expected one, mm, below which it is that one.
+/// Distance between a new place and the expected one, mm, below which they count as equal.
 const EXPECTED_MM: f64 = 1e-6;
-/// Samples after which two places tell no direction, in blends.
+/// If two places are farther apart in time than this, in blends, they do not determine a direction.
 const FORGOTTEN: f64 = 10.0;
 
 /// The finger on the surface: x and y in mm.
 pub(crate) struct Path {
-    /// Samples of a blend.
+    /// Number of samples in a blend.
     blend: f64,
     rate_hz: f64,
     at: [f64; 2],
-    /// What is added for each sample.
+    /// Movement per sample, mm.
     step: [f64; 2],
-    /// What is left of the difference to the told place, and how much of it goes with each sample.
+    /// Distance to the place that was set, mm, and the number of samples in which the rest of it is
+    /// covered.
     off: [f64; 2],
     off_left: f64,
-    /// The place that was told last, and the samples since then.
+    /// The last place that was set, and the number of samples since then.
     told: Option<[f64; 2]>,
     age: f64,
 }
 
-/// What a voice does at a new motion.
+/// What a voice has to do when a new motion is set.
 #[derive(PartialEq)]
 pub(crate) enum Way {
-    /// Start there.
+    /// Start at the place.
     Start,
-    /// Nothing: the path reaches the place.
+    /// Nothing: the path reaches the place smoothly.
     Smooth,
-    /// Fade out before the jump to the place.
+    /// Fade out before jumping to the place.
     Jump,
 }
 
 impl Path {
-    /// A finger whose place is asked `rate_hz` times in a second.
+    /// Makes a path for a finger whose place is needed `rate_hz` times per second.
     pub(crate) fn new(rate_hz: f64) -> Self {
         Self {
             blend: libm::ceil(BLEND_S * rate_hz),
@@ -53,13 +54,13 @@ impl Path {
         }
     }
 
-    /// Samples of a blend.
+    /// Number of samples in a blend.
     pub(crate) fn blend(&self) -> f64 {
         self.blend
     }
 
-    /// Sets the place `ahead` samples before the next one, and the speed from there on: in the
-    /// direction in which the place moved, else along x.
+    /// Sets the place `ahead` samples before the next one, and the speed from there on. The
+    /// direction is the one in which the place has moved; if that is unknown, it is along x.
     pub(crate) fn tell(&mut self, motion: Motion, ahead: f64) -> Way {
         let place = [motion.x_mm, motion.y_mm];
         let per_sample = motion.speed_mm_s.abs() / self.rate_hz;
@@ -83,7 +84,7 @@ impl Path {
             self.at = now;
             return Way::Start;
         }
-        // A place that was expected changes nothing of the way to it.
+        // If the place is the expected one, the way to it stays unchanged.
         let left = self.off_left.max(0.0) / self.blend;
         let is_expected = |axis: usize| (off[axis] - left * self.off[axis]).abs() < EXPECTED_MM;
         if is_expected(0) && is_expected(1) {
@@ -101,7 +102,7 @@ impl Path {
         libm::sqrt(self.step[0] * self.step[0] + self.step[1] * self.step[1])
     }
 
-    /// Moves to where the finger is by what was told.
+    /// Moves at once to the place that was set, advanced by the time since then.
     pub(crate) fn leap(&mut self) {
         if let Some(told) = self.told {
             self.at = self.now(told);
@@ -109,12 +110,12 @@ impl Path {
         }
     }
 
-    /// Where the finger is at the next sample if it was at a place when it was told.
+    /// Returns the place at the next sample of a finger that was at `told` when the place was set.
     fn now(&self, told: [f64; 2]) -> [f64; 2] {
         core::array::from_fn(|axis| told[axis] + self.age * self.step[axis])
     }
 
-    /// The place, mm; then goes on by a sample.
+    /// Returns the current place, mm, and advances by one sample.
     pub(crate) fn next(&mut self) -> [f64; 2] {
         let at = self.at;
         self.age += 1.0;

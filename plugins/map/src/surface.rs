@@ -1,4 +1,4 @@
-//! A map as a voice holds it, and the friction between its pixels.
+//! A map in the form in which a voice renders it, and the friction between its pixels.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use htex_model::Error;
 use crate::MOST_SIDE;
 use crate::map::{Map, cubic};
 
-/// Grey values, with the level at which they are felt.
+/// Grey values of a map, and the scale that gives them unit RMS.
 #[derive(PartialEq)]
 pub(crate) struct Surface {
     grey: Vec<u8>,
@@ -16,12 +16,12 @@ pub(crate) struct Surface {
     pub(crate) speed_mm_s: f64,
     pub(crate) force_n: f64,
     mean: f64,
-    /// Factor of a grey value.
+    /// Factor from a grey value to a sample.
     scale: f64,
 }
 
 impl Surface {
-    /// A surface with room for the largest map.
+    /// Makes a surface with memory for the largest map.
     pub(crate) fn empty() -> Self {
         Self {
             grey: Vec::with_capacity(MOST_SIDE * MOST_SIDE),
@@ -34,10 +34,11 @@ impl Surface {
         }
     }
 
-    /// Becomes that of a map, of whose RMS filters pass a part. Does not allocate.
+    /// Replaces the surface by a map. `passed` is the part of the map's RMS that the filters pass.
+    /// Does not allocate.
     ///
     /// # Errors
-    /// When the map states no RMS.
+    /// If the stated RMS of the map is 0.
     pub(crate) fn take(&mut self, map: &Map<'_>, passed: f64) -> Result<(), Error> {
         if map.rms <= 0.0 {
             return Err(Error::parameters("`rms` is 0, and a map is felt by its differences"));
@@ -53,7 +54,7 @@ impl Surface {
         Ok(())
     }
 
-    /// Friction at a place in pixels, without its mean.
+    /// Friction at a place, which is given in pixels, without its mean.
     pub(crate) fn friction_at(&self, x: f64, y: f64) -> f64 {
         let rows = self.grey.len() / self.width;
         let (x, columns) = around(x, self.width);
@@ -72,8 +73,8 @@ impl Surface {
     }
 }
 
-/// The part of the way from a pixel to the next one, and the four pixels around, of `count` that
-/// repeat.
+/// Returns the part of the way from one pixel to the next, and the four pixels around, of a row or
+/// column of `count` pixels that repeats.
 fn around(at: f64, count: usize) -> (f64, [usize; 4]) {
     let whole = libm::floor(at);
     let count = count as f64;

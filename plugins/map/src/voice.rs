@@ -1,4 +1,4 @@
-//! The friction under the finger, without its mean, between the edges of the band.
+//! The voice: the friction under the finger, without its mean, limited to the band.
 
 use htex_dsp::band_limit::{band_limit, band_limit_power};
 use htex_dsp::grid::Band;
@@ -13,31 +13,32 @@ use crate::surface::Surface;
 
 /// Largest gain of a force.
 const MOST_GAIN: f64 = 16.0;
-/// Part of a row's width in which an untold voice goes over to the next row.
+/// Part of a row's width in which a voice without motion input moves on to the next row.
 const TURN: f64 = 0.1;
-/// Samples that are filtered at a time: a motion holds from the next two on.
+/// Number of samples that are filtered at a time. A motion takes effect when the next block begins.
 const BLOCK: usize = 2;
-/// Places on the surface for each sample: what a fast finger crosses, and the images of pixels, lie
-/// above the band, and are filtered before they could be heard as lower frequencies.
+/// Number of places on the surface per sample. A fast finger, and the images of pixels, give
+/// frequencies above the band. With oversampling they are filtered out before they could be aliased
+/// to lower frequencies.
 const OVERSAMPLING: usize = 4;
 
-/// A surface and a finger on it.
+/// A surface, and a finger that moves over it.
 pub struct MapVoice {
-    /// Places in a second.
+    /// Number of places per second.
     place_hz: f64,
     surface: Surface,
-    /// The surface that follows once the finger is silent, if one does.
+    /// The surface that follows when the finger is silent, if `is_changing` is set.
     next: Surface,
     is_changing: bool,
-    /// Part of the RMS that the filters of the band's edges pass at the start.
+    /// Part of the RMS that the filters at the band's edges passed for the first map.
     passed: f64,
     edges: Pipeline,
     path: Path,
-    /// The motion that was told last, and the samples that were ready then.
+    /// The last motion that was set, and the number of samples that were ready at that time.
     told: Option<Motion>,
     ahead: usize,
     moved: bool,
-    /// Way along the rows of a voice that was told nothing, pixels.
+    /// Way along the rows of a voice without motion input, pixels.
     way: f64,
     gain: Ramp,
     contact: Ramp,
@@ -105,14 +106,14 @@ impl MapVoice {
         voice.passed = Lines::stated(&map, band)?.rms_behind(passed);
         voice.surface.take(&map, voice.passed)?;
         voice.way = Uniform::new(seed).next_unit() * map.grey.len() as f64;
-        // The filter's transient has decayed by the first sample.
+        // Lets the filter's transient decay before the first sample.
         for _ in 0..(0.2 * rate_hz) as usize / BLOCK {
             voice.fill();
         }
         Ok(voice)
     }
 
-    /// The place of the next sample, pixels.
+    /// Returns the place of the next sample, in pixels.
     fn place(&mut self) -> [f64; 2] {
         if self.told.is_some() {
             return self.path.next().map(|mm| mm / self.surface.pitch_mm);
@@ -126,7 +127,7 @@ impl MapVoice {
         place
     }
 
-    /// Filters the next block.
+    /// Renders and filters the next block.
     fn fill(&mut self) {
         let mut pairs = [[0.0; 2]; OVERSAMPLING * BLOCK / 2];
         for sample in pairs.as_flattened_mut() {
@@ -147,7 +148,7 @@ impl MapVoice {
         self.taken = 0;
     }
 
-    /// Does what waits for silence, and ends it.
+    /// Makes the changes that wait for silence, and ends the silence.
     fn change(&mut self) {
         if self.is_changing {
             core::mem::swap(&mut self.surface, &mut self.next);
@@ -160,7 +161,7 @@ impl MapVoice {
         self.contact.set(1.0, self.path.blend());
     }
 
-    /// Gain of a motion's force.
+    /// Gain for the force of a motion.
     fn gain_of(&self, motion: Motion) -> f64 {
         if self.surface.force_n > 0.0 {
             (motion.force_n / self.surface.force_n).min(MOST_GAIN)
@@ -203,8 +204,8 @@ impl Voice for MapVoice {
         }
     }
 
-    /// Another map begins after a fade; the level is corrected for the filters as the first one's
-    /// was.
+    /// Another map begins after a fade. Its level is corrected for the filters by the same factor
+    /// as the first map's.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.next.take(&Map::new(parameters)?, self.passed)?;
         self.is_changing = self.next != self.surface;
@@ -237,7 +238,7 @@ mod tests {
 
     const RATE_HZ: f64 = 4_000.0;
 
-    /// Parameters of a map of a function of x and y in pixels.
+    /// Parameters of a map whose grey value is a function of x and y in pixels.
     fn parameters(width: usize, rows: usize, grey: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let pixels = (0..rows).flat_map(|y| (0..width).map(move |x| (x as f64, y as f64)));
         let grey: Vec<f64> = pixels.map(|(x, y)| grey(x, y).round()).collect();
@@ -260,7 +261,7 @@ mod tests {
         Motion { speed_mm_s, force_n: 0.5, position_mm: 0.0, x_mm, y_mm }
     }
 
-    /// Samples of a straight stroke, told every 5 ms.
+    /// Samples of a straight stroke, with a new motion every 5 ms.
     fn stroke(voice: &mut MapVoice, [dx, dy]: [f64; 2], seconds: f64) -> Vec<f32> {
         let (speed, block) = ((dx * dx + dy * dy).sqrt(), 20);
         let mut samples = Vec::new();
@@ -286,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_line_is_as_fast_as_the_finger_crosses_it() {
-        // Ten waves in 10 mm: one in a millimetre.
+        // Ten waves in 10 mm: one per millimetre.
         let all = parameters(100, 3, waves(10.0));
         for (speed, hz) in
             [([80.0, 0.0], 80.0), ([160.0, 0.0], 160.0), ([48.0, 36.0], 48.0), ([-80.0, 0.0], 80.0)]

@@ -13,7 +13,8 @@ use htex_model::{Lock, Values};
 
 use crate::{BANDS, INVERSE, whole};
 
-/// Cached inverses: computing one takes longer than creating a voice with it.
+/// Number of inverses that are cached, because computing one takes longer than creating a voice
+/// with it.
 const KEPT: usize = 8;
 const NNLS: u8 = 1;
 const INTERPOLATE: u8 = 2;
@@ -30,7 +31,8 @@ pub(crate) struct Inverse {
 }
 
 enum Way {
-    /// Power = matrix · energies, clipped at 0; one row per band with its power in all bins.
+    /// The power is matrix · energies, clipped at 0. There is one row per band, with the band's
+    /// power in all bins.
     Matrix(Vec<f64>),
     NonNegative(NonNegative),
 }
@@ -63,7 +65,7 @@ impl Inverse {
         Self { bands, kind, band, cosines: InverseDct::new(bands), way }
     }
 
-    /// Power in all bins of one unit of energy in each band, row by row.
+    /// For each band, row by row: the power in all bins for one unit of energy in the band.
     fn matrix(bank: &MelBank, kind: u8, bands: usize, bins: usize) -> Vec<f64> {
         let pseudo = (kind != INTERPOLATE)
             .then(|| PseudoInverse::new(&bank.filters().to_dense(), bands, bins));
@@ -88,7 +90,8 @@ impl Inverse {
         whole(parameters, BANDS) == self.bands && whole(parameters, INVERSE) as u8 == self.kind
     }
 
-    /// Writes the magnitudes of a cepstrum; `energy` has one element per band. Does not allocate.
+    /// Writes the magnitudes for a cepstrum. `energy` is working memory with one element per band.
+    /// Does not allocate.
     pub(crate) fn magnitude(
         &self,
         cepstrum: &[f64],

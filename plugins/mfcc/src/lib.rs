@@ -1,5 +1,6 @@
-//! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by
-//! truncating its cosine transform (paper, Mel Frequency Cepstral Coefficients).
+//! MFCC model (`org.htex.mfcc`): mel-frequency cepstral coefficients. These are the logarithms of
+//! the energies in mel bands, smoothed by truncating their cosine transform (paper, Mel Frequency
+//! Cepstral Coefficients).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -123,7 +124,7 @@ impl Model for MelCepstrum {
         htex_shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
     }
 
-    /// Interpolates cepstra, that is, log energies.
+    /// Interpolates cepstra, i.e. logarithms of energies.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -152,12 +153,12 @@ impl Model for MelCepstrum {
     }
 }
 
-/// A scalar parameter rounded to a whole number.
+/// Returns a scalar parameter, rounded to a whole number.
 pub(crate) fn whole(parameters: &Values<'_>, field: usize) -> usize {
     libm::round(parameters.scalar(field)) as usize
 }
 
-/// The magnitude of a cepstrum on the grid.
+/// The magnitude on the grid that a cepstrum describes.
 pub struct Spectrum {
     inverse: Arc<Inverse>,
     band: Band,
@@ -224,7 +225,7 @@ impl Curve for Spectrum {
         Ok(())
     }
 
-    /// Linear between bins.
+    /// Linear interpolation between bins.
     fn at(&self, frequency_hz: f64) -> f64 {
         let last = self.magnitude.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.band.first_bin() as f64).clamp(0.0, last as f64);

@@ -1,6 +1,6 @@
-//! The usual ranges of the parameters, outside the fits to 15 simulated recordings of five
-//! surfaces: coefficients of -80 to 18, of which the first, a sum of logarithms, is by far the
-//! lowest. The bands are those of the sweep (`knobs`).
+//! The usual ranges of the parameters. The coefficients of the fits to 15 simulated recordings of
+//! five surfaces, from -80 to 18, lie inside. The first coefficient, a sum of logarithms, is by far
+//! the lowest. The numbers of bands are those of the sweep (`knobs`).
 
 use htex_model::Usual;
 

@@ -1,8 +1,10 @@
-//! Distances of a density in decibels, and the density that is nearest to points, in closed form.
+//! Distance between a density and points in decibels, and the density that is nearest to the
+//! points, in closed form.
 //!
-//! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns: least
-//! squares with two bounded unknowns. Where a density is so faint at a point that its decibels are
-//! cut off, the distance is another one, and a search takes over.
+//! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns. So the
+//! nearest density is a least-squares solution with two bounded unknowns. If a density is so faint
+//! at some point that its decibels are cut off, this is no longer true, and a search is used
+//! instead.
 
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
@@ -10,13 +12,15 @@ use htex_dsp::peaks::Peak;
 
 use crate::Profile;
 
-/// Lower limit, relative to the largest, of points and densities compared in decibels.
+/// Lower limit for points and densities that are compared in decibels, relative to the largest one.
 const FAINTEST: f64 = 1e-6;
-/// Part of the squares below which the two axes are the same.
+/// If the part of the squares that differs between the two axes is below this, the axes count as
+/// equal.
 const SAME: f64 = 1e-9;
 
-/// Returns alpha and beta between the bounds with the least squared difference of decibels; `None`
-/// where the points do not determine them, or the difference of some point is cut off.
+/// Returns the alpha and beta between the bounds that have the least squared difference in
+/// decibels. `None` if the points do not determine them, or if the difference at some point is cut
+/// off.
 pub(crate) fn nearest(points: &[Peak], band: Band, [low, high]: [f64; 2]) -> Option<(f64, f64)> {
     let squares = Squares::of(points, band)?;
     let [low, high] = [low - 1.0, high - 1.0];
@@ -39,7 +43,8 @@ struct Squares {
 }
 
 impl Squares {
-    /// `None` if there are fewer points than unknowns, or they are in too few places.
+    /// Computes the sums. `None` if there are fewer points than unknowns, or if they are at too few
+    /// places.
     fn of(points: &[Peak], band: Band) -> Option<Self> {
         let faintest = FAINTEST * inside(points, band).map(|p| p.magnitude).fold(0.0, f64::max);
         let row = |point: &Peak| {
@@ -65,8 +70,8 @@ impl Squares {
         (count >= 3.0 && determined && (all.xz + all.yz).is_finite()).then_some(all)
     }
 
-    /// Returns the two factors, each between the bounds, with the least squares: the least of all
-    /// if it is between them, else the best of the four sides.
+    /// Returns the two factors between the bounds with the least squares. If the minimum itself is
+    /// outside the bounds, this is the best point on the four sides.
     fn least(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         let determinant = self.xx * self.yy - self.xy * self.xy;
         let free = [
@@ -85,21 +90,22 @@ impl Squares {
         sides.min_by(nearer).unwrap_or(free)
     }
 
-    /// The sum of squares that is left, but for a constant.
+    /// Remaining sum of squares, up to a constant.
     fn cost(&self, [a, b]: [f64; 2]) -> f64 {
         a * a * self.xx + 2.0 * a * b * self.xy + b * b * self.yy
             - 2.0 * (a * self.xz + b * self.yz)
     }
 }
 
-/// The points within the band; at its edges a density may be 0 however well it fits elsewhere.
+/// The points inside the band. Points at its edges are excluded, because a density may be 0 there
+/// however well it fits elsewhere.
 fn inside(points: &[Peak], band: Band) -> impl Iterator<Item = &Peak> {
     let Band { low_hz, high_hz } = band;
     let inside = move |p: &&Peak| low_hz < p.frequency_hz && p.frequency_hz < high_hz;
     points.iter().filter(inside)
 }
 
-/// By the mean squared difference of natural logarithms, of the points within the band.
+/// Best scale and mean squared difference of natural logarithms, for the points inside the band.
 pub(crate) fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let points = || inside(points, profile.band);
     let density = |point: &Peak| profile.at(point.frequency_hz);

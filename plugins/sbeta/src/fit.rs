@@ -1,12 +1,12 @@
-//! Fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks, cost function not
-//! stated), and to bins spread over the band, by the squared differences of decibels or of
+//! Fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks; the cost function is
+//! not stated) and to bins spread over the band. It minimises squared differences of decibels or of
 //! magnitudes.
 //!
-//! The paper's reading is `error=magnitude`, `lower_bound=1`, `bins=0`. Squared magnitudes follow
-//! the strongest peaks alone, and peaks say nothing of the frequencies between them. Nine-band and
-//! third-octave errors in dB as median, mean and worst of 32 recordings by others (20 to 1000 Hz,
-//! at most half the rate; eight of them 60 to 1000 Hz), and of 15 simulated ones (five surfaces,
-//! three seeds):
+//! The paper's method is `error=magnitude`, `lower_bound=1`, `bins=0`. Squared magnitudes follow
+//! only the strongest peaks, and peaks say nothing about the frequencies between them. The table
+//! has nine-band and third-octave errors in dB, as median, mean and worst, of 32 third-party
+//! recordings (20 to 1000 Hz, at most half the rate; eight of them 60 to 1000 Hz) and of 15
+//! simulated ones (five surfaces, three seeds):
 //!
 //! | options | recordings, nine bands | third octaves | simulated, nine bands | third octaves |
 //! |---|---|---|---|---|
@@ -18,14 +18,14 @@
 //! | `decibel`, bound 0.2, 20 bins | 2.3, 3.0, 10.6 | 4.1, 9.6, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //! | the default: `decibel`, bound 0.5, 20 bins | 2.3, 2.8, 7.9 | 4.1, 9.4, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //!
-//! With all peaks on one side a density fits them best with a spike where there is no peak, many
-//! decibels too high. A fit to peaks alone that is higher than twice the largest bin is therefore
-//! tried again with bins beside the peaks. Of both fits the one is kept that is nearer to peaks and
-//! bins in decibels, each at its own best scale.
+//! If all peaks are on one side, the density that fits them best has a spike where there is no
+//! peak, many decibels too high. So if a fit to peaks is higher than twice the largest bin, a
+//! second fit is made to peaks and bins. Of both fits, the one that is nearer to peaks and bins in
+//! decibels is kept; for this comparison each has its best scale.
 //!
-//! With `decibel` the fit has a closed form ([`crate::decibels`]), and the level is that of the
-//! points' energy. A density that is still higher than twice the largest bin has the level at which
-//! it is as high as that bin.
+//! With `decibel` the fit has a closed form ([`crate::decibels`]), and the level is chosen so that
+//! the density has the energy of the points. If the density is then still higher than twice the
+//! largest bin, its level is reduced until it is as high as that bin.
 
 use alloc::vec::Vec;
 
@@ -43,22 +43,22 @@ const LOWER_BOUND: usize = 2;
 const ERROR: usize = 3;
 const BINS: usize = 4;
 
-/// Starting points (numeric definitions: sBeta).
+/// Starting points of the search (numeric definitions: sBeta).
 const STARTS: [(f64, f64); 4] = [(2.0, 2.0), (1.5, 3.0), (3.0, 1.5), (4.0, 4.0)];
 /// Smallest parameter the descriptor allows.
 const SMALLEST: f64 = 1e-3;
-/// Largest parameter of the search: beyond it the density is narrower than a bin.
+/// Largest parameter of the search. Above it the density is narrower than a bin.
 const LARGEST: f64 = 1e4;
-/// The fit has three unknowns, two shapes and a scale: fewer peaks leave it undetermined.
+/// Smallest number of peaks: the fit has three unknowns, two shapes and a scale.
 const FEWEST_PEAKS: usize = 3;
-/// Limit for a fit's maximum, relative to the spectrum's largest bin. A fit above it has its energy
-/// where there is no point to constrain it.
+/// Largest maximum of a fit, relative to the spectrum's largest bin. A fit with a higher maximum
+/// has its energy where no point constrains it.
 const HIGHEST: f64 = 2.0;
-/// Residual, as part of the points' squared magnitude, from which a density counts as not matching
-/// the points.
+/// Residual, as a part of the points' squared magnitude, above which a density counts as not
+/// matching the points.
 const NOTHING_EXPLAINED: f64 = 0.99;
 
-/// Measure minimised at the points, relative to their own size.
+/// What is minimised at the points, relative to their own size.
 #[derive(Clone, Copy)]
 enum Distance {
     /// Squared differences of magnitudes.
@@ -72,7 +72,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     if largest <= 0.0 {
         return Err(Error::cannot_fit("the spectrum is silent: there is no profile to fit"));
     }
-    // Relative magnitudes, so that the tolerances mean the same for a whisper and a blow.
+    // Relative magnitudes, so that tolerances have the same effect for weak and strong signals.
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
     let (count, jnd) = (input.options[POINTS] as usize, input.options[JND]);
     let peaks = select_peaks(input.frequency_hz, &relative, count, jnd);
@@ -95,7 +95,7 @@ fn to_peaks_and_bins(
     Fitted::to(&points, input)
 }
 
-/// Fits peaks alone, or where they leave the fit undetermined or too high, also as many bins.
+/// Fits only the peaks. If these leave the fit undetermined or too high, also fits as many bins.
 fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> Fitted {
     let bins = spread_bins(input.options[POINTS] as usize, input, relative);
     if peaks.len() < FEWEST_PEAKS {
@@ -111,8 +111,8 @@ fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> Fitted 
     if distance(&first) < distance(&second) { first } else { second }
 }
 
-/// A density, the RMS of its magnitude, and its maximum over the bins, relative to the spectrum's
-/// largest.
+/// A fitted density, with the RMS of its magnitude and its maximum over the bins, both relative to
+/// the spectrum's largest bin.
 struct Fitted {
     alpha: f64,
     beta: f64,
@@ -128,9 +128,9 @@ impl Fitted {
             0 => Distance::Decibel,
             _ => Distance::Magnitude,
         };
-        // The scale belongs to the parameters as files store them, in single precision: near 1
-        // rounding changes the density at an edge completely, as it is zero there for 1 + 1e-16 and
-        // may have its maximum there for 1.
+        // The scale must belong to the parameters as files store them, in single precision. Near 1,
+        // rounding changes the density at an edge completely: for 1 + 1e-16 it is zero there, for 1
+        // it may have its maximum there.
         let (alpha, beta) = fit_points(points, band, bound, distance);
         let [alpha, beta] = [alpha, beta].map(|parameter| f64::from(parameter as f32));
         let profile = Profile::new(alpha, beta, band);
@@ -150,8 +150,8 @@ impl Fitted {
     }
 }
 
-/// `count` bins evenly spaced in log frequency, of which neighbours may be the same, and the
-/// largest bin, which may be the only nonzero one.
+/// Returns `count` bins that are evenly spaced in log frequency, and the largest bin, which may be
+/// the only nonzero one. Bins may occur twice.
 fn spread_bins(count: usize, input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     let band: Band = input.band;
     let ratio = band.high_hz / band.low_hz;
@@ -195,7 +195,8 @@ fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) ->
         |best: Minimum<2>, next: Minimum<2>| if next.value < best.value { next } else { best };
     let mut best = STARTS.into_iter().map(search).reduce(better);
     if best.is_none_or(|best| best.value > NOTHING_EXPLAINED) {
-        // At an edge a density with parameters above 1 is 0 and has no gradient.
+        // At an edge, a density with parameters above 1 is 0 and has no gradient, so a search could
+        // not leave it.
         let at_edges = [(bound, 4.0), (4.0, bound)].into_iter().map(search);
         best = best.into_iter().chain(at_edges).reduce(better);
     }
@@ -203,8 +204,8 @@ fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) ->
 }
 
 impl Distance {
-    /// The optimal scale in closed form, and its distance; NaN, which the search rejects, if the
-    /// density is not finite or is zero at all points.
+    /// Best scale in closed form, and the distance at this scale. The distance is NaN, which the
+    /// search rejects, if the density is not finite or is zero at all points.
     fn best_scale(self, points: &[Peak], profile: &Profile) -> (f64, f64) {
         match self {
             Self::Magnitude => least_squares(points, profile),
@@ -212,8 +213,8 @@ impl Distance {
         }
     }
 
-    /// The scale that the level has. Next to a line the one that is best in decibels is that of the
-    /// faint points; the points' energy is that of the line.
+    /// Scale that determines the level. With `decibel` it is not the best scale: next to a line,
+    /// that one is determined by the faint points, whereas the energy of the points is the line's.
     fn level_scale(self, points: &[Peak], profile: &Profile) -> f64 {
         match self {
             Self::Magnitude => least_squares(points, profile).0,
@@ -222,7 +223,7 @@ impl Distance {
     }
 }
 
-/// The scale at which a density has the points' energy.
+/// Scale at which a density has the energy of the points.
 fn equal_energy(points: &[Peak], profile: &Profile) -> f64 {
     let density = |point: &Peak| profile.at(point.frequency_hz);
     let fitted: f64 = points.iter().map(density).map(|p| p * p).sum();
@@ -230,7 +231,7 @@ fn equal_energy(points: &[Peak], profile: &Profile) -> f64 {
     htex_dsp::root::sqrt(wanted / fitted)
 }
 
-/// By the squared differences of magnitudes, relative to the sum of the points' squares.
+/// Best scale and squared differences of magnitudes, relative to the sum of the points' squares.
 fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {
@@ -252,8 +253,7 @@ fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Points whose levels wander by up to 60 dB over the band, some of them falling towards an
-    /// edge.
+    /// Points whose levels vary by up to 60 dB over the band. Some of them fall towards an edge.
     fn points(seed: u32) -> Vec<Peak> {
         let mut state = seed;
         let mut next = || {

@@ -1,5 +1,5 @@
-//! Spectral beta: the envelope of the spectrum as a beta density on the normalised logarithmic
-//! frequency axis, two parameters (paper, Spectral beta).
+//! sBeta model (`org.htex.sbeta`): the envelope of the spectrum as a beta density on the normalised
+//! logarithmic frequency axis. It has two parameters (paper, Spectral beta).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -120,7 +120,7 @@ impl Model for SpectralBeta {
     }
 }
 
-/// The density over frequency, and its RMS in the band.
+/// The density over frequency, with its RMS in the band.
 #[derive(Clone)]
 pub struct Shape {
     profile: Profile,
@@ -128,14 +128,15 @@ pub struct Shape {
     logs: Option<Arc<Logs>>,
 }
 
-/// Logarithms of a voice's positions on the axis, `u`, and of `1 - u`.
+/// Logarithms of `u` and of `1 - u`, where `u` are the positions of a voice's frequencies on the
+/// axis.
 struct Logs {
     log: Vec<f64>,
     log_rest: Vec<f64>,
 }
 
-/// Finite substitute for the logarithm of 0: multiplied by any exponent but 0 it is outside the
-/// range of exponentials.
+/// Finite substitute for the logarithm of 0. Multiplied by any exponent other than 0, it is outside
+/// the range of exponentials.
 const LOG_ZERO: f64 = -1e300;
 
 impl Curve for Shape {
@@ -199,9 +200,9 @@ impl Curve for Shape {
     }
 }
 
-/// The beta density at the frequencies of a band. Where it is infinite, at an edge with a parameter
-/// below 1, it is replaced by its value a quarter of a bin inside, close to what a bin of that
-/// width measures.
+/// The beta density at the frequencies of a band. At an edge with a parameter below 1, where it is
+/// infinite, it is replaced by its value a quarter of a bin inside. This is close to what a bin of
+/// that width measures.
 #[derive(Clone, Copy)]
 pub(crate) struct Profile {
     density: BetaDensity,

@@ -1,10 +1,12 @@
-//! Spectral peaks: the spectrum as a few sinusoids, at least a just-noticeable difference apart
-//! (paper, Spectral peak, eq. for y_sp).
+//! sPeak model (`org.htex.speak`): the spectrum as a few sinusoids, whose frequencies are at least
+//! a just-noticeable difference apart (paper, Spectral peak, eq. for y_sp).
 //!
-//! A sinusoid stands between the bins ([`htex_dsp::interpolated_peaks`]). Stored so, a tone at any
-//! multiple of 0.5 Hz from 60 to 900 Hz is off by less than 0.001 Hz and 0.001 dB (between them
-//! files round to 1/32 Hz); at its bin (`frequency=bin`, as in the paper) by up to 2.5 Hz and 1.4
-//! dB, and lines on the grid of 5 Hz repeat every 0.2 s.
+//! By default the frequency of a sinusoid is interpolated between the bins
+//! ([`htex_dsp::interpolated_peaks`]). A tone at any multiple of 0.5 Hz from 60 to 900 Hz is then
+//! stored with an error of less than 0.001 Hz and 0.001 dB; at other frequencies, files round to
+//! 1/32 Hz. With `frequency=bin`, as in the paper, a sinusoid is at a bin. The errors are then up
+//! to 2.5 Hz and 1.4 dB, and because all lines are on the grid of 5 Hz the sound repeats every 0.2
+//! s.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -37,13 +39,13 @@ const JND: usize = 1;
 const PHASE_OPTION: usize = 2;
 const FREQUENCY_OPTION: usize = 3;
 
-/// Maximum number of sinusoids in one set of parameters.
+/// Maximum number of sinusoids in one parameter set.
 const MAX_PEAKS: usize = 64;
-/// Peaks below this, relative to the largest bin, are ignored: they are imperceptible, cannot be
+/// Peaks below this, relative to the largest bin, are ignored. They are imperceptible, cannot be
 /// stored, and may be rounding errors next to a tone at the band's edge.
 const FAINTEST: f64 = 1e-7;
 
-/// Frequencies in 1/32 Hz, which represents the 5 Hz grid exactly.
+/// Frequencies in steps of 1/32 Hz, which contain the 5 Hz grid exactly.
 const HERTZ: Store = Store::U16 { scale: 0.03125, offset: 0.0, log: false };
 /// Amplitudes in steps of 0.003 dB.
 const RATIO: Store = Store::U16 { scale: 0.0003, offset: -18.0, log: true };
@@ -152,8 +154,8 @@ impl Model for SpectralPeak {
         Ok(())
     }
 
-    /// Sets with the same number of lines glide line by line; others cross-fade line by line at
-    /// constant power.
+    /// Between sets with the same number of lines, each line glides. Otherwise the lines cross-fade
+    /// at constant power.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -232,7 +234,7 @@ fn start_phases(random: f64, seed: u64) -> [f64; MAX_PEAKS] {
     phases
 }
 
-/// A bank of sinusoids.
+/// The voice: a bank of sinusoids.
 pub struct SpectralPeakVoice {
     band: Band,
     phase_cycles: [f64; MAX_PEAKS],
@@ -245,7 +247,7 @@ impl SpectralPeakVoice {
     fn set(&mut self, lines: &Lines<'_>) -> usize {
         let count = lines.frequency_hz.len().min(MAX_PEAKS);
         for i in 0..count {
-            // A line that is not played keeps its index and its phase.
+            // A line outside the band keeps its index and its phase, so that it can return.
             self.sines[i] = Sine {
                 frequency_hz: lines.frequency_hz[i],
                 amplitude: lines.played(i) / lines.level,
@@ -268,7 +270,7 @@ impl Voice for SpectralPeakVoice {
     }
 }
 
-/// The sinusoids, and the RMS of those in the band as its bins read it.
+/// The sinusoids of a parameter set, and the RMS of those in the band, as the bins measure it.
 struct Lines<'a> {
     frequency_hz: &'a [f64],
     amplitude: &'a [f64],
@@ -306,14 +308,15 @@ impl<'a> Lines<'a> {
         ]))
     }
 
-    /// Amplitude of a line as it is played: 0 outside the band, where textures have no magnitude.
+    /// Amplitude with which a line is played. It is 0 outside the band, where textures have no
+    /// magnitude.
     fn played(&self, line: usize) -> f64 {
         let inside = self.band.low_hz..=self.band.high_hz;
         if inside.contains(&self.frequency_hz[line]) { self.amplitude[line] } else { 0.0 }
     }
 
-    /// Unit-level magnitude at `frequency_hz` as measured through the Hann window: A on a line, A/2
-    /// a bin beside it; lines add in power.
+    /// Magnitude at unit RMS as the Hann window measures it: A on a line, and A/2 one bin away.
+    /// Powers of lines are added.
     fn seen_at(&self, frequency_hz: f64) -> f64 {
         let lines = self.frequency_hz.iter().enumerate();
         let power: f64 = lines
@@ -324,7 +327,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// RMS of lines, of each its frequency and amplitude, as the band's bins read it.
+/// RMS of lines, given by frequency and amplitude, as the bins of the band measure it.
 fn level(band: Band, lines: impl Iterator<Item = (f64, f64)>) -> f64 {
     let power = |(hz, a): (f64, f64)| 0.5 * a * a * read_part(band, hz);
     htex_dsp::root::sqrt(lines.map(power).sum())

@@ -1,5 +1,6 @@
-//! The usual ranges of the parameters: frequencies of the band of textures, and amplitudes up to
-//! that of a single sinusoid, the square root of 2, since half their squares sum to one.
+//! The usual ranges of the parameters: frequencies in the band of textures, and amplitudes up to
+//! the square root of 2. A single sinusoid has this amplitude, because half the squares of the
+//! amplitudes add up to one.
 
 use htex_model::Usual;
 

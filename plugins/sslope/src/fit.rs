@@ -1,5 +1,5 @@
-//! Slopes on either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to 1
-//! kHz), in decibels per decade.
+//! Slopes on both sides of the dominant peak, in decibels per decade (paper: from 20 Hz to the
+//! peak, and from the peak to 1 kHz).
 
 use alloc::vec::Vec;
 
@@ -12,7 +12,7 @@ const ROUNDING: usize = 0;
 const METHOD: usize = 1;
 /// Slope of one filter order, decibels per decade.
 const DB_PER_ORDER: f64 = 20.0;
-/// Level of bins without energy relative to the peak, which keeps slopes finite.
+/// Level of bins without energy, relative to the peak. It keeps the slopes finite.
 const FLOOR_DB: f64 = -400.0;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -41,7 +41,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let shape = Shape::of(peak_hz, orders, input.band)?;
     Ok(Fit {
         parameters: vec![peak_hz, orders.0, orders.1],
-        // Magnitude of the recording at the peak.
+        // Chosen so that shape times level has the recording's magnitude at the peak.
         level_rms: top * (shape.level() / shape.at(peak_hz)),
     })
 }
@@ -50,15 +50,15 @@ fn decibels(ratio: f64) -> f64 {
     if ratio > 0.0 { (20.0 * libm::log10(ratio)).max(FLOOR_DB) } else { FLOOR_DB }
 }
 
-/// The order of a slope, rounded half away from zero to whole steps, at least one, and to the
-/// resolution of files.
+/// Returns the order for a slope, rounded half away from zero to whole steps, at least one, and
+/// then to the resolution of files.
 fn round_order(slope_db_per_decade: f64, step_db_per_decade: f64) -> f64 {
     let steps = libm::round(slope_db_per_decade / step_db_per_decade).max(1.0);
     let order = (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER);
     ORDER_STEP * libm::round(order / ORDER_STEP)
 }
 
-/// Slope of the least-squares line; `None` with fewer than two points.
+/// Slope of the least-squares line. `None` if there are fewer than two points.
 fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let mean_x = points.iter().map(|p| p.0).sum::<f64>() / n;
@@ -75,7 +75,7 @@ fn anchored(points: &[(f64, f64)], peak: usize) -> Option<f64> {
     through(points, *points.get(peak)?)
 }
 
-/// Least-squares slope of a line through a fixed point.
+/// Least-squares slope of a line through a given point.
 fn through(points: &[(f64, f64)], (x0, y0): (f64, f64)) -> Option<f64> {
     let xy: f64 = points.iter().map(|(x, y)| (x - x0) * (y - y0)).sum();
     let xx: f64 = points.iter().map(|(x, _)| (x - x0) * (x - x0)).sum();

@@ -1,9 +1,10 @@
-//! Spectral slope: an asymmetric band-pass around the dominant peak, three parameters (paper,
-//! Spectral slope).
+//! sSlope model (`org.htex.sslope`): an asymmetric band-pass around the dominant peak, with three
+//! parameters (paper, Spectral slope).
 //!
-//! The orders are integers with the paper's rounding to 20 dB per decade, and may be fractional
-//! with finer rounding or between two conditions. White noise is therefore shaped in the frequency
-//! domain by the Butterworth magnitude, which is defined for both, and not by a recursive filter.
+//! With the paper's rounding to 20 dB per decade the filter orders are integers. With finer
+//! rounding, or between two conditions, they can be fractional. A recursive filter has an integer
+//! order. So white noise is shaped in the frequency domain, by the Butterworth magnitude, which is
+//! defined for every order.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -130,18 +131,18 @@ impl Model for SpectralSlope {
     }
 }
 
-/// Butterworth high-pass times low-pass with one cut-off.
+/// A Butterworth high-pass times a Butterworth low-pass, with one cut-off frequency.
 pub struct Shape {
     peak_hz: f64,
     high_pass: f64,
     low_pass: f64,
     band: Band,
     level: f64,
-    /// Logarithms of a voice's frequencies, hertz.
+    /// Logarithms of a voice's frequencies in hertz.
     logs: Option<Arc<[f64]>>,
 }
 
-/// Frequencies whose magnitudes are computed at a time.
+/// Number of frequencies whose magnitudes are computed at a time.
 const AT_ONCE: usize = 64;
 
 impl Shape {

@@ -1,5 +1,5 @@
-//! The usual ranges of the parameters: peaks within the band of textures, and orders around those
-//! of the fits to 15 simulated recordings of five surfaces, 1 to 5.
+//! The usual ranges of the parameters: peaks in the band of textures, and orders around 1 to 5,
+//! which are the orders of the fits to 15 simulated recordings of five surfaces.
 
 use htex_model::Usual;
 

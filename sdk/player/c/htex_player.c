@@ -1,10 +1,11 @@
-/* The player of htex_player.h: every operation of spec/baked-1.md, sections 1 and 3, in their order, so that the samples
-   have the same bits on every processor.
+/* The player of htex_player.h. It does every operation of spec/baked-1.md, sections 1 and 3, in the
+   same order, so that the samples have the same bits on every processor.
 
-   Products and sums must not be fused, and sums not be reordered. GCC and clang are told so here; -ffast-math and its parts
-   are refused where a compiler tells of them, and another compiler needs its option against contraction and
-   -DHTEX_PLAYER_NOT_FUSED. htex_player_open tries the arithmetic once more, on the processor, and so finds what cannot be
-   seen here: clang's -ffp-contract=fast, flushed subnormal numbers, another rounding. */
+   A compiler must not fuse products with sums, nor reorder sums. The lines below tell this to GCC
+   and clang. They refuse -ffast-math and its parts where a compiler announces them. Another
+   compiler needs its own option against contraction, and -DHTEX_PLAYER_NOT_FUSED. htex_player_open
+   tests the arithmetic once more, on the processor. It thereby finds what cannot be seen here:
+   clang's -ffp-contract=fast, flushed subnormal numbers, another rounding. */
 #include "htex_player.h"
 
 #include <float.h>
@@ -20,20 +21,21 @@
 #pragma STDC FP_CONTRACT OFF
 #pragma clang fp reassociate(off)
 #elif defined(__GNUC__)
-/* GCC ignores the pragma of the standard. */
+/* GCC ignores the standard pragma. */
 #pragma GCC optimize("fp-contract=off")
 #elif !defined(HTEX_PLAYER_NOT_FUSED)
 #error "htex_player.c: forbid fused operations (the compiler's -ffp-contract=off), and say so with -DHTEX_PLAYER_NOT_FUSED"
 #endif
 
-/* What runs once for several samples is kept out of what runs for each. */
+/* Keeps code that runs once for several samples out of the code that runs for every sample. */
 #if defined(__GNUC__)
 #define APART __attribute__((noinline))
 #else
 #define APART
 #endif
 
-/* Copies a few bytes, which compilers make a load or a store that the processor permits at the address. */
+/* Copies a few bytes. Compilers turn it into loads and stores that the processor permits at the
+   address. */
 #if defined(__GNUC__)
 #define COPY(to, from, size) __builtin_memcpy(to, from, size)
 #else
@@ -56,7 +58,7 @@ enum {
     MOST_FILTERS = 64,
     MOST_ON_AXIS = 32,
     MOST_GLIDE = 4096,
-    /* Filters that are added to a mix in one pass. */
+    /* Number of filters that are added to a mix in one pass. */
     AT_ONCE = 4
 };
 
@@ -74,7 +76,8 @@ enum {
 #define MIN_RATIO 0.0625f
 #define MAX_RATIO 8.0f
 #define MAX_FORCE_RATIO 1048576.0f
-/* Least energy of a mixed filter and least power of mixed sinusoids that are scaled to a level. */
+/* Lowest energy of a mixed filter, and lowest power of mixed sinusoids, that can be scaled to a
+   level. */
 #define LEAST_POWER 1e-9f
 
 /* ---- bytes and bits ---- */
@@ -207,7 +210,7 @@ static float exp_2(float number)
     return sum * float_of((uint32_t)(whole + 127) << 23);
 }
 
-/* The cosine of a phase, 2^32 being a cycle, to 4e-6. */
+/* The cosine of a phase of which 2^32 is one cycle; the error is at most 4e-6. */
 static float cosine(uint32_t phase)
 {
     int32_t place = phase < 0x80000000u ? (int32_t)phase : (int32_t)(phase ^ 0x80000000u) - 0x7FFFFFFF - 1;
@@ -218,7 +221,7 @@ static float cosine(uint32_t phase)
     return t * (6.2831855f + s * (-41.3417f + s * (81.60525f + s * high)));
 }
 
-/* The phase of a sinusoid moves by its frequency, in cycles per sample. */
+/* Advances the phase of a sinusoid by its frequency, in cycles per sample. */
 static uint32_t step_of(float frequency)
 {
     float step = frequency * CYCLE;
@@ -266,7 +269,7 @@ static float next_noise(uint32_t s[4])
 
 /* ---- the block ---- */
 
-/* A block in place: its header, and the parts behind it. */
+/* A block that is read in place: its header, and the parts after it. */
 struct parts {
     uint32_t half_or_count;
     uint32_t up;
@@ -366,7 +369,7 @@ static int are_values(const uint8_t *block, const struct parts *parts)
         && are_in(parts->levels_at, parts->speeds * parts->forces, 1, 0.0f, MOST_LEVEL);
 }
 
-/* The rules of the specification in their order. */
+/* Checks the rules of the specification, in their order. */
 static int check(const uint8_t *block, size_t length)
 {
     if (length < HEADER + CHECKSUM) {
@@ -402,8 +405,9 @@ static int check(const uint8_t *block, size_t length)
 
 /* ---- the memory ---- */
 
-/* Numbers behind a player: the interpolator's coefficients, its history (each input twice, so that the newest are
-   contiguous), then of noise the side, its steps and the history (twice), of sinusoids five numbers each. */
+/* Number of values in memory after a player: the interpolator's coefficients and its history. Then
+   for noise the filter's side, the side's steps and the history, or for sinusoids five numbers
+   each. In a history each input is stored twice, so that the newest ones are always contiguous. */
 static uint32_t numbers_needed(uint32_t kind, uint32_t size, uint32_t up, uint32_t row)
 {
     uint32_t interpolator = up * row + 2u * row;
@@ -438,7 +442,7 @@ size_t htex_player_size(const uint8_t *block, size_t length)
 
 /* ---- where a motion is in the grid ---- */
 
-/* The conditions that a motion mixes, and what it plays of them. */
+/* The conditions that a motion mixes, and the level and frequency factor that it plays. */
 struct target {
     uint32_t count;
     uint32_t conditions[4];
@@ -447,7 +451,8 @@ struct target {
     float frequency;
 };
 
-/* The index below a value on an axis, and how far it is to the next one. */
+/* The index of the value below a number on an axis; `part` is the position towards the next
+   value. */
 static uint32_t place(const uint8_t *axis, uint32_t count, float value, float *part)
 {
     uint32_t above = 0;
@@ -490,7 +495,7 @@ static float mixed_integers(const struct target *target, const uint8_t *integers
     return sum;
 }
 
-/* What the law makes of the level and the frequencies of the nearest motion of the grid. */
+/* Applies the law to the level and the frequencies of the nearest motion of the grid. */
 static void follow_law(struct target *target, const uint8_t *block, float speed_ratio, float force_ratio)
 {
     float speed = log_2(within(speed_ratio, MIN_RATIO, MAX_RATIO));
@@ -528,11 +533,11 @@ static struct target target_at(const uint8_t *block, const struct parts *parts, 
     return target;
 }
 
-/* ---- sums of products, where the time goes ---- */
+/* ---- sums of products, where most of the time is spent ---- */
 
 #if defined(__GNUC__) && defined(__thumb2__) && defined(__ARM_FP) && (__ARM_FP & 4) && !defined(HTEX_PLAYER_PORTABLE)
-/* On Cortex-M4F and its like, eight numbers are loaded by one instruction, which compilers do not do. The operations and their order are those
-   of the functions in C below. */
+/* On processors like the Cortex-M4F, one instruction loads eight numbers, but compilers do not use
+   it. The operations and their order are the same as in the C functions below. */
 
 #define EIGHT_PRODUCTS                                                                                    \
     "vmul.f32 s12, s4, s12\n vmul.f32 s13, s5, s13\n vmul.f32 s14, s6, s14\n vmul.f32 s15, s7, s15\n"    \
@@ -553,7 +558,7 @@ static struct target target_at(const uint8_t *block, const struct parts *parts, 
     "vadd.f32 s12, s12, s27\n vadd.f32 s13, s13, s26\n vadd.f32 s14, s14, s25\n vadd.f32 s15, s15, s24\n"      \
     "vadd.f32 s16, s16, s23\n vadd.f32 s17, s17, s22\n vadd.f32 s18, s18, s21\n vadd.f32 s19, s19, s20\n"
 
-/* Adds products to four sums; `count` is a multiple of four. */
+/* Adds products to four sums, and returns their total; `count` is a multiple of four. */
 static inline float lanes(const float *x, const float *y, uint32_t count)
 {
     uint32_t sum;
@@ -569,7 +574,7 @@ static inline float lanes(const float *x, const float *y, uint32_t count)
     return float_of(sum);
 }
 
-/* The same with one side of a symmetrical filter, and the inputs on both sides of the middle. */
+/* The same for one side of a symmetrical filter, with the inputs on both sides of the middle. */
 static inline float symmetrical_lanes(const float *side, const float *middle, uint32_t count)
 {
     uint32_t sum;
@@ -591,7 +596,7 @@ static inline float symmetrical_lanes(const float *side, const float *middle, ui
     return float_of(sum);
 }
 
-/* Adds numbers to others; `count` is a multiple of four. */
+/* Adds numbers to other numbers; `count` is a multiple of four. */
 static void add_to(float *sums, const float *terms, uint32_t count)
 {
     uint32_t eights = count / 8u;
@@ -618,7 +623,8 @@ static void add_to(float *sums, const float *terms, uint32_t count)
     "vmul.f32 s6, s6, " weight "\n vmul.f32 s7, s7, " weight "\n"                                  \
     "vadd.f32 s0, s0, s4\n vadd.f32 s1, s1, s5\n vadd.f32 s2, s2, s6\n vadd.f32 s3, s3, s7\n"
 
-/* Adds four filters with their weights to the sums of a side, which is a multiple of four long. */
+/* Adds four filters with their weights to the sums of a side, whose length is a multiple of
+   four. */
 static void add_filters(float *sums, uint32_t half, const uint8_t *const filters[AT_ONCE], const float weights[AT_ONCE])
 {
     const uint8_t *a = filters[0] + 2;
@@ -641,7 +647,7 @@ static void add_filters(float *sums, uint32_t half, const uint8_t *const filters
                      : REGISTERS, "cc", "memory");
 }
 #else
-/* Adds products to four sums; `count` is a multiple of four. */
+/* Adds products to four sums, and returns their total; `count` is a multiple of four. */
 static float lanes(const float *x, const float *y, uint32_t count)
 {
     float a = 0.0f;
@@ -657,7 +663,7 @@ static float lanes(const float *x, const float *y, uint32_t count)
     return (a + b) + (c + d);
 }
 
-/* The same with one side of a symmetrical filter, and the inputs on both sides of the middle. */
+/* The same for one side of a symmetrical filter, with the inputs on both sides of the middle. */
 static float symmetrical_lanes(const float *side, const float *middle, uint32_t count)
 {
     float a = 0.0f;
@@ -677,7 +683,7 @@ static float symmetrical_lanes(const float *side, const float *middle, uint32_t 
     return (a + b) + (c + d);
 }
 
-/* Adds numbers to others; `count` is a multiple of four. */
+/* Adds numbers to other numbers; `count` is a multiple of four. */
 static void add_to(float *sums, const float *terms, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -685,7 +691,8 @@ static void add_to(float *sums, const float *terms, uint32_t count)
     }
 }
 
-/* Adds four filters with their weights to the sums of a side, which is a multiple of four long. */
+/* Adds four filters with their weights to the sums of a side, whose length is a multiple of
+   four. */
 static void add_filters(float *sums, uint32_t half, const uint8_t *const filters[AT_ONCE], const float weights[AT_ONCE])
 {
     const uint8_t *a = filters[0] + 2;
@@ -731,7 +738,7 @@ static void start_noise(htex_player *player)
     }
 }
 
-/* Mixes the filters of a motion: the sums of the side, and the centre, which is returned. */
+/* Mixes the filters of a motion. Writes the sums of the side, and returns the centre. */
 static float mix_filters(float *sums, const struct parts *parts, const struct target *target)
 {
     uint32_t half = parts->half_or_count;
@@ -741,7 +748,8 @@ static float mix_filters(float *sums, const struct parts *parts, const struct ta
         sums[i] = 0.0f;
     }
     for (uint32_t k = 0; k < parts->filters; k += AT_ONCE) {
-        /* A filter with the weight 0 changes no bit. */
+        /* A filter with weight 0 does not change any bit, so incomplete groups are filled with
+           one. */
         float weights[AT_ONCE] = {0.0f, 0.0f, 0.0f, 0.0f};
         const uint8_t *filters[AT_ONCE] = {first, first, first, first};
         for (uint32_t i = 0; i < AT_ONCE && k + i < parts->filters; i++) {
@@ -770,7 +778,7 @@ static void glide_noise(htex_player *player)
     add_to(side, side + player->size, player->size);
 }
 
-/* Starts a glide of `samples` to the filter of a motion; 0 sets it at once. */
+/* Starts a glide over `samples` samples to the filter of a motion; with 0 it is set at once. */
 static void retune_noise(htex_player *player, const struct parts *parts, const struct target *target, uint32_t samples)
 {
     if (samples == 0u) {
@@ -813,7 +821,7 @@ static float tick_noise(htex_player *player)
 
 /* ---- sinusoids ---- */
 
-/* A sinusoid in five numbers. The phase is an integer, kept as the bits of a number. */
+/* A sinusoid in five numbers. The phase is an integer, stored as the bits of a float. */
 enum { PHASE, FREQUENCY, FREQUENCY_STEP, AMPLITUDE, AMPLITUDE_STEP, OF_TONE };
 
 static float *end_of_tones(htex_player *player)
@@ -844,7 +852,8 @@ static void silence_tones(htex_player *player)
     }
 }
 
-/* Mixes the sinusoids of a motion into the steps. Returns their power, and the highest frequency that sounds. */
+/* Mixes the sinusoids of a motion and writes them to the steps. Returns their power; `highest` is
+   the highest frequency with an amplitude. */
 static float mix_tones(htex_player *player, const struct parts *parts, const struct target *target, float *highest)
 {
     float power = 0.0f;
@@ -865,7 +874,7 @@ static float mix_tones(htex_player *player, const struct parts *parts, const str
     return power;
 }
 
-/* A factor of frequencies that raises none above the highest that is permitted. */
+/* A factor of frequencies, reduced so that it raises none above the highest permitted one. */
 static float limited(float factor, float highest, float most)
 {
     if (!(factor > 1.0f && highest * factor > most)) {
@@ -918,7 +927,8 @@ static float tick_tones(htex_player *player)
 
 /* ---- motions ---- */
 
-/* Starts a change of the motion; returns its samples at the internal rate, 0 before the first sample. */
+/* Starts a change of motion. Returns its duration in samples at the internal rate, which is 0
+   before the first sample. */
 static uint32_t start_glide(htex_player *player, int is_silent)
 {
     player->gliding = player->is_started ? half_word(player->block + 22) : 0;
@@ -949,7 +959,7 @@ static void silence(htex_player *player)
     }
 }
 
-/* Glides to silence, unless the player is silent. */
+/* Glides to silence, unless the player is silent already. */
 static void fade(htex_player *player)
 {
     if (player->is_silent) {
@@ -968,7 +978,7 @@ static void fade(htex_player *player)
     }
 }
 
-/* Holds the motion; a hold that goes on is not prolonged. */
+/* Holds the current motion. A hold that is already in progress is not prolonged. */
 static void hold(htex_player *player)
 {
     if (!player->is_held) {
@@ -979,7 +989,7 @@ static void hold(htex_player *player)
 
 /* ---- samples ---- */
 
-/* Counts a sample of a held motion; after the last one the player becomes silent. */
+/* Counts a sample of a motion that is held. After the last one the player becomes silent. */
 APART static void count_held(htex_player *player)
 {
     if (player->held == 0u) {
@@ -1002,7 +1012,7 @@ APART static void glide(htex_player *player)
     }
 }
 
-/* The next sample of the internal rate. */
+/* The next sample at the internal rate. */
 APART static float next_input(htex_player *player)
 {
     if (player->gliding > 0u) {
@@ -1041,8 +1051,8 @@ static int16_t integer_of(float sample, float gain)
 
 /* ---- the functions of the header ---- */
 
-/* Tries what is asked of the arithmetic: a product is rounded before it is added, to the nearest, and subnormal numbers are
-   kept. */
+/* Tests the arithmetic: a product is rounded before it is added, rounding is to nearest, and
+   subnormal numbers are kept. */
 static int is_arithmetic_exact(void)
 {
     volatile float x = 1.0f + 1.0f / 4096.0f;
@@ -1059,7 +1069,7 @@ static int is_arithmetic_exact(void)
 
 static int is_player(const htex_player *player)
 {
-    /* The alignment is that of the pointer, which is the strictest of the members. */
+    /* The pointer has the strictest alignment of the members, so the struct has its alignment. */
     return player && (uintptr_t)player % sizeof(const uint8_t *) == 0u;
 }
 
@@ -1074,7 +1084,7 @@ static void clear(htex_player *player, size_t size)
     }
 }
 
-/* Copies what is needed for each sample. */
+/* Copies from the block what is needed for every sample. */
 static void start(htex_player *player, const uint8_t *block, uint32_t seed)
 {
     struct parts parts = parts_of(block);

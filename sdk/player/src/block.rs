@@ -1,4 +1,4 @@
-//! A validated block of bytes.
+//! A validated block: the bytes of a baked texture.
 
 use crate::crc::crc32;
 use crate::law::{Factors, Law};
@@ -12,26 +12,27 @@ use crate::quantity::Quantity;
 use crate::weights::Weights;
 use crate::words::{Integers, Words};
 
-/// Reason why bytes are not a playable block.
+/// Reason why bytes are not a valid block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 #[repr(i32)]
 pub enum OpenError {
-    /// The bytes are fewer than a header and a checksum.
+    /// There are fewer bytes than a header and a checksum need.
     TooShort = 1,
     /// The bytes do not begin with `HTXB`.
     NotABlock = 2,
-    /// The layout has another version than 1.
+    /// The layout does not have version 1.
     Version = 3,
-    /// The length in the header is not that of its parts, or exceeds the bytes.
+    /// The length in the header differs from the length of its parts, or exceeds the number of
+    /// bytes.
     Length = 4,
-    /// The checksum does not match: the bytes were changed.
+    /// The checksum does not match, so the bytes were changed.
     Checksum = 5,
-    /// A number of the header is out of range.
+    /// A number in the header is out of range.
     Header = 6,
     /// A number after the header is not finite or out of range.
     Values = 7,
-    /// The axes of the conditions do not ascend, or are out of range.
+    /// The speeds or the forces of the conditions do not ascend, or are out of range.
     Axes = 8,
 }
 
@@ -52,36 +53,37 @@ impl core::fmt::Display for OpenError {
 
 impl core::error::Error for OpenError {}
 
-/// What a block stores for its conditions.
+/// What a block stores for its conditions: filters for noise, or sinusoids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlockKind {
-    /// Symmetrical filters for white noise, with `half` coefficients on each side of the centre.
-    /// Each condition mixes them.
+    /// Symmetrical filters for white noise. Each has `half` coefficients on each side of the
+    /// centre, and each condition mixes them.
     Noise {
         /// Coefficients on one side.
         half: usize,
-        /// Filters that are mixed.
+        /// Number of filters that the conditions mix.
         filters: usize,
     },
     /// Sinusoids.
     Tones {
         count: usize,
-        /// Whether their phases are drawn from the seed; otherwise all start at their crests.
+        /// Whether the phases are random, determined by the seed. Otherwise all sinusoids start at
+        /// their crests.
         random_phase: bool,
     },
 }
 
-/// A baked texture, validated once and read in place.
+/// A baked texture that was validated once, and is read in place.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
     kind: BlockKind,
     quantity: Quantity,
     law: Law,
-    /// Level up to which the law raises that of the grid.
+    /// Largest level to which the law may raise a level of the grid.
     ceiling: f32,
     full_scale: f32,
-    /// Frequency up to which the law raises those of the grid, cycles per sample of the internal
-    /// rate.
+    /// Largest frequency to which the law may raise a frequency of the grid, cycles per sample of
+    /// the internal rate.
     highest: f32,
     rate_hz: f32,
     up: usize,
@@ -91,9 +93,10 @@ pub struct Block<'a> {
     forces: Words<'a>,
     rows: Words<'a>,
     levels: Words<'a>,
-    /// Of noise: the scales of the filters. Of sinusoids: those of each condition.
+    /// For noise: the scales of the filters. For sinusoids: frequencies and amplitudes of each
+    /// condition.
     numbers: Words<'a>,
-    /// Of noise: the weights of the filters in each condition, and the filters.
+    /// For noise: the weights of the filters in each condition, and then the filters.
     integers: Integers<'a>,
 }
 
@@ -102,11 +105,11 @@ pub struct Block<'a> {
 pub(crate) struct Target {
     pub(crate) weights: Weights,
     pub(crate) level: f32,
-    /// Factor of the frequencies of sinusoids.
+    /// Factor for the frequencies of sinusoids.
     pub(crate) frequency: f32,
 }
 
-/// Numbers of each part after the header: of 32 bits, then of 16 bits.
+/// How many numbers each part after the header has: first those of 32 bits, then those of 16 bits.
 #[derive(Clone, Copy)]
 struct Parts {
     speeds: usize,
@@ -118,23 +121,23 @@ struct Parts {
 }
 
 impl Parts {
-    /// Returns the numbers of 32 bits.
+    /// Returns the number of 32-bit values.
     fn words(&self) -> usize {
         self.speeds + self.forces + self.rows + self.levels + self.numbers
     }
 
-    /// Returns the length of all parts, bytes, with zeros up to a multiple of four.
+    /// Returns the length of all parts, bytes, padded with zeros to a multiple of four.
     fn bytes(&self) -> usize {
         4 * self.words() + (2 * self.integers).next_multiple_of(4)
     }
 }
 
 impl<'a> Block<'a> {
-    /// Validates bytes. Bytes after the block's end are ignored, so a block may be read from a
+    /// Validates bytes. Bytes after the end of the block are ignored, so a block may be read from a
     /// larger area of flash memory.
     ///
     /// # Errors
-    /// When the bytes are not a complete block of version 1 with all numbers in range.
+    /// If the bytes are not a complete block of version 1 with all numbers in range.
     pub fn open(bytes: &'a [u8]) -> Result<Self, OpenError> {
         let header = match bytes.split_first_chunk::<HEADER>() {
             Some((header, rest)) if rest.len() >= CHECKSUM => header,
@@ -162,7 +165,7 @@ impl<'a> Block<'a> {
         block.with(payload, parts).checked(payload, parts)
     }
 
-    /// Reads the header; `None` if a number is out of range. The parts are not read yet.
+    /// Reads the header, but not the parts. `None` if a number is out of range.
     fn read_header(header: &[u8; HEADER]) -> Option<(Self, Parts)> {
         let size = usize::from(half_word(header, 20));
         let filters = usize::from(header[26]);
@@ -228,7 +231,7 @@ impl<'a> Block<'a> {
         in_range.then_some((block, parts))
     }
 
-    /// Returns the block with its parts.
+    /// Returns the block with access to its parts.
     fn with(self, payload: &'a [u8], parts: Parts) -> Self {
         let words = Words::new(payload);
         let mut from = 0;
@@ -249,7 +252,7 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Returns the block if its numbers are in range.
+    /// Returns the block if all its numbers are in range.
     fn checked(self, payload: &[u8], parts: Parts) -> Result<Self, OpenError> {
         let is_axis = |axis: Words<'_>, least: f32, most: f32| {
             let rises = axis.iter().zip(axis.iter().skip(1)).all(|(a, b)| a < b);
@@ -270,8 +273,8 @@ impl<'a> Block<'a> {
         if sound { Ok(self) } else { Err(OpenError::Values) }
     }
 
-    /// Returns whether the numbers of the kind are in range. Frequencies are at most half the
-    /// internal rate.
+    /// Returns whether the numbers of this kind of block are in range. Frequencies are at most half
+    /// the internal rate.
     fn are_sound(&self, numbers: Words<'_>) -> bool {
         let amplitudes = -MOST_VALUE..=MOST_VALUE;
         match self.kind {
@@ -283,7 +286,7 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Returns the rate of the samples, hertz.
+    /// Returns the sample rate, hertz.
     pub fn rate_hz(&self) -> f32 {
         self.rate_hz
     }
@@ -293,34 +296,35 @@ impl<'a> Block<'a> {
         self.rate_hz / self.up as f32
     }
 
-    /// Returns what is stored for the conditions.
+    /// Returns what the block stores for its conditions.
     pub fn kind(&self) -> BlockKind {
         self.kind
     }
 
-    /// Returns the quantity of the samples, which has their unit.
+    /// Returns the physical quantity of the samples, which determines their unit.
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }
 
-    /// Returns the law that a texture follows beyond the grid.
+    /// Returns the law that the texture follows beyond the grid.
     pub fn law(&self) -> Law {
         self.law
     }
 
-    /// Returns the level up to which the law raises that of the grid, in the asset's unit.
+    /// Returns the largest level to which the law may raise a level of the grid, in the asset's
+    /// unit.
     pub fn ceiling(&self) -> f32 {
         self.ceiling
     }
 
-    /// Returns a magnitude that samples of the grid rarely exceed, in the asset's unit: for
-    /// [`crate::Player::render_i16`].
+    /// Returns a magnitude that samples at the motions of the grid rarely exceed, in the asset's
+    /// unit. Use it as the full scale of [`crate::Player::render_i16`].
     pub fn full_scale(&self) -> f32 {
         self.full_scale
     }
 
-    /// Returns the numbers of 32 bits that the player in C (`c/htex_player.h`) keeps for the block:
-    /// `htex_player_size` is these and the members of a `htex_player`.
+    /// Returns how many 32-bit numbers the player in C (`c/htex_player.h`) needs for the block.
+    /// `htex_player_size` is the size of these and of the struct `htex_player`.
     pub fn numbers(&self) -> usize {
         let interpolator = (self.up + 2) * self.row;
         match self.kind {
@@ -339,22 +343,22 @@ impl<'a> Block<'a> {
         self.forces.iter()
     }
 
-    /// Returns the number of samples for each sample of the internal rate.
+    /// Returns the number of output samples for each sample at the internal rate.
     pub(crate) fn up(&self) -> usize {
         self.up
     }
 
-    /// Returns the coefficients of a phase of the interpolator.
+    /// Returns the interpolator's coefficients for a phase.
     pub(crate) fn row(&self, phase: usize) -> Words<'a> {
         self.rows.part(phase * self.row, self.row)
     }
 
-    /// Returns the length of a change of the motion, samples at the internal rate.
+    /// Returns the duration of a change of motion, samples at the internal rate.
     pub(crate) fn glide(&self) -> u32 {
         self.glide
     }
 
-    /// Returns for how many samples a motion is held.
+    /// Returns the number of samples for which a motion is held.
     pub(crate) fn hold(&self) -> u32 {
         (HOLD_S * self.rate_hz) as u32
     }
@@ -377,13 +381,12 @@ impl<'a> Block<'a> {
         self.integers.at(condition * self.filters() + filter)
     }
 
-    /// Returns the factor between products of weights and coefficients, which are integers, and
-    /// coefficients.
+    /// Returns the factor from products of the integer weights and coefficients to coefficients.
     pub(crate) fn filter_scale(&self, filter: usize) -> f32 {
         self.numbers.at(filter)
     }
 
-    /// Returns the centre of a filter and one side, outwards, integers.
+    /// Returns the centre of a filter, followed by one side, outwards, as integers.
     pub(crate) fn filter(&self, filter: usize) -> Integers<'a> {
         let BlockKind::Noise { half, filters } = self.kind else {
             return Integers::new(&[]);
@@ -400,7 +403,7 @@ impl<'a> Block<'a> {
         self.numbers.part(condition * 2 * count, 2 * count)
     }
 
-    /// Returns what to play at a motion: what the nearest motion of the grid is, scaled by the law.
+    /// Returns what to play at a motion: the nearest motion of the grid, scaled by the law.
     pub(crate) fn target(&self, motion: (f32, f32)) -> Target {
         let nearest = (nearest_on(self.speeds, motion.0), nearest_on(self.forces, motion.1));
         let weights = Weights::new(self.speeds, self.forces, nearest.0, nearest.1);
@@ -413,13 +416,14 @@ impl<'a> Block<'a> {
         Target { weights, level: self.scaled(level, factors.level), frequency: factors.frequency }
     }
 
-    /// Returns a level times a factor. It is not raised above the ceiling.
+    /// Returns a level times a factor, but does not raise it above the ceiling.
     fn scaled(&self, level: f32, factor: f32) -> f32 {
         let scaled = level * factor;
         if scaled > level && scaled > self.ceiling { level.max(self.ceiling) } else { scaled }
     }
 
-    /// Returns a factor of frequencies that raises none above the highest that is permitted.
+    /// Returns a factor of frequencies, reduced so that it does not raise a frequency above the
+    /// highest one that is permitted.
     pub(crate) fn limited(&self, factor: f32, highest: f32) -> f32 {
         if factor > 1.0 && highest * factor > self.highest {
             (self.highest / highest).max(1.0)
@@ -429,17 +433,17 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Returns the value within an axis that is nearest to a number.
+/// Returns the value within the range of an axis that is nearest to a number.
 fn nearest_on(axis: Words<'_>, number: f32) -> f32 {
     number.max(axis.at(0)).min(axis.last())
 }
 
-/// Returns the 16-bit number at a byte of the header.
+/// Returns the 16-bit number at a position in the header.
 fn half_word(header: &[u8; HEADER], at: usize) -> u16 {
     u16::from_le_bytes([header[at], header[at + 1]])
 }
 
-/// Returns the 32-bit number at a byte of the header.
+/// Returns the 32-bit number at a position in the header.
 fn word(header: &[u8; HEADER], at: usize) -> u32 {
     u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]])
 }

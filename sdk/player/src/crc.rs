@@ -14,9 +14,9 @@ pub fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// Divides by four bits.
+/// Divides by four bits of the polynomial division.
 fn nibble(crc: u32) -> u32 {
-    // The index has four bits, and the table as many entries.
+    // The index has four bits, and the table has 16 entries.
     TABLE[(crc & 15) as usize] ^ (crc >> 4)
 }
 

@@ -1,27 +1,28 @@
-//! How a texture follows a motion beyond the grid of a block.
+//! How a texture changes with a motion beyond the grid of a block.
 
 use crate::layout::{MAX_RATIO, MIN_RATIO};
 use crate::power::{exp2, log2};
 
-/// Range of the ratio of a speed to the nearest of the grid, and of the factor of frequencies.
+/// Range of the ratio between a speed and the nearest one of the grid, and of the factor of
+/// frequencies.
 const RATIO: (f32, f32) = (MIN_RATIO, MAX_RATIO);
-/// Range of the ratio of a force to the nearest of the grid: 2^20 in both directions.
+/// Range of the ratio between a force and the nearest one of the grid: 2^20 in both directions.
 const FORCE_RATIO: (f32, f32) = (1.0 / 1_048_576.0, 1_048_576.0);
 
-/// The exponents of the law of a texture: from the nearest motion (v0, F0) of the grid to a motion
-/// (v, F), frequencies follow `(v / v0)^a` and the level `(v / v0)^b (F / F0)^c`. A filter cannot
-/// follow in frequency.
+/// The exponents of the law that a texture follows beyond its grid. From the nearest motion (v0,
+/// F0) of the grid to a motion (v, F), frequencies change by `(v / v0)^a`, and the level changes by
+/// `(v / v0)^b (F / F0)^c`. Only sinusoids change in frequency; filters cannot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
-    /// Exponent a of frequencies over the speed.
+    /// Exponent a: how frequencies depend on the speed.
     pub frequency_speed: f32,
-    /// Exponent b of the level over the speed.
+    /// Exponent b: how the level depends on the speed.
     pub level_speed: f32,
-    /// Exponent c of the level over the normal force.
+    /// Exponent c: how the level depends on the normal force.
     pub level_force: f32,
 }
 
-/// Factors of a texture beyond the grid.
+/// Factors of frequency and level beyond the grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Factors {
     pub(crate) frequency: f32,
@@ -29,13 +30,13 @@ pub(crate) struct Factors {
 }
 
 impl Factors {
-    /// Those of a motion of the grid.
+    /// The factors for a motion within the grid.
     pub(crate) const NONE: Self = Self { frequency: 1.0, level: 1.0 };
 }
 
 impl Law {
-    /// Returns the factors of a motion from the nearest of the grid; both are a speed and a force,
-    /// above 0.
+    /// Returns the factors for a motion, given the nearest one of the grid. Both are a speed and a
+    /// force, above 0.
     pub(crate) fn factors(&self, motion: (f32, f32), nearest: (f32, f32)) -> Factors {
         let speed = log2(within(motion.0 / nearest.0, RATIO));
         let force = log2(within(motion.1 / nearest.1, FORCE_RATIO));
@@ -47,7 +48,7 @@ impl Law {
     }
 }
 
-/// Returns the number of a range that is nearest to a number.
+/// Clamps a number to a range.
 fn within(number: f32, range: (f32, f32)) -> f32 {
     number.max(range.0).min(range.1)
 }

@@ -1,17 +1,18 @@
 //! Plays baked textures on microcontrollers.
 //!
 //! [`Block::open`] validates the bytes that `htex bake` wrote (`spec/baked-1.md`), and [`Player`]
-//! renders them. There is no heap and no panic; the render path computes in single precision, in
-//! one order, so that the samples are bit-identical on every processor.
+//! renders them. There is no heap and no panic. All samples are computed in single precision and in
+//! one fixed order, so they are bit-identical on every processor.
 //!
 //! ```
 //! use htex_player::{Block, OpenError};
 //! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
 //! ```
 //!
-//! No operations are fused, cosines, logarithms and powers are polynomials, the square root is
-//! `libm`'s. `sdk/bake/tests/board.rs` compares the bits of an emulated Cortex-M4F with the host's.
-//! `c/htex_player.c` is the same player in C, with the same bits (`tests/c.rs`).
+//! For identical bits no operations are fused; cosines, logarithms and powers are polynomials, and
+//! the square root is the one of `libm`. `sdk/bake/tests/board.rs` compares the bits of an emulated
+//! Cortex-M4F with the host's. `c/htex_player.c` is the same player in C, with the same bits
+//! (`tests/c.rs`).
 #![no_std]
 #![forbid(unsafe_code)]
 

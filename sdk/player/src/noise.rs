@@ -1,15 +1,15 @@
-//! White noise through a symmetrical filter.
+//! White noise filtered by a symmetrical filter.
 
 use crate::block::{Block, Target};
 use crate::layout::MOST_HALF;
 use crate::random::Random;
 
-/// Least energy of a mixed filter that is scaled to a level.
+/// Lowest energy of a mixed filter that can be scaled to a level.
 const LEAST_ENERGY: f32 = 1e-9;
-/// Filters that are added to a mix in one pass.
+/// Number of filters that are added to a mix in one pass.
 const AT_ONCE: usize = 4;
 
-/// Noise with the spectrum of a symmetrical filter, whose coefficients glide.
+/// Noise with the spectrum of a symmetrical filter. The coefficients glide when the motion changes.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise {
     random: Random,
@@ -36,7 +36,7 @@ impl Noise {
         next: 0,
     };
 
-    /// Starts noise; all numbers are zero before. The first sample is already stationary.
+    /// Starts the noise; all numbers must be zero before. The first sample is already stationary.
     pub(crate) fn start(&mut self, half: usize, seed: u32) {
         (self.half, self.random) = (half, Random::new(seed));
         for _ in 0..self.taps() {
@@ -49,8 +49,8 @@ impl Noise {
         2 * self.half + 1
     }
 
-    /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once. Returns the level
-    /// that is reached.
+    /// Starts a glide over `samples` samples to the filter of a motion; with 0 samples the filter
+    /// is set at once. Returns the level that is reached.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         if samples == 0 {
             self.silence();
@@ -66,7 +66,8 @@ impl Noise {
                 }
                 *weight *= block.filter_scale(filter);
             }
-            // Adding a filter with the weight 0 changes no bit.
+            // A filter with weight 0 does not change any bit, so incomplete groups are filled with
+            // one.
             let filters: [usize; AT_ONCE] =
                 core::array::from_fn(|i| (first + i).min(block.filters() - 1));
             let filters = filters.map(|filter| block.filter(filter));
@@ -103,7 +104,7 @@ impl Noise {
         level
     }
 
-    /// Starts a glide of `samples` to silence; 0 sets it at once.
+    /// Starts a glide over `samples` samples to silence; with 0 samples it is silent at once.
     pub(crate) fn fade(&mut self, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
         self.centre_step = -self.centre * part;
@@ -115,7 +116,7 @@ impl Noise {
         }
     }
 
-    /// Moves the coefficients by one step of the glide.
+    /// Advances the coefficients by one step of the glide.
     fn glide(&mut self) {
         self.centre += self.centre_step;
         let moved = self.side.iter_mut().zip(&self.step);
@@ -143,7 +144,8 @@ impl Noise {
         }
     }
 
-    /// Returns the next sample, after a step of a glide, or of a glide to silence that ends.
+    /// Returns the next sample. `is_gliding`: advances the glide first. `becomes_silent`: this step
+    /// ends a glide to silence.
     pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
         if is_gliding {
             self.glide();
@@ -163,8 +165,8 @@ impl Noise {
         else {
             return 0.0;
         };
-        // The side's length is a multiple of four, and so are those beside it. Slices that get
-        // shorter compile to fewer instructions than iterators, of which one is reversed.
+        // All lengths are multiples of four. Slices that become shorter compile to fewer
+        // instructions than iterators, one of which would be reversed.
         let mut before = before.as_rchunks::<4>().1;
         let mut after = after.as_chunks::<4>().0;
         let mut side = self.side.as_chunks::<4>().0;

@@ -1,4 +1,4 @@
-//! A playing texture.
+//! The player: renders the samples of a block.
 
 use crate::block::{Block, BlockKind};
 use crate::layout::{MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_SPEED_MM_S};
@@ -6,23 +6,23 @@ use crate::noise::Noise;
 use crate::tones::Tones;
 use crate::upsampler::Upsampler;
 
-/// Numbers that change while a block is played.
+/// The state of a player: numbers that change while a block is played.
 #[derive(Debug, Clone)]
 struct Memory {
     noise: Noise,
     tones: Tones,
     upsampler: Upsampler,
-    /// Phase of the next sample; 0 needs a new one of the internal rate.
+    /// Phase of the next output sample. At phase 0 a new sample at the internal rate is needed.
     phase: usize,
-    /// Remaining steps of the current glide.
+    /// Number of steps left in the current glide.
     gliding: u32,
-    /// Speed and force of the last motion that sounded.
+    /// Speed and force of the last motion that was not silent.
     last: (f32, f32),
-    /// RMS at the motion that was set, in the asset's unit.
+    /// RMS at the current motion, in the asset's unit.
     level: f32,
-    /// Samples until a held motion ends.
+    /// Number of samples until the hold of a motion ends.
     held: u32,
-    /// Whether the last reading was none of a finger.
+    /// Whether the last reading was not plausible, so that the motion is held.
     is_held: bool,
     is_silent: bool,
     is_started: bool,
@@ -44,8 +44,8 @@ impl Memory {
     };
 }
 
-/// An endless stream of samples of a block, in the asset's unit. The samples do not depend on the
-/// lengths of the buffers.
+/// Renders a block as an endless stream of samples, in the asset's unit. The samples do not depend
+/// on the lengths of the buffers.
 ///
 /// ```no_run
 /// use htex_player::{Block, Player};
@@ -64,14 +64,14 @@ pub struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    /// Makes a player at the first condition. Players of different seeds have independent noise.
+    /// Makes a player at the first condition. Players with different seeds have independent noise.
     pub fn new(block: Block<'a>, seed: u32) -> Self {
         let mut player = Self { block, memory: Memory::ZERO };
         player.start(seed);
         player
     }
 
-    /// Starts to play; all numbers of the memory are zero before.
+    /// Starts to play; all numbers of the state must be zero before.
     fn start(&mut self, seed: u32) {
         match self.block.kind() {
             BlockKind::Noise { half, .. } => self.memory.noise.start(half, seed),
@@ -86,19 +86,21 @@ impl<'a> Player<'a> {
         &self.block
     }
 
-    /// Returns the RMS of the samples at the motion that was set, once they have glided to it, in
-    /// the asset's unit; 0 if the player is silent or becomes so.
+    /// Returns the RMS that the samples have at the current motion once they have glided to it, in
+    /// the asset's unit. It is 0 if the player is silent or is becoming silent.
     pub fn level(&self) -> f32 {
         self.memory.level
     }
 
-    /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Spectrum and
-    /// level glide to it; before the first sample they are set at once. Beyond the grid the level
-    /// follows the law of the block from the nearest motion of the grid, and so do the frequencies
-    /// of sinusoids. The player is silent while the finger does not slide (below 0.5 mm/s, or
-    /// without force). A reading above 1000 mm/s or 20 N is none of a finger: the last motion is
-    /// held for 0.1 s, then the player is silent until the next good one. Returns false, without a
-    /// change, if a number is not finite.
+    /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Returns false,
+    /// without a change, if a number is not finite.
+    ///
+    /// Spectrum and level glide to the motion; before the first sample they are set at once. Beyond
+    /// the grid, the level and the frequencies of sinusoids follow the law of the block, starting
+    /// from the nearest motion of the grid. While the finger does not slide (below 0.5 mm/s, or
+    /// without force), the player is silent. A reading above 1000 mm/s or 20 N is not plausible:
+    /// the player holds the last motion for 0.1 s, and is then silent until the next plausible
+    /// reading.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;
@@ -117,14 +119,14 @@ impl<'a> Player<'a> {
         true
     }
 
-    /// Holds the motion; a hold that goes on is not prolonged.
+    /// Holds the current motion. A hold that is already in progress is not prolonged.
     fn hold(&mut self) {
         if !self.memory.is_held {
             (self.memory.is_held, self.memory.held) = (true, self.block.hold());
         }
     }
 
-    /// Follows a motion that sounds; that of before changes nothing.
+    /// Changes to a motion at which the finger slides. Does nothing if the motion is unchanged.
     fn follow(&mut self, motion: (f32, f32)) {
         if self.memory.is_silent || self.memory.last != motion {
             self.sound(motion);
@@ -142,7 +144,7 @@ impl<'a> Player<'a> {
         };
     }
 
-    /// Glides to silence, unless the player is silent.
+    /// Glides to silence, unless the player is silent already.
     fn fade(&mut self) {
         if self.memory.is_silent {
             return;
@@ -156,7 +158,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Returns the length of a glide that starts, samples at the internal rate.
+    /// Starts a glide, and returns its duration, samples at the internal rate.
     fn start_glide(&mut self, is_silent: bool) -> u32 {
         let samples = if self.memory.is_started { self.block.glide() } else { 0 };
         (self.memory.gliding, self.memory.is_silent) = (samples, is_silent);
@@ -168,14 +170,14 @@ impl<'a> Player<'a> {
         out.iter_mut().for_each(|x| *x = self.tick());
     }
 
-    /// Fills `out` with the next samples as integers: `full_scale`, in the asset's unit, becomes
-    /// 32767, and larger samples are limited. If `full_scale` is not above zero the integers are
+    /// Fills `out` with the next samples as integers. `full_scale`, in the asset's unit, becomes
+    /// 32767, and larger samples are clipped. If `full_scale` is not above zero, all integers are
     /// zero.
     pub fn render_i16(&mut self, out: &mut [i16], full_scale: f32) {
         let gain = if full_scale > 0.0 { 32_767.0 / full_scale } else { 0.0 };
         for x in out {
             let scaled = self.tick() * gain;
-            // Conversions to integers truncate and saturate.
+            // Conversions to integers truncate and saturate, so adding 0.5 rounds.
             *x = (scaled + if scaled < 0.0 { -0.5 } else { 0.5 }) as i16;
         }
     }
@@ -196,7 +198,7 @@ impl<'a> Player<'a> {
         self.memory.upsampler.at(row)
     }
 
-    /// Counts a sample of a held motion; after the last one the player becomes silent.
+    /// Counts a sample of a motion that is held. After the last one the player becomes silent.
     fn count_held(&mut self) {
         if !self.memory.is_held {
             return;
@@ -221,6 +223,6 @@ impl<'a> Player<'a> {
     }
 }
 
-/// Most bytes of a player, and so of the memory of a voice.
+/// Largest size of a player, and therefore of the memory of a voice, bytes.
 const MOST_BYTES: usize = 16 * 1024;
 const _: () = assert!(size_of::<Player<'_>>() <= MOST_BYTES);

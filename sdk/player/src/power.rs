@@ -1,9 +1,9 @@
-//! Logarithms and powers of two as polynomials in single precision, the same bits on every
+//! Logarithms and powers of two as polynomials in single precision, with the same bits on every
 //! processor.
 
-/// Coefficients of `log2((1 + s) / (1 - s)) / s` over `s²`: `2 / ((2 i + 1) ln 2)`.
+/// Coefficients of `log2((1 + s) / (1 - s)) / s` in powers of `s²`: `2 / ((2 i + 1) ln 2)`.
 const LOG2: [f32; 4] = [2.885_39, 0.961_796_7, 0.577_078, 0.412_198_6];
-/// Coefficients of `2^x` over `x`: `ln(2)^i / i!`.
+/// Coefficients of `2^x` in powers of `x`: `ln(2)^i / i!`.
 const EXP2: [f32; 7] = [
     1.0,
     core::f32::consts::LN_2,
@@ -13,14 +13,15 @@ const EXP2: [f32; 7] = [
     0.001_333_355_8,
     0.000_154_035_3,
 ];
-/// The fraction of the root of two: mantissas above belong to the next exponent.
+/// Fraction bits of the square root of two. Larger mantissas are halved, with the next exponent.
 const ROOT_2: u32 = 0x3FB5_04F3;
-/// Position of the exponent.
+/// Position of the exponent bits.
 const FRACTION_BITS: u32 = 23;
 const FRACTION: u32 = (1 << FRACTION_BITS) - 1;
 const BIAS: i32 = 127;
 
-/// Returns the binary logarithm of a normal positive number, to 2e-7 of 1 or of itself.
+/// Returns the binary logarithm of a normal positive number. The error is at most 2e-7, absolute or
+/// relative.
 pub(crate) fn log2(x: f32) -> f32 {
     let bits = x.to_bits();
     let mut exponent = (bits >> FRACTION_BITS) as i32 - BIAS;
@@ -36,7 +37,7 @@ pub(crate) fn log2(x: f32) -> f32 {
     exponent as f32 + s * (a + q * (b + q * (c + q * d)))
 }
 
-/// Returns `2^x` for x from -120 to 120, to 3e-7 of itself.
+/// Returns `2^x` for x from -120 to 120, with a relative error of at most 3e-7.
 pub(crate) fn exp2(x: f32) -> f32 {
     let whole = (x + if x < 0.0 { -0.5 } else { 0.5 }) as i32;
     let part = x - whole as f32;

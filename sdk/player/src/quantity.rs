@@ -1,6 +1,6 @@
-//! Physical quantities of samples.
+//! The physical quantity of samples, and its unit.
 
-/// A physical quantity of samples, with the unit in which they are rendered.
+/// Physical quantity of the samples, with the unit in which they are rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 #[repr(u8)]
@@ -27,12 +27,12 @@ impl Quantity {
         Self::Displacement,
     ];
 
-    /// Returns the quantity of a code in a block.
+    /// Returns the quantity with this code in a block.
     pub(crate) fn of_code(code: u8) -> Option<Self> {
         Self::ALL.iter().copied().find(|q| *q as u8 == code)
     }
 
-    /// Returns the name in a manifest.
+    /// Returns the name that the quantity has in a manifest.
     pub const fn name(self) -> &'static str {
         match self {
             Self::LateralForce => "lateral_force",

@@ -1,10 +1,10 @@
 //! Random numbers in 32-bit arithmetic.
 
-/// Multiplied with the sum of four centred 16-bit numbers it gives unit variance: the sum's
-/// variance is `4 (2^32 - 1) / 12`.
+/// Factor that gives the sum of four centred 16-bit numbers unit variance. The variance of the sum
+/// is `4 (2^32 - 1) / 12`.
 const UNIT: f32 = 2.642_894_3e-5;
 
-/// The generator xoshiro128++ (Blackman and Vigna 2021), seeded by SplitMix32.
+/// The random generator xoshiro128++ (Blackman and Vigna 2021), seeded by SplitMix32.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: [u32; 4],
@@ -22,7 +22,7 @@ impl Random {
             z = (z ^ (z >> 13)).wrapping_mul(0xC2B2_AE35);
             z ^ (z >> 16)
         };
-        // Successive outputs of the bijection differ, so they are not all zero.
+        // SplitMix32 is a bijection, so successive outputs differ and are not all zero.
         Self { state: [next(), next(), next(), next()] }
     }
 

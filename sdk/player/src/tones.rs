@@ -4,13 +4,13 @@ use crate::block::{Block, Target};
 use crate::layout::MOST_TONES;
 use crate::random::Random;
 
-/// Cycles of a phase of 32 bits.
+/// Cycles per unit of a 32-bit phase.
 const CYCLES: f32 = 1.0 / 4_294_967_296.0;
-/// Least power of mixed sinusoids that are scaled to a level.
+/// Lowest power of mixed sinusoids that can be scaled to a level.
 const LEAST_POWER: f32 = 1e-9;
 
-/// A sinusoid whose frequency and amplitude glide. Frequencies are in cycles per sample of the
-/// internal rate.
+/// A sinusoid whose frequency and amplitude glide when the motion changes. Frequencies are in
+/// cycles per sample of the internal rate.
 #[derive(Debug, Clone, Copy)]
 struct Tone {
     phase: u32,
@@ -35,8 +35,8 @@ pub(crate) struct Tones {
 impl Tones {
     pub(crate) const ZERO: Self = Self { tones: [Tone::ZERO; MOST_TONES], count: 0 };
 
-    /// Starts sinusoids at their crests, or at phases drawn from the seed; all numbers are zero
-    /// before.
+    /// Starts the sinusoids at their crests, or at random phases from the seed. All numbers must be
+    /// zero before.
     pub(crate) fn start(&mut self, count: usize, random_phase: bool, seed: u32) {
         self.count = count;
         if random_phase {
@@ -50,8 +50,8 @@ impl Tones {
         self.tones.get_mut(..self.count).unwrap_or(&mut [])
     }
 
-    /// Starts a glide of `samples` to the sinusoids of a motion; 0 sets them at once. Returns the
-    /// level that is reached.
+    /// Starts a glide over `samples` samples to the sinusoids of a motion; with 0 samples they are
+    /// set at once. Returns the level that is reached.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         let part = 1.0 / samples.max(1) as f32;
         let (mut power, mut highest) = (0.0, 0.0f32);
@@ -88,7 +88,8 @@ impl Tones {
         level
     }
 
-    /// Starts a glide of `samples` to silence at the present frequencies; 0 sets it at once.
+    /// Starts a glide over `samples` samples to silence, without a change of frequencies; with 0
+    /// samples it is silent at once.
     pub(crate) fn fade(&mut self, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
         for tone in self.sounding() {
@@ -100,7 +101,7 @@ impl Tones {
         }
     }
 
-    /// Moves frequencies and amplitudes by one step of the glide.
+    /// Advances frequencies and amplitudes by one step of the glide.
     fn glide(&mut self) {
         for tone in self.sounding() {
             tone.frequency += tone.frequency_step;
@@ -113,7 +114,8 @@ impl Tones {
         self.sounding().iter_mut().for_each(|tone| tone.amplitude = 0.0);
     }
 
-    /// Returns the next sample, after a step of a glide, or of a glide to silence that ends.
+    /// Returns the next sample. `is_gliding`: advances the glide first. `becomes_silent`: this step
+    /// ends a glide to silence.
     pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
         if is_gliding {
             self.glide();
@@ -135,8 +137,8 @@ impl Tones {
     }
 }
 
-/// Returns the cosine of a phase, `2^32` being a cycle, to 4e-6: Taylor's series of the sine within
-/// a quarter of a cycle.
+/// Returns the cosine of a phase of which `2^32` is one cycle. The error is at most 4e-6. Uses
+/// Taylor's series of the sine within a quarter of a cycle.
 fn cosine(phase: u32) -> f32 {
     let x = phase as i32 as f32 * CYCLES;
     let t = 0.25 - x.abs();

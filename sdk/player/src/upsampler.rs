@@ -3,8 +3,8 @@
 use crate::layout::MOST_ROW;
 use crate::words::Words;
 
-/// A polyphase low-pass filter with `row` coefficients for each phase, from the oldest input to the
-/// newest.
+/// A polyphase low-pass filter with `row` coefficients per phase, ordered from the oldest input to
+/// the newest.
 #[derive(Debug, Clone)]
 pub(crate) struct Upsampler {
     /// Each input is stored twice, so that the newest inputs are always contiguous.
@@ -27,7 +27,7 @@ impl Upsampler {
         }
     }
 
-    /// Returns the sample of a phase with these coefficients.
+    /// Returns the sample of the phase that has these coefficients.
     pub(crate) fn at(&self, coefficients: Words<'_>) -> f32 {
         let inputs = self
             .history

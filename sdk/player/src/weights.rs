@@ -1,16 +1,16 @@
-//! Weights of the conditions at a motion.
+//! Weights of the conditions that a motion mixes.
 
 use crate::words::Words;
 
-/// Up to four conditions of the grid and their bilinear weights.
+/// Up to four conditions of the grid, with their bilinear weights.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Weights {
     of: [(usize, f32); 4],
 }
 
 impl Weights {
-    /// Weighs the corners around a motion of the grid. Conditions are stored with speeds varying
-    /// first.
+    /// Computes the weights of the four corners around a motion within the grid. In the order of
+    /// the conditions, speeds vary first.
     pub(crate) fn new(speeds: Words<'_>, forces: Words<'_>, speed: f32, force: f32) -> Self {
         let (s, u) = place(speeds, speed);
         let (f, v) = place(forces, force);
@@ -32,8 +32,8 @@ impl Weights {
     }
 }
 
-/// Returns the index below a value on an ascending axis, and the position between it and the next
-/// one.
+/// Returns the index of the value below a number on an ascending axis, and the position between
+/// this value and the next one, from 0 to 1.
 fn place(axis: Words<'_>, value: f32) -> (usize, f32) {
     let above = axis.iter().take_while(|x| *x <= value).count();
     if above == 0 {

@@ -1,4 +1,4 @@
-//! Numbers of a block, read in place.
+//! The numbers of a block, read in place.
 
 /// Little-endian single-precision numbers at any alignment.
 #[derive(Debug, Clone, Copy)]
@@ -13,17 +13,17 @@ impl<'a> Words<'a> {
         self.0.len()
     }
 
-    /// Returns the number at an index; zero beyond the end.
+    /// Returns the number at an index, or zero beyond the end.
     pub(crate) fn at(self, index: usize) -> f32 {
         self.0.get(index).map_or(0.0, |word| f32::from_le_bytes(*word))
     }
 
-    /// Returns the last number; zero if there is none.
+    /// Returns the last number, or zero if there is none.
     pub(crate) fn last(self) -> f32 {
         self.at(self.len().saturating_sub(1))
     }
 
-    /// Returns `count` numbers from an index; none if they extend beyond the end.
+    /// Returns `count` numbers from an index on, or none if they extend beyond the end.
     pub(crate) fn part(self, from: usize, count: usize) -> Self {
         let end = from.saturating_add(count);
         Self(self.0.get(from..end).unwrap_or(&[]))
@@ -33,14 +33,14 @@ impl<'a> Words<'a> {
         self.0.iter().map(|word| f32::from_le_bytes(*word))
     }
 
-    /// Returns the numbers in fours.
+    /// Returns the numbers in groups of four.
     pub(crate) fn fours(self) -> impl Iterator<Item = [f32; 4]> + 'a {
         let fours = self.0.as_chunks::<4>().0.iter();
         fours.map(|four| four.map(f32::from_le_bytes))
     }
 }
 
-/// Little-endian integers of 16 bits at any alignment, as numbers in single precision.
+/// Little-endian 16-bit integers at any alignment, read as single-precision numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Integers<'a>(&'a [[u8; 2]]);
 
@@ -49,12 +49,12 @@ impl<'a> Integers<'a> {
         Self(bytes.as_chunks::<2>().0)
     }
 
-    /// Returns the number at an index; zero beyond the end.
+    /// Returns the number at an index, or zero beyond the end.
     pub(crate) fn at(self, index: usize) -> f32 {
         self.0.get(index).map_or(0.0, |integer| f32::from(i16::from_le_bytes(*integer)))
     }
 
-    /// Returns `count` numbers from an index; none if they extend beyond the end.
+    /// Returns `count` numbers from an index on, or none if they extend beyond the end.
     pub(crate) fn part(self, from: usize, count: usize) -> Self {
         let end = from.saturating_add(count);
         Self(self.0.get(from..end).unwrap_or(&[]))

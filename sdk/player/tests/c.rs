@@ -1,6 +1,6 @@
-//! The player in C returns the bits of the player of this crate, or its refusal: on this machine,
-//! on emulated boards, and on hostile blocks, of which it reads and writes nothing beyond its
-//! memory.
+//! The player in C renders the same bits as this crate's player, and refuses the same blocks: on
+//! this machine, on emulated boards, and for hostile blocks, where it neither reads nor writes
+//! beyond its memory.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/blocks.rs"]
@@ -19,7 +19,7 @@ use htex_player::Block;
 use stream::{Case, Step};
 use xtask::needs::{ARM_GCC, CC, CLANG, QEMU_ARM, QEMU_RISCV, RISCV_GCC, SANITIZERS, XTENSA_GCC};
 
-/// The blocks of `spec/baked-conformance` and what is done with them, for samples and for integers.
+/// The blocks of `spec/baked-conformance`, and what is done with them.
 fn conformance() -> Vec<Case> {
     let both = cases::blocks_and_steps().into_iter().flat_map(|(block, steps)| {
         [false, true].map(|are_integers| Case {
@@ -42,7 +42,7 @@ fn step(step: cases::Step, block: &[u8], are_integers: bool) -> Step {
     }
 }
 
-/// Options with which compilers fuse operations, which the file forbids.
+/// Options with which compilers would fuse operations, which the source file forbids.
 const GCC_OPTIONS: [&str; 3] = ["-O0", "-O2", "-O3 -march=native -ffp-contract=fast"];
 const CLANG_OPTIONS: [&str; 3] = ["-O0", "-O2", "-O3 -march=native -ffp-contract=on"];
 
@@ -68,8 +68,8 @@ fn clang_makes_the_bits_of_the_specification() {
     }
 }
 
-/// With this option clang does not heed what a file says of fusing, and tells the file nothing of
-/// it.
+/// With this option clang ignores what a source file says about fusing, and the file cannot detect
+/// the option.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn a_player_that_was_compiled_to_fuse_opens_no_block() {
@@ -132,7 +132,7 @@ fn clang_compiles_for_other_processors() {
         "thumbv7em-none-eabihf -mcpu=cortex-m4 -mfpu=fpv4-sp-d16",
         "thumbv8m.main-none-eabihf",
         "aarch64-none-elf",
-        // Of the other order of bytes.
+        // A target with the other byte order.
         "armeb-none-eabi",
         "mips-none-elf",
     ] {
@@ -147,7 +147,7 @@ fn gcc_compiles_for_xtensa() {
     }
 }
 
-/// What would change the bits is refused when the file is compiled.
+/// Options that would change the bits are refused at compile time.
 #[test]
 fn options_that_reorder_operations_are_refused() {
     if !(CC.met(has("gcc")) && CLANG.met(has("clang"))) {
@@ -166,8 +166,8 @@ fn options_that_reorder_operations_are_refused() {
     }
 }
 
-/// Options of clang with which a read or a write beyond memory, or an operation without a defined
-/// result, ends the program.
+/// Options of clang that end the program at a read or a write beyond memory, and at an operation
+/// without a defined result.
 const SANITIZED: &str =
     "clang -O1 -g -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all";
 

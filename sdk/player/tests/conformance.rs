@@ -1,4 +1,4 @@
-//! `spec/baked-conformance`: blocks, and what a player renders or refuses.
+//! `spec/baked-conformance`: blocks, and what a player renders for them or why it refuses them.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/blocks.rs"]
@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 
 use xtask::generated::{file, only};
 
-/// The bits are those of every processor: `sdk/bake/tests/board.rs` compares blocks of models with
-/// a Cortex-M4F.
+/// The bits are the same on every processor: `sdk/bake/tests/board.rs` compares blocks of models
+/// with a Cortex-M4F.
 #[test]
 fn generated_blocks_and_samples_are_fresh() {
     let files = cases::files();

@@ -1,4 +1,4 @@
-//! No block makes a player panic or render a sample that is not finite.
+//! No block makes a player panic, or render a sample that is not finite.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/blocks.rs"]
@@ -31,7 +31,7 @@ fn play(bytes: &[u8]) -> Result<(), OpenError> {
 fn sound_blocks_play() {
     for plan in [noise(), tones()] {
         assert_eq!(play(&plan.bytes()), Ok(()));
-        // Flash memory behind a block does not matter, nor does its alignment.
+        // Neither flash memory behind a block nor its alignment matters.
         let more = [&[0xFF][..], &plan.bytes(), &[0xFF; 7]].concat();
         assert_eq!(play(&more[1..]), Ok(()));
     }

@@ -18,7 +18,7 @@ fn rms(samples: &[f32]) -> f64 {
     (power / samples.len() as f64).sqrt()
 }
 
-/// The largest difference of neighbours.
+/// The largest difference between neighbouring samples.
 fn steepest(samples: &[f32]) -> f32 {
     let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     steps.fold(0.0, f32::max)
@@ -56,11 +56,11 @@ fn levels_are_those_of_the_block_and_seeds_differ() {
         (40.0, 0.4, 1.0),
         (50.0, 0.4, 1.25),
         (80.0, 0.4, 2.0),
-        // Beyond the grid by the law, from the nearest motion of the grid.
+        // Beyond the grid, by the law, starting from the nearest motion of the grid.
         (10.0, 0.4, 0.5),
         (50.0, 0.1, 1.25 * 0.25f64.powf(0.75)),
         (320.0, 0.8, 2.0 * 2.0 * 2f64.powf(0.75)),
-        // Ratios of speeds are limited to 1/16 and 8, and the level to the ceiling.
+        // Ratios of speeds are limited to 1/16 to 8, and the level is limited to the ceiling.
         (1.0, 0.4, 0.25),
         (1000.0, 0.4, 2.0 * 8f64.sqrt()),
         (80.0, 20.0, 8.0),
@@ -89,7 +89,7 @@ fn sinusoids_have_their_frequencies_and_levels() {
     }
 }
 
-/// Returns the cycles that the first sinusoid makes in each sample.
+/// Returns the frequency of the first sinusoid, cycles per sample.
 fn frequency(motion: (f32, f32)) -> f64 {
     let mut plan = tones();
     plan.law[0] = 0.5;
@@ -110,14 +110,14 @@ fn frequencies_of_sinusoids_follow_the_law_beyond_the_grid() {
         let read = frequency((speed, 0.4));
         assert!((read - expected).abs() < 2e-4, "{speed} mm/s: {read}");
     }
-    // None is raised beyond 0.4.
+    // No frequency is raised above 0.4.
     let mut plan = tones();
     (plan.law[0], plan.highest) = (4.0, 0.4);
     let bytes = plan.bytes();
     let mut player = Player::new(Block::open(&bytes).unwrap(), 1);
     player.set_motion(160.0, 0.4);
     let samples = rendered(&mut player, 10_000);
-    // Of 0.2 and 0.4 cycles per sample, 5 samples are a period.
+    // With 0.2 and 0.4 cycles per sample, the period is 5 samples.
     let differs = samples.windows(6).any(|part| (part[5] - part[0]).abs() > 1e-2);
     assert!(!differs);
 }
@@ -133,7 +133,7 @@ fn a_reading_that_is_none_of_a_finger_is_held_for_a_tenth_of_a_second() {
             steady.set_motion(60.0, 0.4);
             rendered(&mut player, 7);
             rendered(&mut steady, 7);
-            // 800 samples; later bad readings do not prolong it.
+            // A hold of 800 samples, which further implausible readings do not prolong.
             let mut held = Vec::new();
             for _ in 0..8 {
                 assert!(player.set_motion(bad.0, bad.1));

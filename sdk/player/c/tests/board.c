@@ -1,9 +1,10 @@
-/* Reset, output and timer of boards with a Cortex-M or RISC-V, with cortex_m.ld or riscv32.ld. */
+/* Reset, output and timer of boards with a Cortex-M or RISC-V; link with cortex_m.ld or
+   riscv32.ld. */
 #include "board.h"
 
 extern uint32_t stack_top;
 
-/* Compilers may call these two, and must not make calls of them here. */
+/* Compilers may call these two functions; their own code must not be compiled to such calls. */
 #define PLAIN __attribute__((optimize("no-tree-loop-distribute-patterns")))
 
 PLAIN void *memset(void *to, int value, size_t length)
@@ -33,7 +34,7 @@ PLAIN void *memcpy(void *to, const void *from, size_t length)
     return to;
 }
 
-/* Calls the debugger, QEMU. */
+/* Calls the debugger, which is QEMU. */
 #if defined(__riscv)
 static int semihosting(int operation, const void *argument)
 {
@@ -152,7 +153,7 @@ __attribute__((weak)) void on_pending(void)
 
 void reset(void);
 
-/* The floating-point unit is two coprocessors; a Cortex-M0 has none. */
+/* Enables the floating-point unit, which is two coprocessors. A Cortex-M0 has none. */
 __attribute__((used)) void reset(void)
 {
 #if defined(__ARM_FP)

@@ -1,5 +1,6 @@
-/* Plays cases. All numbers have 32 bits: the number of cases; of each its seed, the number of its steps, three numbers for
-   each step, the length of the block, and the block, filled up to a multiple of four. */
+/* Plays cases. The format is a sequence of 32-bit numbers: the number of cases; then for each case
+   its seed, the number of its steps, three numbers for each step, the length of the block, and the
+   block, padded to a multiple of four bytes. */
 #include "cases.h"
 
 #include "htex_player.h"
@@ -72,7 +73,7 @@ static void play_steps(htex_player *player, const uint8_t *steps, uint32_t count
     }
 }
 
-/* What a player refuses before and after it is opened, and what it tells of itself. */
+/* Tests what a player refuses before and after it is opened, and what it returns about itself. */
 static int is_refused(htex_player *player, size_t size, const uint8_t *block, size_t length)
 {
     float sample;

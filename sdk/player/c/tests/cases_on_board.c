@@ -1,8 +1,8 @@
-/* Plays the cases that QEMU loads, and prints FNV-1a of what the player makes of them. */
+/* Plays the cases that QEMU loads, and prints the FNV-1a hash of the results. */
 #include "board.h"
 #include "cases.h"
 
-/* The cases follow their length. */
+/* In memory, the length precedes the cases. */
 enum { MOST_BYTES = 11 * 1024 };
 
 static uint64_t memory[MOST_BYTES / sizeof(uint64_t)];

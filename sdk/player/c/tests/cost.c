@@ -1,5 +1,6 @@
-/* Counts the instructions that the block takes that QEMU loads: per sample, while a motion changes, to set a motion, to set it
-   again. The board has a timer and a floating-point unit. */
+/* Counts the instructions that the block loaded by QEMU takes: per sample, per sample while a
+   motion changes, to set a motion, and to set it again. The board has a timer and a floating-point
+   unit. */
 #include "board.h"
 #include "htex_player.h"
 

@@ -1,5 +1,6 @@
-/* The example with DMA on a board. QEMU has no converter with DMA: a timer takes its place, whose interrupt sends a sample each
-   125 us and asks for the interrupts of the example, which have a lower priority, as a DMA controller does. */
+/* Runs the DMA example on a board. QEMU has no converter with DMA, so a timer takes its place. The
+   timer's interrupt sends one sample every 125 us, and requests the interrupts of the example. Like
+   those of a DMA controller, these have a lower priority. */
 #include "board.h"
 #include "texture_dma.h"
 
@@ -28,7 +29,7 @@ void on_timer(void)
     if (sent == SENT) {
         return;
     }
-    /* A half that is sent has to be filled: two were before the start. */
+    /* A half must be filled before it is sent. Two were filled before the start. */
     late += sent / TEXTURE_HALF >= filled + 2;
     uint16_t sample = (uint16_t)texture_samples[sent % (2 * TEXTURE_HALF)];
     hash = (hash ^ (sample & 0xFFu)) * 0x01000193u;
@@ -56,7 +57,7 @@ void program(void)
         print("error: the texture is refused\n");
         return;
     }
-    /* The timer interrupts what is pending. */
+    /* The timer may interrupt the pending interrupt. */
     PRIORITIES = 0x00FF0000;
     start_interrupts(PERIOD);
     while (sent < SENT) {

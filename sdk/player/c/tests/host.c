@@ -1,5 +1,6 @@
-/* Plays cases from the file that is named first, and writes what the player makes of them to the file that is named second. Each block is copied to memory of
-   its own, so that a sanitizer sees a read beyond it. */
+/* Plays cases from the file that is the first argument, and writes the results to the file that is
+   the second. Each block is copied to its own memory, so that a sanitizer detects a read beyond
+   it. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 
 use htex_player::crc32;
 
-/// The numbers of a block.
+/// The content of a block, from which its bytes are made.
 #[derive(Clone)]
 pub struct Plan {
     pub kind: u8,
@@ -30,7 +30,7 @@ pub struct Plan {
     pub integers: Vec<i16>,
 }
 
-/// Noise of level 1 and 2 with two different filters.
+/// Noise with levels 1 and 2, and with two different filters.
 pub fn noise() -> Plan {
     let next = |decay: f32| move |c: &f32| Some(c * decay);
     let filter =
@@ -59,7 +59,7 @@ pub fn noise() -> Plan {
     }
 }
 
-/// Two sinusoids of level 1 at both conditions, at 0.05 and 0.1, and at 0.1 and 0.2 cycles per
+/// Two sinusoids with level 1 at both conditions: at 0.05 and 0.1, and at 0.1 and 0.2 cycles per
 /// sample.
 pub fn tones() -> Plan {
     Plan {

@@ -1,5 +1,5 @@
-//! Blocks of `spec/baked-conformance`, what is done with them, and what a player renders or
-//! refuses.
+//! The blocks of `spec/baked-conformance`, what is done with them, and what a player renders for
+//! them or why it refuses them.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use htex_player::{Block, OpenError, Player};
@@ -8,13 +8,13 @@ use sha2::{Digest, Sha256};
 
 use crate::blocks::{Plan, noise, tones, with_checksum};
 
-/// The folder of the files.
+/// The folder that contains the files.
 pub const FOLDER: &str = "spec/baked-conformance";
 pub const SEED: u32 = 7;
-/// Samples that the files list.
+/// Number of samples that the files list.
 const LISTED: usize = 16;
 
-/// What is done with a player.
+/// One call of a player.
 #[derive(Clone, Copy)]
 pub enum Step {
     SetMotion(f32, f32),
@@ -23,7 +23,7 @@ pub enum Step {
 
 use Step::{Render, SetMotion};
 
-/// The files of all cases: paths from the workspace's folder, and bytes.
+/// The files of all cases: their paths from the workspace's folder, and their bytes.
 pub fn files() -> Vec<(String, Vec<u8>)> {
     let valid = sound().into_iter().map(|(name, plan)| {
         let bytes = plan.bytes();
@@ -41,14 +41,14 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
     valid.chain(refused).flat_map(both).collect()
 }
 
-/// The blocks, those that are refused too, and what is done with each.
+/// All blocks, including those that are refused, and what is done with each.
 pub fn blocks_and_steps() -> Vec<(Vec<u8>, Vec<Step>)> {
     let played = sound().into_iter().map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
     let refused = hostile().into_iter().map(|(_, bytes)| (bytes, Vec::new()));
     played.chain(refused).collect()
 }
 
-/// The rule by which bytes are refused, as the specification names it.
+/// The rule that bytes violate, as the specification names it.
 fn rule(bytes: &[u8]) -> Option<&'static str> {
     Some(match Block::open(bytes).err()? {
         OpenError::TooShort => "too_short",
@@ -62,8 +62,8 @@ fn rule(bytes: &[u8]) -> Option<&'static str> {
     })
 }
 
-/// Motions on a grid, between, beyond and at rest, readings of no finger and no numbers, and
-/// changes during changes.
+/// Motions on the grid, between its points, beyond it and at rest; implausible readings and numbers
+/// that are not finite; and changes during changes.
 fn steps(rate_hz: f32) -> Vec<Step> {
     let held = (0.1 * rate_hz) as usize;
     vec![
@@ -102,7 +102,7 @@ fn steps(rate_hz: f32) -> Vec<Step> {
     ]
 }
 
-/// What two players of the same seed render, one to numbers, one to integers.
+/// What two players with the same seed render: one to floating-point numbers, one to integers.
 fn played(name: &str, bytes: &[u8], steps: &[Step]) -> Value {
     let block = Block::open(bytes).unwrap();
     let full_scale = block.full_scale();
@@ -156,7 +156,7 @@ fn described(step: &Step) -> Value {
     }
 }
 
-/// A number, or the name of what is none.
+/// A number, or its name if it is not finite.
 fn readable(x: f32) -> Value {
     if x.is_finite() { json!(x) } else { json!(x.to_string()) }
 }
@@ -169,13 +169,13 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Numbers that differ, without a pattern, from -1 to 1.
+/// Different numbers from -1 to 1, without a pattern.
 fn scattered(count: usize) -> impl Iterator<Item = f32> {
     let spread = |i: usize| (i as u32).wrapping_mul(2_654_435_761) as i32;
     (1..=count).map(move |i| spread(i) as f32 / 2_147_483_648.0)
 }
 
-/// An interpolator whose phases have the sum 1.
+/// An interpolator whose coefficients add up to 1 in each phase.
 fn rows(up: usize, row: usize) -> Vec<f32> {
     let at = move |phase: usize, i: usize| {
         let t = i as f32 - (row / 2) as f32 + 1.0 - phase as f32 / up as f32;
@@ -188,7 +188,7 @@ fn rows(up: usize, row: usize) -> Vec<f32> {
     (0..up).flat_map(phase).collect()
 }
 
-/// Noise of three filters at three speeds and two forces.
+/// Noise with three filters at three speeds and two forces.
 fn noise_grid() -> Plan {
     let (filters, conditions, size) = (3, 6, 16);
     let decays = (0..filters).flat_map(|k| {
@@ -244,7 +244,7 @@ fn noise_one_condition() -> Plan {
     }
 }
 
-/// Noise whose mix is silent at the faster speed.
+/// Noise whose mix is silent at the higher speed.
 fn noise_without_energy() -> Plan {
     let mut plan = noise();
     plan.integers[2] = 0;
@@ -294,7 +294,7 @@ fn tones_random() -> Plan {
     }
 }
 
-/// Sinusoids that the law would raise above the highest frequency, and a level that it would raise
+/// Sinusoids that the law would raise above the highest frequency, with a level that it would raise
 /// above the ceiling.
 fn tones_law() -> Plan {
     Plan { law: [4.0, -4.0, 4.0], ceiling: 3.0, highest: 0.4, ..tones_fixed() }
@@ -319,7 +319,7 @@ fn sound() -> Vec<(&'static str, Plan)> {
     ]
 }
 
-/// Blocks that are refused.
+/// Blocks that a player refuses.
 fn hostile() -> Vec<(&'static str, Vec<u8>)> {
     let noise_with = |change: fn(&mut Plan)| {
         let mut plan = noise();

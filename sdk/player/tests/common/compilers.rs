@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::stream::{Case, encoded, expected, hash};
 
-/// Warnings that no user shall see.
+/// Warnings that no user of the C file should see.
 const STRICT: &str = "-std=c99 -Wall -Wextra -Wconversion -Wsign-conversion -Wdouble-promotion -Wcast-align -Wshadow -pedantic -Werror";
 
 /// The folder of the player in C.
@@ -14,7 +14,7 @@ pub fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../player/c")
 }
 
-/// A file that tests write.
+/// The path of a file that tests write.
 pub fn written(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("c");
     std::fs::create_dir_all(&folder).unwrap();
@@ -26,7 +26,7 @@ pub fn has(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
-/// Runs a command, and returns its standard output.
+/// Runs a command and returns its standard output.
 pub fn run(command: &mut Command) -> String {
     let done = command.output().unwrap();
     let error = String::from_utf8_lossy(&done.stderr);
@@ -35,7 +35,7 @@ pub fn run(command: &mut Command) -> String {
     output.into_owned()
 }
 
-/// A command of a compiler and its options, separated by spaces.
+/// Makes the command for a compiler and its options, separated by spaces.
 pub fn compiler(command: &str) -> Command {
     let mut words = command.split_whitespace();
     let mut compiler = Command::new(words.next().unwrap());
@@ -44,7 +44,7 @@ pub fn compiler(command: &str) -> Command {
     compiler
 }
 
-/// The program that plays cases on this machine, of a compiler and its options.
+/// Compiles the program that plays cases on this machine, with a compiler and its options.
 pub fn host_program(command: &str, name: &str) -> PathBuf {
     let program = written(name);
     let mut compiler = compiler(command);
@@ -54,7 +54,7 @@ pub fn host_program(command: &str, name: &str) -> PathBuf {
     program
 }
 
-/// Plays cases on this machine, and compares each with the player of this crate.
+/// Plays cases on this machine, and compares each result with this crate's player.
 pub fn compare_on_host(program: &Path, cases: &[Case]) {
     let [all, results] = ["cases", "results"].map(|end| program.with_extension(end));
     std::fs::write(&all, encoded(cases)).unwrap();
@@ -82,7 +82,7 @@ pub struct Board {
     pub script: &'static str,
     pub emulator: &'static str,
     pub machine: &'static str,
-    /// Where the linker's script expects what QEMU loads.
+    /// Address at which the linker script expects what QEMU loads.
     pub loaded: &'static str,
 }
 
@@ -95,7 +95,7 @@ pub const CORTEX_M4F: Board = Board {
     loaded: "0x20000",
 };
 
-/// Without a floating-point unit and loads at any alignment; 16 kB of RAM.
+/// A board without a floating-point unit and without loads at any alignment; 16 kB of RAM.
 pub const CORTEX_M0: Board =
     Board { options: "-mcpu=cortex-m0 -mthumb", machine: "microbit", ..CORTEX_M4F };
 
@@ -109,14 +109,14 @@ pub const RISCV32: Board = Board {
 };
 
 impl Board {
-    /// Links sources of `c/tests` with the player.
+    /// Compiles and links sources of `c/tests` with the player.
     pub fn program(&self, sources: &[&str], more: &str, name: &str) -> PathBuf {
         let program = written(name);
-        // The file overrides the permission to fuse.
+        // The source file overrides the permission to fuse.
         let bare =
             "-O2 -ffp-contract=fast -ffreestanding -nostdlib -Wl,--gc-sections -ffunction-sections";
         let mut compiler = compiler(&format!("{} {} {bare} {more}", self.compiler, self.options));
-        // The addresses of registers and vectors are not ISO C.
+        // Addresses of registers and vectors are not ISO C.
         compiler.arg("-Wno-pedantic");
         let tests = folder().join("tests");
         compiler.arg("-T").arg(tests.join(self.script));
@@ -126,7 +126,7 @@ impl Board {
         program
     }
 
-    /// Runs a program with bytes in memory, and returns what it prints.
+    /// Runs a program with these bytes in memory, and returns what it prints.
     pub fn run(&self, program: &Path, bytes: &[u8]) -> String {
         let loaded = program.with_extension("bin");
         std::fs::write(&loaded, bytes).unwrap();
@@ -141,8 +141,8 @@ impl Board {
         run(&mut qemu)
     }
 
-    /// Compiles with `more` options, plays cases on the board, and compares the hash of all results
-    /// with that of the player of this crate.
+    /// Compiles with the options `more`, plays cases on the board, and compares the hash of all
+    /// results with this crate's player.
     pub fn compare(&self, name: &str, more: &str, cases: &[Case]) {
         let sources = ["cases.c", "cases_on_board.c", "board.c"];
         let program = self.program(&sources, more, name);

@@ -1,4 +1,4 @@
-//! Blocks that were changed, and motions that no finger has.
+//! Blocks that were changed, and motions that are impossible for a finger.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ pub const MOTIONS: [(f32, f32); 11] = [
     (999.0, 1e-6),
 ];
 
-/// Changed bytes with a matching checksum, which reach the checks behind it, and the player.
+/// Changed bytes with a matching checksum, so that they reach the checks after it, and the player.
 pub fn changed() -> impl Strategy<Value = Vec<u8>> {
     let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6);
     (any::<bool>(), changes, 0usize..4).prop_map(|(is_tones, changes, cut)| {
@@ -36,7 +36,7 @@ pub fn changed() -> impl Strategy<Value = Vec<u8>> {
     })
 }
 
-/// Random numbers in a block, and whether they are small.
+/// Blocks with random numbers, and whether the numbers are small.
 pub fn random() -> impl Strategy<Value = (Vec<u8>, bool)> {
     let words = prop::collection::vec(any::<u32>(), 20);
     (any::<bool>(), words, any::<bool>()).prop_map(|(is_tones, words, mild)| {
@@ -57,7 +57,7 @@ fn plan(is_tones: bool) -> Plan {
     if is_tones { tones() } else { noise() }
 }
 
-/// Blocks with the largest numbers that are allowed.
+/// Blocks with the largest permitted numbers.
 pub fn extreme() -> Vec<Vec<u8>> {
     let mut loud = noise();
     loud.levels = vec![1e9; 2];
@@ -76,7 +76,7 @@ pub fn extreme() -> Vec<Vec<u8>> {
     [loud, faint, high].map(|plan| plan.bytes()).to_vec()
 }
 
-/// Bytes that are no block: every truncation, every changed bit, and random bytes.
+/// Bytes that are not a block: every truncation, every changed bit, and random bytes.
 pub fn damaged() -> Vec<Vec<u8>> {
     let mut all = Vec::new();
     for bytes in [noise(), tones()].map(|plan| plan.bytes()) {
@@ -90,7 +90,7 @@ pub fn damaged() -> Vec<Vec<u8>> {
     all
 }
 
-/// `count` blocks of each kind of change, always the same ones, with the motions above.
+/// The same `count` blocks of each kind of change every time, with the motions above.
 pub fn cases(count: usize) -> Vec<Case> {
     let mut runner = TestRunner::deterministic();
     let mut blocks = extreme();
@@ -105,7 +105,8 @@ pub fn cases(count: usize) -> Vec<Case> {
     blocks.into_iter().map(case).collect()
 }
 
-/// The steps of a block: each motion, samples, and integers of a full scale that may be none.
+/// The steps for a block: each motion, then samples, then integers with a full scale that may be
+/// invalid.
 pub fn case(block: Vec<u8>) -> Case {
     let steps = MOTIONS.into_iter().flat_map(|(speed, force)| {
         let motion = Step::SetMotion(speed, force);

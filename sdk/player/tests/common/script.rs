@@ -1,15 +1,16 @@
-//! A script that a player runs on the host and on a board, and a hash of its samples.
+//! A script of motions that a player runs on the host and on a board, and a hash of its samples.
 
 use htex_player::Player;
 
 pub const SEED: u32 = 7;
-/// Motions: mm/s and newtons, within and beyond conditions, and a finger at rest.
+/// Motions: mm/s and newtons, within and beyond the conditions, and of a finger at rest.
 const MOTIONS: [(f32, f32); 6] =
     [(80.0, 0.4), (55.5, 0.25), (0.0, 0.0), (101.25, 0.5), (1e6, 100.0), (-60.0, 0.3)];
-/// Lengths of buffers.
+/// Lengths of the buffers.
 const LENGTHS: [usize; 4] = [64, 1, 33, 200];
 
-/// Renders every motion to buffers of several lengths, and returns FNV-1a of the samples' bits.
+/// Renders every motion to buffers of several lengths. Returns the FNV-1a hash of the samples'
+/// bits.
 pub fn hash(player: &mut Player<'_>) -> u32 {
     let mut hash = 0x811C_9DC5u32;
     let mut add = |bits: u32| {

@@ -1,5 +1,5 @@
-//! Cases for the player in C, as `c/tests/cases.c` reads them, and what the player of this crate
-//! makes of them.
+//! Cases for the player in C, in the format that `c/tests/cases.c` reads, and the results of this
+//! crate's player.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use htex_player::{Block, OpenError, Player};
@@ -15,7 +15,7 @@ pub struct Case {
 pub enum Step {
     SetMotion(f32, f32),
     Render(usize),
-    /// Integers of a full scale.
+    /// Samples as integers, with a full scale.
     RenderI16(usize, f32),
 }
 
@@ -29,7 +29,7 @@ impl Step {
     }
 }
 
-/// Cases as bytes.
+/// Writes cases as bytes.
 pub fn encoded(cases: &[Case]) -> Vec<u8> {
     let mut bytes = (cases.len() as u32).to_le_bytes().to_vec();
     for case in cases {
@@ -43,8 +43,8 @@ pub fn encoded(cases: &[Case]) -> Vec<u8> {
     bytes
 }
 
-/// What a player makes of each case: the status of opening; then rate and full scale, of each
-/// motion the status and the level, and all samples.
+/// Results of a player for each case: the status of opening; then the rate and the full scale, the
+/// status and the level at each motion, and all samples.
 pub fn expected(cases: &[Case]) -> Vec<Vec<u8>> {
     cases.iter().map(played).collect()
 }
@@ -80,12 +80,12 @@ fn played(case: &Case) -> Vec<u8> {
     bytes
 }
 
-/// The status in C.
+/// The status code of the player in C.
 fn status(error: OpenError) -> i32 {
     error as i32
 }
 
-/// FNV-1a of bytes.
+/// FNV-1a hash of bytes.
 pub fn hash(bytes: &[u8]) -> u32 {
     let add = |hash: u32, byte: &u8| (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193);
     bytes.iter().fold(0x811C_9DC5, add)

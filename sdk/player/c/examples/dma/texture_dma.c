@@ -7,7 +7,8 @@ static HTEX_PLAYER_MEMORY(memory, TEXTURE_CLOTH_NUMBERS);
 
 int16_t texture_samples[2 * TEXTURE_HALF];
 
-/* The motion is read once for each half, where its samples are made: player and motion belong to one interrupt. */
+/* Reads the motion once per half, where the samples are made. So only one interrupt uses the player
+   and the motion. */
 static void fill(int16_t *half)
 {
     float speed;

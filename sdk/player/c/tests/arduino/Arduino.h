@@ -1,5 +1,6 @@
-// A stub of the Arduino interface, for a test that compiles the sketch on a host: no board, no core of Arduino. Its clock goes
-// on by 125 us with each call, its inputs read half of their range, and its output is kept.
+// A stub of the Arduino interface, for a test that compiles the sketch on a host, without a board
+// or an Arduino core. Its clock advances by 125 us with each call, its inputs read half of their
+// range, and it records its output.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Runs the sketch on the stub for a second and prints what it wrote.
+// Runs the sketch on the stub for one second, and prints what it wrote.
 #include <cstdio>
 
 #include "Arduino.h"

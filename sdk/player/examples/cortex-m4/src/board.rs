@@ -1,19 +1,19 @@
-//! The parts of the board that the program uses: reset, semihosting, the timer.
+//! The parts of the board that the program uses: reset, semihosting and the timer.
 
 use core::arch::asm;
 use core::fmt;
 use core::panic::PanicInfo;
 use core::ptr::{read_volatile, write_volatile};
 
-/// The register that grants access to coprocessors; the floating-point unit is two of them.
+/// The register that grants access to coprocessors. The floating-point unit is two of them.
 const CPACR: *mut u32 = 0xE000_ED88 as *mut u32;
 const SYST_CSR: *mut u32 = 0xE000_E010 as *mut u32;
 const SYST_RVR: *mut u32 = 0xE000_E014 as *mut u32;
 const SYST_CVR: *mut u32 = 0xE000_E018 as *mut u32;
 /// The timer counts down from its largest value.
 const RELOAD: u32 = 0x00FF_FFFF;
-/// Instructions of a tick: with `-icount shift=0` an instruction takes 1 ns, and the timer has 25
-/// MHz.
+/// Instructions per tick of the timer: with `-icount shift=0` an instruction takes 1 ns, and the
+/// timer runs at 25 MHz.
 const IN_TICK: u32 = 40;
 
 unsafe extern "C" {
@@ -39,7 +39,8 @@ static VECTORS: [Vector; 16] = {
     vectors
 };
 
-/// The first instructions, before any that use floating-point registers.
+/// The first instructions after reset. They run before any instruction that uses floating-point
+/// registers.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn reset() -> ! {
     // SAFETY: The register exists on every Cortex-M4, and nothing else runs.
@@ -66,7 +67,7 @@ fn panic(_: &PanicInfo<'_>) -> ! {
     exit()
 }
 
-/// Calls the debugger, QEMU.
+/// Calls the debugger, which is QEMU.
 fn semihosting(operation: u32, argument: u32) {
     // SAFETY: With semihosting the breakpoint returns, and changes only r0.
     unsafe { asm!("bkpt 0xAB", inout("r0") operation => _, in("r1") argument) };
@@ -97,7 +98,7 @@ impl fmt::Write for Console {
     }
 }
 
-/// Counts instructions, to 40, under `-icount shift=0`.
+/// Counts instructions, in steps of 40, if QEMU runs with `-icount shift=0`.
 pub(crate) struct Timer;
 
 impl Timer {

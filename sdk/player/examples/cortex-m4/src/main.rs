@@ -1,8 +1,8 @@
-//! Plays the block at [`BLOCK`] by the script of the tests and prints a hash of its samples and the
-//! instructions per sample.
+//! Plays the block at [`BLOCK`] with the script of the tests. Prints a hash of the samples and the
+//! number of instructions per sample.
 //!
-//! `docs/microcontroller.md` has the commands; `sdk/bake/tests/board.rs` compares the hash with
-//! that of the host.
+//! `docs/microcontroller.md` has the commands. `sdk/bake/tests/board.rs` compares the hash with the
+//! host's.
 #![no_std]
 #![no_main]
 
@@ -16,17 +16,17 @@ use core::slice;
 use board::{Console, Timer};
 use htex_player::{Block, Player};
 
-/// Address and size of the memory for the block.
+/// Address and size of the memory in which the block is.
 const BLOCK: (usize, usize) = (0x0020_0000, 0x0010_0000);
 
 /// A motion between conditions, mm/s and newtons.
 const BETWEEN: (f32, f32) = (87.0, 0.43);
-/// Samples whose instructions are counted.
+/// Number of samples whose instructions are counted.
 const COUNTED: usize = 2000;
 
 /// Runs after reset.
 pub(crate) fn main() -> ! {
-    // SAFETY: The board has memory there, which nothing writes to.
+    // SAFETY: The board has memory there, and nothing writes to it.
     let bytes = unsafe { slice::from_raw_parts(BLOCK.0 as *const u8, BLOCK.1) };
     match Block::open(bytes) {
         Ok(block) => play(block),

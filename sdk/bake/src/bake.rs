@@ -1,4 +1,4 @@
-//! Baking a representation.
+//! Bakes a representation of an asset to a block.
 
 use std::rc::Rc;
 
@@ -17,96 +17,99 @@ use crate::texture::{Moment, Texture};
 use crate::tones::{self, Tone};
 use crate::{BakeError, Grid};
 
-/// Largest error of the nine bands at a condition up to which the shortest filter is taken, dB.
+/// Largest error of the nine bands at a condition, dB. The shortest filter with at most this error
+/// is used.
 const TOLERANCE_DB: f64 = 0.1;
-/// Additional error at conditions for which filters are left out where the tolerance cannot be met,
-/// dB.
+/// If the tolerance cannot be met, filters may be left out as long as they add at most this error
+/// at a condition, dB.
 const LEFT_OUT_DB: f64 = 0.01;
-/// The same for a block that would take more than [`WANTED_BYTES`] otherwise, dB.
+/// As [`LEFT_OUT_DB`], for a block that would otherwise take more than [`WANTED_BYTES`].
 const MORE_LEFT_OUT_DB: f64 = 0.1;
-/// Bytes of a block for which accuracy is given up that is not within the tolerance anyway.
+/// Wanted size of a block, bytes. To reach it, accuracy is reduced if it is not within the
+/// tolerance anyway.
 const WANTED_BYTES: usize = 16 * 1024;
-/// Most conditions that are inserted between the wanted ones.
+/// Largest number of conditions after conditions were inserted between the wanted ones.
 const MOST_CONDITIONS: usize = 64;
-/// Lengths of one side of the filter that are tried.
+/// Lengths of one side of the filter, in the order in which they are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
-/// Magnitude of noise that one of a million samples exceeds, in its level: the full scale of a
-/// block.
+/// Magnitude that one of a million samples of noise exceeds, relative to the level. Determines the
+/// full scale of a block.
 const CREST: f64 = 5.0;
 
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Baked {
     pub bytes: Vec<u8>,
-    /// Numbers of 32 bits that the player in C keeps for the block, behind the members of a
+    /// Number of 32-bit values that the player in C needs for the block, in addition to the struct
     /// `htex_player`.
     pub numbers: usize,
-    /// The conditions of the block: the wanted ones, and those between them that the accuracy
-    /// needs.
+    /// The conditions of the block: the wanted ones, and those that were inserted between them for
+    /// accuracy.
     pub grid: Grid,
-    /// The id of the baked model.
+    /// The id of the model that was baked.
     pub model: String,
-    /// The rights of the asset, which source code has as comments; the bytes have no place for
+    /// The rights of the asset. Source code contains them as comments; a block has no place for
     /// them.
     pub rights: Rights,
-    /// The quantity of the samples, which has their unit.
+    /// Physical quantity of the samples, which determines their unit.
     pub quantity: Quantity,
-    /// The law beyond the grid.
+    /// The law that the texture follows beyond the grid.
     pub law: Law,
-    /// Level up to which the law raises that of the grid.
+    /// Largest level to which the law may raise a level of the grid.
     pub ceiling: f64,
-    /// A magnitude that samples of the grid rarely exceed.
+    /// A magnitude that samples at the motions of the grid rarely exceed.
     pub full_scale: f64,
     /// Rate at which noise or sinusoids are computed, hertz.
     pub internal_rate_hz: f64,
-    /// Coefficients of the noise filter; 0 for sinusoids.
+    /// Number of coefficients of the noise filter; 0 for sinusoids.
     pub taps: usize,
-    /// Noise filters that conditions mix; 0 for sinusoids.
+    /// Number of noise filters that the conditions mix; 0 for sinusoids.
     pub filters: usize,
-    /// Sinusoids; 0 for noise.
+    /// Number of sinusoids; 0 for noise.
     pub tones: usize,
-    /// Largest error of the nine bands at the conditions, dB, among bands within 40 dB of the
-    /// strongest.
+    /// Largest error of the nine bands at the conditions, dB. Only bands within 40 dB of the
+    /// strongest one count.
     pub at_conditions_db: f64,
-    /// The same midway between conditions, where the model mixes parameters and the player filters
-    /// or sinusoids.
+    /// The same midway between conditions. There the model interpolates parameters, but the player
+    /// mixes filters or sinusoids.
     pub between_db: f64,
-    /// The same at half the lowest speed and twice the highest, where the law moves the frequencies
-    /// of the texture and cannot move those of a filter; `None` where it moves none, and for
-    /// sinusoids, which follow.
+    /// The same at half the lowest speed and at twice the highest one. There the law changes the
+    /// frequencies of the texture, which a filter cannot follow. `None` if the law does not change
+    /// frequencies, and for sinusoids, which follow it.
     pub beyond_db: Option<f64>,
-    /// Recorded speeds, lowest and highest, mm/s, if the asset states them.
+    /// Lowest and highest recorded speed, mm/s, if the asset states them.
     pub recorded_speeds_mm_s: Option<(f64, f64)>,
 }
 
-/// How accurate a block has to be, and what it may take.
+/// How accurate a block has to be, and how much it may cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BakeLimits {
-    /// Error of nine bands between conditions, dB, until which conditions are inserted.
+    /// Largest error of the nine bands between conditions, dB. Conditions are inserted until it is
+    /// reached.
     pub within_db: f64,
-    /// Most coefficients of a noise filter, which bound what a sample costs.
+    /// Largest number of coefficients of a noise filter, which bounds the time per sample.
     pub longest: usize,
 }
 
 impl BakeLimits {
-    /// Fewest coefficients of a filter.
+    /// Smallest number of coefficients of a filter.
     pub const FEWEST: usize = 2 * HALVES[0] + 1;
-    /// Most coefficients of a filter.
+    /// Largest number of coefficients of a filter.
     pub const MOST: usize = 2 * MOST_HALF + 1;
 
-    /// Limits the error between conditions.
+    /// Limits the error between conditions, dB.
     pub fn within_db(within_db: f64) -> Self {
         Self { within_db, longest: Self::MOST }
     }
 
-    /// Limits the coefficients of a filter; at least [`Self::FEWEST`] are taken.
+    /// Limits the number of coefficients of a filter. At least [`Self::FEWEST`] are used.
     #[must_use]
     pub fn with_longest(self, longest: usize) -> Self {
         Self { longest, ..self }
     }
 
-    /// Returns the number of lengths that may be tried.
+    /// Returns how many of the lengths may be tried.
     fn lengths(self) -> usize {
         let longest = self.longest.max(Self::FEWEST);
         HALVES.iter().take_while(|half| 2 * **half < longest).count()
@@ -119,13 +122,14 @@ impl From<f64> for BakeLimits {
     }
 }
 
-/// Bakes a representation, named by its id or short name, else the best one, at the conditions of a
-/// grid. The block plays at `rate_hz`. Conditions are inserted midway between neighbours until the
-/// error there is at most that of `limits`, which may be given as a number of decibels, or the
-/// block has 64 conditions.
+/// Bakes a representation at the conditions of a grid, to a block that plays at `rate_hz`.
+///
+/// `model` is the id or the short name of the representation's model; `None` selects the best
+/// representation. `limits` may be a number of decibels. Conditions are inserted midway between
+/// neighbours until the error there is within the limits, or until the block has 64 conditions.
 ///
 /// # Errors
-/// When the asset cannot be played, or a condition or the rate is out of range.
+/// If the asset cannot be played, or if a condition or the rate is out of range.
 pub fn bake(
     asset: &Asset,
     model: Option<&str>,
@@ -141,7 +145,7 @@ pub fn bake(
     loop {
         let designed = Designed::new(&texture, &grid, rate_hz, &mut designs)?;
         let between_db = designed.between_db();
-        // More conditions do not help where the filters themselves are less accurate.
+        // More conditions do not help if the filters themselves are less accurate.
         let reachable_db = within_db.max(1.1 * designed.shape.at_conditions_db);
         let refined = grid.refined(&designed.between, reachable_db);
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
@@ -154,14 +158,14 @@ pub fn bake(
     }
 }
 
-/// What is kept while conditions are inserted.
+/// What stays the same while conditions are inserted.
 struct Designs {
     designer: Option<Rc<Designer>>,
-    /// Number of the lengths that may be tried.
+    /// Number of lengths that may be tried.
     lengths: usize,
     /// Index of the length of the filters.
     length: usize,
-    /// Whether no length is within the tolerance, and the best one is taken.
+    /// Whether no length is within the tolerance, so that the most accurate one is used.
     is_best: bool,
 }
 
@@ -170,7 +174,7 @@ impl Designs {
         Self { designer: None, lengths, length: 0, is_best: false }
     }
 
-    /// Returns the designer of a rate.
+    /// Returns the designer for a design; makes a new one if the design has changed.
     fn designer(&mut self, design: Design, texture: &Texture<'_>) -> Rc<Designer> {
         match &self.designer {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),
@@ -182,7 +186,8 @@ impl Designs {
         }
     }
 
-    /// Returns the shortest filters within the tolerance, else the most accurate ones.
+    /// Returns the shortest filters within the tolerance, or the most accurate ones if there are
+    /// none.
     fn shape(
         &mut self,
         designer: &Rc<Designer>,
@@ -194,7 +199,7 @@ impl Designs {
             let mut filters = Vec::new();
             for (i, moment) in moments.iter().enumerate() {
                 filters.push(filter(moment)?);
-                // A condition alone may exceed the limit.
+                // A single condition may exceed the limit.
                 let spectra = Spectra::Noise(Rc::clone(designer), vec![Rc::clone(&filters[i])]);
                 let alone = std::slice::from_ref(moment);
                 if Shape::within(spectra, texture, alone, within_db)?.is_none() {
@@ -228,7 +233,7 @@ impl Designs {
     }
 }
 
-/// The spectra of a grid, not compressed.
+/// The spectra of a grid before compression.
 struct Designed {
     moments: Vec<Rc<Moment>>,
     interpolator: Interpolator,
@@ -275,7 +280,7 @@ impl Designed {
         largest(&self.between)
     }
 
-    /// Encodes the block, with as few filters as keep the accuracy.
+    /// Encodes the block, with as few filters as the accuracy allows.
     fn baked(
         mut self,
         texture: &Texture<'_>,
@@ -338,8 +343,9 @@ impl Designed {
         })
     }
 
-    /// Finds the fewest filters within the tolerance at the conditions and `within_db` between
-    /// them, or nearly as accurate as all filters; shape and errors become theirs.
+    /// Finds the smallest number of filters that are within the tolerance at the conditions and
+    /// within `within_db` between them, or nearly as accurate as all filters. Replaces the shape
+    /// and the errors by theirs.
     fn compress(
         &mut self,
         texture: &Texture<'_>,
@@ -349,7 +355,7 @@ impl Designed {
         factors: &Factors,
     ) -> Result<Stored, BakeError> {
         let exact_db = [self.shape.at_conditions_db, self.between_db()];
-        // What is within a limit stays within it.
+        // An error that is within a limit has to stay within it.
         let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| {
             if exact_db <= limit_db { limit_db } else { exact_db + left_out_db }
         };
@@ -379,11 +385,11 @@ impl Designed {
                 }
             }
         }
-        // The last count has no limit, and a filter is not zero.
+        // The last number of filters has no limit, and a filter is never zero.
         Err(BakeError::Refused(htex_player::OpenError::Values))
     }
 
-    /// Returns the length of a block of `count` filters as long as the stored ones.
+    /// Returns the length of a block with `count` filters that are as long as the stored ones.
     fn bytes(&self, grid: &Grid, stored: &Stored, count: usize) -> usize {
         let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
         let conditions = self.moments.len();
@@ -393,7 +399,8 @@ impl Designed {
         HEADER + 4 * words + (2 * integers).next_multiple_of(4) + CHECKSUM
     }
 
-    /// Returns the level up to which the law raises that of the grid, as levels are stored.
+    /// Returns the largest level to which the law may raise a level of the grid, in the scale of
+    /// the stored levels.
     fn ceiling(&self, texture: &Texture<'_>) -> f64 {
         let stated = self.moments.iter().map(|m| m.level_rms);
         let pairs = self.shape.levels.iter().zip(stated);
@@ -402,7 +409,8 @@ impl Designed {
         texture.ceiling_rms() * raised
     }
 
-    /// Returns a magnitude that samples rarely, or of sinusoids never, exceed at the conditions.
+    /// Returns a magnitude that samples at the conditions rarely exceed; those of sinusoids never
+    /// exceed it.
     fn full_scale(&self) -> f64 {
         let crest = |i: usize| match &self.shape.spectra {
             Spectra::Noise(..) => CREST,
@@ -418,7 +426,7 @@ impl Designed {
     }
 }
 
-/// Returns the least and the greatest factor of frequencies.
+/// Returns the smallest and the largest factor of frequencies.
 fn ratios(moments: &[Rc<Moment>]) -> [f64; 2] {
     let ratios = || moments.iter().map(|m| m.ratio);
     let slowest = ratios().fold(f64::INFINITY, f64::min);

@@ -1,27 +1,27 @@
-//! Few filters of which the filters of all conditions are weighted sums.
+//! Compression of filters: a few filters, of which the filters of all conditions are weighted sums.
 //!
-//! The filters of conditions are projected on the leading eigenvectors of the matrix of their
-//! products. The products are those of their responses, weighted by the inverse mean of their
-//! power: an error counts in a faint band as it does in a loud one. A sum of projected filters is
-//! the projected sum, so that motions between conditions need no other formula. Weights and
-//! coefficients are stored as integers of 16 bits with a scale.
+//! The filters of the conditions are projected on the leading eigenvectors of the matrix of their
+//! inner products. These are products of the filters' responses, weighted by the mean of their
+//! inverse power, so that an error counts as much in a faint band as in a loud one. The sum of
+//! projected filters is the projection of their sum, so motions between conditions need no other
+//! formula. Weights and coefficients are stored as 16-bit integers with a scale.
 
 use std::ops::RangeInclusive;
 
 use crate::filter::Design;
 
-/// Power below the strongest at which frequencies weigh no more: 20 dB. Of 50, 40, 30, 20 and 10
-/// dB, it needs the fewest filters.
+/// Power relative to the strongest frequency, below which the weight of a frequency no longer
+/// increases: 20 dB. Of 50, 40, 30, 20 and 10 dB, this value needs the fewest filters.
 const FLOOR: f64 = 1e-2;
-/// Part of the energy that ends the search for independent filters.
+/// The search for independent filters ends when only this part of the energy is left.
 const NOTHING: f64 = 1e-14;
-/// Sweeps of rotations; ten are enough for matrices of this size.
+/// Maximum number of sweeps of rotations. Ten are enough for matrices of this size.
 const SWEEPS: usize = 30;
 const LARGEST: f64 = 32_767.0;
 
-/// Filters and the weights by which conditions mix them, the most important first.
+/// Filters, and the weights with which conditions mix them. The most important filter comes first.
 pub(crate) struct Factors {
-    /// For each filter: its weight in each condition.
+    /// The weights of each filter, one for each condition.
     weights: Vec<Vec<f64>>,
     filters: Vec<Vec<f64>>,
 }
@@ -30,14 +30,14 @@ pub(crate) struct Factors {
 #[derive(Clone)]
 pub(crate) struct Stored {
     pub(crate) scales: Vec<f32>,
-    /// Condition after condition, a weight for each filter.
+    /// The weights: for each condition, one for each filter.
     pub(crate) weights: Vec<i16>,
     pub(crate) filters: Vec<Vec<i16>>,
 }
 
 impl Factors {
-    /// Factors the filters of conditions into at most `most` filters, which have their responses at
-    /// the frequencies `hz`.
+    /// Factors the filters of all conditions into at most `most` filters. Their responses are
+    /// compared at the frequencies `hz`.
     pub(crate) fn new(
         design: &mut Design,
         conditions: &[&[f64]],
@@ -71,7 +71,7 @@ impl Factors {
         self.filters.len()
     }
 
-    /// Returns the first `count` filters as integers.
+    /// Returns the first `count` filters and their weights as integers.
     pub(crate) fn stored(&self, count: usize) -> Stored {
         let (weights, filters) = (&self.weights[..count], &self.filters[..count]);
         let largest = |all: &[f64]| all.iter().fold(1e-30, |most: f64, x| most.max(x.abs()));
@@ -108,7 +108,8 @@ impl Stored {
     }
 }
 
-/// Weights responses by the inverse of their mean power at each frequency.
+/// Multiplies responses by the square root of the sum, over all conditions, of their inverse power
+/// at each frequency. The product of two results is then relative to the power there.
 fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let frequencies = responses.first().map_or(0, Vec::len);
     let mut inverse = vec![0.0; frequencies];
@@ -124,8 +125,8 @@ fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     responses
 }
 
-/// Returns the columns of a matrix whose product with its transpose is that of the vectors: pivoted
-/// Cholesky factors, at most `most`.
+/// Returns at most `most` columns of a matrix whose product with its transpose equals the products
+/// of the vectors (pivoted Cholesky factors).
 fn independent(vectors: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
     let mut left: Vec<f64> = vectors.iter().map(|v| dot(v, v)).collect();
     let all: f64 = left.iter().sum();
@@ -149,13 +150,13 @@ fn independent(vectors: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
     columns
 }
 
-/// Returns the products of all pairs of vectors.
+/// Returns the inner products of all pairs of vectors.
 fn products(vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let row = |a: &Vec<f64>| vectors.iter().map(|b| dot(a, b)).collect();
     vectors.iter().map(row).collect()
 }
 
-/// Returns the sum of vectors with weights.
+/// Returns the weighted sum of vectors.
 fn combined<V: AsRef<[f64]>>(vectors: &[V], weights: &[f64]) -> Vec<f64> {
     let mut sum = vec![0.0; vectors.first().map_or(0, |v| v.as_ref().len())];
     for (vector, weight) in vectors.iter().zip(weights) {
@@ -169,7 +170,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Returns the eigenvalues of a symmetrical matrix, and its eigenvectors as columns: Jacobi's
+/// Returns the eigenvalues of a symmetrical matrix, and its eigenvectors as columns, by Jacobi's
 /// rotations.
 fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = a.len();

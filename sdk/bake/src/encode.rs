@@ -1,4 +1,4 @@
-//! The bytes of a block.
+//! Writes the bytes of a block.
 
 use htex_play::Quantity;
 use htex_player::layout::{CHECKSUM, HEADER, KIND_NOISE, KIND_TONES, MAGIC, RANDOM_PHASE, VERSION};
@@ -8,10 +8,10 @@ use crate::Grid;
 use crate::compress::Stored;
 use crate::interpolator::Interpolator;
 
-/// Length of a change of the motion, seconds.
+/// Duration of a change of motion, seconds.
 const GLIDE_S: f64 = 0.020;
 
-/// The numbers of a block, beside its grid and its interpolator.
+/// The content of a block, apart from its grid and its interpolator.
 pub(crate) struct Content {
     pub(crate) quantity: Quantity,
     pub(crate) law: Law,
@@ -21,11 +21,11 @@ pub(crate) struct Content {
     pub(crate) spectra: Encoded,
 }
 
-/// What conditions store.
+/// What a block stores for its conditions.
 pub(crate) enum Encoded {
     Noise(Stored),
-    /// A frequency in cycles per sample of the internal rate and an amplitude for each sinusoid of
-    /// each condition.
+    /// For each condition and each sinusoid: a frequency, in cycles per sample of the internal
+    /// rate, and an amplitude.
     Tones {
         count: usize,
         random_phase: bool,
@@ -86,7 +86,7 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
     bytes
 }
 
-/// Returns the quantity of a block.
+/// Returns the quantity as a block stores it.
 fn code(quantity: Quantity) -> htex_player::Quantity {
     match quantity {
         Quantity::LateralForce => htex_player::Quantity::LateralForce,

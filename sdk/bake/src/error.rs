@@ -20,9 +20,9 @@ pub enum BakeError {
          forces; add it, or give a grid"
     )]
     Incomplete {
-        /// The speed of the absent condition.
+        /// The speed of the missing condition.
         speed_mm_s: f64,
-        /// The force of the absent condition.
+        /// The force of the missing condition.
         force_n: f64,
     },
     /// The rate is out of range.
@@ -36,7 +36,7 @@ pub enum BakeError {
         /// The highest frequency of the texture.
         top_hz: f64,
     },
-    /// The model follows the motion itself, which a block cannot.
+    /// The model follows the motion itself, which a block cannot do.
     #[error(
         "the model {model} follows the position of the finger itself; bake another representation"
     )]

@@ -1,4 +1,4 @@
-//! Symmetrical filters with a magnitude.
+//! Design of symmetrical filters with a given magnitude.
 
 use htex_dsp::fft::RealFft;
 use htex_dsp::grid::GRID_HZ;
@@ -7,21 +7,22 @@ use htex_host::Band;
 
 use crate::reading::Bands;
 
-/// Rounds in which the filter's spectrum is compared with the stated one.
+/// Number of rounds in which the spectrum of the filter is compared with the wanted one.
 const ROUNDS: usize = 80;
-/// Relative correction of all bins at which the rounds end.
+/// The rounds end when the relative correction of every bin is below this.
 const SMALL: f64 = 0.003;
-/// Range of the correction of a magnitude.
+/// Range to which the correction of a magnitude is limited.
 const CORRECTION: (f64, f64) = (0.05, 20.0);
-/// Shape of the Kaiser window of the coefficients.
+/// Shape parameter of the Kaiser window of the coefficients.
 const WINDOW: f64 = 2.0;
-/// Most distance of the frequencies at which filters are designed, in bins.
+/// Largest distance between frequencies at which filters are designed, in bins.
 const SPACING: f64 = 0.25;
-/// Number of frequencies, a power of two: at least four for each coefficient of the longest filter.
+/// Smallest and largest number of these frequencies, powers of two: at least four per coefficient
+/// of the longest filter.
 const STEPS: (usize, usize) = (2048, 8192);
 
-/// The frequencies at which filters of a rate are designed and read, evenly spaced from 0 to half
-/// the rate.
+/// The frequencies at which the filters for one rate are designed and measured, evenly spaced from
+/// 0 to half the rate.
 #[derive(Clone)]
 pub(crate) struct Design {
     rate_hz: f64,
@@ -30,14 +31,14 @@ pub(crate) struct Design {
 }
 
 impl Design {
-    /// Makes a design for bins of at least `spacing_hz`.
+    /// Makes a design for bins that are at least `spacing_hz` apart.
     pub(crate) fn new(rate_hz: f64, spacing_hz: f64) -> Self {
         let wanted = (0.5 * rate_hz / (SPACING * spacing_hz)).ceil() as usize;
         let steps = wanted.next_power_of_two().clamp(STEPS.0, STEPS.1);
         Self { rate_hz, steps, fft: RealFft::new(2 * steps) }
     }
 
-    /// Returns whether filters of another design are filters of this one.
+    /// Returns whether both designs make the same filters.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         (self.rate_hz, self.steps) == (other.rate_hz, other.steps)
     }
@@ -46,10 +47,12 @@ impl Design {
         (0..=self.steps).map(|i| self.hz(i)).collect()
     }
 
-    /// Designs the centre and one side of a filter of unit energy by frequency sampling.
-    /// `magnitude` is given at the design's frequencies; its spectrum, read as a recording's, is
-    /// then compared with the `stated` one at the bins, the magnitude is corrected, and the filter
-    /// designed again. The one with the least error of the nine bands is returned.
+    /// Designs a filter of unit energy by frequency sampling, and returns its centre and one side.
+    ///
+    /// The wanted magnitude is given at the design's frequencies. In each round, the spectrum of
+    /// the filter is measured at the bins, as a recording would be, and compared with the `stated`
+    /// spectrum. Then the magnitude is corrected and the filter is designed again. The filter with
+    /// the smallest error of the nine bands is returned.
     pub(crate) fn filter(&mut self, wanted: &Wanted, bins: &Bins, half: usize) -> Vec<f64> {
         let window = window(half);
         let mut magnitude = wanted.magnitude.clone();
@@ -102,7 +105,7 @@ impl Design {
         windowed.map(|(w, x)| w * x * scale).collect()
     }
 
-    /// Returns the response of a filter at the design's frequencies.
+    /// Returns the response of a filter at the frequencies of the design.
     pub(crate) fn response(&mut self, side: &[f64]) -> Vec<f64> {
         let mut samples = vec![0.0; 2 * self.steps];
         for (lag, c) in side.iter().enumerate() {
@@ -116,29 +119,29 @@ impl Design {
     }
 }
 
-/// Returns the energy of a filter of this centre and side.
+/// Returns the energy of a filter, given its centre and one side.
 pub(crate) fn energy(side: &[f64]) -> f64 {
     let sum: f64 = side.iter().map(|c| c * c).sum();
     2.0 * sum - side.first().map_or(0.0, |centre| centre * centre)
 }
 
-/// What a filter is to be.
+/// What a filter has to achieve.
 pub(crate) struct Wanted<'a> {
-    /// Magnitude at the design's frequencies.
+    /// Magnitude at the frequencies of the design.
     pub(crate) magnitude: Vec<f64>,
-    /// Magnitude of unit RMS at the bins.
+    /// Magnitude at unit RMS at the bins.
     pub(crate) stated: &'a [f64],
     /// The bands in which spectra are compared.
     pub(crate) bands: &'a Bands,
 }
 
-/// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them
-/// from a filter of a design.
+/// The bins of a spectrum, at frequencies multiplied by a ratio, as a Hann window measures them
+/// from the response of a filter.
 pub(crate) struct Bins {
     first_hz: f64,
     spacing_hz: f64,
-    /// The first of the design's frequencies in each bin's reach, and the weights of the power from
-    /// there.
+    /// For each bin: the first of the design's frequencies that the window reaches, and the weights
+    /// of the power from there on.
     reaches: Vec<(usize, Vec<f64>)>,
 }
 
@@ -147,8 +150,8 @@ impl Bins {
         let spacing_hz = GRID_HZ * ratio;
         let reach = 2.0 * spacing_hz;
         let index = |hz: f64| (hz / design.hz(1)).clamp(0.0, design.steps as f64) as usize;
-        // A bin holds the power of its width, and the sum of squared magnitudes is three times the
-        // power.
+        // A bin contains the power of its width, and the sum of squared magnitudes is three times
+        // the power.
         let density = 3.0 * spacing_hz * 2.0 / design.rate_hz;
         let at = |hz: f64| {
             let first = index(hz - reach);
@@ -167,7 +170,8 @@ impl Bins {
         }
     }
 
-    /// Returns the magnitude at the bins of unit white noise through a filter of this response.
+    /// Returns the magnitude at the bins of white noise with unit variance that passes a filter
+    /// with this response.
     pub(crate) fn read(&self, response: &[f64]) -> Vec<f64> {
         let at = |(first, weights): &(usize, Vec<f64>)| {
             let reached = response[*first..].iter().zip(weights);
@@ -176,7 +180,8 @@ impl Bins {
         self.reaches.iter().map(at).collect()
     }
 
-    /// Returns the value at a frequency, interpolated between the bins and constant beyond them.
+    /// Returns the value at a frequency, interpolated between the bins. It is constant beyond the
+    /// outermost bins.
     fn between(&self, values: &[f64], hz: f64) -> f64 {
         let last = (values.len().max(1) - 1) as f64;
         let place = ((hz - self.first_hz) / self.spacing_hz).clamp(0.0, last);
@@ -186,7 +191,7 @@ impl Bins {
     }
 }
 
-/// Returns half of a Kaiser window, from its centre.
+/// Returns one half of a Kaiser window, from its centre outwards.
 fn window(half: usize) -> Vec<f64> {
     let at = |lag: usize| {
         let x = lag as f64 / (half + 1) as f64;
@@ -195,7 +200,7 @@ fn window(half: usize) -> Vec<f64> {
     (0..=half).map(at).collect()
 }
 
-/// Returns the modified Bessel function of the first kind and order 0, by its series.
+/// Returns the modified Bessel function of the first kind and order 0, computed by its series.
 pub(crate) fn bessel(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
     for k in 1..64 {

@@ -7,7 +7,7 @@ use htex_player::layout::{
 
 use crate::BakeError;
 
-/// Speeds and forces; a block has a condition for each combination.
+/// The baked conditions: speeds and forces. A block has a condition for each combination.
 ///
 /// ```
 /// use htex_bake::Grid;
@@ -23,12 +23,12 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Makes a grid of speeds, mm/s, and forces, newtons, in any order. Values are rounded to
+    /// Makes a grid of speeds, mm/s, and forces, newtons, given in any order. Values are rounded to
     /// single precision.
     ///
     /// # Errors
-    /// When an axis is empty or has more than 32 different values, or when no finger slides at one
-    /// of them: below 0.5 mm/s or 1e-6 N, above 1000 mm/s or 20 N.
+    /// If an axis is empty or has more than 32 different values, or if a value is outside the range
+    /// of a sliding finger: 0.5 to 1000 mm/s, 1e-6 to 20 N.
     pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, BakeError> {
         Ok(Self {
             speeds_mm_s: axis("the speeds", [MIN_SLIDING_MM_S, MOST_SPEED_MM_S], speeds_mm_s)?,
@@ -36,10 +36,10 @@ impl Grid {
         })
     }
 
-    /// Makes the grid of listed conditions.
+    /// Makes a grid from a list of conditions.
     ///
     /// # Errors
-    /// As [`Self::new`], and when a combination of their speeds and forces is absent.
+    /// As [`Self::new`], and if a combination of the speeds and forces is missing.
     pub fn of_conditions(at: &[Motion]) -> Result<Self, BakeError> {
         let grid = Self::new(
             at.iter().map(|m| m.speed_mm_s).collect(),
@@ -60,12 +60,13 @@ impl Grid {
         }
     }
 
-    /// Makes the grid of the default condition of a representation, named by its model's id or
-    /// short name, else of the best one ([`Asset::default_condition`]); a speed or a force that it
-    /// does not state is 80 mm/s or 0.4 N.
+    /// Makes the grid of one condition, the default condition of a representation
+    /// ([`Asset::default_condition`]). `model` is the id or the short name of the representation's
+    /// model; `None` selects the best representation. If the condition does not state a speed or a
+    /// force, it is 80 mm/s or 0.4 N.
     ///
     /// # Errors
-    /// As [`Self::new`], and when there is no such representation.
+    /// As [`Self::new`], and if there is no such representation.
     pub fn of_default_condition(asset: &Asset, model: Option<&str>) -> Result<Self, BakeError> {
         Self::of_conditions(&[asset.motion(model, None, None)?])
     }
@@ -80,15 +81,15 @@ impl Grid {
         &self.forces_n
     }
 
-    /// Returns all conditions in the order of a block: speeds vary first.
+    /// Returns all conditions in the order of a block, in which speeds vary first.
     pub fn motions(&self) -> impl Iterator<Item = Motion> + '_ {
         let at = |force: f64| move |&speed: &f64| Motion::new(speed, force);
         let forces = self.forces_n.iter();
         forces.flat_map(move |&force| self.speeds_mm_s.iter().map(at(force)))
     }
 
-    /// Returns the grid with the motions whose errors exceed `within_db` on both axes. An axis with
-    /// 32 values stays.
+    /// Adds the speeds and forces of those motions whose errors exceed `within_db`. An axis stays
+    /// unchanged if it would get more than 32 values.
     pub(crate) fn refined(&self, errors: &[(Motion, f64)], within_db: f64) -> Self {
         let worst = || errors.iter().filter(|(_, error)| *error > within_db);
         let axis = |own: &[f64], more: Vec<f64>| {
@@ -98,7 +99,7 @@ impl Grid {
             all.dedup();
             if all.len() <= MOST_ON_AXIS { all } else { own.to_vec() }
         };
-        // A cell's centre is refined by its edges first.
+        // Edges of a cell are refined first, because this can also refine the centre of the cell.
         let on = |axis: &[f64], x: f64| axis.contains(&x);
         let speeds = worst().filter(|(m, _)| on(&self.forces_n, m.force_n));
         let forces = worst().filter(|(m, _)| on(&self.speeds_mm_s, m.speed_mm_s));
@@ -115,8 +116,8 @@ impl Grid {
         }
     }
 
-    /// Returns the centre of each cell and of each edge between neighbours, with the indices of the
-    /// conditions that are mixed there in equal parts.
+    /// Returns the centre of each cell, and of each edge between neighbours. Each centre comes with
+    /// the indices of the conditions that are mixed there in equal parts.
     pub(crate) fn midpoints(&self) -> Vec<(Motion, Vec<usize>)> {
         let columns = self.speeds_mm_s.len();
         let mut all = Vec::new();
@@ -134,7 +135,7 @@ impl Grid {
     }
 }
 
-/// Returns each value alone, and each pair of neighbours, with their first index.
+/// Returns each value on its own, and each pair of neighbours, together with the first index.
 fn spans(axis: &[f64]) -> impl Iterator<Item = (usize, &[f64])> {
     let single = axis.chunks(1).enumerate();
     single.chain(axis.windows(2).enumerate())

@@ -1,4 +1,4 @@
-//! The low-pass filter from the internal rate to the rate of the samples.
+//! The low-pass filter that raises the internal rate to the sample rate.
 
 use std::f64::consts::PI;
 
@@ -7,28 +7,29 @@ use htex_player::layout::{MOST_ROW, MOST_UP, RATE_HZ};
 use crate::BakeError;
 use crate::filter::bessel;
 
-/// Least ratio of the internal rate to the texture's highest frequency, if the rate permits.
+/// Smallest ratio between the internal rate and the texture's highest frequency, if the sample rate
+/// permits it.
 const PREFERRED: f64 = 2.5;
-/// Least ratio of the rate to the texture's highest frequency.
+/// Smallest ratio between the sample rate and the texture's highest frequency.
 const LEAST: f64 = 2.05;
 /// Attenuation of images, decibels.
 const ATTENUATION_DB: f64 = 70.0;
 
-/// The rates of a block and the coefficients between them.
+/// The rates of a block, and the coefficients of the filter between them.
 pub(crate) struct Interpolator {
     pub(crate) rate_hz: f64,
     pub(crate) internal_hz: f64,
     pub(crate) up: usize,
     pub(crate) row: usize,
-    /// The highest frequency that passes, cycles per sample of the internal rate.
+    /// Highest frequency that passes the filter, cycles per sample of the internal rate.
     pub(crate) highest: f64,
-    /// Phase after phase, each from the oldest input to the newest.
+    /// The coefficients, phase by phase, each from the oldest input to the newest.
     pub(crate) rows: Vec<f64>,
 }
 
 impl Interpolator {
-    /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`, from the lowest
-    /// sufficient internal rate.
+    /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`. Chooses the lowest
+    /// internal rate that is sufficient.
     pub(crate) fn new(rate_hz: f64, top_hz: f64) -> Result<Self, BakeError> {
         let rate_hz = f64::from(rate_hz as f32);
         let (least_hz, most_hz) = ((LEAST * top_hz).max(RATE_HZ.0.into()), RATE_HZ.1.into());
@@ -53,14 +54,14 @@ impl Interpolator {
     }
 }
 
-/// Kaiser's estimate of the length, inputs; a multiple of four.
+/// Kaiser's estimate of the filter's length, in inputs. A multiple of four.
 fn row(internal_hz: f64, top_hz: f64) -> usize {
     let transition = 2.0 * PI * (internal_hz - 2.0 * top_hz) / internal_hz;
     let length = (ATTENUATION_DB - 8.0) / (2.285 * transition);
     (length.ceil() as usize).next_multiple_of(4).min(MOST_ROW)
 }
 
-/// The coefficients of a phase, given as the position after an input, with unit sum.
+/// The coefficients of a phase, which is given as the position after an input. Their sum is 1.
 fn coefficients(row: usize, phase: f64) -> Vec<f64> {
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
     let half = 0.5 * row as f64;

@@ -8,14 +8,17 @@
 //! # Ok::<(), htex_bake::BakeError>(())
 //! ```
 //!
-//! A block has filters for noise, not models: white noise through a symmetrical filter at a low
-//! rate can have the spectrum of every noise model, is always stable, and a weighted sum of two
-//! filters has the weighted sum of their magnitudes, so that the player needs no formula of a
-//! model. As mixing is linear, the filters of all conditions are stored as few filters that
-//! conditions mix: Bands on the grid of `tests/sizes.rs` takes 16 kB, where a filter in single
-//! precision for each of its 60 conditions takes 77. A lattice would be cheaper for AR, but between
-//! conditions it has other spectra than the model, which interpolates line spectral frequencies.
-//! Conditions are inserted where the sum differs from the model by more than `--within`.
+//! A block for noise contains filters and not models. White noise through a symmetrical filter at a
+//! low rate can have the spectrum of every noise model, and is always stable. A weighted sum of two
+//! filters has the weighted sum of their magnitudes, so the player does not need the formula of any
+//! model.
+//!
+//! Because mixing is linear, a block stores only a few filters, and each condition mixes them. The
+//! model `bands` on the grid of `tests/sizes.rs` takes 16 kB; with one filter in single precision
+//! for each of its 60 conditions it would take 77 kB. A lattice would be cheaper for AR. But
+//! between conditions its spectra would differ from the model's, which interpolates line spectral
+//! frequencies. Where the mixed filters differ from the model by more than `--within`, conditions
+//! are inserted.
 #![forbid(unsafe_code)]
 
 mod bake;

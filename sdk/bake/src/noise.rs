@@ -1,4 +1,4 @@
-//! Filters of conditions, each designed once.
+//! The filters of the conditions. Each is designed only once.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -11,16 +11,16 @@ use crate::compress::Factors;
 use crate::filter::{Bins, Design, Wanted};
 use crate::texture::{Moment, Texture};
 
-/// The centre and one side of a filter of unit energy.
+/// The centre and one side of a filter with unit energy.
 pub(crate) type Filter = Rc<Vec<f64>>;
 
-/// Designs filters at one rate, and reads their spectra. What was computed is kept.
+/// Designs filters at one rate and measures their spectra. Caches both.
 pub(crate) struct Designer {
     band: Band,
     design: RefCell<Design>,
-    /// Bins by the bits of the ratio of their frequencies.
+    /// Bins, by the bits of the ratio of their frequencies.
     bins: RefCell<BTreeMap<u64, Rc<Bins>>>,
-    /// Filters by their length and by what determines the spectrum.
+    /// Filters, by their length and by everything that determines the spectrum.
     filters: RefCell<BTreeMap<(usize, Vec<u64>), Filter>>,
 }
 
@@ -34,7 +34,7 @@ impl Designer {
         }
     }
 
-    /// Returns whether it designs what this design does.
+    /// Returns whether this designer uses the given design.
     pub(crate) fn is_of(&self, design: &Design) -> bool {
         self.design.borrow().is_same(design)
     }
@@ -46,7 +46,7 @@ impl Designer {
         Rc::clone(bins.or_insert_with(new))
     }
 
-    /// Returns the filter of a moment with `half` coefficients on each side.
+    /// Returns the filter for a moment, with `half` coefficients on each side.
     pub(crate) fn filter(
         &self,
         texture: &Texture<'_>,
@@ -71,14 +71,15 @@ impl Designer {
         Ok(filter)
     }
 
-    /// Returns the magnitude of unit noise through a filter at the bins of a ratio.
+    /// Returns the magnitude at the bins of unit noise that passes a filter; the frequencies of the
+    /// bins are multiplied by `ratio`.
     pub(crate) fn read(&self, side: &[f64], ratio: f64) -> Vec<f64> {
         let response = self.design.borrow_mut().response(side);
         self.bins(ratio).read(&response)
     }
 
-    /// Factors the filters of conditions into at most `most` filters. The frequencies of the band
-    /// are multiplied by at least `slowest` and at most `fastest`.
+    /// Factors the filters of the conditions into at most `most` filters. `slowest` and `fastest`
+    /// are the smallest and the largest factor of the band's frequencies.
     pub(crate) fn factors(
         &self,
         conditions: &[&[f64]],

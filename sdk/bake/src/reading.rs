@@ -1,12 +1,12 @@
-//! Distance of the spectra of baked conditions from the model's.
+//! Distance between the spectra of baked conditions and those of the model.
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
 use htex_host::Band;
 
-/// Bands this far below the strongest, as energies, are not compared: 40 dB.
+/// Bands whose energy is this far below the strongest band are not compared: 40 dB.
 const FAINT: f64 = 1e-4;
 
-/// The nine bands of a band's grid.
+/// The nine bands in which spectra are compared.
 pub(crate) struct Bands(BandBank);
 
 impl Bands {
@@ -14,7 +14,8 @@ impl Bands {
         Self(BandBank::new(BAND_COUNT, band, &band.grid_hz()))
     }
 
-    /// Returns the largest error of the nine bands, dB, among those within 40 dB of the strongest.
+    /// Returns the largest error of the nine bands, dB. Only bands within 40 dB of the strongest
+    /// one count.
     pub(crate) fn distance_db(&self, reference: &[f64], read: &[f64]) -> f64 {
         let [reference, read] = [reference, read].map(|magnitude| self.0.energies(magnitude));
         let strongest = reference.iter().copied().fold(0.0, f64::max);

@@ -11,14 +11,14 @@ use crate::texture::{Moment, Texture};
 use crate::tones::{self, Tone};
 use crate::{BakeError, Grid};
 
-/// How much slower and faster than the grid the error beyond it is measured.
+/// Factor by which speeds are lower and higher than the grid, for the error beyond it.
 const BEYOND: f64 = 2.0;
 
 /// The spectra and levels of the conditions of a grid.
 pub(crate) struct Shape {
     pub(crate) spectra: Spectra,
-    /// The level of each condition as it is stored: that of the whole spectrum, of which a part
-    /// lies beyond the band's edges.
+    /// The level of each condition as it is stored: the level of the whole spectrum, including the
+    /// part beyond the edges of the band.
     pub(crate) levels: Vec<f64>,
     /// Largest error of the nine bands at the conditions, dB.
     pub(crate) at_conditions_db: f64,
@@ -27,13 +27,13 @@ pub(crate) struct Shape {
 #[derive(Clone)]
 pub(crate) enum Spectra {
     Noise(Rc<Designer>, Vec<Filter>),
-    /// Sinusoids, and whether their phases are random.
+    /// The sinusoids of each condition, and whether their phases are random.
     Tones(Vec<Vec<Tone>>, bool),
 }
 
 impl Spectra {
-    /// Returns the magnitude on the band's grid of conditions mixed in equal parts, as the player
-    /// mixes them, at unit power.
+    /// Returns the magnitude on the band's grid, at unit power, of conditions that are mixed in
+    /// equal parts, as the player mixes them.
     fn read(&self, mixed: &[usize], texture: &Texture<'_>, ratio: f64) -> Vec<f64> {
         let part = 1.0 / mixed.len() as f64;
         match self {
@@ -65,8 +65,8 @@ impl Spectra {
 }
 
 impl Shape {
-    /// Finds the levels, and measures the conditions. `None` if the error of a condition exceeds
-    /// `within_db`.
+    /// Computes the levels and the errors of the conditions. `None` if the error of a condition
+    /// exceeds `within_db`.
     pub(crate) fn within(
         spectra: Spectra,
         texture: &Texture<'_>,
@@ -94,8 +94,8 @@ impl Shape {
         Ok(Some(shape))
     }
 
-    /// Returns the error of the nine bands at each motion midway between conditions, dB, as long as
-    /// none exceeds `within_db`: after that one the list ends.
+    /// Returns the error of the nine bands, dB, at each motion midway between conditions. The list
+    /// ends with the first error that exceeds `within_db`.
     pub(crate) fn between(
         &self,
         texture: &Texture<'_>,
@@ -114,9 +114,9 @@ impl Shape {
         Ok(errors)
     }
 
-    /// Returns the largest error of the nine bands at half the lowest speed of the grid and at
-    /// twice the highest, dB: the level follows the law of the texture, and the spectrum stays that
-    /// of the nearest condition.
+    /// Returns the largest error of the nine bands, dB, at half the lowest speed of the grid and at
+    /// twice the highest one. There the level follows the law of the texture, but the spectrum
+    /// stays that of the nearest condition.
     pub(crate) fn beyond_db(&self, texture: &Texture<'_>, grid: &Grid) -> Result<f64, BakeError> {
         let law = texture.law();
         let last = grid.speeds_mm_s().len() - 1;
@@ -132,8 +132,8 @@ impl Shape {
         Ok(largest)
     }
 
-    /// Returns the error of the nine bands at a motion for which conditions are mixed in equal
-    /// parts, dB.
+    /// Returns the error of the nine bands, dB, at a motion for which conditions are mixed in equal
+    /// parts.
     fn error_db(
         &self,
         texture: &Texture<'_>,

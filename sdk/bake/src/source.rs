@@ -1,13 +1,13 @@
-//! Blocks as source code.
+//! Blocks as source code in C and Rust.
 
 use std::fmt::Write;
 
 use crate::Baked;
 
-/// Bytes in a line.
+/// Number of bytes per line.
 const IN_LINE: usize = 16;
 
-/// Words that are no name of an array in C or C++.
+/// Reserved words, which an array in C or C++ cannot have as its name.
 const RESERVED: &[&str] = &[
     "alignas",
     "alignof",
@@ -81,7 +81,8 @@ const RESERVED: &[&str] = &[
     "xor",
 ];
 
-/// Returns the name of an array in C for the stem of a file: other characters become underscores.
+/// Returns the name of an array in C for the stem of a file name. Characters that are not allowed
+/// become underscores.
 ///
 /// ```
 /// assert_eq!(htex_bake::c_name("my-texture"), "my_texture");
@@ -91,7 +92,7 @@ pub fn c_name(stem: &str) -> String {
     identifier(stem)
 }
 
-/// Returns the name of a constant in Rust for the stem of a file.
+/// Returns the name of a constant in Rust for the stem of a file name.
 ///
 /// ```
 /// assert_eq!(htex_bake::rust_name("my-texture"), "MY_TEXTURE");
@@ -100,8 +101,8 @@ pub fn rust_name(stem: &str) -> String {
     identifier(stem).to_ascii_uppercase()
 }
 
-/// Returns whether a name is one that an array may have in C and C++: a letter, then letters,
-/// digits and underscores, and no keyword.
+/// Returns whether an array in C and C++ may have this name: a letter, then letters, digits and
+/// underscores, and not a keyword.
 ///
 /// ```
 /// assert!(htex_bake::is_c_name("felt2"));
@@ -115,7 +116,7 @@ pub fn is_c_name(name: &str) -> bool {
         && !RESERVED.contains(&name)
 }
 
-/// Returns whether a name is one of a constant in Rust: a capital letter, then capital letters,
+/// Returns whether a constant in Rust may have this name: a capital letter, then capital letters,
 /// digits and underscores.
 ///
 /// ```
@@ -127,9 +128,9 @@ pub fn is_rust_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(is_capital)
 }
 
-/// Returns a C header that defines a block as an array of bytes of this name, and the numbers that
-/// its player needs as a macro, `NAME_NUMBERS` in capitals. Comments state the author and the
-/// licence.
+/// Returns a C header that defines a block as an array of bytes with this name. The macro
+/// `NAME_NUMBERS`, with the name in capitals, is the number of values that its player needs.
+/// Comments state the author and the licence.
 pub fn c_header(name: &str, baked: &Baked) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();
@@ -144,7 +145,7 @@ pub fn c_header(name: &str, baked: &Baked) -> String {
     )
 }
 
-/// Returns Rust source that defines a block as an array of bytes of this name.
+/// Returns Rust source code that defines a block as an array of bytes with this name.
 pub fn rust_source(name: &str, baked: &Baked) -> String {
     let bytes = &baked.bytes;
     let lines = lines(bytes);
@@ -168,8 +169,8 @@ fn lines(bytes: &[u8]) -> String {
     text
 }
 
-/// Returns an identifier of C and Rust: other characters become underscores. The prefix keeps
-/// digits from being first, and the name from being a keyword.
+/// Returns an identifier for C and Rust. Characters that are not allowed become underscores. A
+/// prefix prevents a leading digit and keywords.
 fn identifier(stem: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = stem.chars().map(plain).collect();

@@ -1,4 +1,4 @@
-//! The texture of a representation at any motion, with the effects of a motion as a voice has them.
+//! The texture of a representation at any motion. Motions have the same effects as on a voice.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -19,25 +19,25 @@ pub(crate) struct Texture<'a> {
     id: String,
     motions: Motions,
     bands: Bands,
-    /// Moments by the bits of speed and force.
+    /// Moments that were computed, by the bits of speed and force.
     known: RefCell<BTreeMap<[u64; 2], Rc<Moment>>>,
 }
 
-/// A texture at one motion.
+/// The texture at one motion.
 pub(crate) struct Moment {
     pub(crate) parameters: Vec<f64>,
     /// RMS in the asset's unit.
     pub(crate) level_rms: f64,
-    /// Factor of all frequencies.
+    /// Factor for all frequencies.
     pub(crate) ratio: f64,
     pub(crate) motion: Motion,
-    /// Magnitude of unit RMS on the band's grid that a recording of the host's voice reads through
-    /// a Hann window.
+    /// Magnitude at unit RMS on the band's grid, as a Hann window would measure it from a recording
+    /// of the host's voice.
     pub(crate) stated: Vec<f64>,
 }
 
 impl Moment {
-    /// Returns the bits of what determines the shape of the spectrum.
+    /// Returns the bits of all values that determine the shape of the spectrum.
     pub(crate) fn shape(&self) -> Vec<u64> {
         let numbers = self.parameters.iter().chain([&self.ratio]);
         numbers.map(|x| x.to_bits()).collect()
@@ -81,8 +81,8 @@ impl<'a> Texture<'a> {
         &self.bands
     }
 
-    /// Returns the exponents that are played: 0 over a speed or a force that the asset does not
-    /// state.
+    /// Returns the exponents that are played. An exponent is 0 if the asset does not state the
+    /// speed or the force that it belongs to.
     pub(crate) fn law(&self) -> Law {
         let explored = self.motions.explored();
         let law = explored.law;
@@ -95,7 +95,7 @@ impl<'a> Texture<'a> {
         }
     }
 
-    /// Returns the level up to which the law raises recorded ones.
+    /// Returns the largest level to which the law may raise recorded levels.
     pub(crate) fn ceiling_rms(&self) -> f64 {
         let representations = &self.asset.manifest().representations;
         let own = representations.iter().filter(|r| r.model == self.id);
@@ -103,7 +103,7 @@ impl<'a> Texture<'a> {
         CEILING * levels.fold(0.0, f64::max)
     }
 
-    /// Returns the lowest and the highest recorded speed, mm/s, if it is known.
+    /// Returns the lowest and the highest recorded speed, mm/s, if they are known.
     pub(crate) fn recorded_speeds_mm_s(&self) -> Option<(f64, f64)> {
         match self.motions.explored().speed {
             htex_play::Recorded::Between { low, high } => Some((low, high)),
@@ -129,8 +129,8 @@ impl<'a> Texture<'a> {
         Ok(moment)
     }
 
-    /// Returns the magnitude of unit RMS at recorded frequencies, hertz: those before the moment's
-    /// ratio.
+    /// Returns the magnitude at unit RMS at frequencies of the recording, hertz, i.e. before they
+    /// are multiplied by the moment's ratio.
     pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
         Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
     }

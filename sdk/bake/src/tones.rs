@@ -1,4 +1,4 @@
-//! The sinusoids of a model that is a sum of sines.
+//! The sinusoids of a model whose sound is a sum of sines.
 
 use std::rc::Rc;
 
@@ -10,21 +10,21 @@ use htex_player::layout::MOST_TONES;
 use crate::BakeError;
 use crate::texture::Moment;
 
-/// Frequencies that differ by less are one sinusoid, hertz.
+/// Frequencies that differ by less than this, hertz, count as one sinusoid.
 const SAME_HZ: f64 = 0.01;
 
-/// Frequency in hertz and amplitude, in any scale.
+/// A frequency in hertz, and an amplitude in any scale.
 pub(crate) type Tone = (f64, f64);
 
-/// The sinusoids of conditions, as many for each, and whether phases are random. Conditions with
-/// the same number of sinusoids are matched by index, as the model does; others by frequency, with
-/// zero amplitude where one is absent.
+/// Returns the sinusoids of all conditions, the same number for each, and whether their phases are
+/// random. If conditions have the same number of sinusoids, these are matched by index, as in the
+/// model. Otherwise they are matched by frequency, and a missing sinusoid gets zero amplitude.
 pub(crate) fn of_moments(
     moments: &[Rc<Moment>],
     band: Band,
 ) -> Result<(Vec<Vec<Tone>>, bool), BakeError> {
     let read: Option<Vec<(Vec<Tone>, bool)>> = moments.iter().map(|m| read(m, band)).collect();
-    // The model accepted the parameters before.
+    // The model has already accepted these parameters.
     let read = read.unwrap_or_default();
     let random = read.first().is_some_and(|(_, random)| *random);
     let all: Vec<Vec<Tone>> = read.into_iter().map(|(tones, _)| tones).collect();
@@ -38,8 +38,8 @@ pub(crate) fn of_moments(
     }
 }
 
-/// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`,
-/// through a Hann window.
+/// Returns the magnitude on the band's grid of sinusoids whose frequencies are divided by `ratio`,
+/// as a Hann window measures it.
 pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
     let at = |hz: f64| {
         let seen = tones.iter().map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
@@ -48,8 +48,8 @@ pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
     band.grid_hz().into_iter().map(at).collect()
 }
 
-/// Reads the model's fields: a list of frequencies, a list of amplitudes, whether phases are
-/// random.
+/// Reads the model's fields: a list of frequencies, a list of amplitudes, and whether the phases
+/// are random.
 fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
     let (&count, rest) = moment.parameters.split_first()?;
     let (frequencies, rest) = rest.split_at_checked(count as usize)?;

@@ -1,4 +1,4 @@
-//! Blocks of all models have the same samples on an emulated Cortex-M4F, in Rust and in C, and on
+//! Blocks of all models give the same samples on an emulated Cortex-M4F, in Rust and in C, as on
 //! the host.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -23,9 +23,9 @@ use stream::{Case, Step};
 use xtask::needs::{ARM_GCC, BARE_TARGET, CC, Need, QEMU_ARM};
 
 const TARGET: &str = "thumbv7em-none-eabihf";
-/// Most flash memory of the C program with the player, bytes.
+/// Largest size of the C program with the player in flash memory, bytes.
 const MOST_FLASH: u64 = 20 * 1024;
-/// Most instructions per sample at 8 kHz: a tenth of a processor of 168 MHz.
+/// Largest number of instructions per sample at 8 kHz: a tenth of a processor with 168 MHz.
 const MOST_INSTRUCTIONS: u64 = 2100;
 
 fn has_target() -> bool {
@@ -35,20 +35,20 @@ fn has_target() -> bool {
     folder.is_some_and(|done| Path::new(String::from_utf8_lossy(&done.stdout).trim()).is_dir())
 }
 
-/// Builds a project of its own workspace; returns its folder of programs and libraries.
+/// Builds a project that has its own workspace. Returns the folder of its programs and libraries.
 fn cargo(project: &Path, target: Option<&str>) -> PathBuf {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["build", "--release", "--locked", "--target-dir"]);
     cargo.arg(built()).arg("--manifest-path");
     cargo.arg(project.join("Cargo.toml"));
     cargo.args(target.iter().flat_map(|target| ["--target", target]));
-    // Those of the running build are for the workspace.
+    // The variables of the running build are for its own workspace.
     cargo.env_remove("CARGO_TARGET_DIR").env_remove("RUSTFLAGS");
     run(&mut cargo);
     built().join(target.unwrap_or("")).join("release")
 }
 
-/// Blocks of all models, baked once.
+/// Blocks of all models, which are baked only once.
 fn baked() -> &'static [(&'static str, Vec<u8>)] {
     static BAKED: OnceLock<Vec<(&str, Vec<u8>)>> = OnceLock::new();
     BAKED.get_or_init(|| {
@@ -73,8 +73,8 @@ fn blocks(folder: &str) -> Vec<(&'static str, PathBuf, u32)> {
     baked().iter().map(block).collect()
 }
 
-/// Runs a program on the board with a block in memory; an instruction takes a nanosecond of its
-/// clock.
+/// Runs a program on the board with a block in memory. An instruction takes one nanosecond of the
+/// board's clock.
 fn on_board(program: &Path, block: &Path) -> String {
     let mut qemu = Command::new("qemu-system-arm");
     qemu.args(["-M", "mps2-an386", "-nographic", "-monitor", "none"]);
@@ -88,7 +88,7 @@ fn on_board(program: &Path, block: &Path) -> String {
     run(timed.args(qemu.get_args()))
 }
 
-/// The number after a label.
+/// Returns the number after a label in the output.
 fn number(output: &str, label: &str) -> u64 {
     let mut lines = output.lines();
     let found = lines.find_map(|line| line.strip_prefix(label));
@@ -117,7 +117,7 @@ fn a_cortex_m4f_returns_the_bits_of_the_host() {
     }
 }
 
-/// The linker keeps what a program may reach, and found no panic to keep.
+/// The linker keeps everything that a program may reach. It kept no panic, so none can be reached.
 #[test]
 fn no_panic_is_reachable_on_the_board() {
     if !all_met(&[(&BARE_TARGET, has_target()), (&ARM_GCC, has("arm-none-eabi-gcc"))]) {
@@ -143,8 +143,8 @@ fn a_damaged_block_is_an_error_on_the_board() {
     assert!(output.contains("error: the checksum"), "{output}");
 }
 
-/// Motions within and beyond the conditions, of a finger at rest and of none, by blocks of all
-/// models.
+/// Motions within and beyond the conditions, of a finger at rest, and implausible ones, for blocks
+/// of all models.
 fn cases() -> Vec<Case> {
     let motions =
         [(80.0, 0.4), (55.5, 0.25), (0.0, 0.0), (101.25, 0.5), (1e6, 100.0), (-60.0, 0.3)];
@@ -169,7 +169,7 @@ fn all_models_play_in_c_on_a_cortex_m4f() {
     if !all_met(&needs) {
         return;
     }
-    // A block at a time fits into the memory of the program.
+    // One block at a time, because only one fits into the memory of the program.
     for (i, case) in cases().into_iter().enumerate() {
         CORTEX_M4F.compare(&format!("models-{i}"), "", &[case]);
     }

@@ -1,5 +1,5 @@
-//! What a sample takes on a Cortex-M4F, for all models and all surfaces of the simulator, as
-//! `docs/microcontroller.md` says.
+//! The instructions and the memory that a block takes on a Cortex-M4F, for all models and all
+//! surfaces of the simulator, as `docs/microcontroller.md` states them.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -21,16 +21,16 @@ use xtask::needs::{ARM_GCC, QEMU_ARM};
 
 const PAGE: &str = "docs/microcontroller.md";
 const RATE_HZ: f64 = 8_000.0;
-/// The surface of which the page says all.
+/// The surface for which the page states all costs.
 const TOLD: Surface = Surface::CoarseFabric;
-/// Most instructions per sample.
+/// Largest number of instructions per sample.
 const MOST: u32 = 700;
-/// Most instructions for a motion that is set again.
+/// Largest number of instructions for a motion that is set again.
 const MOST_AGAIN: u32 = 80;
-/// Part by which other versions of the compiler may differ.
+/// Relative difference that other versions of the compiler may have.
 const TOLERANCE: f64 = 0.05;
 
-/// Instructions and bytes, as `c/tests/cost.c` prints them.
+/// Instructions and bytes, in the order in which `c/tests/cost.c` prints them.
 struct Cost {
     sample: u32,
     gliding: u32,
@@ -58,7 +58,7 @@ impl Cost {
 
 type Row = (&'static str, Baked, Cost);
 
-/// Blocks of all models of a surface, on the grid of the page, and what they take.
+/// Costs of the blocks of all models of a surface, on the grid of the page.
 fn costs(surface: Surface) -> Vec<Row> {
     let name = format!("cost-{surface}");
     let ram = "-Wl,--defsym=ram=128K";
@@ -73,7 +73,7 @@ fn costs(surface: Surface) -> Vec<Row> {
     Registry::placeless_names().into_iter().map(row).collect()
 }
 
-/// What one surface takes: models in rows.
+/// The table of the costs of one surface, with a row for each model.
 fn table_of(rows: &[Row]) -> String {
     let mut text = "| model | block | filter | filters mixed | one sample | while a motion changes | to set a motion | RAM |\n\
                     |---|---|---|---|---|---|---|---|\n"
@@ -93,7 +93,8 @@ fn table_of(rows: &[Row]) -> String {
     text
 }
 
-/// What all surfaces take for a sample: models in rows, surfaces in columns.
+/// The table of the costs per sample of all surfaces, with a row for each model and a column for
+/// each surface.
 fn table_of_all(all: &[(Surface, Vec<Row>)]) -> String {
     let names = all.iter().map(|(surface, _)| surface.name());
     let names: Vec<&str> = names.collect();
@@ -106,7 +107,7 @@ fn table_of_all(all: &[(Surface, Vec<Row>)]) -> String {
     text
 }
 
-/// Whether two texts are equal but for numbers that differ by at most the tolerance.
+/// Whether two texts are equal, apart from numbers that differ by at most the tolerance.
 fn is_near(kept: &str, measured: &str) -> bool {
     let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let (kept, measured) = (words(kept), words(measured));
@@ -122,7 +123,7 @@ fn generated_costs_are_those_of_the_page_and_within_the_limit() {
     if !(QEMU_ARM.met(has("qemu-system-arm")) && ARM_GCC.met(has("arm-none-eabi-gcc"))) {
         return;
     }
-    // All surfaces take minutes.
+    // Measuring all surfaces takes minutes.
     let takes_all = xtask::prove::whole() || is_written();
     let taken = |surface: &Surface| takes_all || *surface == TOLD;
     let all: Vec<(Surface, Vec<Row>)> = std::thread::scope(|scope| {

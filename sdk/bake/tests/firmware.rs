@@ -1,4 +1,4 @@
-//! The examples in C and the layouts for the builds of microcontrollers, with the example of a
+//! The C examples and the layouts for the build systems of microcontrollers, with the example
 //! block.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -106,8 +106,8 @@ fn the_sketch_plays_with_a_stub_of_arduino() {
     assert_eq!(output, lines.collect::<String>());
 }
 
-/// The lines of `docs/microcontroller.md`: what they include stands before a function, the rest in
-/// it.
+/// The lines of `docs/microcontroller.md` compile and play. Their includes are put before a
+/// function, the rest into it.
 #[test]
 fn the_lines_of_the_page_play() {
     if !CC.met(has("cc")) {
@@ -151,7 +151,7 @@ return status;
     assert_eq!(played, samples.map(|sample| format!("{sample} ")).concat());
 }
 
-/// Builds a layout in a stub of its build, and returns the symbols of the library.
+/// Builds a layout with a stub of its build system. Returns the symbols of the library.
 fn built(stub: &str, layout: &Path) -> String {
     let build = written(&format!("build-{stub}"));
     let mut cmake = Command::new("cmake");

@@ -1,4 +1,4 @@
-//! What a block takes and states.
+//! Size and stated errors of blocks.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -11,13 +11,14 @@ use htex_player::{Block, Player};
 const KILOBYTE: usize = 1024;
 const WITHIN_DB: f64 = 0.3;
 
-/// Most bytes of a block of the documented grid, and its largest errors at conditions and between
-/// them, dB.
+/// Largest size of a block on the documented grid, bytes, and its largest errors at the conditions
+/// and between them, dB.
 fn limits(model: &str) -> (usize, [f64; 2]) {
     match model {
-        // A filter of 641 coefficients does not resolve Bands at a fourth of the highest speed.
+        // A filter of 641 coefficients does not resolve the spectrum of `bands` at a fourth of the
+        // highest speed.
         "bands" => (16 * KILOBYTE, [0.45; 2]),
-        // Its resonances move over the grid, and a finer one would have more than 64 conditions.
+        // The resonances move over the grid, and a finer grid would have more than 64 conditions.
         "arma" => (21 * KILOBYTE, [0.1, 0.32]),
         _ => (16 * KILOBYTE, [0.1, WITHIN_DB]),
     }
@@ -67,7 +68,7 @@ fn a_block_states_quantity_and_law_and_follows_it() {
     assert_eq!(block.quantity().unit(), asset.quantity().unit());
     let law = asset.motions(Some("sslope")).unwrap().explored().law;
     assert_eq!(block.law().level_force, law.level_force.exponent as f32);
-    // Beyond the grid the level has the ratio that the host's has.
+    // Beyond the grid, levels have the same ratio as the host's.
     let host = |motion| asset.level_rms(Some("sslope"), Some(motion)).unwrap();
     let player = |motion: Motion| {
         let mut player = Player::new(block, 3);

@@ -1,5 +1,5 @@
-//! A player of a baked block has the spectrum of the host's voice, at its conditions and between
-//! them.
+//! A player has the same spectrum as the host's voice, at the conditions of a baked block and
+//! between them.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -17,9 +17,9 @@ use htex_player::{Block, Player};
 
 const RATE_HZ: f64 = 8_000.0;
 const SECONDS: f64 = 400.0;
-/// Largest error of a band, dB. 400 s of each voice scatter by 0.1 dB in the lowest bands.
+/// Largest error of a band, dB. Measured over 400 s, the lowest bands of a voice scatter by 0.1 dB.
 const WITHIN_DB: f64 = 0.3;
-/// Bands this far below the strongest are not compared: 40 dB.
+/// Bands whose energy is this far below the strongest band are not compared: 40 dB.
 const FAINT: f64 = 1e-4;
 
 fn energies(samples: Vec<f32>) -> Vec<f64> {
@@ -51,7 +51,7 @@ fn of_player(block: &[u8], motion: Motion) -> Vec<f64> {
     energies(samples)
 }
 
-/// Largest error of the bands within 40 dB of the strongest, dB.
+/// Largest error among the bands within 40 dB of the strongest one, dB.
 fn largest_db(host: &[f64], player: &[f64]) -> f64 {
     let strongest = host.iter().copied().fold(0.0, f64::max);
     let errors = band_error_db(host, player).into_iter().zip(host);
@@ -106,7 +106,7 @@ fn one_recorded_speed_scales_frequencies_and_level() {
     let (host, player) = (of_host(&asset, "sslope", motion), of_player(&baked.bytes, motion));
     let error = largest_db(&host, &player);
     assert!(error < WITHIN_DB, "{error}");
-    // It is not the texture as recorded.
+    // It differs from the texture as recorded.
     let recorded = of_host(&asset, "sslope", Motion::new(60.0, 0.3));
     assert!(largest_db(&recorded, &player) > 2.0);
 }

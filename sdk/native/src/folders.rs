@@ -1,21 +1,22 @@
-//! The user's own folders, and the libraries in a folder.
+//! The user's folders for htex, and the native libraries in a folder.
 
 use std::env::{consts::DLL_EXTENSION, split_paths, var_os};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of cached files: `$HTEX_CACHE_DIR`, else `htex` in the user's cache folder.
+/// Returns the folder for cached files: `$HTEX_CACHE_DIR`, or else `htex` in the user's cache
+/// folder.
 pub fn cache() -> Option<PathBuf> {
     absolute("HTEX_CACHE_DIR").or_else(|| Some(base("XDG_CACHE_HOME", ".cache")?.join("htex")))
 }
 
-/// Returns the folder of settings: `$HTEX_CONFIG_DIR`, else `htex` in the user's configuration
+/// Returns the folder for settings: `$HTEX_CONFIG_DIR`, or else `htex` in the user's configuration
 /// folder.
 pub fn config() -> Option<PathBuf> {
     absolute("HTEX_CONFIG_DIR").or_else(|| Some(base("XDG_CONFIG_HOME", ".config")?.join("htex")))
 }
 
-/// The variables that name one folder each.
+/// Environment variables that contain a single folder.
 const VARIABLES: [&str; 6] = [
     "HTEX_CACHE_DIR",
     "HTEX_CONFIG_DIR",
@@ -25,8 +26,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the variables that hold a relative path, with the path: the functions of this module
-/// ignore it.
+/// Returns the environment variables that contain a relative path, with the path. The other
+/// functions of this module ignore such variables.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);
@@ -36,24 +37,25 @@ pub fn relative() -> Vec<(&'static str, PathBuf)> {
     VARIABLES.into_iter().filter_map(path).collect()
 }
 
-/// Returns a folder in the user's data folder, if it exists: `htex/plugins`, `htex/devices`,
+/// Returns a folder in the user's data folder, if it exists, e.g. `htex/plugins`, `htex/devices` or
 /// `htex/sources`.
 pub fn data(folder: &str) -> Option<PathBuf> {
     let data = base("XDG_DATA_HOME", ".local/share")?.join(folder);
     data.exists().then_some(data)
 }
 
-/// Returns the folders in a variable, separated as in `PATH`.
+/// Returns the folders in an environment variable, which are separated as in `PATH`.
 pub fn listed(variable: &str) -> Vec<PathBuf> {
     let value = var_os(variable).unwrap_or_default();
     let folders = split_paths(&value).filter(|dir| !dir.as_os_str().is_empty());
     folders.collect()
 }
 
-/// Returns the native libraries in a folder and the files with the extension `other`, by name.
+/// Returns the native libraries and the files with the extension `other` in a folder, sorted by
+/// name.
 ///
 /// # Errors
-/// When the folder cannot be read.
+/// If the folder cannot be read.
 pub fn libraries_in(dir: &Path, other: Option<&str>) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(dir)? {
@@ -67,15 +69,15 @@ pub fn libraries_in(dir: &Path, other: Option<&str>) -> io::Result<Vec<PathBuf>>
     Ok(files)
 }
 
-/// Returns a folder of the XDG base directory specification: that of the variable, else one in the
-/// home folder; on Windows the local application data.
+/// Returns a folder of the XDG base directory specification: the value of the variable, or else a
+/// folder in the home folder. On Windows, returns the folder of local application data.
 fn base(variable: &str, in_home: &str) -> Option<PathBuf> {
     let home = || absolute("HOME").map(|home| home.join(in_home));
     let windows = || absolute("LOCALAPPDATA").filter(|_| cfg!(windows));
     absolute(variable).or_else(windows).or_else(home)
 }
 
-/// Returns a variable's path; relative paths are ignored, as the specification requires.
+/// Returns the path in a variable. Relative paths are ignored, as the specification requires.
 fn absolute(variable: &str) -> Option<PathBuf> {
     let path = PathBuf::from(var_os(variable)?);
     path.is_absolute().then_some(path)

@@ -1,11 +1,11 @@
-//! Native libraries (`.so`, `.dylib`, `.dll`), loaded from a file or by a name that the system's
-//! loader searches.
+//! Loads native libraries (`.so`, `.dylib`, `.dll`), from a file or by a name that the system's
+//! loader searches for.
 //!
-//! No library is ever unloaded: function pointers, open devices and voices point into it.
+//! A library is never unloaded, because function pointers, open devices and voices point into it.
 //!
-//! This is the only place that loads one, but for tests. A bare name is a file of the current
-//! folder, as every other argument is; only NI-DAQmx's own names, or a `driver` that is not a file,
-//! are given to the system's loader.
+//! Apart from tests, this crate is the only place that loads libraries. A bare name is a file in
+//! the current folder, as it is for every other argument. The system's loader is asked only for the
+//! names of NI-DAQmx, and for a `driver` that is not a file.
 
 pub mod folders;
 
@@ -14,7 +14,7 @@ use std::error::Error;
 use std::ffi::OsStr;
 use std::path::{Path, absolute};
 
-/// A library cannot be loaded; contains the system loader's message.
+/// Error: a library cannot be loaded. Contains the message of the system's loader.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct LoadError(String);
@@ -22,7 +22,7 @@ pub struct LoadError(String);
 #[derive(Debug, Clone, Copy)]
 pub struct Library(&'static Loaded);
 
-/// Where a bare name was looked for.
+/// The places where a bare name was searched for.
 const SEARCHED: &str = if cfg!(windows) {
     "; the current folder has no such file, and the system finds none in its folders and those of PATH"
 } else {
@@ -33,46 +33,46 @@ const SEARCHED: &str = if cfg!(windows) {
 #[cfg(any(unix, windows))]
 use libloading::Library as Loaded;
 
-/// What is loaded where there are no native libraries: nothing.
+/// Stands for a loaded library on systems that have no native libraries.
 #[cfg(not(any(unix, windows)))]
 #[derive(Debug)]
 enum Loaded {}
 
 impl Library {
-    /// Loads the library in a file. A relative path, a bare file name among them, starts at the
-    /// current folder; the loader's search path is not used.
+    /// Loads the library in a file. A relative path, including a bare file name, starts at the
+    /// current folder. The search path of the loader is not used.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// When the file is absent, or not a library for this machine.
+    /// If the file does not exist, or is not a library for this machine.
     pub unsafe fn from_file(path: &Path) -> Result<Self, LoadError> {
         let path = absolute(path).map_err(|error| LoadError(error.to_string()))?;
         // SAFETY: guaranteed by the caller.
         unsafe { load(path.as_os_str()) }
     }
 
-    /// Loads the library that the system's loader finds by its name, such as `libnidaqmx.so.1`.
+    /// Loads the library that the system's loader finds by this name, such as `libnidaqmx.so.1`.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// When the loader finds none, or cannot load it.
+    /// If the loader does not find a library, or cannot load it.
     pub unsafe fn from_system(name: &str) -> Result<Self, LoadError> {
         // SAFETY: guaranteed by the caller.
         unsafe { load(OsStr::new(name)) }
     }
 
-    /// Loads the library that a person names in a setting: a path, or a bare name, which is a file
-    /// of the current folder, else a library of the system.
+    /// Loads the library that a setting names: a path, or a bare name. A bare name is a file in the
+    /// current folder, or, if there is none, a library of the system.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// When there is none, or it cannot be loaded.
+    /// If there is no such library, or it cannot be loaded.
     pub unsafe fn named(path: &str) -> Result<Self, LoadError> {
         let file = Path::new(path);
         let is_bare = file.components().count() == 1 && !file.is_absolute();
@@ -85,13 +85,13 @@ impl Library {
         found.map_err(|LoadError(reason)| LoadError(format!("{reason}{SEARCHED}")))
     }
 
-    /// Loads the first of these that the system's loader finds.
+    /// Loads the first of several libraries that the system's loader finds.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// When there is none; the reason of each.
+    /// If the loader finds none; says for each of them why.
     pub unsafe fn installed(names: &[&str]) -> Result<Self, LoadError> {
         let mut reasons = Vec::new();
         for name in names {
@@ -104,7 +104,7 @@ impl Library {
         Err(LoadError(reasons.join("; ")))
     }
 
-    /// Returns the function or variable of this name.
+    /// Returns the function or variable with this name.
     ///
     /// # Safety
     /// The symbol has the type `T`.
@@ -115,29 +115,30 @@ impl Library {
     }
 }
 
-/// The functions that a library must have; `missing` makes the error of one that it lacks.
+/// Gets functions that a library must have. `missing` makes the error for a function that is
+/// missing.
 pub struct Symbols<'a, E> {
     pub library: Library,
     pub missing: &'a dyn Fn(&'static str) -> E,
 }
 
 impl<E> Symbols<'_, E> {
-    /// Returns the function of this name.
+    /// Returns the function with this name.
     ///
     /// # Safety
     /// The symbol has the type `T`.
     ///
     /// # Errors
-    /// When the library does not have it.
+    /// If the library does not have the function.
     pub unsafe fn get<T: Copy>(&self, name: &'static str) -> Result<T, E> {
         // SAFETY: guaranteed by the caller.
         unsafe { self.library.symbol(name) }.ok_or_else(|| (self.missing)(name))
     }
 }
 
-/// Makes a table of a library's functions of [`Symbols`]: the name of each is the prefix and its
-/// field's name. Unsafe, since each symbol must have the type of its field; an error ends the
-/// function around it.
+/// Makes a table of a library's functions from [`Symbols`]. The name of each function is the prefix
+/// followed by the name of the field. Unsafe, because each symbol must have the type of its field.
+/// An error returns from the function that uses the macro.
 #[macro_export]
 macro_rules! table_of_symbols {
     ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)*) => {
@@ -175,7 +176,7 @@ unsafe fn load(name: &OsStr) -> Result<Library, LoadError> {
     Ok(Library(Box::leak(Box::new(library))))
 }
 
-/// Returns the system loader's message, which is the source of libloading's error.
+/// Returns the message of the system's loader, which is the source of libloading's error.
 #[cfg(any(unix, windows))]
 fn reason(error: &libloading::Error) -> String {
     match error.source() {

@@ -1,4 +1,4 @@
-//! Validation of documents against schemas. Nothing is downloaded: a `$ref` must refer to the
+//! Validation of documents against JSON Schemas. Nothing is downloaded: a `$ref` must refer to the
 //! schema itself.
 
 use std::error::Error;
@@ -6,7 +6,7 @@ use std::error::Error;
 use jsonschema::{Retrieve, Uri, Validator};
 use serde_json::Value;
 
-/// Most violations reported; a hostile document could break rules by the million.
+/// Largest number of violations that are reported. A hostile document could have millions of them.
 const MOST: usize = 1000;
 
 /// A compiled JSON Schema.
@@ -23,7 +23,7 @@ const MOST: usize = 1000;
 #[derive(Debug)]
 pub struct Schema(Validator);
 
-/// Error of compiling a schema.
+/// Error: a schema cannot be compiled.
 #[derive(Debug)]
 pub struct SchemaError(String);
 
@@ -32,12 +32,12 @@ pub struct SchemaError(String);
 pub struct Violation {
     /// JSON pointer into the document.
     pub pointer: String,
-    /// JSON pointer into the schema: the violated keyword, last.
+    /// JSON pointer into the schema; it ends with the violated keyword.
     pub rule: String,
     pub message: String,
 }
 
-/// Retriever that refuses references outside the schema.
+/// A retriever that refuses all references outside the schema.
 struct Nothing;
 
 impl Retrieve for Nothing {
@@ -48,16 +48,16 @@ impl Retrieve for Nothing {
 }
 
 impl Schema {
-    /// Compiles a schema of draft 2020-12, or of the draft that its `$schema` names.
+    /// Compiles a schema, of draft 2020-12 or of the draft that its `$schema` names.
     ///
     /// # Errors
-    /// When it is not a valid schema, or refers to another schema.
+    /// If it is not a valid schema, or refers to another schema.
     pub fn new(schema: &Value) -> Result<Self, SchemaError> {
         let validator = jsonschema::options().with_retriever(Nothing).build(schema);
         validator.map(Self).map_err(|e| SchemaError(e.to_string()))
     }
 
-    /// Returns the violations of a document, in the order of the schema; at most the first
+    /// Returns the violations of a document, in the order of the schema: at most the first
     /// thousand.
     pub fn violations(&self, document: &Value) -> Vec<Violation> {
         let errors = self.0.iter_errors(document);

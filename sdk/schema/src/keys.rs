@@ -1,17 +1,17 @@
-//! Keys that a document has and its schema has not.
+//! Unknown keys: keys that a document has, but its schema does not.
 
 use schemars::JsonSchema;
 use serde_json::{Map, Value};
 
-/// Similarity (Jaro–Winkler) from which a key is taken to be another one misspelt.
+/// Jaro–Winkler similarity above which an unknown key is taken for a misspelt known key.
 const SIMILAR: f64 = 0.8;
 
-/// A key that the schema of a document does not have.
+/// A key of a document that the schema does not have.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownKey {
-    /// Keys and indices from the document to the key, and the key.
+    /// The keys and indices on the way from the document to this key, and the key itself.
     pub path: Vec<String>,
-    /// The known key that is most like it, if one is.
+    /// The most similar known key, if one is similar enough.
     pub nearest: Option<String>,
 }
 
@@ -25,7 +25,7 @@ impl std::fmt::Display for UnknownKey {
     }
 }
 
-/// Returns a path as texts name it: `textures[0].licence`.
+/// Returns a path in the form that messages use: `textures[0].licence`.
 fn place(path: &[String]) -> String {
     let is_index = |part: &str| part.bytes().all(|b| b.is_ascii_digit());
     path.iter().fold(String::new(), |place, part| match part {
@@ -35,10 +35,10 @@ fn place(path: &[String]) -> String {
     })
 }
 
-/// Refuses a document with keys that a `T` has not.
+/// Refuses a document with keys that a `T` does not have.
 ///
 /// # Errors
-/// A sentence for each of them.
+/// One sentence for each of these keys.
 pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
     let schema = crate::crossing::<T>("", "");
     let unknown = unknown_keys(&schema, document);
@@ -47,7 +47,7 @@ pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
 }
 
 /// Returns the keys of a document that its schema refuses (`additionalProperties: false`). Of
-/// alternatives those of the value's type count.
+/// several alternatives, those for the type of the value apply.
 ///
 /// ```
 /// #[derive(schemars::JsonSchema)]
@@ -117,7 +117,7 @@ impl<'a> Walk<'a> {
         });
     }
 
-    /// Returns the schema, or that of its alternatives that is of the value's type.
+    /// Returns the schema itself, or, if it has alternatives, the one for the type of the value.
     fn of_type(&self, schema: &'a Value, value: &Value) -> Option<&'a Value> {
         let reference = schema.get("$ref").and_then(Value::as_str);
         if let Some(pointer) = reference.and_then(|to| to.strip_prefix('#')) {

@@ -1,5 +1,5 @@
-//! JSON Schemas (draft 2020-12) of htex's documents: generated from Rust types, and used for
-//! validation.
+//! Generates the JSON Schemas (draft 2020-12) of htex's documents from Rust types, and validates
+//! documents with them.
 //!
 //! ```
 //! /// A cloth.
@@ -33,11 +33,11 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema as Made, SchemaGenerator};
 use serde_json::{Value, json};
 
-/// Prefix of the schemas' ids; nothing is downloaded from there.
+/// Prefix of the schemas' ids. Nothing is downloaded from there.
 const BASE: &str = "https://htex.org/schemas/";
 
-/// The characters of Unicode's property `White_Space`, for the brackets of a pattern: readers of
-/// schemas differ in what `\s` is.
+/// The characters with Unicode's property `White_Space`, for use in the brackets of a pattern.
+/// Readers of schemas differ in the meaning of `\s`, so patterns do not use it.
 #[macro_export]
 macro_rules! white_space {
     () => {
@@ -45,18 +45,18 @@ macro_rules! white_space {
     };
 }
 
-/// Pattern of a text with a character that is not white space.
+/// Pattern for a text that contains a character other than white space.
 pub const NOT_BLANK: &str = concat!("[^", white_space!(), "]");
 
-/// Returns the schema of a document in which unknown values are absent, never `null`; `file` is its
-/// name in `spec/schemas`.
+/// Returns the schema of a document. Unknown values are absent from the document, never `null`.
+/// `file` is the schema's name in `spec/schemas`.
 pub fn document<T: JsonSchema>(file: &str, title: &str) -> Value {
     let mut schema = made::<T>(file, title);
     without_null(&mut schema);
     schema.to_value()
 }
 
-/// Returns the schema of JSON that crosses an ABI, in which `null` stands for an absent value.
+/// Returns the schema of JSON that crosses an ABI. There `null` stands for an absent value.
 pub fn crossing<T: JsonSchema>(file: &str, title: &str) -> Value {
     made::<T>(file, title).to_value()
 }
@@ -70,7 +70,7 @@ fn made<T: JsonSchema>(file: &str, title: &str) -> Made {
     schema
 }
 
-/// Removes examples in Rust from descriptions, which are doc comments.
+/// Removes Rust examples from descriptions, which are doc comments.
 fn without_examples(schema: &mut Made) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         while let Some((before, code)) = text.split_once("```") {
@@ -81,11 +81,11 @@ fn without_examples(schema: &mut Made) {
     transform_subschemas(&mut (without_examples as fn(&mut Made)), schema);
 }
 
-/// Largest integer up to which every integer is exact in binary64; documents have none beyond.
+/// Largest integer up to which every integer is exact in binary64. Documents contain no larger one.
 const EXACT: i64 = 1 << 53;
 
-/// Replaces formats such as `double` and `uint64`, which the standard does not have: those of
-/// integers by their ranges.
+/// Removes formats such as `double` and `uint64`, which the standard does not define. Formats of
+/// integers are replaced by ranges.
 fn without_formats(schema: &mut Made) {
     let format = schema.remove("format");
     let range = match format.as_ref().and_then(Value::as_str) {
@@ -97,7 +97,7 @@ fn without_formats(schema: &mut Made) {
         Some("uint" | "uint64") => Some((0, EXACT)),
         _ => None::<(i64, i64)>,
     };
-    // Schemas that are `true` or `false` stay so.
+    // Schemas that are just `true` or `false` stay as they are.
     if let Some((least, most)) = range {
         let object = schema.ensure_object();
         object.entry("minimum").or_insert(json!(least));
@@ -106,7 +106,7 @@ fn without_formats(schema: &mut Made) {
     transform_subschemas(&mut (without_formats as fn(&mut Made)), schema);
 }
 
-/// Removes keys with the value `null`.
+/// Removes keys whose value is `null`.
 fn remove_null(value: &mut Value) {
     if let Value::Object(map) = value {
         map.retain(|_, value| !value.is_null());
@@ -114,7 +114,7 @@ fn remove_null(value: &mut Value) {
     }
 }
 
-/// Removes `null` as an alternative to another type.
+/// Removes `null` where it is an alternative to another type.
 fn without_null(schema: &mut Made) {
     transform_subschemas(&mut (without_null as fn(&mut Made)), schema);
     if let Some(Value::Array(types)) = schema.get_mut("type") {

@@ -1,4 +1,4 @@
-//! An asset of all models, and files of tests.
+//! An asset with all models, and files for tests.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_play::{Asset, AssetData, Registry};
 use htex_simulate::{SimulationOptions, Surface, simulate};
 
-/// An asset of every built-in model, recorded at two speeds and two forces.
+/// An asset with every built-in model, recorded at two speeds and two forces.
 pub fn asset() -> Asset {
     Asset::new(data())
 }
@@ -19,7 +19,7 @@ pub fn data() -> AssetData {
     DATA.get_or_init(|| data_of(Surface::CoarseFabric)).clone()
 }
 
-/// An asset of every built-in model of a surface, recorded at two speeds and two forces.
+/// An asset of a surface with every built-in model, recorded at two speeds and two forces.
 pub fn asset_of(surface: Surface) -> Asset {
     Asset::new(data_of(surface))
 }
@@ -49,12 +49,12 @@ pub fn player() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../player")
 }
 
-/// The folder where programs for boards are built.
+/// The folder in which programs for boards are built.
 pub fn built() -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("board")
 }
 
-/// Runs a command, and returns its standard output.
+/// Runs a command and returns its standard output.
 pub fn run(command: &mut Command) -> String {
     let done = command.output().unwrap();
     let error = String::from_utf8_lossy(&done.stderr);

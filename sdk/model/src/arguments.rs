@@ -180,6 +180,7 @@ pub fn interpolate(
     read_sets(descriptor, flat, sets)?;
     let mut mixed = Numbers::new(parameters);
     own(sets, weights, &mut mixed)?;
+    // If the buffer was too small, the caller calls again, and the complete result is checked then.
     if mixed.count() == mixed.written().len() {
         Values::read(descriptor, mixed.written())?;
     }

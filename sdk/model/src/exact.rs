@@ -29,6 +29,7 @@ const fn short(size: f64) -> Option<(u64, i32)> {
     if size == 0.0 {
         return Some((0, 0));
     }
+    // From the largest exponent down, so that the first match has the fewest digits.
     let mut exponent = EXACT_POWER;
     while exponent >= -EXACT_POWER {
         let power = power_of_ten(exponent.abs());

@@ -28,8 +28,7 @@ mod here {
             Self(Mutex::new(value))
         }
 
-        /// Locks the value. `None` if this thread holds the lock already, where that can be
-        /// detected.
+        /// Locks the value; never `None`. (In a WASM module, `None` means that the lock is held.)
         pub fn lock(&self) -> Option<MutexGuard<'_, T>> {
             Some(self.0.lock().unwrap_or_else(PoisonError::into_inner))
         }

@@ -85,6 +85,7 @@ impl<V> Voices<V> {
         // valid handle to it exists.
         unsafe { *slot.voice.get() = Some(voice) };
         let generation = slot.generation.fetch_add(1, Ordering::Release) + 1;
+        // 31 bits of the generation, and the index plus one: a handle is above zero.
         Some((i64::from(generation & 0x7fff_ffff) << 32) | i64::from(index + 1))
     }
 
@@ -104,6 +105,7 @@ impl<V> Voices<V> {
     pub fn remove(&self, handle: i64) -> Option<V> {
         let mut free = self.free.lock()?;
         let slot = self.live_slot(handle)?;
+        // From here on, the handle is stale.
         slot.generation.fetch_add(1, Ordering::Release);
         free.freed.push((handle & 0xffff_ffff) as u32 - 1);
         // SAFETY: the slot was live, and its generation was changed under the lock.

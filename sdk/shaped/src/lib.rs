@@ -235,6 +235,7 @@ impl<C: Curve> ShapedVoice<C> {
     ) -> Result<Self, Error> {
         let mut curve = C::new(parameters, band)?;
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
+        // `at` and not `fill`, which needs the frequencies that `prepare` gets only now.
         noise.start(|_, f| curve.at(f));
         curve.prepare(noise.component_hz(), noise.components_key());
         Ok(Self { curve, noise })

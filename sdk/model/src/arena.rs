@@ -61,7 +61,7 @@ impl Arena {
         if len > self.fresh_len {
             let pages = len.div_ceil(PAGE_BYTES);
             let new = grow(pages)?;
-            // Pages that follow the old ones extend them; otherwise the rest of the old ones is lost.
+            // New pages extend the old ones if they follow them; else the rest of these is lost.
             if new != self.fresh.wrapping_add(self.fresh_len) {
                 (self.fresh, self.fresh_len) = (new, 0);
             }

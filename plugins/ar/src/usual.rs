@@ -1,5 +1,5 @@
 //! The usual ranges of the parameters. The coefficients of the fits to 15 simulated recordings of
-//! five surfaces, from -3.4 to 3.3, lie inside. The rates are those of the sweep (`knobs`).
+//! five surfaces, from -3.4 to 3.3, lie inside. The sweep uses the same rates (`knobs`).
 
 use htex_model::Usual;
 

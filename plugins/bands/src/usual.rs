@@ -1,6 +1,6 @@
 //! The usual ranges of the parameters. In the fits to 15 simulated recordings of five surfaces,
 //! nine tenths of the knots are at most 42 dB below the highest one, and all but a few at most 60
-//! dB. The steps are those of the sweep (`knobs`).
+//! dB. The sweep uses the same steps (`knobs`).
 
 use htex_model::Usual;
 

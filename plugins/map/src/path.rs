@@ -110,7 +110,7 @@ impl Path {
         }
     }
 
-    /// Returns the place at the next sample of a finger that was at `told` when the place was set.
+    /// Returns the place at the next sample, if the finger was at `told` when the place was set.
     fn now(&self, told: [f64; 2]) -> [f64; 2] {
         core::array::from_fn(|axis| told[axis] + self.age * self.step[axis])
     }

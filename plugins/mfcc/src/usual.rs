@@ -1,6 +1,6 @@
 //! The usual ranges of the parameters. The coefficients of the fits to 15 simulated recordings of
 //! five surfaces, from -80 to 18, lie inside. The first coefficient, a sum of logarithms, is by far
-//! the lowest. The numbers of bands are those of the sweep (`knobs`).
+//! the lowest. The sweep uses the same numbers of bands (`knobs`).
 
 use htex_model::Usual;
 

@@ -409,8 +409,7 @@ impl Designed {
         texture.ceiling_rms() * raised
     }
 
-    /// Returns a magnitude that samples at the conditions rarely exceed; those of sinusoids never
-    /// exceed it.
+    /// Returns a magnitude that samples at the conditions rarely exceed. Sinusoids never exceed it.
     fn full_scale(&self) -> f64 {
         let crest = |i: usize| match &self.shape.spectra {
             Spectra::Noise(..) => CREST,

@@ -115,8 +115,8 @@ impl Shape {
     }
 
     /// Returns the largest error of the nine bands, dB, at half the lowest speed of the grid and at
-    /// twice the highest one. There the level follows the law of the texture, but the spectrum
-    /// stays that of the nearest condition.
+    /// twice the highest one. There the level follows the law of the texture, but the player keeps
+    /// the spectrum of the nearest condition.
     pub(crate) fn beyond_db(&self, texture: &Texture<'_>, grid: &Grid) -> Result<f64, BakeError> {
         let law = texture.law();
         let last = grid.speeds_mm_s().len() - 1;

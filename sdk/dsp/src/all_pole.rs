@@ -202,8 +202,7 @@ mod tests {
     use crate::noise::GaussianNoise;
     use alloc::vec::Vec;
 
-    /// Alternates constant and changing coefficients; the output equals that of a lattice
-    /// throughout.
+    /// Alternates constant and changing coefficients. The output always equals a lattice's output.
     #[test]
     fn switching_forms_matches_the_lattice() {
         for coefficients in [&[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3][..], &[0.9]] {

@@ -224,9 +224,9 @@ impl Work for RationalPower<'_> {
 }
 
 /// Squared absolute values of a polynomial at a group of points, divided by 4 for each pair of
-/// lines. `cosines` are those of its line spectral frequencies, alternating between the symmetric
-/// and the antisymmetric polynomial. On the unit circle these two are a quarter turn apart, so
-/// their squares add.
+/// lines. `cosines` are the cosines of its line spectral frequencies, which belong in turn to the
+/// symmetric and to the antisymmetric polynomial. On the unit circle these two are a quarter turn
+/// apart, so their squares add.
 #[inline(always)]
 fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
     let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);

@@ -175,7 +175,7 @@ impl Lane for f64 {
 }
 
 impl Lane for Quad {
-    /// Contributions of the first input; those of the other inputs are the same, but shifted.
+    /// Contributions of the first input. The other inputs have the same ones, but shifted.
     type Outputs = [Quad; GROUP];
 
     /// The same sums without multiplications by 0 or 1.

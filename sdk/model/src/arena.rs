@@ -133,7 +133,7 @@ mod tests {
             });
             let Some(block) = block else { continue };
             assert!((block as usize).is_multiple_of(ALIGN));
-            // SAFETY: as many bytes as were asked for.
+            // SAFETY: the block has the requested number of bytes.
             unsafe { block.write_bytes(round as u8, size) };
             live.push((block, layout, round as u8));
         }

@@ -328,7 +328,7 @@ pub fn alloc(len: usize) -> *mut u8 {
 /// since.
 pub unsafe fn free(pointer: *mut u8, len: usize) {
     if let (false, Some(layout)) = (pointer.is_null(), layout(len)) {
-        // SAFETY: guaranteed by the caller; the layout is that of the allocation.
+        // SAFETY: guaranteed by the caller; the allocation had the same layout.
         unsafe { alloc::alloc::dealloc(pointer, layout) }
     }
 }

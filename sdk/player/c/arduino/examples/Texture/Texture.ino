@@ -1,7 +1,8 @@
-// A texture at pin DAC0 or A0, of a finger whose force is read at A1 and whose speed at A2.
+// Plays a texture at pin DAC0 or A0. Reads the force of the finger at pin A1 and its speed at pin A2.
 //
-// cloth.h is what `htex bake cloth.htex --name texture_cloth -o cloth.h` writes. The samples have 8 kHz: a board that takes more
-// than 125 us for one, as those without floating point do, is too slow, which `late` counts.
+// `htex bake cloth.htex --name texture_cloth -o cloth.h` writes cloth.h. The sample rate is 8 kHz. A
+// board that takes more than 125 us per sample is too slow, e.g. one without floating point. `late`
+// counts the samples that came too late.
 #include <htex_player.h>
 
 #include "cloth.h"
@@ -14,7 +15,7 @@ const uint8_t OUTPUT_PIN = A0;
 const uint8_t FORCE_PIN = A1;
 const uint8_t SPEED_PIN = A2;
 
-// What the sensors read at full scale: replace them by those of your board.
+// Force and speed at the full scale of the sensors: replace these values by your board's.
 const float MOST_FORCE_N = 1.0f;
 const float MOST_SPEED_MM_S = 200.0f;
 
@@ -57,6 +58,6 @@ void loop() {
   }
   int16_t sample;
   htex_player_render_i16(player, &sample, 1, htex_player_full_scale(player));
-  // analogWrite has 8 bits unless it is told otherwise.
+  // analogWrite takes 8 bits unless it is set to another resolution.
   analogWrite(OUTPUT_PIN, (uint8_t)(128 + sample / 256));
 }

@@ -1,8 +1,8 @@
-// Plays a texture at pin DAC0 or A0. Reads the force of the finger at pin A1 and its speed at pin A2.
+// Plays a texture at pin DAC0 or A0. Reads the force of the finger at pin A1 and its speed at A2.
 //
-// `htex bake cloth.htex --name texture_cloth -o cloth.h` writes cloth.h. The sample rate is 8 kHz. A
-// board that takes more than 125 us per sample is too slow, e.g. one without floating point. `late`
-// counts the samples that came too late.
+// `htex bake cloth.htex --name texture_cloth -o cloth.h` writes cloth.h. The sample rate is 8 kHz.
+// A board that takes more than 125 us per sample is too slow, e.g. one without floating point.
+// `late` counts the samples that came too late.
 #include <htex_player.h>
 
 #include "cloth.h"

@@ -143,8 +143,8 @@ impl Descriptor {
         self.options.iter().map(|o| o.default).collect()
     }
 
-    /// Whether the parameters are sinusoids: the lists among them are their frequencies,
-    /// `frequency_hz`, and their amplitudes, `amplitude`, and come first.
+    /// Whether the parameters are sinusoids, i.e. whether the first list fields are exactly
+    /// `frequency_hz` and `amplitude`.
     pub fn is_sum_of_sines(&self) -> bool {
         let is_list = |field: &&Field| matches!(field.kind, Kind::List { .. });
         let lists = self.fields.iter().take_while(is_list);

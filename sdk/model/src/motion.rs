@@ -120,11 +120,62 @@ impl FitCondition {
 /// calls it: until its first motion, a voice plays its parameters as at the motion of the
 /// recording.
 ///
+/// # Example
+///
+/// Noise that becomes louder with the force, and is silent while the finger rests:
+///
+/// ```
+/// use htex_dsp::glide::Glide;
+/// use htex_dsp::shaped_noise::ShapedNoise;
+/// use htex_model::{Band, Error, Motion, MotionVoice, Values, Voice};
+///
+/// struct Pressed {
+///     noise: ShapedNoise,
+///     /// A gain that changes over 10 ms.
+///     gain: Glide,
+/// }
+///
+/// impl Voice for Pressed {
+///     fn render(&mut self, out: &mut [f32]) {
+///         self.noise.render(out);
+///         self.gain.apply(out);
+///     }
+///
+///     fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> {
+///         Ok(()) // This spectrum has no parameters.
+///     }
+/// }
+///
+/// impl MotionVoice for Pressed {
+///     fn set_motion(&mut self, motion: Motion) {
+///         // As loud as the recording, if that was made at 1 N.
+///         let gain = if motion.speed_mm_s == 0.0 { 0.0 } else { motion.force_n.min(4.0) };
+///         self.gain.set(gain as f32);
+///     }
+/// }
+///
+/// let mut noise = ShapedNoise::new(4_000.0, Band::TACTILE, 1);
+/// noise.start(|_, _| 1.0);
+/// let mut voice = Pressed { noise, gain: Glide::new(1.0, 40) };
+/// let mut motion =
+///     Motion { speed_mm_s: 80.0, force_n: 2.0, position_mm: 0.0, x_mm: 0.0, y_mm: 0.0 };
+/// let mut block = [0.0; 64];
+/// voice.set_motion(motion);
+/// voice.render(&mut block);
+/// assert!(voice.gain.rests_at(2.0));
+/// motion.speed_mm_s = 0.0;
+/// voice.set_motion(motion);
+/// voice.render(&mut block);
+/// assert_eq!(block[63], 0.0);
+/// ```
+///
+/// `examples/model-rust-texel` is a complete model with this trait, whose sound follows the
+/// position.
+///
 /// # Limits
 ///
 /// Samples are finite at every motion within the limits of [`motion_1`](crate::motion_1). At the
 /// motion of the recording the samples have unit RMS; at other motions the model decides the level.
-/// `examples/model-rust-texel` is a complete model with this trait.
 pub trait MotionVoice: Voice {
     /// Sets the motion at the next sample. All numbers are in range: the caller has checked them.
     ///

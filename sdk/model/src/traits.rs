@@ -277,7 +277,8 @@ pub trait Model: 'static {
 ///
 /// The host renders block after block on its render thread, and between two blocks it may change
 /// the parameters. It never makes two calls for the same voice at the same time, but a voice may
-/// move to another thread. Voices of one model render at the same time on different threads.
+/// move to another thread. Several voices of one model may render at the same time, on different
+/// threads.
 ///
 /// # What a voice guarantees
 ///

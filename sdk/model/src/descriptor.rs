@@ -143,7 +143,7 @@ impl Descriptor {
         self.options.iter().map(|o| o.default).collect()
     }
 
-    /// Whether the parameters are sinusoids, i.e. whether the first list fields are exactly
+    /// Whether the parameters are sinusoids, i.e. whether the fields begin with exactly two lists,
     /// `frequency_hz` and `amplitude`.
     pub fn is_sum_of_sines(&self) -> bool {
         let is_list = |field: &&Field| matches!(field.kind, Kind::List { .. });

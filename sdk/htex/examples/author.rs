@@ -1,4 +1,4 @@
-//! Makes an asset of a simulated recording.
+//! Makes an asset from a simulated recording.
 //!
 //! `cargo run --release -p htex --features author --example author -- cloth.htex`
 

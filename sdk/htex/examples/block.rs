@@ -1,5 +1,5 @@
-//! Prints the time of a sample, ns: the least of several runs over blocks of 64 samples, or of
-//! another length. Other languages are compared with it (`cargo xtask prove costs`).
+//! Prints the time to render one sample, in nanoseconds: the shortest of several runs in blocks of
+//! 64 samples, or of another length. `cargo xtask prove costs` compares other languages with it.
 //!
 //! `cargo run --release -p htex --example block -- cloth.htex ar 64`
 
@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use htex::{Asset, VoiceOptions};
 
-/// Samples of a run.
+/// Samples in one run.
 const SAMPLES: usize = 1_920_000;
 const RUNS: usize = 5;
 

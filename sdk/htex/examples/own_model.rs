@@ -1,5 +1,5 @@
-//! A model of the program itself: flat noise between two frequencies. It is registered and fitted
-//! to a simulated recording, and the asset is played.
+//! A model that the program itself defines: flat noise between two frequencies. The program
+//! registers it, fits it to a simulated recording, and plays the asset.
 //!
 //! `cargo run --release -p htex --features author --example own_model`
 
@@ -14,7 +14,7 @@ use htex_shaped::{Curve, ShapedVoice};
 /// The model: a plateau from `low_hz` to `high_hz`.
 struct Plateau;
 
-/// The plateau of parameters in a band.
+/// The plateau that the parameters describe, in a band.
 struct Edges {
     low_hz: f64,
     high_hz: f64,

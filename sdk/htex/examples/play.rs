@@ -1,4 +1,4 @@
-//! Plays an asset while the finger slows down: prints the RMS of each tenth of a second.
+//! Plays an asset while the finger slows down, and prints the RMS of each tenth of a second.
 //!
 //! `cargo run --release -p htex --example play -- cloth.htex`
 

@@ -1,4 +1,5 @@
-//! Renders a scene file for a device of newtons at 20 kHz, and prints its chain and its RMS.
+//! Renders a scene file for a device that takes newtons at 20 kHz, and prints the chain and the
+//! RMS.
 //!
 //! `cargo run --release -p htex --features author,scene --example scene -- SCENE.json`
 
@@ -14,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path: PathBuf = std::env::args_os().nth(1).ok_or("give a scene: scene SCENE.json")?.into();
     let devices = Devices::new(vec![Arc::new(FileAdapter)]);
     let around = Surroundings { models: &Registry::builtin(), embedded: true, devices: &devices };
-    // The samples are rendered here and the device is not opened.
+    // The example only renders the samples here; it does not open the device.
     let device = DeviceOverride {
         adapter: Some("org.htex.file".to_owned()),
         rehearsal: true,

@@ -10,20 +10,20 @@
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
+//! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
 //!
 //! # Features
 //! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the
-//!   program is smaller, and only representations of built-in models can be played.
+//!   program is smaller and can only play representations of built-in models.
 //! - `write` (default): `format::Asset::write` and `to_bytes`.
 //! - `author`: `htex::author`, which reads recordings and makes assets, and `htex::simulate`, which
 //!   simulates recordings.
-//! - `library`: `htex::Library`, a file with thousands of textures, of which `Asset::from_library`
-//!   opens one; `htex::library` has all of it.
-//! - `storage`: `htex::storage`, files by path or URI, and `Library::open_located`; `cloud` has the
-//!   web servers and object stores.
-//! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they
-//!   are played on.
+//! - `library`: `htex::Library`, a file with thousands of textures. `Asset::from_library` opens one
+//!   of them; `htex::library` has the full interface.
+//! - `storage`: `htex::storage`, which opens files by path or URI, and `Library::open_located`. The
+//!   feature `cloud` adds web servers and object stores.
+//! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices that
+//!   play them.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
@@ -31,11 +31,11 @@
 pub use htex_author as author;
 #[cfg(feature = "scene")]
 pub use htex_device as device;
-/// The container: its types, reading, writing, validation.
+/// The container: its types, reading, writing and validation.
 pub use htex_format as format;
 /// The models: registry, loaders, calls.
 pub use htex_host as host;
-/// The file with thousands of textures.
+/// Library files, which hold thousands of textures.
 #[cfg(feature = "library")]
 pub use htex_library as library;
 #[cfg(feature = "library")]

@@ -1,4 +1,4 @@
-//! Textures of a library play as those of their files.
+//! A texture in a library plays exactly as it does from its own file.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex::library::Writer;

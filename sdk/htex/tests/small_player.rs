@@ -1,5 +1,5 @@
-//! A player without the sandbox plays the representations of built-in models of an asset with an
-//! embedded module.
+//! A player without the sandbox can play an asset with an embedded module: it plays the
+//! representations of built-in models.
 #![cfg(all(feature = "author", not(feature = "wasm")))]
 
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
@@ -10,8 +10,8 @@ use htex::{Asset, Error, Registry, VoiceOptions};
 /// An id that no built-in model has.
 const ELSEWHERE: &str = "org.example.elsewhere";
 
-/// An asset of AR and sBeta. The named one gets another id, the smallest error, and an embedded
-/// module.
+/// An asset with an AR and an sBeta representation. The named one gets another id, the smallest
+/// error, and an embedded module.
 fn asset() -> htex::AssetData {
     let options = SimulationOptions::new(Surface::Sandpaper).with_duration_s(3.0);
     let take = Take {

@@ -17,10 +17,10 @@ use crate::playable::{field_order, model_of};
 use crate::spectrum::scaled_magnitude;
 use crate::{Error, Motion, SampleSource, Voice, VoiceOptions};
 
-/// Highest rate of samples, hertz: that of models and of the resampler.
+/// Highest sample rate, hertz, of models and of the resampler.
 const MOST_RATE_HZ: f64 = 1e7;
 
-/// An opened texture. A clone shares the data of the file.
+/// An opened texture. Its clones share the data of the file.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -33,12 +33,12 @@ pub struct Asset {
     registry: Registry,
     /// Whether embedded models may run.
     embedded: bool,
-    /// The model of each representation, loaded at its first use.
+    /// The model of each representation, loaded when it is first used.
     models: Arc<[OnceLock<LoadedModel>]>,
 }
 
 impl Asset {
-    /// Opens a file; its models are the embedded and the built-in ones.
+    /// Opens a file. The embedded and the built-in models can play it.
     ///
     /// # Errors
     /// When the file cannot be read, or is not a valid asset.
@@ -46,7 +46,7 @@ impl Asset {
         Ok(Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded())
     }
 
-    /// Opens an asset in memory; its models are the embedded and the built-in ones.
+    /// Opens an asset in memory. The embedded and the built-in models can play it.
     ///
     /// # Errors
     /// When the bytes are not a valid asset.
@@ -54,7 +54,7 @@ impl Asset {
         Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
     }
 
-    /// Opens a texture of a library; its models are the embedded and the built-in ones.
+    /// Opens a texture in a library. The embedded and the built-in models can play it.
     ///
     /// ```no_run
     /// let library = htex::Library::open("cloth.htexlib".as_ref())?;
@@ -63,7 +63,8 @@ impl Asset {
     /// ```
     ///
     /// # Errors
-    /// When the library has no texture of this name, or it cannot be read or is not a valid asset.
+    /// When the library has no texture with this name, cannot be read, or stores an invalid asset
+    /// for it.
     #[cfg(feature = "library")]
     pub fn from_library<S: htex_library::LibrarySource>(
         library: &htex_library::Library<S>,
@@ -72,12 +73,12 @@ impl Asset {
         Self::from_bytes(&library.get(name)?)
     }
 
-    /// Makes an asset of its data; its models are the built-in ones.
+    /// Makes an asset from its data. The built-in models can play it.
     pub fn new(data: htex_format::Asset) -> Self {
         Self::with_registry(data, Registry::builtin())
     }
 
-    /// Makes an asset of its data; its models are those of `registry`.
+    /// Makes an asset from its data. The models in `registry` can play it.
     pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
         let models = data.manifest.representations.iter();
         Self {
@@ -88,10 +89,11 @@ impl Asset {
         }
     }
 
-    /// Allows embedded models to run, in a sandbox. They precede the models of the registry, except
-    /// plugins named by their files that play the representation ([`model_of`]). An embedded model
-    /// is loaded when a representation of its id is first used; a module that cannot be loaded, or
-    /// has another id or version than declared, is an error of that use.
+    /// Allows embedded models to run, in a sandbox. An embedded model takes precedence over the
+    /// models of the registry, unless a plugin that was named by its file can play the
+    /// representation ([`model_of`]). An embedded model is loaded when a representation with its id
+    /// is first used. That use returns an error if the module cannot be loaded, or if its id or
+    /// version is not the declared one.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
         self.embedded = true;
@@ -99,11 +101,11 @@ impl Asset {
         self
     }
 
-    /// Loads an embedded model by its id.
+    /// Loads the embedded model with this id.
     ///
     /// # Errors
-    /// When the asset embeds no model of this id, when it cannot be loaded, or when it has another
-    /// id or version than declared.
+    /// When the asset embeds no model with this id, when the model cannot be loaded, or when its id
+    /// or version is not the declared one.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
         if self.embeds(id) {
             self.registry_with(id).map(drop)
@@ -112,12 +114,12 @@ impl Asset {
         }
     }
 
-    /// Returns whether the asset embeds a model of this id.
+    /// Returns whether the asset embeds a model with this id.
     fn embeds(&self, id: &str) -> bool {
         self.data.manifest.plugins.iter().any(|p| p.model == id)
     }
 
-    /// Returns the registry with the embedded model of this id, if there is one.
+    /// Returns the registry, with the embedded model of this id added if there is one.
     fn registry_with(&self, id: &str) -> Result<Registry, Error> {
         let mut registry = self.registry.clone();
         let plugins = self.data.manifest.plugins.iter().zip(&self.data.plugins);
@@ -128,8 +130,8 @@ impl Asset {
         Ok(registry)
     }
 
-    /// Returns whether there is a model of this id that plays the asset's representation, without
-    /// loading it.
+    /// Returns whether there is a model with this id that can play the asset's representation.
+    /// Loads no model.
     pub fn knows_model(&self, id: &str) -> bool {
         let stored = self.data.manifest.representations.iter();
         stored.filter(|r| r.model == id).any(|r| self.is_runnable(r))
@@ -145,28 +147,28 @@ impl Asset {
         &self.data.manifest
     }
 
-    /// Returns the quantity of the samples, which determines their unit: a lateral force in
-    /// newtons, an acceleration in m/s².
+    /// Returns the physical quantity of the samples, which determines their unit: newtons for a
+    /// lateral force, m/s² for an acceleration.
     pub fn quantity(&self) -> Quantity {
         self.data.manifest.quantity
     }
 
-    /// Returns the models that can play it, without the embedded ones.
+    /// Returns the models that can play the asset, without the embedded ones.
     pub fn registry(&self) -> &Registry {
         &self.registry
     }
 
-    /// Returns the asset's band.
+    /// Returns the asset's frequency band.
     pub fn band(&self) -> Band {
         self.data.manifest.band
     }
 
-    /// Makes a voice.
+    /// Makes a voice, which plays the texture.
     ///
     /// # Errors
-    /// When there is no such representation, its model is missing or not compatible, the model
-    /// refuses the parameters, the rate is below twice the highest frequency of the texture, or
-    /// another option is out of range.
+    /// When there is no such representation, when its model is missing or incompatible or refuses
+    /// the parameters, when the sample rate is below twice the highest frequency of the texture, or
+    /// when another option is out of range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
         self.check_rate(options.rate_hz)?;
         let ceiling = options.ceiling;
@@ -175,13 +177,14 @@ impl Asset {
         }
         let still = self.still(options)?;
         let base = self.base_ratio(options)?;
-        // The source is read `base` times as fast, so a lower rate of its samples suffices.
+        // The voice reads the source at `base` times its speed, so the source can run at a lower
+        // rate.
         let source =
             self.source(&VoiceOptions { rate_hz: options.rate_hz / base, ..options.clone() })?;
         Voice::new(source, still, options, base)
     }
 
-    /// Refuses rates at which the texture's frequencies do not exist.
+    /// Refuses a sample rate that is too low for the texture's frequencies.
     fn check_rate(&self, rate_hz: f64) -> Result<(), Error> {
         let least_hz = 2.0 * self.band().high_hz;
         if (least_hz..=MOST_RATE_HZ).contains(&rate_hz) {
@@ -191,7 +194,7 @@ impl Asset {
         }
     }
 
-    /// Returns the reading speed of a voice at its start, in the recorded speed.
+    /// Returns the initial reading speed of a voice, as a multiple of the recorded speed.
     fn base_ratio(&self, options: &VoiceOptions<'_>) -> Result<f64, Error> {
         let Some(motion) = options.motion else {
             return Ok(1.0);
@@ -212,12 +215,12 @@ impl Asset {
     /// Returns the motions at which a representation was recorded. Loads no model.
     ///
     /// # Errors
-    /// When there is no such representation, or its triangles are none to interpolate in.
+    /// When there is no such representation, or its stored triangles are invalid.
     pub fn motions(&self, model: Option<&str>) -> Result<Motions, Error> {
         self.motions_of(self.representation(model)?)
     }
 
-    /// Makes the sound of a voice that is not streamed.
+    /// Makes the pre-rendered sound of a voice; `None` if the voice is streamed.
     fn still(&self, options: &VoiceOptions<'_>) -> Result<Option<StillSound>, Error> {
         if options.synthesis == Synthesis::Streamed {
             return Ok(None);
@@ -233,8 +236,8 @@ impl Asset {
         )?)
     }
 
-    /// Makes the source of a voice: the shape alone, at the model's own rate for a player at
-    /// `options.rate_hz`.
+    /// Makes the source of a voice: samples of unit RMS without the level, at the rate that the
+    /// model chooses for a player at `options.rate_hz`.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -246,11 +249,11 @@ impl Asset {
         SampleSource::new(known, model, self.band(), options.rate_hz, options.seed, motion)
     }
 
-    /// Returns the magnitudes that a long recording of the voice reads at a motion (else the
-    /// default condition), at frequencies in hertz and in the asset's unit: with the law of the
-    /// asset outside the recorded conditions, and 0 where the finger does not slide. At a ratio r
-    /// of frequencies a noise of magnitude m(f) reads `m(f / r) / sqrt(r)`, and a sum of sinusoids
-    /// `m(f / r)`.
+    /// Returns the magnitudes that a long recording of the voice would show at a motion, or at the
+    /// default condition if `motion` is `None`. Frequencies are in hertz, magnitudes in the asset's
+    /// unit. Outside the recorded conditions the asset's law applies; where the finger does not
+    /// slide the magnitudes are 0. If the law scales all frequencies by a ratio r, a noise of
+    /// magnitude m(f) has the magnitude `m(f / r) / sqrt(r)`, and a sum of sinusoids `m(f / r)`.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -270,9 +273,9 @@ impl Asset {
         scaled_magnitude(&loaded, &parameters, self.band(), frequency_hz, ratio, level_rms)
     }
 
-    /// Returns the level of a voice at a motion, else at the default condition: RMS in the asset's
-    /// unit, with the law of the asset outside the recorded conditions, and 0 where the finger does
-    /// not slide.
+    /// Returns the level of a voice at a motion, or at the default condition if `motion` is `None`:
+    /// the RMS in the asset's unit. Outside the recorded conditions the asset's law applies; where
+    /// the finger does not slide the level is 0.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -284,8 +287,8 @@ impl Asset {
         Ok(level_rms * scaling.level)
     }
 
-    /// Returns the factors by which a representation is scaled at a motion; `None` where the finger
-    /// does not slide.
+    /// Returns the factors that scale a representation's frequencies and level at a motion; `None`
+    /// where the finger does not slide.
     fn scaling(
         &self,
         model: Option<&str>,
@@ -301,15 +304,15 @@ impl Asset {
         Ok(slides.then(|| motions.scaling(motion, CEILING)))
     }
 
-    /// Returns whether the model of a representation follows the motion itself.
+    /// Returns whether a representation's model follows the motion itself.
     fn follows(&self, representation: usize) -> bool {
         let model = self.model(representation);
         model.is_ok_and(|model| model.follows_motion())
     }
 
     /// Returns the magnitudes at a motion as they were recorded, or interpolated between
-    /// recordings, without the law of the asset and also where the finger does not slide: the
-    /// counterpart of [`Self::magnitude`].
+    /// recordings. Unlike [`Self::magnitude`], it does not apply the asset's law, and it also
+    /// returns magnitudes where the finger does not slide.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -325,8 +328,8 @@ impl Asset {
         Ok(shape.iter().map(|m| m * level_rms).collect())
     }
 
-    /// Returns the model of a representation, named by its id or short name, else of the best
-    /// representation.
+    /// Returns the model of a representation. `model` is its id or short name; `None` selects the
+    /// best representation.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -334,8 +337,8 @@ impl Asset {
         self.model(self.representation(model)?)
     }
 
-    /// Returns the full model id of a representation, named by its id or short name, else of the
-    /// best representation.
+    /// Returns the full model id of a representation. `model` is its id or short name; `None`
+    /// selects the best representation.
     ///
     /// # Errors
     /// When there is no such representation.
@@ -344,8 +347,9 @@ impl Asset {
         Ok(&self.data.manifest.representations[r].model)
     }
 
-    /// Returns parameters (the flat array) and level (RMS, in the asset's unit) of a representation
-    /// at a motion, else at its default condition, as recorded or interpolated between recordings.
+    /// Returns the parameters (a flat array) and the level (RMS, in the asset's unit) of a
+    /// representation at a motion, as recorded or interpolated between recordings. Without a motion
+    /// they are those at the default condition.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -362,7 +366,7 @@ impl Asset {
         Ok((known.at(&model, &located)?, located.level_rms))
     }
 
-    /// Returns the parameters of [`Self::parameters`] with the names of the model's fields.
+    /// Returns the same parameters as [`Self::parameters`], with the names of the model's fields.
     ///
     /// ```no_run
     /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -383,9 +387,9 @@ impl Asset {
         Ok(named(&self.loaded_model(model)?.descriptor().fields, flat))
     }
 
-    /// Returns the indices of the representations in the order in which a program chooses among
-    /// them: models that it can run before the others, then those that were measured, then the
-    /// smallest [`Representation::error_db`]; among equals as in the file.
+    /// Returns the indices of the representations from the best to the worst. Those that this
+    /// program can run come first. Among them, those with a measured error come first, and then the
+    /// smaller [`Representation::error_db`]. Ties keep the order of the file.
     ///
     /// ```no_run
     /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -409,7 +413,8 @@ impl Asset {
         ranked
     }
 
-    /// Returns the index of a representation by its model's id or short name, else of the best.
+    /// Returns the index of a representation by its model's id or short name; `None` selects the
+    /// best.
     fn representation(&self, model: Option<&str>) -> Result<usize, Error> {
         let all = &self.data.manifest.representations;
         let found = match model {
@@ -436,23 +441,23 @@ impl Asset {
         Ok(kept.get_or_init(|| model).clone())
     }
 
-    /// Returns whether the embedded model of this id may run; a program without a sandbox runs
-    /// none.
+    /// Returns whether the embedded model with this id may run; always false in a program without a
+    /// sandbox.
     fn may_run_embedded(&self, id: &str) -> bool {
         RUNS_WASM && self.embedded && self.embeds(id)
     }
 
-    /// Returns whether this program has a model that plays a representation, without loading it.
+    /// Returns whether this program has a model that can play a representation. Loads no model.
     fn is_runnable(&self, stored: &Representation) -> bool {
         self.may_run_embedded(&stored.model) || self.installed(stored).is_ok()
     }
 
-    /// Returns the model of a representation from the registry, without the embedded ones.
+    /// Returns the model of a representation from the registry, ignoring embedded models.
     fn installed(&self, stored: &Representation) -> Result<LoadedModel, Error> {
         let id = &stored.model;
         let found = model_of(&self.registry, stored);
         match found.and_then(|model| field_order(stored, model).map(|_| model)) {
-            // Without a sandbox this says how to get one.
+            // A program without a sandbox gets the error that says how to get one.
             Err(Error::Model(HostError::UnknownModel { .. }))
                 if self.embeds(id) && self.embedded =>
             {
@@ -474,8 +479,8 @@ impl Asset {
         }
     }
 
-    /// Returns the conditions of a representation, with parameters in the order of the model's
-    /// fields.
+    /// Returns the recorded conditions of a representation, with its parameters reordered to the
+    /// model's fields.
     fn known(&self, representation: usize, model: &LoadedModel) -> Result<Known, Error> {
         let manifest = &self.data.manifest;
         let stored = &manifest.representations[representation];
@@ -498,9 +503,9 @@ impl Asset {
         motions.map_err(|error| Error::Triangles { model: stored.model.clone(), error })
     }
 
-    /// Returns the index of the condition at which a representation, named by its model's id or
-    /// short name, else the best one, is played where no motion is given: its first, or its
-    /// strongest if the first is silent ([`default_condition`]). Loads no model.
+    /// Returns the index of the condition at which a representation is played when no motion is
+    /// given: its first condition, or its strongest if the first is silent ([`default_condition`]).
+    /// `model` is the id or short name; `None` selects the best representation. Loads no model.
     ///
     /// # Errors
     /// When there is no such representation.
@@ -508,8 +513,8 @@ impl Asset {
         Ok(self.default_of(self.representation(model)?))
     }
 
-    /// Returns a motion of a speed, mm/s, and a force, newtons. What is not given comes from
-    /// [`Self::default_condition`], and 80 mm/s and 0.4 N where it does not state them.
+    /// Returns a motion with a speed in mm/s and a force in newtons. A missing value is taken from
+    /// [`Self::default_condition`]; if that condition does not state it, it is 80 mm/s or 0.4 N.
     ///
     /// ```no_run
     /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -545,7 +550,8 @@ impl Asset {
         condition.copied().unwrap_or_default()
     }
 
-    /// Returns the motion of the default condition; 0 for what it does not state, as in the mesh.
+    /// Returns the motion of the default condition. A value that it does not state is 0, as in the
+    /// mesh.
     fn start(&self, representation: usize) -> Motion {
         let default = self.condition(self.default_of(representation));
         let [speed_mm_s, force_n] =

@@ -1,13 +1,14 @@
-//! The condition at which a texture is played where no motion is given.
+//! The condition at which a texture is played when no motion is given.
 
 use htex_format::{AtCondition, Condition, Representation};
 
 use crate::exploration::slides;
 
-/// Returns the default condition of a representation, as an index into its `at`: the first, or the
-/// strongest if the first is silent. A condition is silent where its level is 0, or where a finger
-/// does not slide at the speed or the force that it states. The strongest is the one of the
-/// greatest level that is not silent, the first of equal ones; the first of all if all are silent.
+/// Returns the default condition of a representation, as an index into its `at`: the first
+/// condition, or the strongest if the first is silent. A condition is silent if its level is 0, or
+/// if a finger does not slide at its stated speed or force. The strongest condition is the one with
+/// the highest level among those that are not silent; of equal ones it is the first. If all are
+/// silent, the first condition is the default.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -29,8 +30,8 @@ pub fn default_condition(representation: &Representation, conditions: &[Conditio
     }
 }
 
-/// Returns whether nothing is felt at a condition. A speed or a force that is not known does not
-/// make it silent.
+/// Returns whether nothing is felt at a condition. An unknown speed or force does not make it
+/// silent.
 fn is_silent(at: &AtCondition, conditions: &[Condition]) -> bool {
     let known = conditions.get(at.condition).copied().unwrap_or_default();
     let [speed_mm_s, force_n] = [known.speed_mm_s, known.force_n].map(|x| x.unwrap_or(f64::MAX));
@@ -41,7 +42,7 @@ fn is_silent(at: &AtCondition, conditions: &[Condition]) -> bool {
 mod tests {
     use super::*;
 
-    /// The default condition of conditions of a speed, a force and a level.
+    /// Returns the default condition, given the speed, force and level of each condition.
     fn default_of(all: &[(Option<f64>, Option<f64>, f64)]) -> usize {
         let condition = |(speed_mm_s, force_n, _): &(Option<f64>, Option<f64>, f64)| Condition {
             speed_mm_s: *speed_mm_s,
@@ -50,7 +51,8 @@ mod tests {
         };
         let conditions: Vec<Condition> = all.iter().rev().map(condition).collect();
         let at = all.iter().enumerate().map(|(i, (_, _, level_rms))| AtCondition {
-            // The other way round, so that both indices differ.
+            // In reverse order, so that the index into `at` differs from the index of the
+            // condition.
             condition: all.len() - 1 - i,
             level_rms: *level_rms,
             quality: None,

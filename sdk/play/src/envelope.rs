@@ -1,32 +1,33 @@
-//! What a voice plays, in a few numbers: for vibration motors, phones and pads that are driven by
+//! A voice's output in a few numbers, for vibration motors, phones and pads that are driven by
 //! level and frequency instead of samples.
 //!
-//! The level is that of the samples of a block, exactly and without delay. Centroid and bands are
-//! those of Hann windows, as [`htex_dsp::envelope`] defines them. They lag: the middle of a window
-//! is 21 to 26 ms before its end at 20 and 48 kHz, and a window ends every 11 to 13 ms.
+//! The level is exact and has no delay: it is computed from the samples of the block itself.
+//! Centroid and bands are computed from Hann windows, as [`htex_dsp::envelope`] defines them, and
+//! lag behind. The middle of a window is 21 to 26 ms before its end at 20 and 48 kHz, and a window
+//! ends every 11 to 13 ms.
 
 use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;
 
 use crate::Error;
 
-/// Most bands of an envelope.
+/// Largest number of bands in an envelope.
 pub const MOST_BANDS: usize = 32;
 
-/// What a voice played since it was last asked ([`Voice::envelope`](crate::Voice::envelope)),
-/// effects, gain and limiter included.
+/// What a voice played since the last call of [`Voice::envelope`](crate::Voice::envelope),
+/// including effects, gain and limiter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Envelope {
-    /// Level of the samples, RMS in the asset's unit; 0 for no samples.
+    /// Level: the RMS of the samples in the asset's unit; 0 if there were no samples.
     pub level_rms: f64,
     /// Mean frequency, weighted by power, hertz; 0 for silence.
     pub centroid_hz: f64,
-    /// Samples since the last call.
+    /// Number of samples since the last call.
     pub frames: u64,
 }
 
-/// Makes the analyser of a voice with `count` bands; `None` for 0.
+/// Makes a voice's analyser with `count` bands; `None` if `count` is 0.
 ///
 /// # Errors
 /// When there are more than [`MOST_BANDS`].
@@ -42,10 +43,10 @@ pub(crate) fn analyser(count: usize, band: Band, rate_hz: f64) -> Result<Option<
     }
 }
 
-/// Reads an analyser of as many bands as `bands` has, or none of them.
+/// Reads an analyser into `bands`. The length of `bands` must be the number of bands or 0.
 ///
 /// # Errors
-/// When `bands` has another number of places; nothing is forgotten then.
+/// When `bands` has another length; the analyser then keeps its state.
 pub(crate) fn read(analyser: Option<&mut Analyser>, bands: &mut [f64]) -> Result<Envelope, Error> {
     let there = analyser.as_ref().map_or(0, |analyser| analyser.bands());
     let given = bands.len();

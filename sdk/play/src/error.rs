@@ -1,6 +1,6 @@
-//! Errors of opening and playing an asset.
+//! Errors from opening and playing an asset.
 
-/// An error of opening or playing an asset.
+/// An error from opening or playing an asset.
 ///
 /// ```
 /// use htex::{Asset, Error};
@@ -14,33 +14,33 @@ pub enum Error {
     /// The file is not a usable asset.
     #[error(transparent)]
     Read(#[from] htex_format::ReadError),
-    /// A library or a texture of it cannot be read.
+    /// A library, or a texture in it, cannot be read.
     #[cfg(feature = "library")]
     #[error(transparent)]
     Library(#[from] htex_library::LibraryError),
     /// A model is missing, or returned an error.
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
-    /// The asset has no representation of this model.
+    /// The asset has no representation for this model.
     #[error("the asset has no representation `{wanted}`; it has {there}")]
     NoRepresentation {
         wanted: String,
-        /// The models of the asset's representations.
+        /// The models that the asset has representations for.
         there: String,
     },
-    /// The asset embeds no model of this id.
+    /// The asset embeds no model with this id.
     #[error(
         "the asset embeds no model `{id}`; its manifest lists the embedded models under `plugins`"
     )]
     NoEmbeddedModel { id: String },
     /// The only model that can play a representation is embedded in the asset, and embedded models
-    /// are not allowed to run ([`crate::Asset::with_embedded`] allows it).
+    /// may not run. [`crate::Asset::with_embedded`] allows them.
     #[error(
         "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
          install the model"
     )]
     EmbeddedOff { id: String },
-    /// The asset was fitted by another major version of the model.
+    /// The asset was fitted with another major version of the model.
     #[error(
         "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \
          not compatible; install a {model} of the same major version"
@@ -57,21 +57,22 @@ pub enum Error {
         /// The version that fitted the asset.
         asset: Box<str>,
         installed: Box<str>,
-        /// Each field that differs, and its difference.
+        /// Each field that differs, and how.
         problem: Box<str>,
         /// Whether the asset embeds a model of this id, which was not allowed to run.
         embedded: bool,
     },
-    /// The stored fields differ from those of the model.
+    /// The fields stored in the asset differ from the model's fields.
     #[error(
         "the parameters do not match the fields of {model}: {problem}; fit the recording again"
     )]
     Fields {
         model: String,
-        /// Each field that differs, and its difference.
+        /// Each field that differs, and how.
         problem: String,
     },
-    /// The stored triangles are none to interpolate in, in an asset that was not read from a file.
+    /// The stored triangles cannot be used for interpolation. Only an asset that was not read from
+    /// a file can have such triangles.
     #[error("the triangles of {model} are invalid: {error}")]
     Triangles {
         model: String,
@@ -88,56 +89,56 @@ pub enum Error {
         /// Normal force, newtons.
         force_n: f64,
     },
-    /// The highest level of a voice is not above 0 or not finite.
+    /// The level ceiling of a voice is not positive or not finite.
     #[error(
         "invalid ceiling: {ceiling} times the strongest recorded level; it must be above 0 and finite"
     )]
     Ceiling {
-        /// Multiple of the strongest recorded level.
+        /// The ceiling, as a multiple of the strongest recorded level.
         ceiling: f64,
     },
-    /// A place is not finite.
+    /// A coordinate of a place on the surface is not finite.
     #[error("invalid place: x {x_mm} mm, y {y_mm} mm; both must be finite")]
     Place {
-        /// Place on the surface, mm.
+        /// Coordinate x on the surface, mm.
         x_mm: f64,
-        /// Place on the surface across `x_mm`, mm.
+        /// Coordinate y on the surface, at a right angle to `x_mm`, mm.
         y_mm: f64,
     },
-    /// A position is not finite.
+    /// The position along the path is not finite.
     #[error("invalid position: {position_mm} mm along the path; it must be finite")]
     Position {
         /// Position along the path, mm.
         position_mm: f64,
     },
-    /// The rate of a voice is not a rate, or too low for its texture.
+    /// The sample rate of a voice is invalid, or too low for its texture.
     #[error(
         "a rate of {rate_hz} Hz: it must be from {least_hz} Hz, twice the highest frequency of the texture, to 10 MHz"
     )]
     Rate {
-        /// The rate that was asked for, hertz.
+        /// The requested rate, hertz.
         rate_hz: f64,
         /// The lowest rate, hertz.
         least_hz: f64,
     },
-    /// A number of the options or of a call is out of its range.
+    /// A number in the options or in a call is out of range.
     #[error("{name} {value}: {range}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the option or argument.
         name: &'static str,
-        /// The number.
+        /// The value given.
         value: f64,
-        /// What it must be.
+        /// The allowed range.
         range: &'static str,
     },
-    /// An envelope was asked for another number of bands than the voice has.
+    /// The buffer for an envelope has another number of bands than the voice.
     #[error(
         "{given} bands were asked for, and the voice has {there}; the options of the voice give their number"
     )]
     Bands {
-        /// Places for bands.
+        /// Length of the buffer.
         given: usize,
-        /// Bands of the voice.
+        /// Number of bands of the voice.
         there: usize,
     },
 }

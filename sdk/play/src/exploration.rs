@@ -8,22 +8,23 @@ use crate::Motion;
 
 /// Lowest speed at which the finger slides, mm/s; below it the texture is silent.
 pub const MIN_SLIDING_MM_S: f64 = 0.5;
-/// Lowest ratio of a playing speed to the recorded speed.
+/// Lowest ratio of the playing speed to the recorded speed.
 pub const MIN_RATIO: f64 = 1.0 / 16.0;
-/// Highest ratio of a playing speed to the recorded speed.
+/// Highest ratio of the playing speed to the recorded speed.
 pub const MAX_RATIO: f64 = 8.0;
-/// Length of an onset or offset of contact, seconds.
+/// Duration of the fade when the finger starts or stops sliding, seconds.
 pub const CONTACT_RAMP_S: f64 = 0.020;
-/// Highest speed that counts as a reading of a finger, mm/s.
+/// Highest speed that is accepted as a valid reading of a finger, mm/s.
 pub const MOST_SPEED_MM_S: f64 = 1_000.0;
-/// Highest normal force that counts as a reading of a finger, newtons.
+/// Highest normal force that is accepted as a valid reading of a finger, newtons.
 pub const MOST_FORCE_N: f64 = 20.0;
-/// Longest time for which the last good motion is held while readings are out of range, seconds.
+/// Longest time, in seconds, for which the last good motion is held while readings are out of
+/// range.
 pub const HOLD_S: f64 = 0.1;
-/// Speed, mm/s, and force, newtons, of a texture that states neither: as in the paper's study.
+/// Speed, mm/s, and force, newtons, assumed for a texture that states neither. They are the values
+/// of the paper's study.
 pub const USUAL: (f64, f64) = (80.0, 0.4);
-/// Highest level of a voice unless its options say another, as a multiple of the strongest recorded
-/// one.
+/// Default ceiling of a voice's level, as a multiple of the strongest recorded level.
 pub const CEILING: f64 = 4.0;
 
 /// Returns whether a finger slides at this speed (mm/s, either sign) and force (newtons).
@@ -31,8 +32,8 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
     speed_mm_s.abs() >= MIN_SLIDING_MM_S && force_n > 0.0
 }
 
-/// Effects of a motion on a voice in addition to interpolation between recorded conditions; a scene
-/// has an effect of the same name for each.
+/// Effects of a motion on a voice, beyond interpolation between recorded conditions. A scene has an
+/// effect with the same name for each.
 ///
 /// ```
 /// use htex::Effects;
@@ -42,22 +43,22 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Effects {
-    /// Outside the recorded speeds frequencies follow the law of the asset.
+    /// Outside the recorded speeds, frequencies follow the asset's law.
     pub frequency_scaling: bool,
-    /// Outside the recorded speeds and forces the level follows the law of the asset.
+    /// Outside the recorded speeds and forces, the level follows the asset's law.
     pub level_scaling: bool,
     /// The voice is silent while the finger does not slide.
     pub contact: bool,
 }
 
 impl Effects {
-    /// Sets whether frequencies follow the law outside the recorded speeds.
+    /// Sets whether frequencies follow the asset's law outside the recorded speeds.
     #[must_use]
     pub const fn with_frequency_scaling(self, frequency_scaling: bool) -> Self {
         Self { frequency_scaling, ..self }
     }
 
-    /// Sets whether the level follows the law outside the recorded speeds and forces.
+    /// Sets whether the level follows the asset's law outside the recorded speeds and forces.
     #[must_use]
     pub const fn with_level_scaling(self, level_scaling: bool) -> Self {
         Self { level_scaling, ..self }
@@ -69,18 +70,19 @@ impl Effects {
         Self { contact, ..self }
     }
 
-    /// The texture as recorded, at any motion; it is still interpolated between several conditions.
+    /// No effects: the texture plays as recorded at any motion. It is still interpolated between
+    /// recorded conditions.
     pub const NONE: Self = Self { frequency_scaling: false, level_scaling: false, contact: false };
 }
 
 impl Default for Effects {
-    /// All of them.
+    /// All effects.
     fn default() -> Self {
         Self { frequency_scaling: true, level_scaling: true, contact: true }
     }
 }
 
-/// The speeds, or the forces, at which a representation was fitted.
+/// The range of speeds, or of forces, at which a representation was fitted.
 ///
 /// ```
 /// use htex::Recorded;
@@ -89,9 +91,9 @@ impl Default for Effects {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Recorded {
-    /// The asset does not state it, or states 0: it has no effect.
+    /// The asset does not state the value, or states 0. The speed or force then has no effect.
     Unknown,
-    /// One value or several, between which the texture is interpolated.
+    /// One value, or several values between which the texture is interpolated.
     Between {
         /// The lowest recorded value, in mm/s or newtons.
         low: f64,
@@ -112,18 +114,18 @@ impl Recorded {
         if high > 0.0 { Self::Between { low, high } } else { Self::Unknown }
     }
 
-    /// Returns whether all recorded values are the same within [`htex_format::SAME_CONDITION`].
+    /// Returns whether all recorded values are equal within [`htex_format::SAME_CONDITION`].
     pub fn is_one(&self) -> bool {
         matches!(*self, Self::Between { low, high } if Condition::is_same(low, high))
     }
 
-    /// Returns whether the asset states it.
+    /// Returns whether the asset states the value.
     pub fn is_known(&self) -> bool {
         *self != Self::Unknown
     }
 
-    /// Returns the ratio of a speed or force to the nearest recorded one; 1 if it is unknown, or
-    /// the nearest is 0.
+    /// Returns the ratio of a speed or force to the nearest recorded one; 1 if the recorded value
+    /// is unknown, or the nearest one is 0.
     fn ratio(&self, asked: f64, nearest: f64) -> f64 {
         if self.is_known() && nearest > 0.0 { asked / nearest } else { 1.0 }
     }
@@ -140,20 +142,20 @@ impl fmt::Display for Recorded {
     }
 }
 
-/// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law beyond
-/// them.
+/// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law that
+/// applies outside them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explored {
     /// Recorded speeds, mm/s.
     pub speed: Recorded,
     /// Recorded normal forces, newtons.
     pub force: Recorded,
-    /// How frequencies and level follow a motion outside of them.
+    /// How frequencies and level follow a motion outside these ranges.
     pub law: Law,
 }
 
 impl Explored {
-    /// Collects the conditions that a representation is fitted `at`.
+    /// Collects the conditions at which a representation was fitted.
     pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         let of = |value: fn(&Condition) -> Option<f64>| {
             let known = at.iter().filter_map(|at| conditions.get(at.condition));
@@ -162,19 +164,19 @@ impl Explored {
         Self { speed: of(|c| c.speed_mm_s), force: of(|c| c.force_n), law }
     }
 
-    /// Returns whether frequencies depend on the speed outside the recorded ones.
+    /// Returns whether frequencies depend on the speed outside the recorded range.
     pub fn moves_frequencies(&self) -> bool {
         self.speed.is_known() && self.law.frequency_speed.exponent != 0.0
     }
 
-    /// Returns whether the level depends on the motion outside the recorded ones.
+    /// Returns whether the level depends on the motion outside the recorded range.
     pub fn moves_level(&self) -> bool {
         let by_speed = self.speed.is_known() && self.law.level_speed.exponent != 0.0;
         by_speed || self.force.is_known() && self.law.level_force.exponent != 0.0
     }
 
-    /// Returns the factors of a motion whose nearest recorded one is `nearest`: speed, mm/s, and
-    /// force, newtons.
+    /// Returns the scaling factors for a motion. `nearest` is the nearest recorded motion: speed,
+    /// mm/s, and force, newtons.
     pub(crate) fn scaling(&self, motion: Motion, nearest: [f64; 2]) -> Scaling {
         let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]).clamp(MIN_RATIO, MAX_RATIO);
         let force = self.force.ratio(motion.force_n, nearest[1]);
@@ -184,8 +186,8 @@ impl Explored {
         }
     }
 
-    /// Returns the coverage of a motion with these factors, whose nearest recorded one is
-    /// `nearest`.
+    /// Returns the coverage of a motion that is scaled with these factors. `nearest` is the nearest
+    /// recorded motion.
     pub(crate) fn coverage(
         &self,
         motion: Motion,
@@ -205,8 +207,7 @@ impl Explored {
     }
 }
 
-/// The factors by which a texture is played at a motion outside the recorded ones; both are 1
-/// inside.
+/// The factors that scale a texture at a motion outside the recorded range. Inside, both are 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scaling {
     /// Factor of all frequencies, 1/16 to 8.
@@ -216,10 +217,10 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// The texture as recorded.
+    /// No scaling: the texture as recorded.
     pub const NONE: Self = Self { frequency: 1.0, level: 1.0 };
 
-    /// Returns the factors of the effects that are on.
+    /// Returns the factors, with 1 in place of those whose effect is switched off.
     pub(crate) fn with(self, effects: Effects) -> Self {
         let on = |is_on: bool, factor: f64| if is_on { factor } else { 1.0 };
         Self {
@@ -237,7 +238,7 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64) -> Reach {
     }
 }
 
-/// The relation of a motion to the recorded conditions, and how a voice plays it.
+/// How a motion relates to the recorded conditions, and how a voice plays it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
     /// Whether the voice is audible: the finger slides, or the effect `contact` is off.
@@ -246,13 +247,13 @@ pub struct Coverage {
     pub speed: Reach,
     /// How the requested normal force relates to the recorded ones, in newtons.
     pub force: Reach,
-    /// The factors by which the texture is played.
+    /// The factors that scale the texture.
     pub scaling: Scaling,
     scales_speed: bool,
     scales_level: bool,
 }
 
-/// The relation of a speed or force to the recorded ones.
+/// How a speed or force relates to the recorded values.
 ///
 /// ```
 /// use htex::Reach;
@@ -261,14 +262,14 @@ pub struct Coverage {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    /// It was recorded, or lies between recorded conditions, within the tolerance of
+    /// The value was recorded, or lies between recorded values, within the tolerance
     /// [`htex_format::SAME_CONDITION`].
     Inside,
     /// The asset does not state the recorded value; the speed or force has no effect.
     Unknown,
     /// The model follows the motion itself ([`crate::Voice::follows_motion`]).
     Followed,
-    /// The texture is played as at the nearest recorded value, scaled by the law of the asset.
+    /// The texture is played as at the nearest recorded value, scaled by the asset's law.
     Outside {
         /// The value of the requested motion, in mm/s or newtons.
         asked: f64,
@@ -278,12 +279,14 @@ pub enum Reach {
 }
 
 impl Coverage {
-    /// Returns the relative distance of the motion from the one that is played; 0 if the texture is
-    /// played as recorded, interpolated, or scaled to the motion.
+    /// Returns how far the requested motion is from the motion that is actually played, as a
+    /// relative difference. It is 0 if the texture is played as recorded, interpolated, or scaled
+    /// to the motion.
     pub fn excess(&self) -> f64 {
         let speed = match (self.scales_speed, self.speed) {
             (false, speed) => speed.excess(1.0),
-            // Beyond these ratios the speed counts as the last of them.
+            // Beyond the limits of the frequency scaling, the texture plays as at the nearest
+            // limit.
             (true, Reach::Outside { asked, recorded }) => {
                 let ratio = asked / recorded;
                 self.speed.excess(ratio.clamp(MIN_RATIO, MAX_RATIO))
@@ -292,12 +295,12 @@ impl Coverage {
         };
         let force = if self.scales_level { 0.0 } else { self.force.excess(1.0) };
         let excess = speed.max(force);
-        // Smaller values are rounding errors.
+        // Smaller values come from rounding.
         if excess > 1e-9 { excess } else { 0.0 }
     }
 
-    /// Returns whether the texture is played as recorded, or interpolated between recordings;
-    /// unknown values are ignored.
+    /// Returns whether the texture is played as recorded, or interpolated between recordings.
+    /// Unknown values are ignored.
     pub fn is_inside(&self) -> bool {
         let inside = |reach| matches!(reach, Reach::Inside | Reach::Unknown);
         self.slides && inside(self.speed) && inside(self.force)
@@ -305,7 +308,8 @@ impl Coverage {
 }
 
 impl Reach {
-    /// The relative distance from a motion that was recorded `ratio` times as fast, or as strong.
+    /// The relative distance to a motion that is `ratio` times as fast or as strong as the nearest
+    /// recorded one.
     fn excess(&self, ratio: f64) -> f64 {
         match *self {
             Self::Inside | Self::Unknown | Self::Followed => 0.0,

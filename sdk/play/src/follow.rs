@@ -1,4 +1,4 @@
-//! The effects of a motion on a voice's samples: reading speed, gain, silence.
+//! The effects of a motion on a voice's samples: reading speed, gain and silence.
 
 use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;
@@ -10,25 +10,27 @@ use crate::exploration::{CONTACT_RAMP_S, Effects, Explored, HOLD_S, Scaling, sli
 #[derive(Debug)]
 pub(crate) struct Follow {
     effects: Effects,
-    /// Speed of the incoming samples, in the recorded speed.
+    /// Speed of the incoming samples, as a multiple of the recorded speed.
     base: f64,
-    /// Highest reading speed at which no frequency exceeds half the rate, in the recorded speed.
+    /// Highest reading speed at which no frequency exceeds half the sample rate, as a multiple of
+    /// the recorded speed.
     fastest: f64,
-    /// Reading speed of the texture, in the recorded speed.
+    /// Reading speed of the texture, as a multiple of the recorded speed.
     ratio: f64,
     gain: f64,
-    /// If frequencies follow the motion.
+    /// Present if frequencies follow the motion.
     warp: Option<Warp>,
     contact: Glide,
-    /// Frames during which the last good motion is held while readings are out of range.
+    /// Number of frames for which the last good motion is held while readings are out of range.
     hold: u64,
-    /// The frame at which a held motion ends.
+    /// The frame at which the voice stops holding the last motion.
     ends: Option<u64>,
 }
 
 impl Follow {
-    /// Makes the effects of a voice of `rate_hz` that plays as recorded. Its source has `base`
-    /// times the recorded speed, and reaches half the rate at `highest` times the recorded speed.
+    /// Makes the effects of a voice at `rate_hz`, initially playing as recorded. Its source
+    /// delivers samples at `base` times the recorded speed. At `highest` times the recorded speed
+    /// the highest frequency of the texture is half the sample rate.
     pub(crate) fn new(
         explored: &Explored,
         effects: Effects,
@@ -51,7 +53,7 @@ impl Follow {
         }
     }
 
-    /// Starts with a motion instead of as recorded, without a ramp.
+    /// Starts at a motion, without a ramp, instead of as recorded.
     pub(crate) fn start(&mut self, motion: Motion, scaling: Scaling) {
         let felt = self.is_felt(motion) && motion.is_plausible();
         if felt {
@@ -61,19 +63,19 @@ impl Follow {
         }
     }
 
-    /// Returns whether the voice is audible at a motion; a silent one leaves texture and level
-    /// unchanged.
+    /// Returns whether the voice is audible at a motion. A motion at which it is not leaves the
+    /// spectrum and the level unchanged.
     pub(crate) fn is_felt(&self, motion: Motion) -> bool {
         slides(motion.speed_mm_s, motion.force_n) || !self.effects.contact
     }
 
-    /// Follows a motion that is felt or not.
+    /// Fades in or out, depending on whether the motion is felt.
     pub(crate) fn set_contact(&mut self, felt: bool) {
         self.ends = None;
         self.contact.set(if felt { 1.0 } else { 0.0 });
     }
 
-    /// Sets reading speed and gain of a motion that is felt.
+    /// Sets reading speed and gain for a motion that is felt.
     pub(crate) fn scale(&mut self, motion: Motion, scaling: Scaling) {
         let Scaling { frequency, level } = scaling.with(self.effects);
         if slides(motion.speed_mm_s, motion.force_n) {
@@ -82,7 +84,7 @@ impl Follow {
         self.gain = level;
     }
 
-    /// Holds the last motion, since a reading at `frame` is out of range.
+    /// Holds the last good motion, because the reading at `frame` is out of range.
     pub(crate) fn hold(&mut self, frame: u64) {
         self.ends.get_or_insert(frame + self.hold);
     }
@@ -92,13 +94,13 @@ impl Follow {
         self.gain
     }
 
-    /// Returns the reading speed of the texture, in the recorded speed.
+    /// Returns the reading speed of the texture, as a multiple of the recorded speed.
     pub(crate) fn ratio(&self) -> f64 {
         self.ratio
     }
 
-    /// Returns after how many of the next `len` samples, the first of which is that of `frame`, the
-    /// voice rests: its samples are 0 from there until it is felt again.
+    /// Returns the offset within the next `len` samples (starting at `frame`) at which the voice
+    /// falls silent. From there on its samples are 0 until the motion is felt again.
     pub(crate) fn sounding(&self, len: usize, frame: u64) -> usize {
         let until_zero = match (self.contact.until_zero(), self.ends) {
             (Some(left), _) => u64::from(left),
@@ -108,13 +110,13 @@ impl Follow {
         usize::try_from(until_zero).map_or(len, |left| left.min(len))
     }
 
-    /// Returns whether the voice rests.
+    /// Returns whether the voice is silent.
     pub(crate) fn rests(&self) -> bool {
         self.contact.rests_at(0.0)
     }
 
-    /// Fades samples out while the finger does not slide, or its motion is unknown; the first
-    /// sample is that of `frame`.
+    /// Fades the samples out while the finger does not slide, or its motion is unknown. The block
+    /// starts at `frame`.
     pub(crate) fn apply_contact(&mut self, block: &mut [f32], frame: u64) {
         let left = self.ends.map(|end| end.saturating_sub(frame));
         let held = left.map_or(block.len(), |left| {
@@ -128,7 +130,7 @@ impl Follow {
         }
     }
 
-    /// Fills `out` with samples of the source, read at the speed of the motion.
+    /// Fills `out` with samples of the source, read at the speed that the motion requires.
     pub(crate) fn read(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         match &mut self.warp {
             // The ratio is exactly 1 at the motion for which the voice was made.
@@ -137,7 +139,7 @@ impl Follow {
         }
     }
 
-    /// Returns the highest reading speed, in the recorded speed.
+    /// Returns the highest reading speed, as a multiple of the recorded speed.
     pub(crate) fn fastest(&self) -> f64 {
         self.fastest
     }

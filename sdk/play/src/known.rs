@@ -1,4 +1,4 @@
-//! Recorded conditions of a representation, with its parameters and levels.
+//! The recorded conditions of a representation, with its parameters and levels.
 
 use htex_format::{AtCondition, Condition, Law, Representation, TrianglesError};
 use htex_host::LoadedModel;
@@ -20,30 +20,30 @@ pub struct Motions {
     pub(crate) mesh: Mesh,
     pub(crate) explored: Explored,
     pub(crate) level_rms: Vec<f64>,
-    /// The strongest of the levels.
+    /// The strongest recorded level.
     pub(crate) strongest_rms: f64,
 }
 
-/// How a motion is played: what is mixed, and how the mix is scaled.
+/// How a motion is played: which recorded conditions are mixed, and how the mix is scaled.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Located {
     pub(crate) weights: Weights,
-    /// Level of the mix, before it is scaled.
+    /// Level of the mix before scaling.
     pub(crate) level_rms: f64,
     pub(crate) scaling: Scaling,
     nearest: [f64; 2],
 }
 
 impl Motions {
-    /// Collects the conditions that a representation is fitted `at`, with no stored triangles.
+    /// Collects the conditions at which a representation was fitted, without stored triangles.
     pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         Self::in_mesh(Mesh::new(&points(at, conditions)), at, conditions, law)
     }
 
-    /// Collects the conditions of a representation, with the triangles that it stores.
+    /// Collects the conditions of a representation, with its stored triangles.
     ///
     /// # Errors
-    /// When its triangles are none to interpolate in: [`htex_format::check_triangles`].
+    /// When the stored triangles are invalid: [`htex_format::check_triangles`].
     pub fn of(
         representation: &Representation,
         conditions: &[Condition],
@@ -71,22 +71,24 @@ impl Motions {
         self.explored.coverage(motion, nearest, scaling, effects)
     }
 
-    /// Returns the recorded speeds and forces, and the law beyond them.
+    /// Returns the recorded speeds and forces, and the law that applies outside them.
     pub fn explored(&self) -> &Explored {
         &self.explored
     }
 
-    /// Returns the factors of a motion outside the recorded ones, such that the level is at most
-    /// `ceiling` times the strongest recorded one. Does not allocate.
+    /// Returns the factors that scale the texture at a motion outside the recorded ones. They limit
+    /// the level to `ceiling` times the strongest recorded level. Does not allocate.
     pub fn scaling(&self, motion: Motion, ceiling: f64) -> Scaling {
         self.bounded(&self.locate(motion), ceiling)
     }
 
-    /// Returns the factors of a located motion, with a bounded level.
+    /// Returns the factors for a located motion, with the level limited to `ceiling` times the
+    /// strongest recorded level.
     pub(crate) fn bounded(&self, located: &Located, ceiling: f64) -> Scaling {
         let most = ceiling * self.strongest_rms / located.level_rms;
         let Scaling { frequency, level } = located.scaling;
-        // Inside, no level exceeds the strongest; a level of 0 has no most.
+        // Inside the recorded range no level exceeds the strongest one. A level of 0 has no limit
+        // to its factor.
         let level = if level > 1.0 && level > most { most.max(1.0) } else { level };
         Scaling { frequency, level }
     }
@@ -102,18 +104,19 @@ impl Motions {
         }
     }
 
-    /// Returns the level of weighted conditions: the weighted mean. The mean of logarithms is 1.2
-    /// dB from the truth of simulated sandpaper in place of 0.4 (median third-octave error of a
-    /// free motion), and no nearer on recordings: of 398 nodes of the Penn Haptic Texture Toolkit,
-    /// each predicted from the others, 0.72 and 0.68 dB in the median.
+    /// Returns the level of a mix of conditions: the weighted mean of their levels. The mean of
+    /// logarithms is less accurate for simulated sandpaper: its median third-octave error for a
+    /// free motion is 1.2 dB instead of 0.4. On recordings it is no better: for 398 nodes of the
+    /// Penn Haptic Texture Toolkit, each predicted from the others, the median is 0.72 against 0.68
+    /// dB.
     fn level_at(&self, weights: &Weights) -> f64 {
         let level = |(i, weight): (usize, f64)| weight * self.level_rms[i];
         weights.iter().map(level).sum()
     }
 }
 
-/// Returns speed and force of each condition that a representation is fitted at; 0 where one is not
-/// known.
+/// Returns the speed and force of each condition at which a representation was fitted; an unknown
+/// one is 0.
 fn points(at: &[AtCondition], conditions: &[Condition]) -> Vec<[f64; 2]> {
     let point = |at: &AtCondition| {
         let known = conditions.get(at.condition).copied().unwrap_or_default();
@@ -135,7 +138,7 @@ impl Known {
         self.parameters.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// Returns the parameters of a located motion, interpolated by the model.
+    /// Returns the parameters for a located motion, interpolated by the model.
     pub(crate) fn at(&self, model: &LoadedModel, located: &Located) -> Result<Vec<f64>, Error> {
         let weights = &located.weights;
         let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.parameters[i][..]).collect();

@@ -1,5 +1,5 @@
-//! Opens and plays texture assets. Scenes build on this crate; programs depend on the crate `htex`,
-//! which re-exports it.
+//! Opens and plays texture assets. Programs depend on the crate `htex`, which re-exports this one;
+//! scenes build on this crate directly.
 //!
 //! ```no_run
 //! use htex::{Asset, Motion, VoiceOptions};
@@ -11,10 +11,10 @@
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
+//! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
 //!
-//! The two cannot be one: scenes build on the player, so a crate with the player cannot re-export
-//! scenes.
+//! `htex` and this crate are separate because scenes build on the player: a crate that contains the
+//! player cannot re-export scenes.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
@@ -43,7 +43,7 @@ pub use envelope::Envelope;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
 pub use htex_finding::{Finding, Severity};
-/// An asset's data, the argument of [`Asset::new`].
+/// An asset's data: the argument of [`Asset::new`].
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
     AtCondition, Condition, Contact, ErrorMeasure, Exponent, ExponentSource, Law, Limits, Manifest,

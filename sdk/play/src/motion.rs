@@ -26,8 +26,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Makes a motion of a scanning speed, mm/s, and a normal force, newtons, at an unknown
-    /// position and place.
+    /// Makes a motion with a scanning speed, mm/s, and a normal force, newtons. Position and place
+    /// are unknown.
     pub const fn new(speed_mm_s: f64, force_n: f64) -> Self {
         Self { speed_mm_s, force_n, position_mm: None, place_mm: None }
     }
@@ -71,14 +71,14 @@ impl Motion {
         }
     }
 
-    /// Returns whether a finger moves so: speed and force are at most [`MOST_SPEED_MM_S`] and
-    /// [`MOST_FORCE_N`]. A voice ignores other motions as failed readings.
+    /// Returns whether a finger can move like this: speed and force are at most [`MOST_SPEED_MM_S`]
+    /// and [`MOST_FORCE_N`]. A voice treats other motions as failed readings and ignores them.
     pub fn is_plausible(&self) -> bool {
         self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 
-    /// Returns whether speed and force, which determine the parameters, equal those of another
-    /// motion.
+    /// Returns whether speed and force equal those of another motion. Only they determine the
+    /// parameters.
     pub(crate) fn has_conditions_of(&self, other: &Self) -> bool {
         (self.speed_mm_s, self.force_n) == (other.speed_mm_s, other.force_n)
     }

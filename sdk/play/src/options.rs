@@ -5,7 +5,7 @@ use htex_host::Synthesis;
 use crate::Motion;
 use crate::exploration::{CEILING, Effects};
 
-/// Options of a voice.
+/// Options for making a voice.
 ///
 /// ```
 /// use htex::{Motion, VoiceOptions};
@@ -18,39 +18,39 @@ use crate::exploration::{CEILING, Effects};
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct VoiceOptions<'a> {
-    /// The representation, by its model's id or short name; else the one with the smallest
-    /// nine-band error.
+    /// The representation to play: its model's id or short name. `None` selects the representation
+    /// with the smallest nine-band error.
     pub model: Option<&'a str>,
-    /// Rate of the samples, hertz.
+    /// Sample rate, hertz.
     pub rate_hz: f64,
     /// Seed of the noise; equal seeds give equal samples.
     pub seed: u64,
-    /// The motion at the start; `None`: the default condition
+    /// The motion at the start; `None` for the default condition
     /// ([`Asset::default_condition`](crate::Asset::default_condition)).
     pub motion: Option<Motion>,
-    /// Method of synthesis: the model's voice, or one with less computation and a constant
-    /// spectrum. [`Asset::source`](crate::Asset::source) is always streamed.
+    /// How the samples are made: by the model's voice, or by a method that computes less and keeps
+    /// the spectrum constant. [`Asset::source`](crate::Asset::source) is always streamed.
     pub synthesis: Synthesis,
-    /// Effects of a motion; [`Asset::source`](crate::Asset::source) has none.
+    /// Effects of a motion. [`Asset::source`](crate::Asset::source) applies none.
     pub effects: Effects,
-    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest
-    /// recorded level; above 0 and finite. A level that no motion raises is never reduced by it.
+    /// Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
+    /// recorded level; above 0 and finite. It never reduces a level that the motion does not raise.
     pub ceiling: f64,
     /// Gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not
     /// negative.
     pub gain: f64,
-    /// Greatest magnitude of a sample after the gain, in the asset's unit; above 0. The gain falls
-    /// at once where a sample would exceed it, and returns within 50 ms (to 1/e). `None` for no
-    /// limit.
+    /// Largest absolute value of a sample after the gain, in the asset's unit; above 0. The gain
+    /// drops at once when a sample would exceed the limit, and recovers within 50 ms (to 1/e).
+    /// `None` for no limit.
     pub limit: Option<f64>,
-    /// Number of bands of [`Voice::envelope`](crate::Voice::envelope), 1 to 32; 0 for no envelope,
-    /// which takes no time.
+    /// Number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. 0 switches the
+    /// envelope off and costs no time.
     pub envelope_bands: usize,
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, 4 times the
-    /// strongest level, a gain of 1, no limit and no envelope.
+    /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, a ceiling
+    /// of 4 times the strongest level, a gain of 1, no limit and no envelope.
     fn default() -> Self {
         Self {
             model: None,
@@ -68,21 +68,21 @@ impl Default for VoiceOptions<'_> {
 }
 
 impl<'a> VoiceOptions<'a> {
-    /// Sets the representation, by its model's id or short name.
+    /// Sets the representation to play, by its model's id or short name.
     #[must_use]
     pub fn with_model(mut self, model: &'a str) -> Self {
         self.model = Some(model);
         self
     }
 
-    /// Sets the rate of the samples, hertz.
+    /// Sets the sample rate, hertz.
     #[must_use]
     pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
         self.rate_hz = rate_hz;
         self
     }
 
-    /// Sets the seed of the noise and phases: voices with equal seeds have equal samples.
+    /// Sets the seed of the noise and phases. Voices with equal seeds have equal samples.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
@@ -96,14 +96,15 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the method of synthesis.
+    /// Sets how the samples are made.
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
         self.synthesis = synthesis;
         self
     }
 
-    /// Sets the highest level, as a multiple of the strongest recorded one; above 0 and finite.
+    /// Sets the ceiling of the level, as a multiple of the strongest recorded level; above 0 and
+    /// finite.
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;
@@ -117,7 +118,7 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the greatest magnitude of a sample, in the asset's unit, or `None` for no limit.
+    /// Sets the largest absolute value of a sample, in the asset's unit; `None` for no limit.
     #[must_use]
     pub fn with_limit(mut self, limit: impl Into<Option<f64>>) -> Self {
         self.limit = limit.into();

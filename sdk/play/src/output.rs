@@ -1,27 +1,28 @@
-//! The gain and the limiter of a voice, the last of its effects.
+//! The gain and the limiter of a voice. They are applied last.
 
 use htex_dsp::glide::Glide;
 
 use crate::Error;
 
-/// Time constant with which a limiter lets go, seconds: shorter ones distort the lowest frequency
-/// of a texture, 20 Hz.
+/// Time constant with which the limiter recovers, seconds. A shorter one would distort the lowest
+/// frequency of a texture, 20 Hz.
 const RELEASE_S: f64 = 0.050;
 
-/// The last effects of a voice.
+/// The gain and the limiter of a voice.
 #[derive(Debug)]
 pub(crate) struct Output {
     gain: Glide,
-    /// The gain at the end of its glide.
+    /// The gain at the end of its ramp.
     target: f32,
     limiter: Option<Limiter>,
 }
 
 impl Output {
-    /// Makes a gain whose changes take `ramp` samples, and a limiter to `limit`.
+    /// Makes a gain whose changes take `ramp` samples, and a limiter that keeps samples within
+    /// `limit`.
     ///
     /// # Errors
-    /// When the gain is negative or not finite, or the limit not above 0.
+    /// When the gain is negative or not finite, or the limit is not above 0.
     pub(crate) fn new(
         gain: f64,
         limit: Option<f64>,
@@ -33,7 +34,7 @@ impl Output {
         Ok(Self { gain: Glide::new(target, ramp), target, limiter })
     }
 
-    /// Changes the gain: gradually, or at once in a voice that rests.
+    /// Changes the gain: gradually, or at once if the voice is silent.
     ///
     /// # Errors
     /// When it is negative or not finite.
@@ -48,7 +49,7 @@ impl Output {
         Ok(())
     }
 
-    /// Returns the gain, or the one that it glides to.
+    /// Returns the gain, or the gain at the end of the current ramp.
     pub(crate) fn gain(&self) -> f64 {
         self.target.into()
     }
@@ -60,7 +61,7 @@ impl Output {
         }
     }
 
-    /// Ends what is gradual, since the samples are zero.
+    /// Ends all ramps at once; the samples are zero, so no jump is audible.
     pub(crate) fn rest(&mut self) {
         self.gain.finish();
         if let Some(limiter) = &mut self.limiter {
@@ -81,12 +82,12 @@ fn checked(gain: f64) -> Result<f32, Error> {
     })
 }
 
-/// A gain that falls at once where a sample would exceed the limit, and returns to 1 exponentially.
+/// A gain that drops at once when a sample would exceed the limit, and returns to 1 exponentially.
 #[derive(Debug)]
 struct Limiter {
     limit: f32,
     gain: f32,
-    /// Part of the way to 1 of each sample.
+    /// Fraction of the remaining way to 1 that the gain recovers with each sample.
     release: f32,
 }
 
@@ -110,7 +111,7 @@ impl Limiter {
             if peak * self.gain > self.limit {
                 self.gain = self.limit / peak;
             }
-            // The product may round up.
+            // Rounding may raise the product above the limit.
             *sample = (*sample * self.gain).clamp(-self.limit, self.limit);
         }
     }

@@ -2,7 +2,7 @@
 
 use htex_host::{Field, Kind};
 
-/// The value of a field of a model.
+/// The value of one field of a model.
 ///
 /// ```
 /// use htex::Parameter;
@@ -10,13 +10,13 @@ use htex_host::{Field, Kind};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Parameter {
-    /// A field of one number.
+    /// A field with one number.
     Number(f64),
-    /// A field of as many numbers as the flat array states before them.
+    /// A field with a list of numbers. Its length is given by an earlier number in the flat array.
     List(Vec<f64>),
 }
 
-/// Splits a flat array by the fields of its model.
+/// Splits a flat array into the fields of its model.
 pub(crate) fn named(fields: &[Field], flat: Vec<f64>) -> Vec<(String, Parameter)> {
     let mut rest = flat.into_iter();
     let value = |field: &Field| {

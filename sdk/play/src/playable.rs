@@ -1,4 +1,4 @@
-//! The model of a representation, and the order of its fields.
+//! Chooses the model for a representation, and the order of its fields.
 
 use htex_format::{FieldOrder, Representation, match_fields};
 use htex_host::{LoadedModel, Registry};
@@ -6,9 +6,10 @@ use semver::Version;
 
 use crate::Error;
 
-/// Returns the model of `registry` that plays a representation: of the models of its id and its
-/// major version, in their order in the registry, the first that is not older than the
-/// representation and has its fields, else the first that has its fields, else the first.
+/// Returns the model in `registry` that plays a representation. Candidates have the
+/// representation's id and major version, in the order of the registry. The first candidate that
+/// has the representation's fields and is not older wins; otherwise the first that has the fields;
+/// otherwise the first.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -44,7 +45,7 @@ pub fn model_of<'a>(
     })
 }
 
-/// Returns whether a model is of an earlier version than the one that fitted a representation.
+/// Returns whether a model's version is earlier than the one that fitted a representation.
 fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
     let versions = [&model.descriptor().version, &representation.model_version];
     match versions.map(|version| Version::parse(version).ok()) {
@@ -53,7 +54,7 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
     }
 }
 
-/// Returns the order in which a representation's fields are passed to its model.
+/// Returns the order in which to pass a representation's fields to its model.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -65,7 +66,7 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 ///
 /// # Errors
 /// When the fields differ from the model's: [`Error::ModelOlder`] if a newer version fitted them,
-/// else [`Error::Fields`].
+/// otherwise [`Error::Fields`].
 pub fn field_order<'a>(
     representation: &'a Representation,
     loaded: &LoadedModel,

@@ -1,4 +1,4 @@
-//! The source of a voice: a texture's shape at the model's own rate, and its level.
+//! The source of a voice: unit-RMS samples at the model's own rate, and the level.
 
 use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
@@ -8,12 +8,13 @@ use crate::spectrum::scaled_magnitude;
 use crate::travel::{Course, Finger};
 use crate::{Error, Motion};
 
-/// Most conditions that are interpolated.
+/// Largest number of conditions that are interpolated at once.
 const MIXED: usize = 3;
 
-/// Samples of unit RMS at the model's own rate, and their level. A renderer of many textures
-/// resamples their sum once; [`crate::Voice`] resamples a single texture. A source interpolates
-/// between conditions; other effects of a motion ([`crate::Effects`]) are left to the renderer.
+/// A stream of unit-RMS samples at the model's own rate, with their level. A program that renders
+/// many textures can add their sources and resample the sum once; [`crate::Voice`] resamples a
+/// single texture. A source interpolates between conditions. The renderer applies the other effects
+/// of a motion ([`crate::Effects`]).
 ///
 /// ```no_run
 /// use htex::{Asset, VoiceOptions};
@@ -31,12 +32,13 @@ pub struct SampleSource {
     sets: Vec<f64>,
     mixed: Vec<f64>,
     rate_hz: f64,
-    /// Whether the model has this rate whichever is wanted.
+    /// Whether the model always has this rate, no matter which rate the player wants.
     own_rate: bool,
     band: Band,
     motion: Motion,
     level_rms: f64,
-    /// Whether the model follows the motion itself, and the finger's way over the surface for it.
+    /// Whether the model follows the motion itself. If so, the next field is the finger's path for
+    /// it.
     follows: bool,
     course: Course,
     /// Samples rendered so far.
@@ -73,14 +75,15 @@ impl SampleSource {
         })
     }
 
-    /// Returns the rate at which the model renders, hertz.
+    /// Returns the model's sample rate, hertz.
     pub fn rate_hz(&self) -> f64 {
         self.rate_hz
     }
 
-    /// Returns whether the model renders at this rate whichever is wanted. Its conversion is then
-    /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that it has one
-    /// level at all rates.
+    /// Returns whether the model always renders at this rate, no matter which rate the player
+    /// wants. Convert its samples with
+    /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that the texture
+    /// has the same level at all rates.
     pub fn has_own_rate(&self) -> bool {
         self.own_rate
     }
@@ -90,7 +93,7 @@ impl SampleSource {
         self.band.high_hz
     }
 
-    /// Returns the band of the texture.
+    /// Returns the frequency band of the texture.
     pub(crate) fn band(&self) -> Band {
         self.band
     }
@@ -100,19 +103,19 @@ impl SampleSource {
         self.level_rms
     }
 
-    /// Returns whether the model follows the motion itself: the renderer then calls
-    /// [`Self::set_finger`], and scales neither frequencies nor level.
+    /// Returns whether the model follows the motion itself. The renderer then calls
+    /// [`Self::set_finger`] and scales neither frequencies nor level.
     pub fn follows_motion(&self) -> bool {
         self.follows
     }
 
-    /// Returns the motion of the current spectrum.
+    /// Returns the motion to which the current spectrum belongs.
     pub(crate) fn motion(&self) -> Motion {
         self.motion
     }
 
-    /// Returns the magnitudes of the texture at a motion, read at `ratio` times its recorded speed
-    /// and played at a level.
+    /// Returns the magnitudes of the texture at a motion, when it is read at `ratio` times its
+    /// recorded speed and played at a level.
     pub(crate) fn magnitude(
         &self,
         motion: Motion,
@@ -125,17 +128,18 @@ impl SampleSource {
         scaled_magnitude(model, &parameters, self.band, frequency_hz, ratio, level_rms)
     }
 
-    /// Returns the duration of the samples rendered so far, seconds.
+    /// Returns the duration of all samples rendered so far, seconds.
     pub fn rendered_s(&self) -> f64 {
         self.frames as f64 / self.rate_hz
     }
 
-    /// Sets the motion of the finger at `at_s` seconds after this source's first sample, for a
-    /// model that follows the motion itself. The time may precede the samples rendered so far,
-    /// because a resampler reads ahead. The speed is negative while the position decreases; numbers
-    /// are clamped to the ranges of the model ABI. The position is moved on by the time that was
-    /// rendered ahead; a known place is passed as it is, and an unknown one as a path along x. Does
-    /// nothing for other models. Does not allocate, lock or do I/O if the model keeps to the ABI.
+    /// Sets the motion of the finger for a model that follows the motion itself; does nothing for
+    /// other models. `at_s` is the time of the motion, in seconds after this source's first sample.
+    /// It may precede the samples rendered so far, because a resampler reads ahead; the position is
+    /// then advanced by the time rendered ahead. The speed is negative while the position
+    /// decreases. Numbers are clamped to the ranges of the model ABI. A known place is passed on
+    /// unchanged; without one the model receives a path along x. Does not allocate, lock or do I/O
+    /// if the model keeps to the ABI.
     ///
     /// # Errors
     /// When a number is not finite, or the model refuses the motion; the source then continues
@@ -159,15 +163,15 @@ impl SampleSource {
         Ok(self.voice.set_motion(motion.clamped())?)
     }
 
-    /// Returns the recorded motions.
+    /// Returns the motions at which the representation was recorded.
     pub fn motions(&self) -> &Motions {
         &self.known.motions
     }
 
     /// Changes gradually to the spectrum of the recorded motion nearest to this one, and returns
-    /// its level. An unchanged motion takes no time; a new one interpolates parameters in the
-    /// voice's own memory. Does not allocate, lock or do I/O if the model keeps to the ABI, as the
-    /// models of this project do.
+    /// its level. Setting an unchanged motion costs no time; a new one interpolates parameters in
+    /// memory that the voice already owns. Does not allocate, lock or do I/O if the model keeps to
+    /// the ABI, as this project's models do.
     ///
     /// # Errors
     /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the source
@@ -181,7 +185,7 @@ impl SampleSource {
         self.retune(motion, &located)
     }
 
-    /// Changes the spectrum to that of a located motion, and returns its level.
+    /// Changes to the spectrum of a located motion, and returns its level.
     pub(crate) fn retune(&mut self, motion: Motion, located: &Located) -> Result<f64, Error> {
         if self.known.parameters.len() > 1 {
             self.mix(&located.weights)?;
@@ -191,7 +195,7 @@ impl SampleSource {
         Ok(self.level_rms)
     }
 
-    /// Changes the spectrum to that of weighted conditions.
+    /// Changes to the spectrum of a weighted mix of conditions.
     fn mix(&mut self, weights: &Weights) -> Result<(), Error> {
         let known = &self.known.parameters;
         if weights.count == 1 {
@@ -205,14 +209,15 @@ impl SampleSource {
         Ok(self.voice.retune_mix(&self.sets, weights, &mut self.mixed)?)
     }
 
-    /// Fills `out` with the next `frames` samples of each source, one source after another,
-    /// bit-identical to [`Self::render`] of each, in as few calls as the models allow. AR then
-    /// takes about six tenths of the time in blocks of 256 frames. If `out` is too short, the
-    /// remaining sources are not advanced; if it is too long, the rest is filled with zeros. Does
-    /// not allocate, lock or do I/O.
+    /// Fills `out` with the next `frames` samples of each source, one source after another. The
+    /// samples are bit-identical to those from [`Self::render`], but take as few calls as the
+    /// models allow: AR then needs about six tenths of the time in blocks of 256 frames. If `out`
+    /// is too short, the remaining sources are not advanced; if it is too long, the rest is filled
+    /// with zeros. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// The first error of a model. The samples of its source are zero, and other sources continue.
+    /// The first error that a model returns. The samples of its source are zero; the other sources
+    /// continue.
     pub fn render_together<'a>(
         sources: impl IntoIterator<Item = &'a mut Self>,
         frames: usize,
@@ -226,7 +231,7 @@ impl SampleSource {
         Ok(htex_host::render_together(voices, frames, out)?)
     }
 
-    /// Fills `out` with the next samples, of unit RMS. Does not allocate, lock or do I/O.
+    /// Fills `out` with the next samples, which have unit RMS. Does not allocate, lock or do I/O.
     ///
     /// # Errors
     /// When the model fails; `out` is then filled with zeros.

@@ -4,9 +4,9 @@ use htex_host::{Band, LoadedModel};
 
 use crate::Error;
 
-/// Returns the magnitudes, at frequencies in hertz, of a model's voice of unit RMS that is read at
-/// `ratio` times its recorded speed and played at a level. A noise of magnitude m(f) then reads
-/// `m(f / ratio) / sqrt(ratio)`, and a sum of sinusoids `m(f / ratio)`.
+/// Returns the magnitudes, at frequencies in hertz, of a model's unit-RMS voice when it is read at
+/// `ratio` times its recorded speed and played at a level. A noise of magnitude m(f) then has the
+/// magnitude `m(f / ratio) / sqrt(ratio)`, and a sum of sinusoids `m(f / ratio)`.
 pub(crate) fn scaled_magnitude(
     model: &LoadedModel,
     parameters: &[f64],

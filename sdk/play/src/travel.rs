@@ -1,14 +1,14 @@
-//! The position of a finger on its path: given, or integrated from its speed.
+//! The position of a finger on its path, given by the host or integrated from the speed.
 //!
-//! Position and place are those of the next sample that the *voice* renders
-//! ([`crate::SampleSource::set_finger`]): a resampler reads ahead by parts of a block that differ
-//! from call to call, and the jitter would be audible. For a model that does not follow the motion
-//! itself, a motion costs one test of a `bool`.
+//! Position and place belong to the next sample that the *voice* renders
+//! ([`crate::SampleSource::set_finger`]), not to the next sample of the source: a resampler reads
+//! ahead by a part of a block that differs from call to call, and that jitter would be audible. For
+//! a model that does not follow the motion itself, setting a motion costs one test of a `bool`.
 
 use crate::Motion;
 
-/// The motion that models receive which follow it: with a signed speed and a position along the
-/// path.
+/// The motion as a model receives it that follows the motion itself: with a signed speed and a
+/// position along the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     /// Speed along the path, mm/s; negative while the position decreases.
@@ -17,7 +17,7 @@ pub struct Finger {
     pub force_n: f64,
     /// Position along the path, mm, of either sign.
     pub position_mm: f64,
-    /// Place on the surface, x and y, mm. Where it is unknown, models receive the position as x,
+    /// Place on the surface, x and y, mm. If it is unknown, the model receives the position as x
     /// and 0 as y.
     pub place_mm: Option<[f64; 2]>,
 }
@@ -26,13 +26,13 @@ pub struct Finger {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Course {
     place_mm: Option<[f64; 2]>,
-    /// Of length 1, or 0 where it is unknown.
+    /// Length 1, or 0 while the direction is unknown.
     direction: [f64; 2],
 }
 
 impl Course {
-    /// Returns where the finger is some way on from a place, mm, in the direction in which the
-    /// places moved.
+    /// Returns where the finger is `way_mm` after a place, in the direction in which the places
+    /// moved.
     pub(crate) fn on(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
         if let Some(before) = self.place_mm {
             let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);
@@ -61,7 +61,7 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
-    /// Starts at position 0, moving forward at a speed, mm/s, with `rate_hz` frames per second.
+    /// Starts at position 0, moving forward at a speed in mm/s, with `rate_hz` frames per second.
     pub(crate) fn new(speed_mm_s: f64, rate_hz: f64) -> Self {
         Self {
             rate_hz,
@@ -79,8 +79,9 @@ impl Travel {
 
     /// Sets a checked motion; returns the motion for the model if it has changed.
     ///
-    /// The finger moves backward if the position is less than the last given one, forward if it is
-    /// greater, and keeps its direction if the position is equal or unknown. A place changes
+    /// The finger moves backward if the position is less than the last one given, and forward if it
+    /// is greater. If the position is equal or unknown, the direction stays the same. A place
+    /// changes neither position nor direction.
     /// neither.
     pub(crate) fn set(&mut self, motion: Motion) -> Option<Finger> {
         let Motion { speed_mm_s, force_n, position_mm, place_mm } = motion;

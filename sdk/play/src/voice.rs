@@ -1,4 +1,4 @@
-//! A playing texture.
+//! A voice: a texture that plays.
 
 use htex_dsp::envelope::Analyser;
 use htex_dsp::glide::Glide;
@@ -18,13 +18,14 @@ const _: () = {
     assert_send::<SampleSource>();
 };
 
-/// Samples that are rendered at a time to be added.
+/// Number of samples that `render_add` renders at a time.
 const ADDED: usize = 256;
-/// Length of a change of level, seconds.
+/// Duration of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
-/// An endless stream of samples in the asset's unit ([`Asset::quantity`](crate::Asset::quantity))
-/// that follows the finger's motion with the same [`Effects`](crate::Effects) as a scene.
+/// A voice: an endless stream of samples in the asset's unit
+/// ([`Asset::quantity`](crate::Asset::quantity)). It follows the finger's motion with the same
+/// [`Effects`](crate::Effects) as a scene.
 ///
 /// ```no_run
 /// use htex::{Asset, Motion, VoiceOptions};
@@ -38,7 +39,7 @@ const RAMP_S: f64 = 0.010;
 #[derive(Debug)]
 pub struct Voice {
     stream: Stream<SampleSource>,
-    /// Pre-rendered audio; the stream's source then supplies only the level.
+    /// Pre-rendered audio. If present, the stream's source supplies only the level.
     still: Option<StillSound>,
     level_rms: Glide,
     follow: Follow,
@@ -48,19 +49,20 @@ pub struct Voice {
     analyser: Option<Analyser>,
     /// Frames rendered so far.
     frames: u64,
-    /// Those of them for which the source was rendered, since it pauses while the voice rests.
+    /// Frames for which the source was rendered. It pauses while the voice is silent, so these may
+    /// be fewer than `frames`.
     played: u64,
     rate_hz: f64,
-    /// Highest level, as a multiple of the strongest recorded one.
+    /// Ceiling of the level, as a multiple of the strongest recorded one.
     ceiling: f64,
     /// The last motion.
     asked: Option<Motion>,
-    /// The motion of the start.
+    /// The motion at the start.
     started: Motion,
 }
 
 impl Voice {
-    /// Makes a voice of a source and the resampler it needs, or of a pre-rendered sound. The
+    /// Makes a voice from a source and the resampler it needs, or from a pre-rendered sound. The
     /// resampler reads the source `base` times as fast as recorded.
     pub(crate) fn new(
         source: SampleSource,
@@ -70,9 +72,9 @@ impl Voice {
     ) -> Result<Self, Error> {
         let rate_hz = options.rate_hz;
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
-        // A still sound has the voice's rate and the recorded speed.
+        // A pre-rendered sound has the voice's rate and the recorded speed.
         let base = if still.is_some() { 1.0 } else { base };
-        // With a still sound, the model does not follow the motion.
+        // A pre-rendered sound cannot follow the motion.
         let travel = (source.follows_motion() && still.is_none())
             .then(|| Travel::new(source.motion().speed_mm_s, rate_hz));
         let effects = match travel {
@@ -111,25 +113,28 @@ impl Voice {
         Ok(voice)
     }
 
-    /// Sets the motion. Spectrum and level change gradually to those interpolated between the
-    /// recorded conditions; if the voice is not streamed ([`Synthesis`](crate::Synthesis)), only
-    /// the level changes. Outside the recorded conditions frequencies and level follow the law of
-    /// the asset ([`Law`](crate::Law)) from the nearest recorded motion: frequencies 1/16 to 8
-    /// times the recorded ones and up to half the rate, the level up to
+    /// Sets the motion of the finger. Spectrum and level change gradually to values interpolated
+    /// between the recorded conditions; if the voice is not streamed
+    /// ([`Synthesis`](crate::Synthesis)), only the level changes.
+    ///
+    /// Outside the recorded conditions, frequencies and level follow the asset's law
+    /// ([`Law`](crate::Law)), starting at the nearest recorded motion. Frequencies reach 1/16 to 8
+    /// times the recorded ones, and at most half the sample rate. The level reaches at most
     /// [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger that does not
-    /// slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these can be switched off
-    /// ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a motion.
+    /// slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these effects can be
+    /// switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a motion.
     ///
-    /// A motion above 1 m/s or 20 N, or out of range, is a failed reading: the last good motion is
-    /// held for at most 100 ms, and the voice is silent after that until the next good one.
+    /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
+    /// voice then holds the last good motion for at most 100 ms, and is silent after that until the
+    /// next good one.
     ///
-    /// An unchanged motion takes no time; a new one interpolates parameters in the voice's own
-    /// memory. Does not allocate, lock or do I/O if the model keeps to the ABI, as the models of
-    /// this project do.
+    /// Setting an unchanged motion costs no time; a new one interpolates parameters in memory that
+    /// the voice already owns. Does not allocate, lock or do I/O if the model keeps to the ABI, as
+    /// this project's models do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the voice
-    /// then continues as said, or unchanged.
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate. In the first
+    /// case the voice continues as for a failed reading, in the second it continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let checked = motion.checked();
         if checked.is_err() || !motion.is_plausible() {
@@ -152,9 +157,9 @@ impl Voice {
         Ok(())
     }
 
-    /// Returns whether the model follows the motion itself (the extension `htex.motion/1`): it then
-    /// determines frequencies and level, and neither is scaled. False for a voice that is not
-    /// streamed.
+    /// Returns whether the model follows the motion itself (the extension `htex.motion/1`). The
+    /// model then determines frequencies and level, and the voice scales neither. False for a voice
+    /// that is not streamed.
     pub fn follows_motion(&self) -> bool {
         self.travel.is_some()
     }
@@ -186,15 +191,15 @@ impl Voice {
         coverage
     }
 
-    /// Returns the motion that was set last, else that of the start.
+    /// Returns the motion that was set last, or the motion at the start if none was set.
     pub fn motion(&self) -> Motion {
         self.asked.unwrap_or(self.started)
     }
 
-    /// Returns the magnitudes that a long recording of this voice reads at the motion that is set,
-    /// at frequencies in hertz and in the asset's unit: with its effects, its
-    /// [`ceiling`](VoiceOptions::ceiling) and its gain, and 0 where it is silent. What still glides
-    /// is taken at its end, and a limit is left out.
+    /// Returns the magnitudes that a long recording of this voice would show at the current motion,
+    /// at frequencies in hertz and in the asset's unit. They include its effects, its
+    /// [`ceiling`](VoiceOptions::ceiling) and its gain, and are 0 where the voice is silent. A
+    /// gradual change counts as finished, and the limiter is not included.
     ///
     /// # Errors
     /// When the model refuses the parameters.
@@ -203,7 +208,7 @@ impl Voice {
             return Ok(vec![0.0; frequency_hz.len()]);
         }
         let source = self.stream.source();
-        // A still sound keeps the spectrum of the start.
+        // A pre-rendered sound keeps the spectrum of its start.
         let motion = match self.still {
             Some(_) => self.started,
             None => source.motion(),
@@ -215,20 +220,20 @@ impl Voice {
     /// Sets the gain, which changes gradually (10 ms). Does not allocate.
     ///
     /// # Errors
-    /// When it is negative or not finite; the gain stays as it was.
+    /// When the gain is negative or not finite; it then keeps its old value.
     pub fn set_gain(&mut self, gain: f64) -> Result<(), Error> {
         self.output.set_gain(gain, self.follow.rests())
     }
 
-    /// Returns whether the voice rests: its samples are 0 until a motion is felt again. A voice
-    /// without the effect of contact never rests.
+    /// Returns whether the voice is silent: its samples are 0 until the finger slides again. A
+    /// voice without the effect `contact` is never silent in this sense.
     pub fn is_silent(&self) -> bool {
         self.follow.rests()
     }
 
     /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
-    /// While the voice rests ([`Self::is_silent`]) this takes hardly any time, and the noise goes
-    /// on where it stopped when the voice is felt again.
+    /// While the voice is silent ([`Self::is_silent`]) this takes hardly any time, and the noise
+    /// pauses: it continues where it stopped when the finger slides again.
     ///
     /// # Errors
     /// When the model fails; the samples that it did not render are zero.
@@ -260,11 +265,11 @@ impl Voice {
         result
     }
 
-    /// Adds the next samples, multiplied by `gain`, to `out`: voices of a mix. Does not allocate,
-    /// lock or do I/O.
+    /// Multiplies the next samples by `gain` and adds them to `out`, to mix several voices. Does
+    /// not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// As [`Self::render`], and when `gain` is not finite; `out` is unchanged then.
+    /// As [`Self::render`], and when `gain` is not finite; `out` is then unchanged.
     pub fn render_add(&mut self, out: &mut [f32], gain: f32) -> Result<(), Error> {
         if !gain.is_finite() {
             return Err(Error::OutOfRange {
@@ -285,11 +290,12 @@ impl Voice {
         result
     }
 
-    /// Returns what was rendered since the last call, or since the start: level, mean frequency,
-    /// and the mean square in each of the voice's bands ([`VoiceOptions::envelope_bands`]), in the
-    /// squared unit, written to `bands`, which may be empty. All effects, the gain and the limiter
-    /// are included. The level is exact; frequency and bands lag by some 20 ms, since they are
-    /// those of windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
+    /// Returns the envelope of what was rendered since the last call, or since the start: the
+    /// level, the mean frequency, and the mean square in each of the voice's bands
+    /// ([`VoiceOptions::envelope_bands`]). The mean squares are in the squared unit and are written
+    /// to `bands`, which may be empty. All effects, the gain and the limiter are included. The
+    /// level is exact. Frequency and bands lag by some 20 ms, because they are computed from
+    /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
     ///
     /// ```no_run
     /// use htex::{Asset, VoiceOptions};
@@ -303,19 +309,20 @@ impl Voice {
     /// ```
     ///
     /// # Errors
-    /// When the voice has no bands, or `bands` has another number of places.
+    /// When the voice has no bands, or `bands` has another length.
     pub fn envelope(&mut self, bands: &mut [f64]) -> Result<Envelope, Error> {
         envelope::read(self.analyser.as_mut(), bands)
     }
 
-    /// Returns the edges of the bands of [`Self::envelope`], one more than bands, hertz: from the
-    /// lowest to the highest frequency of the asset in equal ratios. The first band reaches down to
-    /// 0 Hz, and the last up to half the rate. Empty without bands.
+    /// Returns the edges of the bands of [`Self::envelope`], hertz: one more than there are bands,
+    /// spaced by equal ratios from the lowest to the highest frequency of the asset. The first band
+    /// also includes everything down to 0 Hz, and the last everything up to half the sample rate.
+    /// Empty if the voice has no bands.
     pub fn envelope_edges_hz(&self) -> &[f64] {
         self.analyser.as_ref().map_or(&[], Analyser::edges_hz)
     }
 
-    /// Renders samples of unit RMS at the voice's rate.
+    /// Renders unit-RMS samples at the voice's rate.
     fn render_shape(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let (stream, still, mut result) = (&mut self.stream, &mut self.still, Ok(()));
         self.follow.read(out, &mut |block| match &mut *still {

@@ -1,4 +1,4 @@
-//! What comes out of a voice: rests, gain, limiter and envelope.
+//! The output of a voice: silence, gain, limiter and envelope.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::f64::consts::TAU;
@@ -12,8 +12,8 @@ fn asset() -> Asset {
     Asset::open(path).unwrap()
 }
 
-/// Renders blocks of lengths that differ, with a motion that lifts and fails before some: all
-/// samples.
+/// Renders blocks of different lengths and returns all samples. Before some blocks the finger
+/// lifts, or its reading fails.
 fn played(
     voice: &mut Voice,
     lengths: impl Iterator<Item = usize>,
@@ -45,7 +45,7 @@ fn played(
     all
 }
 
-/// Lengths of blocks, 1 to 999.
+/// Block lengths from 1 to 999.
 fn random_lengths() -> impl Iterator<Item = usize> {
     std::iter::successors(Some(1u32), |x| {
         Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223))
@@ -75,11 +75,11 @@ fn a_limit_is_kept_and_changes_nothing_below() {
     let limited = played(&mut asset().voice(&below).unwrap(), random_lengths(), |_| ());
     let most = limited.iter().fold(0.0f32, |most, x| most.max(x.abs()));
     assert_eq!(most, 0.5 * peak);
-    // A gain, not a clipper: signs and small samples keep their shape.
+    // It is a gain, not a clipper: signs and small samples keep their shape.
     assert!(limited.iter().zip(&free).all(|(l, f)| l.abs() <= f.abs() && l * f >= 0.0));
 }
 
-/// A voice rests 20 ms after the finger does, and then takes no time to speak of.
+/// A voice falls silent 20 ms after the finger stops, and then takes hardly any time.
 #[test]
 fn a_resting_voice_is_silent_and_takes_hardly_any_time() {
     let mut voice = asset().voice(&VoiceOptions::default()).unwrap();
@@ -143,7 +143,7 @@ fn options_out_of_range_are_errors() {
     assert!(matches!(without.envelope(&mut []), Err(Error::Bands { .. })));
 }
 
-/// The powers of the bins of one window of samples, by the definition.
+/// The powers of the bins of one window of samples, computed from the definition.
 fn powers(samples: &[f64]) -> Vec<f64> {
     let len = samples.len();
     let window: Vec<f64> =
@@ -164,8 +164,8 @@ fn powers(samples: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The envelope of blocks of a voice that lifts and fails is that of its samples, computed
-/// directly.
+/// The envelope of a voice whose finger lifts and whose readings fail equals the envelope computed
+/// directly from its samples.
 #[test]
 fn the_envelope_is_that_of_the_samples() {
     const LEN: usize = 1_024;
@@ -225,8 +225,8 @@ fn the_envelope_is_that_of_the_samples() {
     assert!(measured.len() > 50);
 }
 
-/// Over a long block the powers of the bands are those that the asset states: the squared
-/// magnitudes, and together the squared level.
+/// Over a long block the powers of the bands are what the asset states: the squared magnitudes,
+/// which sum to the squared level.
 #[test]
 fn the_bands_of_a_long_block_are_those_of_the_asset() {
     let asset = asset();

@@ -1,14 +1,15 @@
-//! A voice has one level at all sample rates.
+//! A voice has the same level at all sample rates.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_play::{Asset, VoiceOptions};
 
-/// Rates at which no image of the filter's own rate lies next to what it is the image of.
+/// Sample rates at which no image lies next to the frequency that it mirrors at the filter's own
+/// rate.
 const RATES_HZ: [f64; 8] =
     [2_000.0, 2_050.0, 2_200.0, 2_400.0, 2_500.0, 4_000.0, 8_000.0, 44_100.0];
 const SECONDS: f64 = 20.0;
 
-/// A texture of AR with a resonance at a frequency, as wide as two bins.
+/// An AR texture with a resonance at a frequency, two bins wide.
 fn resonance(hz: f64) -> Asset {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
     let mut data = Asset::open(file).unwrap().data().clone();

@@ -1,4 +1,4 @@
-//! What a voice states to play is what its asset states for the motion, with the voice's own
+//! A voice states the same magnitudes as its asset does for the same motion, with the voice's own
 //! options.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -34,7 +34,7 @@ fn a_voice_has_the_spectrum_of_its_motion() {
         }
         voice.set_motion(Motion::new(0.0, 0.4)).unwrap();
         assert_eq!(voice.magnitude(&FREQUENCY_HZ).unwrap(), [0.0; 4]);
-        // Without effects it plays as recorded at any motion.
+        // Without effects the voice plays as recorded at any motion.
         let mut plain =
             asset.voice(&options.clone().with_gain(1.0).with_effects(Effects::NONE)).unwrap();
         plain.set_motion(Motion::new(300.0, 1.5)).unwrap();

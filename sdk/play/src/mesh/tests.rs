@@ -10,13 +10,13 @@ fn at(mesh: &Mesh, speed: f64, force: f64) -> Vec<(usize, f64)> {
 fn corners_edges_middle_and_outside_of_a_square() {
     let square = [[50.0, 0.2], [150.0, 0.2], [50.0, 0.8], [150.0, 0.8]];
     let mesh = Mesh::new(&square);
-    // Far outside: the nearest corner. Next to an edge: the nearest point of the edge.
+    // Far outside, the nearest corner plays. Next to an edge, the nearest point of the edge plays.
     assert_eq!(at(&mesh, 1e9, 100.0), [(3, 1.0)]);
     assert_eq!(at(&mesh, 1e300, 1e300), [(3, 1.0)]);
     let beside = at(&mesh, 100.0, 0.0);
     assert_eq!(beside.len(), 2);
     assert!(beside.iter().all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12));
-    // Inside: the weighted mean of the conditions is the point.
+    // Inside, the weighted mean of the conditions is the point itself.
     for (speed, force) in [(60.0, 0.3), (100.0, 0.5), (149.0, 0.79)] {
         let weights = at(&mesh, speed, force);
         let mean = |axis: usize| weights.iter().map(|(i, w)| square[*i][axis] * w).sum::<f64>();
@@ -27,7 +27,7 @@ fn corners_edges_middle_and_outside_of_a_square() {
 #[test]
 fn one_condition_and_conditions_on_a_line() {
     assert_eq!(at(&Mesh::new(&[[80.0, 0.4]]), 10.0, 3.0), [(0, 1.0)]);
-    // Forces within the tolerance are one: the weights depend on the speed only.
+    // Forces within the tolerance count as one, so the weights depend only on the speed.
     for forces in [[0.4, 0.4, 0.4], [0.4069, 0.4061, 0.4014]] {
         let line = Mesh::new(&[[160.0, forces[2]], [40.0, forces[0]], [80.0, forces[1]]]);
         for force in [0.0, 0.4, 0.407, 9.0] {
@@ -38,20 +38,20 @@ fn one_condition_and_conditions_on_a_line() {
     }
 }
 
-/// A narrow triangle beside two edges belongs to the edge of the lower conditions, in any order of
-/// the conditions.
+/// A narrow triangle at two edges belongs to the edge of the lower conditions, whatever the order
+/// of the conditions.
 #[test]
 fn a_triangle_beside_two_edges_belongs_to_the_first() {
     let places = [[10.0, 0.1], [97.0, 1.0], [100.0, 0.97]];
     for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
         let mesh = Mesh::new(&order.map(|i: usize| places[i]));
         let mixed: Vec<usize> = at(&mesh, 55.0, 0.55).iter().map(|(i, _)| order[*i]).collect();
-        // On the edge from the first condition to the second the third one lies between them.
+        // The third condition lies between the first and the second, on the edge between them.
         assert_eq!(mixed, [0, 2], "{order:?}");
     }
 }
 
-/// Conditions that are equal within the tolerance: each is still reproduced.
+/// Conditions that are equal within the tolerance are each still reproduced.
 #[test]
 fn conditions_that_are_the_same_stay_apart() {
     let points = [[40.0, 0.4], [80.0, 0.4], [80.1, 0.41], [80.0, 0.405]];
@@ -60,9 +60,9 @@ fn conditions_that_are_the_same_stay_apart() {
     }
 }
 
-/// The largest number of conditions of an asset, in arrangements with slow insertions: on one line,
-/// on lines that change every triangle, in narrow triangles, and around a common corner of all
-/// triangles.
+/// The largest number of conditions that an asset may have, in arrangements that make insertion
+/// slow: on one line, on lines that change every triangle, in narrow triangles, and around a corner
+/// that all triangles share.
 fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let part = |i: usize| i as f64 / count as f64;
     let mixed = |i: usize| (i * 7919) % count;
@@ -100,8 +100,8 @@ fn conditions_on_a_slanted_line_are_each_met() {
     }
 }
 
-/// The time for many conditions is nearly proportional to their number: without the chosen order
-/// each of these takes from 5 s to a minute, and with it some tenths of a second.
+/// The time for many conditions grows nearly in proportion to their number. Without the chosen
+/// order each of these takes from 5 s to a minute, and with it a few tenths of a second.
 #[test]
 fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
     let count = 40_000;
@@ -131,9 +131,9 @@ fn of_many_places_three_that_span_a_triangle_go_first() {
     }
 }
 
-/// A square, four corners of a slanted one, and eight conditions on a circle: each has several
-/// Delaunay triangulations, of which the fan from the condition of least speed, then least force,
-/// is used.
+/// A square, four corners of a slanted square, and eight conditions on a circle. Each has several
+/// Delaunay triangulations; the mesh uses the fan from the condition with the least speed, then the
+/// least force.
 #[test]
 fn conditions_on_a_circle_are_fanned_from_the_lowest() {
     let square: &[[f64; 2]] = &[[150.0, 0.8], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
@@ -147,12 +147,12 @@ fn conditions_on_a_circle_are_fanned_from_the_lowest() {
         assert_eq!(triangles.len(), count);
         assert!(triangles.iter().all(|t| t.contains(&apex)), "{triangles:?}");
     }
-    // Not on a circle: the Delaunay triangulation decides.
+    // These do not lie on a circle, so the Delaunay triangulation decides.
     let kite = [[150.0, 0.85], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
     assert!(Mesh::new(&kite).triangles().all(|t| t.contains(&1) && t.contains(&2)));
 }
 
-/// Two conditions have half the weight each.
+/// Asserts that two conditions have half the weight each.
 fn halves(mesh: &Mesh, [speed, force]: [f64; 2], conditions: [usize; 2]) {
     let weights = at(mesh, speed, force);
     let near = weights.iter().all(|(_, w)| (w - 0.5).abs() < 1e-12);
@@ -160,8 +160,8 @@ fn halves(mesh: &Mesh, [speed, force]: [f64; 2], conditions: [usize; 2]) {
     assert!(which == conditions && near, "{weights:?}");
 }
 
-/// The diagonal that is stored, not Delaunay's; nothing is grouped, and outside the nearest point
-/// of an outer edge is played.
+/// The mesh uses the stored diagonal instead of the Delaunay diagonal, and merges no equal values.
+/// Outside, the nearest point of an outer edge plays.
 #[test]
 fn stored_triangles_replace_those_that_are_found() {
     let square = [[40.0, 0.4], [40.0, 1.2], [160.0, 1.2], [160.0, 0.4]];
@@ -173,7 +173,7 @@ fn stored_triangles_replace_those_that_are_found() {
     assert_eq!(stored.locate(100.0, 0.1).1, [100.0, 0.4]);
     assert_eq!(at(&stored, 500.0, 9.0), [(2, 1.0)]);
     assert!(stored.surrounds(100.0, 0.8) && !stored.surrounds(100.0, 0.39));
-    // Forces within 5 % are two here.
+    // Here, two forces within 5 % stay two values.
     let near = [[40.0, 0.4], [160.0, 0.4], [100.0, 0.41]];
     let narrow = Mesh::with_triangles(&near, &[[2, 1, 0]]).unwrap();
     assert_eq!(at(&narrow, 100.0, 0.41), [(2, 1.0)]);
@@ -181,7 +181,7 @@ fn stored_triangles_replace_those_that_are_found() {
     assert!(Mesh::with_triangles(&square, &[[0, 1, 3]]).is_err());
 }
 
-/// Speeds or forces, each some tenths above the one before.
+/// Speeds or forces, each a few tenths above the previous one.
 fn axis(
     count: impl Into<proptest::collection::SizeRange>,
     from: f64,
@@ -193,7 +193,7 @@ fn axis(
     })
 }
 
-/// Conditions as intended: lines parallel to an axis, other lines, grids.
+/// Conditions as a protocol intends them: lines parallel to an axis, other lines, and grids.
 fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let across =
         (axis(2..=6usize, 10.0), 0.1..0.4, 0.5..1.0f64).prop_map(|(speeds, low, steep)| {
@@ -207,8 +207,8 @@ fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop_oneof![1 => across, 3 => grid]
 }
 
-/// Conditions of a moving hand, within 1 % of the intended ones, and their levels: powers of speed
-/// and force, within 0.5 dB.
+/// Conditions that a moving hand reached, within 1 % of the intended ones, and their levels: powers
+/// of speed and force, within 0.5 dB.
 fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     let scattered = meant().prop_flat_map(|points| {
         let near = |[v, f]: [f64; 2]| [v * 0.99..v * 1.01, f * 0.99..f * 1.01];
@@ -226,7 +226,7 @@ fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     })
 }
 
-/// Conditions as intended or as measured, some of them twice within the tolerance, in their order
+/// Intended or measured conditions, some of them repeated within the tolerance, in their own order
 /// and in another.
 fn in_two_orders() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<usize>)> {
     let points = prop_oneof![meant(), measured().prop_map(|(points, _)| points)];
@@ -236,7 +236,7 @@ fn in_two_orders() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<usize>)> {
     })
 }
 
-/// Whether three conditions are too close to a line to be stored.
+/// Returns whether three conditions are too close to a line for the triangle to be stored.
 fn is_flat(points: &[[f64; 2]], triangle: [usize; 3]) -> bool {
     let most = |axis: usize| points.iter().map(|p| p[axis]).fold(0.0, f64::max);
     let [a, b, c] = triangle.map(|i| [points[i][0] / most(0), points[i][1] / most(1)]);
@@ -249,7 +249,7 @@ fn weight_of(mesh: &Mesh, [v, f]: [f64; 2], condition: usize) -> f64 {
     own.map_or(0.0, |(_, weight)| *weight)
 }
 
-/// Test motions: over the whole range, up to 50 % outside it, and close to each condition.
+/// Test motions: across the range, up to 50 % outside it, and close to each condition.
 fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop::collection::vec([0.0..1.0, 0.0..1.0], 24)
 }
@@ -257,7 +257,7 @@ fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The same conditions in another order have the same weights, to the bit.
+    /// The same conditions in another order have bit-identical weights.
     #[test]
     fn the_order_of_conditions_has_no_effect((points, order) in in_two_orders(), places in motions()) {
         let shuffled: Vec<[f64; 2]> = order.iter().map(|i| points[*i]).collect();
@@ -271,8 +271,8 @@ proptest! {
         }
     }
 
-    /// For all measured lines and grids: each condition is reproduced, has most of the weight close
-    /// to it, and weights are continuous.
+    /// For all measured lines and grids: the mesh reproduces each condition, gives it most of the
+    /// weight close to it, and has continuous weights.
     #[test]
     fn measured_conditions_are_met_and_nothing_jumps(
         (points, levels) in measured(), places in motions(),
@@ -300,16 +300,15 @@ proptest! {
         }
     }
 
-    /// What a mesh finds itself is valid where it is stored, and stored in any order it has the
-    /// same weights; at each condition only its own is not zero, and nothing jumps.
+    /// The triangles that a mesh finds are valid as stored triangles, and give the same weights in
+    /// any stored order. At each condition only its own weight is not zero, and no weight jumps.
     #[test]
     fn found_triangles_can_be_stored((points, order) in in_two_orders(), places in motions(), turn in any::<bool>()) {
         let (axes, coordinates) = triangulation::placed(&points, false);
         let unmerged = triangulation::meshed(&points, axes, &coordinates);
         let found: Vec<[usize; 3]> = unmerged.triangles().collect();
         let Ok(stored) = Mesh::with_triangles(&points, &found) else {
-            // Conditions on one line, some of them beside it by rounding, have no triangles to
-            // store.
+            // Conditions on one line, some slightly off it by rounding, have no triangles to store.
             prop_assert!(found.iter().any(|t| is_flat(&points, *t)), "{points:?}: {found:?}");
             return Ok(());
         };
@@ -332,8 +331,8 @@ proptest! {
             let theirs: Vec<(usize, f64)> = at(&other, motion[0], motion[1])
                 .into_iter().map(|(i, w)| (order[i], w)).collect();
             prop_assert_eq!(at(&stored, motion[0], motion[1]), theirs, "at {:?}", motion);
-            // A step of 1e-9 of the ranges changes no weight by more than the narrowest triangle's
-            // height allows.
+            // A step of 1e-9 of the ranges changes no weight by more than the height of the
+            // narrowest triangle allows.
             let beside = stored.weights(motion[0] + 1e-9 * most(0), motion[1]);
             let step = beside.iter().map(|(i, w)| (w - weight_of(&stored, motion, i)).abs());
             prop_assert!(step.fold(0.0, f64::max) < 1e-3, "at {:?}", motion);

@@ -1,22 +1,24 @@
 //! Interpolation between exploration conditions.
 //!
-//! Weights are barycentric in the Delaunay triangulation of the known (speed, force) points, each
-//! axis divided by its largest value. A motion outside the hull has the weights of the hull's
-//! nearest point. Measured conditions are not exactly aligned, and a grid has several
-//! triangulations, so these rules apply:
+//! The recorded conditions are points (speed, force). The mesh divides each axis by its largest
+//! value and triangulates the points (Delaunay). The weights of a motion are its barycentric
+//! coordinates in its triangle. A motion outside the hull has the weights of the nearest point of
+//! the hull. Measured conditions are not exactly aligned, and a grid has several triangulations, so
+//! these rules apply:
 //!
-//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] are one value; the same holds for
+//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] count as one value, and so do
 //!   forces (`axis`).
-//! - Of several Delaunay triangulations, as of a grid, one is used (`cells`).
-//! - A condition that is equal to its projection on an edge of the hull, within that tolerance,
-//!   lies on that edge. The narrow triangle between them is not interpolated in: motions in it, and
-//!   outside the hull next to it, have the weights of their projections on the edge.
+//! - If there are several Delaunay triangulations, as for a grid, a rule chooses one (`cells`).
+//! - A condition that equals its projection on an edge of the hull, within that tolerance, counts
+//!   as lying on that edge. The narrow triangle between them is not used for interpolation: motions
+//!   in it, and motions outside the hull next to it, have the weights of their projections on the
+//!   edge.
 //!
-//! Weights are continuous in the motion, and at a recorded condition only its own weight is not
-//! zero.
+//! Weights are continuous in the motion. At a recorded condition, only that condition's weight is
+//! not zero.
 //!
-//! An asset may store triangles (`stored`): then weights are barycentric in them and no rule above
-//! applies.
+//! An asset may store triangles (`stored`). Weights are then barycentric in the stored triangles,
+//! and none of these rules applies.
 
 mod axis;
 mod cells;
@@ -28,19 +30,19 @@ mod triangulation;
 use axis::Axis;
 use htex_format::{Triangle, TrianglesError};
 
-/// Position, relative to the largest speed and force, from which edges are told apart by direction:
-/// farther out, rounding hides which is nearest.
+/// Farthest coordinate at which distances to edges are compared, relative to the largest speed and
+/// force. A motion farther out is moved in to this distance, because rounding would hide which edge
+/// is nearest.
 const FARTHEST: f64 = 1e6;
-/// Largest distance from an edge, relative to the largest speed and force, that is attributed to
-/// rounding.
+/// Largest distance from an edge, relative to the largest speed and force, that counts as rounding.
 const ON_SIDE: f64 = 1e-9;
 
-/// Weights up to which a condition is left out, so that a recorded condition is played without
-/// interpolation.
+/// Conditions with at most this weight are dropped, so that at a recorded condition its parameters
+/// play without interpolation.
 const NO_WEIGHT: f64 = 1e-12;
 
-/// Weights of up to three conditions, summing to one, in ascending order of their speeds, then
-/// their forces.
+/// The weights of up to three conditions. They sum to one and are ordered by ascending speed, then
+/// force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     pub(crate) condition: [usize; 3],
@@ -53,16 +55,16 @@ impl Weights {
         Self { condition: [condition, 0, 0], weight: [1.0, 0.0, 0.0], count: 1 }
     }
 
-    /// Iterates over the pairs of condition, by its index, and weight.
+    /// Iterates over pairs of a condition's index and its weight.
     pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         (0..self.count).map(|i| (self.condition[i], self.weight[i]))
     }
 
-    /// Returns the weights above [`NO_WEIGHT`] in ascending order, by the numbers of the caller's
-    /// conditions.
+    /// Returns the weights above [`NO_WEIGHT`] in ascending order of the sorted conditions, with
+    /// the caller's numbers in place of the sorted indices.
     fn numbered(self, numbers: &[usize]) -> Self {
         let mut parts = [0, 1, 2].map(|i| (self.condition[i], self.weight[i]));
-        // Insertion sort, which neither allocates nor is large.
+        // Insertion sort: there are at most three parts, and this must not allocate.
         for i in 1..self.count {
             let mut at = i;
             while at > 0 && parts[at].0 < parts[at - 1].0 {
@@ -80,7 +82,7 @@ impl Weights {
     }
 }
 
-/// The triangulation of recorded conditions, by the rules of section 11 of the format's
+/// The triangulation of recorded conditions, by the rules in section 11 of the format's
 /// specification.
 ///
 /// ```
@@ -93,49 +95,50 @@ impl Weights {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// The caller's number of each condition. All other indices are those of conditions in
+    /// The caller's number of each condition. All other indices refer to the conditions sorted in
     /// ascending order of their coordinates.
     numbers: Vec<usize>,
-    /// The place of the only condition of a mesh without sides.
+    /// Coordinates of the first condition, used if the mesh has no sides because it has only this
+    /// point.
     only: [f64; 2],
     axes: [Axis; 2],
     faces: Vec<Face>,
     sides: Vec<Side>,
 }
 
-/// A triangle between three conditions.
+/// A triangle whose corners are three conditions.
 #[derive(Debug, Clone, PartialEq)]
 struct Face {
     corners: [usize; 3],
     places: [[f64; 2]; 3],
-    /// The edge of the hull that a narrow triangle belongs to.
+    /// The edge of the hull to which this triangle belongs, if it is a narrow one.
     side: Option<usize>,
 }
 
-/// An edge of the hull with all conditions on it, or the line on which all conditions lie.
+/// An edge of the hull with all conditions on it, or the line if all conditions lie on one.
 #[derive(Debug, Clone, PartialEq)]
 struct Side {
     from: [f64; 2],
     along: [f64; 2],
-    /// Conditions in their order along the edge, including both ends.
+    /// Conditions in order along the edge, including both ends.
     conditions: Vec<usize>,
-    /// Position of each projection on the edge, from 0 at the first to 1 at the last, strictly
-    /// ascending.
+    /// Position of each condition's projection on the edge, from 0 at the first to 1 at the last;
+    /// strictly ascending.
     feet: Vec<f64>,
 }
 
 impl Mesh {
-    /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, finite and not
+    /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, both finite and not
     /// negative.
     pub fn new(conditions: &[[f64; 2]]) -> Self {
         triangulation::mesh(conditions)
     }
 
-    /// Makes a mesh of points and the triangles between them, as an asset stores them; of no
-    /// triangles, as [`Self::new`].
+    /// Makes a mesh from points and the triangles that an asset stores. If there are no triangles,
+    /// it does the same as [`Self::new`].
     ///
     /// # Errors
-    /// When the triangles are none to interpolate in: [`htex_format::check_triangles`].
+    /// When the triangles are invalid: [`htex_format::check_triangles`].
     pub fn with_triangles(
         conditions: &[[f64; 2]],
         triangles: &[Triangle],
@@ -147,13 +150,13 @@ impl Mesh {
         Ok(stored::mesh(conditions, triangles))
     }
 
-    /// Returns the weights at a motion. Does not allocate.
+    /// Returns the weights of the conditions at a motion. Does not allocate.
     pub fn weights(&self, speed_mm_s: f64, force_n: f64) -> Weights {
         self.locate(speed_mm_s, force_n).0
     }
 
-    /// Returns the weights at a motion, and the recorded motion that is nearest to it, (speed,
-    /// force): the motion itself inside the mesh. Does not allocate.
+    /// Returns the weights at a motion, and the nearest recorded motion (speed, force), which is
+    /// the motion itself inside the mesh. Does not allocate.
     pub(crate) fn locate(&self, speed_mm_s: f64, force_n: f64) -> (Weights, [f64; 2]) {
         let asked = [speed_mm_s, force_n];
         let q = [0, 1].map(|axis| self.axes[axis].place(asked[axis]));
@@ -166,8 +169,8 @@ impl Mesh {
         (weights.numbered(&self.numbers), nearest)
     }
 
-    /// Returns whether a motion lies inside the mesh, or on its edge; a mesh on a line surrounds
-    /// the motions on it.
+    /// Returns whether a motion lies inside the mesh or on its edge. A mesh that is a line
+    /// surrounds only the motions on that line.
     pub fn surrounds(&self, speed_mm_s: f64, force_n: f64) -> bool {
         let [speed, force] = &self.axes;
         let q = [speed.place(speed_mm_s), force.place(force_n)];
@@ -176,16 +179,17 @@ impl Mesh {
             || self.sides.iter().any(on_side)
     }
 
-    /// Iterates over the triangles, by the indices of their conditions.
+    /// Iterates over the triangles, as indices of the caller's conditions.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         let own = |corners: [usize; 3]| corners.map(|i| self.numbers[i]);
         self.faces.iter().map(move |face| own(face.corners))
     }
 
+    /// Returns the weights at a point if it lies in a triangle or on its edge.
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
         let [a, b, c] = face.places;
-        // Two triangles compute numbers of equal size and opposite signs for their common edge, so
-        // that no motion is outside of both.
+        // Two triangles compute numbers of equal size and opposite sign for their common edge, so
+        // rounding cannot put a motion outside both.
         let areas = [area(q, b, c), area(q, c, a), area(q, a, b)];
         if areas.iter().any(|area| *area < 0.0) {
             return None;
@@ -201,9 +205,10 @@ impl Mesh {
         })
     }
 
-    /// Returns the weights of the hull's nearest point, and the point.
+    /// Returns the weights of the nearest point of the hull, and that point.
     fn nearest(&self, q: [f64; 2]) -> (Weights, [f64; 2]) {
         let size = q[0].abs().max(q[1].abs());
+        // Moving the point in keeps its direction, which decides the nearest edge this far out.
         let q = if size > FARTHEST { q.map(|x| x / size * FARTHEST) } else { q };
         let distance = |side: &Side| side.distance2(q);
         let nearest = self.sides.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -213,7 +218,7 @@ impl Mesh {
 }
 
 impl Side {
-    /// Makes a side with conditions at its ends only.
+    /// Makes a side that has conditions only at its ends.
     fn new(ends: [usize; 2], places: &[[f64; 2]]) -> Self {
         let [from, to] = ends.map(|i| places[i]);
         Self {
@@ -224,7 +229,8 @@ impl Side {
         }
     }
 
-    /// Returns the position of a point's projection on the line through the edge.
+    /// Returns the position of a point's projection on the line through the edge: 0 at its start, 1
+    /// at its end.
     fn foot(&self, q: [f64; 2]) -> f64 {
         let [x, y] = self.along;
         ((q[0] - self.from[0]) * x + (q[1] - self.from[1]) * y) / (x * x + y * y)
@@ -234,7 +240,7 @@ impl Side {
         [0, 1].map(|axis| self.from[axis] + place * self.along[axis])
     }
 
-    /// Returns the squared distance from the edge.
+    /// Returns the squared distance of a point from the edge.
     fn distance2(&self, q: [f64; 2]) -> f64 {
         let [x, y] = self.at(self.foot(q).clamp(0.0, 1.0));
         (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1])
@@ -244,6 +250,8 @@ impl Side {
     fn weights(&self, q: [f64; 2]) -> Weights {
         let place = self.foot(q).clamp(0.0, 1.0);
         let last = self.feet.len() - 1;
+        // The first and last foot are the clamped ends 0 and 1, so only the inner ones need a
+        // search.
         let inner = &self.feet[1..last];
         let behind = 1 + inner.partition_point(|foot| *foot < place);
         let (from, to) = (self.feet[behind - 1], self.feet[behind]);
@@ -256,8 +264,8 @@ impl Side {
     }
 }
 
-/// Returns twice the signed area of a triangle. Swapping the last two corners changes only the
-/// sign.
+/// Returns twice the signed area of a triangle, positive if it is counterclockwise. Swapping the
+/// last two corners changes only the sign, exactly.
 fn area(q: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - q[0]) * (c[1] - q[1]) - (b[1] - q[1]) * (c[0] - q[0])
 }

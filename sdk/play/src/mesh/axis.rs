@@ -1,21 +1,21 @@
-//! One axis of a mesh: speeds or forces, with equal values merged.
+//! One axis of a mesh: speeds or forces, with equal values merged into one.
 
 use htex_format::Condition;
 
 use super::ON_SIDE;
 
-/// Largest coordinate, so that all computed numbers are finite.
+/// Largest coordinate, so that all computed numbers stay finite.
 const FAR: f64 = 1e100;
 
-/// Coordinates of speeds or forces, relative to the largest recorded one. They ascend, and are
-/// constant over equal values.
+/// Maps speeds or forces to coordinates, relative to the largest recorded one. Coordinates ascend
+/// with the value, and are constant across values that count as equal.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     groups: Vec<Group>,
     scale: f64,
 }
 
-/// Recorded values with the same coordinate, from the lowest to the highest.
+/// Recorded values that share a coordinate, from the lowest to the highest.
 #[derive(Debug, Clone)]
 struct Group {
     low: f64,
@@ -24,12 +24,12 @@ struct Group {
 }
 
 impl Axis {
-    /// Makes an axis of one or more recorded values, not negative. If `merged`, values that are
-    /// equal within the tolerance have the same coordinate.
+    /// Makes an axis from one or more recorded values, none negative. If `merged` is true, values
+    /// that are equal within the tolerance share a coordinate.
     pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
         htex_dsp::order::sort_by(&mut values, f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
-        // The inverse of the smallest numbers is not finite.
+        // The reciprocal of the smallest numbers would be infinite.
         let scale = if largest > 0.0 { (1.0 / largest).min(f64::MAX) } else { 1.0 };
         let is_one = |a: &f64, x: f64| a == &x || (merged && Condition::is_same(*a, x));
         let mut groups: Vec<Group> = Vec::new();
@@ -45,8 +45,9 @@ impl Axis {
         Self { groups, scale }
     }
 
-    /// Returns, of the values with a coordinate, the one that is nearest to `x`; beyond the
-    /// recorded values, the last of them.
+    /// Returns the speed or force at a coordinate. Where several values share the coordinate, it
+    /// returns the one nearest to `x`; beyond the recorded values, it returns the last recorded
+    /// one.
     pub(super) fn value(&self, place: f64, x: f64) -> f64 {
         let is_at = |group: &&Group| (group.place - place).abs() <= ON_SIDE;
         if let Some(group) = self.groups.iter().find(is_at) {

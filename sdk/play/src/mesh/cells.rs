@@ -1,10 +1,11 @@
-//! One triangulation where there are several: conditions on one circle, as the corners of a grid's
-//! cells.
+//! Chooses one triangulation where there are several: when conditions lie on one circle, as the
+//! corners of a grid's cell do.
 //!
 //! Four points on a circle have two Delaunay triangulations. The edge between two triangles is
-//! undecided when its two opposite angles sum to half a turn; the triangles at undecided edges are
-//! one cell, which is fanned from its first condition. The angles do not depend on the order of the
-//! conditions, nor on which of the triangulations was found.
+//! undecided if the two angles opposite to it sum to half a turn. Triangles joined by undecided
+//! edges form one cell, and the cell is divided into a fan from its first condition. The angles
+//! depend neither on the order of the conditions nor on which of the triangulations was found, so
+//! the result does not either.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +13,18 @@ use htex_dsp::order;
 
 use super::area;
 
-/// Largest deviation of the sum of two opposite angles from half a turn, radians, that is
-/// attributed to rounding.
+/// Largest deviation of the sum of two opposite angles from half a turn, radians, that counts as
+/// rounding.
 const ON_CIRCLE: f64 = 1e-9;
 
 /// Corners of a triangle, counterclockwise.
 type Corners = [usize; 3];
 
-/// Returns the triangles with each cell fanned from its lowest index; places are in ascending order
-/// of their first coordinate, then their second.
+/// Returns the triangles, with each cell replaced by a fan from its lowest index. `places` are in
+/// ascending order of their first coordinate, then their second.
 ///
-/// A cell of which a fan would turn a triangle over keeps its triangles: this occurs only where
-/// rounding bends a line, on the hull, and such triangles are not interpolated in.
+/// A cell keeps its triangles if a fan would turn one of them over. This occurs only on the hull,
+/// where rounding bends a line, and such triangles are not used for interpolation.
 pub(super) fn fanned(triangles: &[Corners], places: &[[f64; 2]]) -> Vec<Corners> {
     let mut fanned = Vec::with_capacity(triangles.len());
     for cell in cells(triangles, places).into_values() {
@@ -36,8 +37,9 @@ pub(super) fn fanned(triangles: &[Corners], places: &[[f64; 2]]) -> Vec<Corners>
     fanned
 }
 
-/// Returns the triangles of each cell, by the lowest of them.
+/// Returns the triangles of each cell, keyed by the lowest index in the cell.
 fn cells(triangles: &[Corners], places: &[[f64; 2]]) -> BTreeMap<usize, Vec<usize>> {
+    // Union-find: two triangles at an undecided edge get the same root.
     let mut parent: Vec<usize> = (0..triangles.len()).collect();
     for [(a, i), (b, k)] in neighbours(triangles) {
         let opposite = [(triangles[i], a), (triangles[k], b)].map(|(corners, edge)| {
@@ -64,12 +66,13 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// Directed edges of a triangle.
+/// The directed edges of a triangle.
 fn edges([a, b, c]: Corners) -> [[usize; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-/// Returns each edge between two triangles, as each of them directs it, with the triangle.
+/// Returns each edge that two triangles share. Each of the two entries holds the edge in its
+/// triangle's direction, and the index of the triangle.
 fn neighbours(triangles: &[Corners]) -> Vec<[([usize; 2], usize); 2]> {
     let directed = |(i, corners): (usize, &Corners)| edges(*corners).map(|edge| (edge, i));
     let mut all: Vec<_> = triangles.iter().enumerate().flat_map(directed).collect();
@@ -82,7 +85,7 @@ fn neighbours(triangles: &[Corners]) -> Vec<[([usize; 2], usize); 2]> {
         .collect()
 }
 
-/// Returns whether the angles of two triangles opposite their common edge sum to half a turn.
+/// Returns whether the angles of two triangles opposite to their common edge sum to half a turn.
 fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
     let angle = |at: [f64; 2], [from, to]: [[f64; 2]; 2]| {
         let [u, v] = [from, to].map(|p| [p[0] - at[0], p[1] - at[1]]);
@@ -94,7 +97,7 @@ fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
     sin.abs() <= -ON_CIRCLE * cos
 }
 
-/// Returns the fan of a cell of several triangles; `None` if a triangle of it would be turned over.
+/// Returns the fan of a cell; `None` if one of its triangles would be turned over.
 fn fan(cell: impl Iterator<Item = Corners>, places: &[[f64; 2]]) -> Option<Vec<Corners>> {
     let all: Vec<[usize; 2]> = cell.flat_map(edges).collect();
     let mut inner: Vec<[usize; 2]> = all.iter().map(|[a, b]| [*b, *a]).collect();

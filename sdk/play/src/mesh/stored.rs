@@ -1,4 +1,5 @@
-//! A mesh of triangles that an asset stores, which [`htex_format::check_triangles`] accepts.
+//! A mesh from the triangles that an asset stores, after [`htex_format::check_triangles`] accepted
+//! them.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +8,7 @@ use htex_format::Triangle;
 use super::triangulation::{placed, sorted};
 use super::{Face, Mesh, Side, area};
 
-/// Makes a mesh of valid triangles.
+/// Makes a mesh from valid triangles.
 pub(super) fn mesh(conditions: &[[f64; 2]], triangles: &[Triangle]) -> Mesh {
     let (axes, places) = placed(conditions, false);
     let (numbers, places) = sorted(conditions, &places);
@@ -19,7 +20,7 @@ pub(super) fn mesh(conditions: &[[f64; 2]], triangles: &[Triangle]) -> Mesh {
         .iter()
         .map(|corners| upright(corners.map(|number| own[number]), &places))
         .collect();
-    // What is made of them does not depend on their order.
+    // Sorted, so that the mesh does not depend on the order in which the triangles are stored.
     htex_dsp::order::sort(&mut all);
     let face = |corners: &[usize; 3]| Face {
         corners: *corners,
@@ -36,7 +37,7 @@ pub(super) fn mesh(conditions: &[[f64; 2]], triangles: &[Triangle]) -> Mesh {
     }
 }
 
-/// Returns the corners counterclockwise, from the lowest.
+/// Returns the corners counterclockwise, starting with the lowest index.
 fn upright([a, b, c]: [usize; 3], places: &[[f64; 2]]) -> [usize; 3] {
     let [a, b, c] = if area(places[a], places[b], places[c]) < 0.0 { [a, c, b] } else { [a, b, c] };
     let first = a.min(b).min(c);
@@ -49,7 +50,7 @@ fn upright([a, b, c]: [usize; 3], places: &[[f64; 2]]) -> [usize; 3] {
     }
 }
 
-/// Returns the edges of one triangle only, in ascending order.
+/// Returns the edges that belong to only one triangle, in ascending order.
 fn outer(triangles: &[[usize; 3]]) -> impl Iterator<Item = [usize; 2]> {
     let edges = |[a, b, c]: &[usize; 3]| [[*a, *b], [*b, *c], [*c, *a]];
     let (mut all, mut neighbours) = (BTreeSet::new(), BTreeSet::new());

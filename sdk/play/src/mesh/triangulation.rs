@@ -10,9 +10,12 @@ use super::axis::Axis;
 use super::cells::fanned;
 use super::{Face, Mesh, Side};
 
+/// Triangulates recorded conditions by the rules of the specification.
 pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
     let (mut axes, mut places) = placed(conditions, true);
     if !are_apart(&places) {
+        // Merging may give two conditions the same coordinates. Then nothing is merged, so that
+        // each condition keeps its own place.
         (axes, places) = placed(conditions, false);
     }
     meshed(conditions, axes, &places)
@@ -38,8 +41,8 @@ pub(super) fn meshed(conditions: &[[f64; 2]], axes: [Axis; 2], places: &[[f64; 2
     Mesh { only: places.first().copied().unwrap_or_default(), numbers, axes, faces, sides }
 }
 
-/// Returns the numbers and coordinates of all conditions, in ascending order of their coordinates:
-/// what is made of them does not depend on their own order.
+/// Returns the numbers and coordinates of all conditions, in ascending order of their coordinates.
+/// The mesh built from them does not depend on the caller's order.
 pub(super) fn sorted(conditions: &[[f64; 2]], places: &[[f64; 2]]) -> (Vec<usize>, Vec<[f64; 2]>) {
     let numbers = order::order(conditions.len(), &|a, b| {
         let by_motion = || ascends(&conditions[a], &conditions[b]);
@@ -62,7 +65,7 @@ pub(super) fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[
     ([speed, force], places)
 }
 
-/// Returns whether all conditions have different coordinates.
+/// Returns whether no two conditions have the same coordinates.
 fn are_apart(places: &[[f64; 2]]) -> bool {
     let mut sorted = places.to_vec();
     order::sort_by(&mut sorted, ascends);
@@ -70,21 +73,21 @@ fn are_apart(places: &[[f64; 2]]) -> bool {
 }
 
 type Triangles = (Vec<Face>, Vec<[usize; 2]>);
-/// A triangulation with a hierarchy of hints: the time to locate a point is logarithmic in the
-/// number of points.
+/// A triangulation with a hierarchy of hints, which makes the time to locate a point logarithmic in
+/// the number of points.
 type Delaunay = DelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// Largest distance from a line that is attributed to rounding, relative to the largest speed and
-/// force.
+/// Largest distance from a line that counts as rounding, relative to the largest speed and force.
 const ROUNDING: f64 = 1e-9;
-/// Most points that are inserted in ascending order.
+/// Largest number of points that are inserted in ascending order.
 const FEW: usize = 1000;
 
-/// Returns the order in which points are inserted; `None` if all lie on the given line.
+/// Returns the order in which to insert the points; `None` if all lie on the given line.
 ///
-/// Inserting a point into a line takes time proportional to the points on it, so of many points
-/// three that span a triangle are first. The others follow in pseudo-random order: an insertion
-/// then changes six triangles on average, and in other orders up to all of them.
+/// Inserting a point into a line takes time proportional to the number of points on it. For many
+/// points, three that span a triangle are therefore inserted first, and the others follow in
+/// pseudo-random order: an insertion then changes six triangles on average. In other orders it may
+/// change all of them.
 pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
     let distance = |i: usize| line.distance2(places[i]);
     let farthest = (0..places.len()).max_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
@@ -109,12 +112,14 @@ fn scattered(i: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Returns triangles and hull edges; `None` if the points do not span a triangle.
+/// Returns the triangles and the edges of the hull; `None` if the points do not span a triangle.
 fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     let mut mesh = Delaunay::new();
     let mut index = Vec::new();
     for i in order(places, line)? {
         let handle = mesh.insert(Point2::new(places[i][0], places[i][1])).ok()?;
+        // The library returns an existing vertex if the point is already present, so only a new one
+        // gets an index.
         if handle.index() == index.len() {
             index.push(i);
         }
@@ -129,7 +134,7 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
         .convex_hull()
         .map(|edge| [corner(edge.from().fix()), corner(edge.to().fix())])
         .collect();
-    // The first of two edges that could both take a narrow triangle takes it.
+    // If two edges could both take a narrow triangle, the first in this order takes it.
     order::sort_by(&mut edges, |a, b| ascending(*a).cmp(&ascending(*b)));
     (!faces.is_empty()).then_some((faces, edges))
 }
@@ -143,8 +148,8 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
             .fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p[axis]), high.max(p[axis])]);
         high - low
     };
-    // Ordered along the axis of larger extent: along the other, rounding errors may determine the
-    // order.
+    // Sorts along the axis with the larger extent. Along the other axis, rounding errors could
+    // determine the order.
     let along = usize::from(spread(1) > spread(0));
     let ordered = |a: &usize, b: &usize| {
         let (a, b) = (places[*a], places[*b]);
@@ -158,6 +163,7 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     }
     let mut side = Side::new([first, last], places);
     let mut feet: Vec<(f64, usize)> = all.map(|i| (side.foot(places[i]), i)).collect();
+    // Feet must ascend strictly from 0 to 1, so conditions at or beyond an end are dropped.
     feet.retain(|(foot, i)| (*foot > 0.0 && *foot < 1.0) || *i == first || *i == last);
     order::sort_by(&mut feet, |a, b| a.0.total_cmp(&b.0));
     feet.dedup_by(|a, b| a.0 == b.0);
@@ -165,7 +171,8 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     Some(side)
 }
 
-/// Assigns the narrow triangles on a side to it, one after another, with their conditions.
+/// Assigns the narrow triangles at a side to that side, one after another, together with their
+/// conditions.
 fn take_slivers(
     index: usize,
     side: &mut Side,
@@ -207,7 +214,7 @@ impl Edges {
         Self(edges)
     }
 
-    /// Returns a triangle at an edge that is not assigned to a side, and its third corner.
+    /// Returns a triangle at an edge that is not yet assigned to a side, and its third corner.
     fn beside(&self, ends: [usize; 2], faces: &[Face]) -> Option<(usize, usize)> {
         let edge = ascending(ends);
         let first = self.0.partition_point(|(other, _)| *other < edge);

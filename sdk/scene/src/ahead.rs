@@ -1,22 +1,22 @@
-//! A buffer of samples rendered in advance, for scenes in constant motion.
+//! A buffer of samples rendered in advance, for scenes whose motion is constant.
 
-/// Samples rendered in advance at a time. Of 256, 512 and 1,024, with 1,024 one core plays the most
-/// renderers in turn (the example `chains`, mode `voices`).
+/// Number of samples rendered in advance at a time. Of 256, 512 and 1,024, this length lets one
+/// core play the most renderers in turn (the example `chains`, mode `voices`).
 const AHEAD: usize = 1024;
 
-/// The buffer; samples from index `taken` on are not played yet.
+/// The buffer. Samples from index `taken` on have not been played yet.
 pub(crate) struct Ahead {
     samples: Vec<f32>,
     taken: usize,
-    /// Length of the first buffer, from 1 to [`AHEAD`], derived from the seed: renderers started
-    /// together fill their buffers at different times.
+    /// Length of the first buffer, from 1 to [`AHEAD`]. It is derived from the seed, so that
+    /// renderers started together fill their buffers at different times.
     first: usize,
 }
 
 impl Ahead {
-    /// An empty buffer; without memory unless `wanted`.
+    /// Makes an empty buffer. It has memory only if `wanted`.
     pub(crate) fn new(wanted: bool, seed: u64) -> Self {
-        // Multiplication by 2⁶⁴ / φ distributes successive seeds evenly.
+        // Multiplying by 2⁶⁴ / φ spreads successive seeds evenly.
         let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         let first = (part * AHEAD as u64) >> 32;
         Self {
@@ -26,12 +26,12 @@ impl Ahead {
         }
     }
 
-    /// Whether all samples are played.
+    /// Whether all samples have been played.
     pub(crate) fn is_empty(&self) -> bool {
         self.taken == self.samples.len()
     }
 
-    /// Copies buffered samples to the start of `out`; returns their number.
+    /// Copies buffered samples to the start of `out` and returns their number.
     pub(crate) fn take(&mut self, out: &mut [f32]) -> usize {
         let ready = &self.samples[self.taken..];
         let frames = out.len().min(ready.len());
@@ -40,7 +40,7 @@ impl Ahead {
         frames
     }
 
-    /// Moves the buffer out, resized to the next length but at most `left` samples; [`Self::end`]
+    /// Moves the buffer out, resized to the next length but at most `left` samples. [`Self::end`]
     /// moves it back.
     pub(crate) fn begin(&mut self, left: u64) -> Vec<f32> {
         let mut samples = std::mem::take(&mut self.samples);

@@ -1,4 +1,5 @@
-//! Check whether a scene's motion is within the speeds and forces its textures were recorded at.
+//! Checks whether a scene's motion stays within the speeds and forces at which its textures were
+//! recorded.
 
 use htex_finding::Findings;
 use htex_play::{Asset, Coverage, Effects, Motions};
@@ -8,13 +9,15 @@ use crate::motion::{Finger, topmost};
 use crate::rules as rule;
 use crate::trace::Trace;
 
-/// Part of the time on a surface that may be outside the recorded motions without a warning:
-/// strokes slow down where they turn.
+/// Fraction of the time on a surface that may lie outside the recorded motions without a warning,
+/// because strokes slow down where they turn.
 const MOST: f64 = 0.1;
-/// Maximum number of trace rows checked, evenly spaced: each is compared with all conditions.
+/// Largest number of trace rows that are checked, evenly spaced. Each row is compared with all
+/// conditions, so more would be slow.
 const MOST_ROWS: usize = 20_000;
 
-/// Warns of each surface that is played as if at another motion than the scene's.
+/// Warns about surfaces whose motion lies outside the recorded range and is played as a different
+/// motion.
 pub(crate) fn check(
     scene: &Scene,
     assets: &[Asset],
@@ -23,7 +26,7 @@ pub(crate) fn check(
 ) {
     let fingers = fingers(scene, trace);
     for (i, asset) in assets.iter().enumerate() {
-        // An asset that could not be used has a finding already.
+        // An asset that cannot be used already has a finding.
         let Ok(motions) = motions(asset, &scene.surfaces[i]) else {
             continue;
         };
@@ -75,8 +78,8 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
     }
 }
 
-/// Fraction of the sliding fingers that are played as if at another motion, and the coverage of the
-/// farthest one.
+/// Returns the fraction of the sliding fingers that are played as a different motion, and the
+/// coverage of the one that is farthest from the recorded range.
 fn beyond<'a>(
     fingers: impl Iterator<Item = &'a Finger>,
     motions: &Motions,

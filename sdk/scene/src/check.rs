@@ -1,4 +1,4 @@
-//! Rules for the contents of a scene without its files and its device.
+//! Rules for the contents of a scene that need neither its files nor its device.
 
 use htex_finding::{Findings, Rule};
 
@@ -6,7 +6,7 @@ use crate::file::{Budget, Constant, DeviceChoice, FAR_MM, Motion, Region, Scene,
 use crate::limits::Limits;
 use crate::rules as rule;
 
-/// Checks a scene without its files and its device.
+/// Checks a scene without reading its files or opening its device.
 pub(crate) fn check(scene: &Scene, limits: &Limits, findings: &mut Findings) {
     check_surfaces(&scene.surfaces, limits, findings);
     match &scene.motion {

@@ -1,4 +1,4 @@
-//! Run times of models and stages: measured on one machine and stored for later plans.
+//! Run times of models and stages, measured on one machine and stored for later plans.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,19 +12,19 @@ use serde::{Deserialize, Serialize};
 pub struct Costs {
     /// Name of the machine, and how the costs were measured.
     pub machine: String,
-    /// Model id to the time of one sample of a voice at the model's own rate, nanoseconds.
+    /// By model id: time of one sample of a voice at the model's own rate, nanoseconds.
     pub model_ns: BTreeMap<String, f64>,
-    /// Model id to the time of interpolating two parameter sets and retuning a voice, nanoseconds.
+    /// By model id: time to interpolate two parameter sets and retune a voice, nanoseconds.
     pub retune_ns: BTreeMap<String, f64>,
-    /// Stage to the time of one sample at the stage's rate, nanoseconds.
+    /// By stage: time of one sample at the stage's rate, nanoseconds.
     pub stage_ns: BTreeMap<String, f64>,
-    /// Stage to the time of one sample at the stage's rate where a scene switches it on and it
-    /// changes nothing, nanoseconds. Interpolation and crossfades take none then.
+    /// By stage: time of one sample, at the stage's rate, when a scene switches the stage on
+    /// although it changes nothing, nanoseconds. Interpolation and crossfades then take no time.
     pub neutral_ns: BTreeMap<String, f64>,
-    /// Time of a sample of the renderer itself where nothing changes, nanoseconds, and where the
-    /// motion is read before every block.
+    /// Time per sample that the renderer itself takes, nanoseconds: first for a scene in which
+    /// nothing changes, then for one in which it reads the motion before every block.
     pub renderer_ns: [f64; 2],
-    /// Compensation, in the short blocks that a resampler pulls.
+    /// Compensation, when a resampler requests short blocks from it.
     pub compensation: FilterCost,
     /// Conversions that raise a rate by an integer factor.
     pub whole: FilterCost,
@@ -32,18 +32,19 @@ pub struct Costs {
     pub rational: FilterCost,
 }
 
-/// Cost of a filter.
+/// The cost of a filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FilterCost {
-    /// Time of a sample without its multiplications, nanoseconds.
+    /// Time of a sample apart from its multiplications, nanoseconds.
     pub sample_ns: f64,
     /// Time of one multiply-accumulate, nanoseconds.
     pub mac_ns: f64,
 }
 
 impl FilterCost {
-    /// Time of filters that give `samples` by `macs` multiply-accumulates, nanoseconds.
+    /// Time of filters that produce `samples` samples with `macs` multiply-accumulates,
+    /// nanoseconds.
     pub(crate) fn of(self, samples: f64, macs: f64) -> f64 {
         samples * self.sample_ns + macs * self.mac_ns
     }
@@ -55,7 +56,7 @@ impl Costs {
         serde_json::from_str(include_str!("costs.json")).unwrap_or_else(|_| Self::nothing())
     }
 
-    /// Reads stored costs; `None` if the file is missing or of another version.
+    /// Reads stored costs; `None` if the file is missing or has another version.
     pub fn load(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }
@@ -73,7 +74,7 @@ impl Costs {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// Cost of a model; of one that was not measured, the largest known cost.
+    /// Cost of a model. For a model that was not measured, it is the largest known cost.
     pub(crate) fn model(&self, id: &str) -> f64 {
         or_largest(&self.model_ns, id)
     }
@@ -86,7 +87,7 @@ impl Costs {
         self.stage_ns.get(name).copied().unwrap_or(0.0)
     }
 
-    /// Cost of a conversion, per sample of its output.
+    /// Cost of a rate conversion, per sample of its output.
     pub(crate) fn resampling(&self, work: Work) -> f64 {
         let Work { whole, rational } = work;
         self.whole.of(whole.samples, whole.macs) + self.rational.of(rational.samples, rational.macs)

@@ -1,8 +1,8 @@
-//! Rules for a scene's device, and the settings a user states in place of the scene's.
+//! Rules for a scene's device, and the user's settings that override the scene's.
 //!
-//! Quantities are never confused ([`quantity_misfit`]): an asset of accelerations is played on a
-//! device of newtons, or on an electrovibration display, only with a `quantity_gain` that a person
-//! states.
+//! A scene never mixes up physical quantities ([`quantity_misfit`]): a device that plays newtons,
+//! or an electrovibration display, plays an asset of accelerations only if somebody states a
+//! `quantity_gain`.
 
 use std::collections::BTreeMap;
 
@@ -19,29 +19,31 @@ use crate::output::named;
 pub(crate) use crate::output::stem;
 use crate::rules as rule;
 
-/// The setting that names a library to load; not allowed in a scene, which may come from an
-/// untrusted source.
+/// The setting that names a driver library to load. A scene must not contain it, because scenes may
+/// come from untrusted sources.
 const DRIVER: &str = "driver";
 
-/// Device options of the program that loads a scene; they take precedence over the scene's.
+/// Device options from the program that loads a scene. They take precedence over the scene's.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
-    /// Another adapter; the scene's `device` is then ignored.
+    /// Adapter to use instead of the scene's; the scene's `device` is then ignored.
     pub adapter: Option<String>,
-    /// Another profile.
+    /// Profile to use instead of the scene's.
     pub profile: Option<String>,
-    /// Settings in the adapter's syntax; relative paths are not resolved.
+    /// Settings in the adapter's syntax. Relative paths are not resolved.
     pub settings: BTreeMap<String, String>,
-    /// The device will not be opened: the scene's own profile and hardware settings are accepted,
-    /// in order to validate, plan, or render to a file. Never set it for a device that plays.
+    /// Whether the device stays closed because the scene is only validated, planned, or rendered to
+    /// a file. The scene's own profile and hardware settings are then accepted. Never set this for
+    /// a device that plays.
     pub rehearsal: bool,
-    /// The motion is given while the scene plays: unset settings get their live defaults.
+    /// Whether the motion arrives while the scene plays. Missing settings then get their live
+    /// defaults.
     pub live: bool,
     /// Replaces [`DeviceChoice::rate_hz`].
     pub rate_hz: Option<f64>,
     /// Replaces [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
-    /// Default of an unset setting that names a file; `None`: the scene's name with the extension
+    /// Default of a missing setting that names a file. `None`: the scene's name with the extension
     /// of the format, in the current folder.
     pub output: Option<String>,
 }
@@ -53,7 +55,7 @@ impl DeviceOverride {
         self.output.clone().unwrap_or_else(usual)
     }
 
-    /// Replaces adapter and profile in a scene's choice.
+    /// Replaces the adapter and the profile in a scene's choice.
     pub(crate) fn apply(&self, choice: &mut DeviceChoice) {
         if let Some(adapter) = &self.adapter {
             *choice = DeviceChoice { adapter: adapter.clone(), ..DeviceChoice::default() };
@@ -66,7 +68,7 @@ impl DeviceOverride {
     }
 }
 
-/// Checks the choice of a device; returns the resulting settings if they are valid.
+/// Checks the choice of a device, and returns the resulting settings if they are valid.
 pub(crate) fn check_device(
     choice: &DeviceChoice,
     (change, stem): (&DeviceOverride, &str),
@@ -97,7 +99,7 @@ pub(crate) fn check_device(
     Some(settings)
 }
 
-/// Resolves the settings of the user, the profile and the scene.
+/// Combines the settings of the user, the profile and the scene.
 fn settle(
     choice: &DeviceChoice,
     change: &DeviceOverride,
@@ -140,7 +142,8 @@ fn settle(
     Some(settings)
 }
 
-/// Reports settings that a rehearsal takes from the scene but a player does not.
+/// Reports settings that are accepted from the scene in a rehearsal but not for a device that
+/// plays.
 fn report_hardware(
     descriptor: &Descriptor,
     asked: &BTreeMap<String, String>,
@@ -165,7 +168,7 @@ fn add_error(error: DeviceError, findings: &mut Findings) {
     findings.add(rule::DEVICE_SETTING, pointer, error.to_string());
 }
 
-/// The scene's settings as text, except files, which a scene must not name; `None` if a setting is
+/// The scene's settings as text, without files, which a scene must not name; `None` if a setting is
 /// invalid.
 fn texts(
     choice: &DeviceChoice,
@@ -253,7 +256,7 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
     });
 }
 
-/// Checks that the device takes the quantity of the assets.
+/// Checks that the device can play the assets' quantity.
 fn check_quantity(
     choice: &DeviceChoice,
     able: &Capabilities,
@@ -266,10 +269,11 @@ fn check_quantity(
     }
 }
 
-/// Reason why a device cannot play assets of a quantity with this gain, or without one; `None` if
-/// it can.
+/// Returns why a device cannot play assets of a quantity, with this gain or with none; `None` if it
+/// can.
 ///
-/// An electrovibration drive adds a lateral force; sound is scaled to its level from any unit.
+/// Two devices need no conversion: an electrovibration drive adds a lateral force, and sound is
+/// scaled to its level from any unit.
 pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -> Option<String> {
     let takes = match device {
         Quantity::DisplayVoltage => Quantity::LateralForce.name(),
@@ -298,8 +302,8 @@ pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -
 mod tests {
     use super::*;
 
-    /// Assets and devices have separate lists of quantities, since devices do not depend on
-    /// textures; the lists must match.
+    /// Assets and devices have separate lists of quantities, because devices do not depend on
+    /// textures. The lists must match.
     #[test]
     fn devices_have_every_quantity_that_assets_have() {
         let physical: Vec<(&str, &str)> = Quantity::ALL

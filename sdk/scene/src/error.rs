@@ -1,14 +1,14 @@
-//! Errors of planning and playing a scene.
+//! Errors from planning and playing a scene.
 
 use std::path::PathBuf;
 
 use crate::load::LoadedScene;
 
-/// An error of planning or playing a scene.
+/// An error from planning or playing a scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A surface's asset or its model cannot be used.
+    /// A surface's asset, or its model, cannot be used.
     #[error("surface {surface} ({}): {source}", .asset.display())]
     Surface {
         /// Index of the surface.
@@ -24,7 +24,7 @@ pub enum SceneError {
     NoModel {
         /// Index of the surface.
         surface: usize,
-        /// The models of the asset's representations.
+        /// The models that the asset has representations for.
         there: String,
     },
     /// No representation is within the error budget.
@@ -36,11 +36,11 @@ pub enum SceneError {
         surface: usize,
         /// The budget, decibels.
         wanted_db: f64,
-        /// The representation with the smallest error, and the largest error over its conditions,
-        /// decibels; `None` if the asset states no error by this measure.
+        /// The representation with the smallest error, and its largest error over the conditions,
+        /// decibels. `None` if the asset states no error by this measure.
         nearest: Option<(String, f64)>,
     },
-    /// No choice of representations is within the time budget.
+    /// No choice of representations meets the time budget.
     #[error(
         "the quickest chain takes {quickest_ns:.1} ns a sample, and the budget is {wanted_ns} ns: \
          raise budget.ns_per_sample, or ask for a lower rate"
@@ -64,15 +64,15 @@ pub enum SceneError {
         /// Time of the fastest chain within the error budget, nanoseconds.
         quickest_ns: f64,
     },
-    /// The device does not run at the scene's rate.
+    /// The device does not support the scene's sample rate.
     #[error("the device does not run at {rate_hz} Hz; it runs at {rates}")]
     Rate {
         /// The scene's rate, hertz.
         rate_hz: f64,
         rates: String,
     },
-    /// The loudest texture exceeds the reference level so far that more samples than allowed would
-    /// be clipped at the drive voltage.
+    /// The loudest texture exceeds the reference level so much that the drive voltage would clip
+    /// more samples than allowed.
     #[error(
         "the loudest texture is {above_db:.1} dB above the reference level of the drive, so that {percent:.0} % of its \
          samples would be clipped ({most_percent} % are allowed): raise drive_v, lower the surface's gain, or choose another \
@@ -86,23 +86,23 @@ pub enum SceneError {
         /// Maximum allowed, percent.
         most_percent: f64,
     },
-    /// The device does not take the quantity of the assets.
+    /// The device cannot play the assets' quantity.
     #[error("{sentence}")]
     Quantity {
         /// The problem, and how to correct it.
         sentence: String,
     },
-    /// The scene switches off an effect that is required.
+    /// The scene switches off an effect that it requires.
     #[error("`{effect}` is off, but the scene cannot be played without it: {reason}")]
     Needed {
         effect: String,
-        /// Reason why it is required.
+        /// Why the scene requires it.
         reason: String,
     },
-    /// The rate of a model cannot be converted to the device's.
+    /// The model's sample rate cannot be converted to the device's.
     #[error(transparent)]
     Rates(#[from] htex_dsp::resample::UnusableRates),
-    /// Invalid motion: not finite, or a negative force.
+    /// The motion is invalid: a number is not finite, or the force is negative.
     #[error(
         "invalid motion: {speed_mm_s} mm/s at {force_n} N; both must be finite, and the force not negative"
     )]
@@ -126,7 +126,7 @@ fn nearest_of(nearest: &Option<(String, f64)>) -> String {
     }
 }
 
-/// Adds the surface to an error of its asset or its model.
+/// Adds the surface to an error from its asset or its model.
 pub(crate) trait OfSurface<T> {
     fn of_surface(self, surface: usize, scene: &LoadedScene) -> Result<T, SceneError>;
 }

@@ -29,17 +29,17 @@ pub struct Scene {
     /// The output device; default: a file of newtons.
     #[serde(default)]
     pub device: DeviceChoice,
-    /// Duration, seconds. Default: that of the trace; endless for other motions.
+    /// Duration, seconds. Default: the duration of the trace; other motions are endless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
     pub duration_s: Option<f64>,
-    /// Seed of all random numbers: the same seed gives the same samples.
+    /// Seed of all random numbers. The same seed gives the same samples.
     #[serde(default)]
     pub seed: u64,
-    /// Limits for the choice of representations of surfaces that do not name one.
+    /// Limits for choosing the representations of surfaces that do not name one.
     #[serde(default, skip_serializing_if = "Budget::is_empty")]
     pub budget: Budget,
-    /// Effects that are switched explicitly instead of by the planner.
+    /// Effects that the scene switches on or off, instead of leaving the choice to the planner.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub effects: BTreeMap<Effect, Switch>,
 }
@@ -48,15 +48,15 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Surface {
-    /// Path of the asset; relative paths start at the scene's folder.
+    /// Path of the asset. Relative paths start at the scene's folder.
     pub asset: PathBuf,
     /// Region of the surface; default: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
-    /// Layer: of overlapping surfaces the one on the highest layer is felt.
+    /// Layer: where surfaces overlap, the finger feels the one on the highest layer.
     #[serde(default)]
     pub layer: i32,
-    /// Factor on the level, 0 to 1000.
+    /// Factor that multiplies the level, 0 to 1000.
     #[serde(default = "one")]
     #[schemars(range(min = 0, max = 1000))]
     pub gain: f64,
@@ -79,7 +79,7 @@ impl Surface {
     }
 }
 
-/// A rectangle; lower edges are included, upper edges excluded.
+/// A rectangle. It includes its lower edges and excludes its upper edges.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Region {
@@ -97,14 +97,14 @@ pub struct Region {
 pub enum Motion {
     /// Constant speed, force and direction.
     Constant(Constant),
-    /// A recorded motion: path of a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`; relative
-    /// paths start at the scene's folder.
+    /// A recorded motion: the path of a CSV file with the columns `t_s`, `x_mm`, `y_mm`, `force_n`.
+    /// Relative paths start at the scene's folder.
     Trace(PathBuf),
-    /// Controlled by a person while the scene plays.
+    /// The user moves the finger while the scene plays.
     Live,
 }
 
-/// A motion of constant speed, force and direction.
+/// A motion with constant speed, force and direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Constant {
@@ -114,7 +114,8 @@ pub struct Constant {
     /// Normal force, newtons.
     #[schemars(range(min = 0, max = 1e3))]
     pub force_n: f64,
-    /// Start position, x and y, mm; optional only with a single surface without a region.
+    /// Start position, x and y, mm. It may be missing only if the scene has a single surface
+    /// without a region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
     pub from_mm: Option<[f64; 2]>,
@@ -124,7 +125,7 @@ pub struct Constant {
     pub direction_deg: f64,
 }
 
-/// The output device, and the mapping of the scene to it.
+/// The output device, and how the scene is mapped to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct DeviceChoice {
@@ -137,17 +138,17 @@ pub struct DeviceChoice {
     /// Settings of the adapter: strings, numbers or booleans.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, Value>,
-    /// Sampling rate, hertz; default: the device's own.
+    /// Sample rate, hertz; default: the device's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e7), extend("exclusiveMinimum" = 0))]
     pub rate_hz: Option<f64>,
-    /// Gain for devices of newtons or another physical quantity, decibels.
+    /// Gain for devices that play newtons or another physical quantity, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
-    /// Device units per unit of the assets' quantity, required if the quantities differ: with 0.1,
-    /// a device of newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it such assets are
-    /// refused.
+    /// Device units per unit of the assets' quantity. Required if the two quantities differ: with
+    /// 0.1, a device of newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it, assets of
+    /// another quantity are refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub quantity_gain: Option<f64>,
@@ -160,39 +161,41 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,
-    /// Whether the drive voltage or the preview level applies to the scene's loudest texture or to
-    /// a reference level.
+    /// What the drive voltage or the preview level applies to: the scene's loudest texture or a
+    /// reference level.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
     /// With the levels `own`: the RMS that is mapped to the drive voltage or the preview level, in
-    /// the assets' unit. Default: that of the strongest representation of all the scene's surfaces.
+    /// the assets' unit. Default: the RMS of the strongest representation among all the scene's
+    /// surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
-    /// Factor on all frequencies of a preview by ear.
+    /// Factor that multiplies all frequencies of a preview by ear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,
-    /// Frequency response of finger and display, to be compensated: path of a CSV with the columns
-    /// `frequency_hz`, `magnitude`; relative paths start at the scene's folder.
+    /// Frequency response of finger and display, which the scene compensates: the path of a CSV
+    /// file with the columns `frequency_hz`, `magnitude`. Relative paths start at the scene's
+    /// folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
-    /// Largest depth below the response's maximum that is compensated, decibels.
+    /// How far below its maximum the response is still compensated, decibels.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,
 }
 
-/// Normalisation of levels on devices of sound or voltages.
+/// How levels are normalised on devices that play sound or voltages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Levels {
-    /// The loudest texture of the scene, in the representation that plays it, gets the drive
-    /// voltage or preview level: a texture is equally strong in every representation.
+    /// The scene's loudest texture, in the representation that plays it, gets the drive voltage or
+    /// the preview level. A texture is then equally strong in every representation.
     #[default]
     Normalised,
-    /// A reference level gets it, whichever representation plays: each representation keeps its own
-    /// energy.
+    /// A reference level gets the drive voltage or the preview level, whichever representation
+    /// plays. Each representation keeps its own energy.
     Own,
 }
 
@@ -202,8 +205,8 @@ impl Levels {
     }
 }
 
-/// Limits for the choice of representations. With both limits, the representation of least error
-/// within the time limit must be within the error limit.
+/// Limits for choosing representations. If both limits are set, the representation with the
+/// smallest error within the time limit must be within the error limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {
@@ -233,10 +236,9 @@ pub enum Effect {
     /// Interpolation of parameters and level between exploration conditions as speed and force
     /// change.
     Interpolation,
-    /// Scaling of frequencies with the speed outside the recorded speeds, by the law of the asset.
+    /// Scaling of frequencies with the speed, by the asset's law, outside the recorded speeds.
     FrequencyScaling,
-    /// Scaling of the level with speed and force outside the recorded motions, by the law of the
-    /// asset.
+    /// Scaling of the level with speed and force, by the asset's law, outside the recorded motions.
     LevelScaling,
     /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,
@@ -248,7 +250,7 @@ pub enum Effect {
     Direction,
     /// Conversion from newtons to the device's quantity.
     Gain,
-    /// Shift and square root, for friction proportional to the square of a voltage.
+    /// Shift and square root, because friction is proportional to the square of a voltage.
     SquareRoot,
     /// Silence without contact or slip, and at the start and end.
     Contact,
@@ -306,10 +308,10 @@ impl Effect {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
-    /// Included if the scene requires it.
+    /// The planner includes it if the scene requires it.
     #[default]
     Auto,
-    /// Always included; if not required, it changes no samples.
+    /// Always included. If the scene does not require it, it changes no samples.
     On,
     /// Never included.
     Off,

@@ -1,9 +1,9 @@
-//! Drive voltages by person, texture and device: V_g of the paper, found by adjustment and stored
-//! in a file of the user's own.
+//! Drive voltages for each person, texture and device: V_g of the paper, found by adjustment and
+//! stored in a file that belongs to the user.
 //!
-//! A gain belongs to a texture, not to a file: its key is name and author, which remain after a new
-//! fit, while a hash of the recordings would change with one more recording. It stores the RMS at
-//! which it was found, so that other representations keep their energies.
+//! A gain belongs to a texture, not to a file. Its key is the texture's name and author, which stay
+//! the same after a new fit; a hash of the recordings would change with one more recording. The
+//! gain stores the RMS at which it was found, so that other representations keep their energies.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,11 +15,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Level at which a texture is first played to a finger while its gain is found, decibels relative
-/// to the maximum: a tenth of its voltage. It rises only when the person asks for more.
+/// Level at which a texture is first played to a finger while its gain is adjusted, decibels
+/// relative to the maximum: a tenth of the voltage. It rises only when the person asks for more.
 pub const START_DB: f64 = -20.0;
 
-/// The factor of an amplitude that is this many decibels.
+/// Converts decibels to an amplitude factor.
 pub fn factor_of_db(db: f64) -> f64 {
     libm::pow(10.0, db / 20.0)
 }
@@ -49,20 +49,20 @@ pub struct Gain {
     /// Person, texture and device.
     #[serde(flatten)]
     pub key: GainKey,
-    /// Name of the file it was adjusted with, for display.
+    /// Name of the file with which the gain was adjusted, for display.
     pub file: String,
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub drive_v: f64,
-    /// Reference level of this drive voltage, RMS in the assets' unit; other representations are
-    /// scaled relative to it if levels are not normalised.
+    /// RMS, in the assets' unit, that is mapped to this drive voltage. If levels are not
+    /// normalised, other representations are scaled relative to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reference_rms: Option<f64>,
-    /// Names of the texture's recordings; they distinguish textures of the same name.
+    /// Names of the texture's recordings. They distinguish textures that have the same name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<String>,
-    /// BLAKE3 hash of the asset or scene, hexadecimal; the identifier in legacy entries.
+    /// BLAKE3 hash of the asset or scene, hexadecimal. Legacy entries use it as their identifier.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blake3: Option<String>,
 }
@@ -71,18 +71,18 @@ pub struct Gain {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Gains {
-    /// All gains; keys are unique.
+    /// All gains. No two have the same key.
     pub gains: Vec<Gain>,
 }
 
-/// The JSON Schema of files of gains: `spec/schemas/gains-1.json`.
+/// Returns the JSON Schema of gains files: `spec/schemas/gains-1.json`.
 pub fn gains_schema() -> Value {
     htex_schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
 }
 
-/// Identifier that all assets of one texture share, whenever and however they were fitted: the name
-/// and, if present, the author, both normalised by [`texture_name`]. For several textures played
-/// together, all of them in order.
+/// Returns the identifier that all assets of one texture share, whenever and however they were
+/// fitted: the name and, if present, the author, both normalised by [`texture_name`]. For several
+/// textures that are played together, it contains all of them in order.
 pub fn texture_id<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> String {
     let id = |texture: &Manifest| match texture.author.as_deref().map(texture_name) {
         Some(author) if !author.is_empty() => {
@@ -100,7 +100,7 @@ pub fn texture_name(name: &str) -> String {
     words.join(" ")
 }
 
-/// Names of the recordings of textures, in order.
+/// Returns the names of the textures' recordings, in order.
 pub fn recordings_of<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> Vec<String> {
     let recordings = textures.into_iter().flat_map(|t| &t.provenance.recordings);
     let names: BTreeSet<String> = recordings.map(|source| source.file.clone()).collect();
@@ -108,7 +108,7 @@ pub fn recordings_of<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> Ve
 }
 
 impl Gains {
-    /// Hash of an asset or scene, as in legacy entries.
+    /// Returns the hash of an asset or scene, as legacy entries store it.
     ///
     /// # Errors
     /// If the file cannot be read.
@@ -116,17 +116,17 @@ impl Gains {
         Ok(blake3::hash(&fs::read(file)?).to_hex().to_string())
     }
 
-    /// Path of the user's gains: `gains.json` in `$HTEX_CONFIG_DIR`, else in `htex` in the user's
-    /// configuration folder. `None` if there is no such folder.
+    /// Returns the path of the user's gains: `gains.json` in `$HTEX_CONFIG_DIR` if that is set,
+    /// otherwise in `htex` in the user's configuration folder. `None` if there is no such folder.
     pub fn user_file() -> Option<PathBuf> {
         htex_host::folders::config().map(|folder| folder.join("gains.json"))
     }
 
-    /// Reads a gains file; a missing file gives no gains.
+    /// Reads a gains file. If the file is missing, there are no gains.
     ///
     /// # Errors
-    /// If it cannot be read, is too large, or is not a gains file; also if it has keys that would
-    /// be lost when it is written again.
+    /// If the file cannot be read, is too large, or is not a gains file; also if it has keys that
+    /// would be lost when it is written again.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
@@ -139,10 +139,10 @@ impl Gains {
         Self::from_json(serde_json::from_slice(&bytes)?)
     }
 
-    /// Reads the contents of a gains file.
+    /// Reads gains from the contents of a gains file.
     ///
     /// # Errors
-    /// If they are not those of a gains file, or have keys that would be lost when it is written
+    /// If the contents are not a gains file, or have keys that would be lost when they are written
     /// again.
     pub fn from_json(document: Value) -> io::Result<Self> {
         htex_schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
@@ -158,17 +158,17 @@ impl Gains {
         }
     }
 
-    /// Reads the file, applies `change`, and replaces the file atomically; concurrent programs wait
+    /// Reads the file, applies `change`, and replaces the file atomically. Concurrent programs wait
     /// for each other. Creates the folder if it is missing.
     ///
     /// # Errors
-    /// As [`Self::load`], and I/O errors of writing.
+    /// As [`Self::load`], and I/O errors from writing.
     #[allow(clippy::disallowed_methods, reason = "the user's own folder of settings")]
     pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;
         }
-        // A lock file next to it, since the file itself is replaced.
+        // The lock is a separate file, because the gains file itself is replaced.
         let lock = fs::File::create(path.with_extension("lock"))?;
         lock.lock()?;
         let mut gains = Self::load(path)?;
@@ -177,14 +177,15 @@ impl Gains {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// The gain of a key; else the legacy entry of the same person and device for a file with this
-    /// hash.
+    /// Returns the gain for a key. If there is none, returns the legacy entry of the same person
+    /// and device for a file with this hash.
     pub fn find(&self, key: &GainKey, blake3: &str) -> Option<&Gain> {
         let exact = self.gains.iter().find(|gain| gain.key == *key);
         exact.or_else(|| self.gains.iter().find(|gain| gain.is_of_old(key, blake3)))
     }
 
-    /// Inserts a gain in place of an earlier one and of a legacy entry for a file with this hash.
+    /// Inserts a gain. It replaces an earlier gain with the same key and a legacy entry for a file
+    /// with this hash.
     pub fn put(&mut self, gain: Gain, blake3: &str) {
         let replaced = |other: &Gain| other.key == gain.key || other.is_of_old(&gain.key, blake3);
         self.gains.retain(|other| !replaced(other));

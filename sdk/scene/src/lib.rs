@@ -1,17 +1,18 @@
-//! Scenes: surfaces, a motion, and a device. The planner finds the shortest chain of stages for a
-//! scene and states the reason for each stage that is included or left out; the renderer runs
-//! exactly that chain.
+//! Plays scenes: surfaces, a motion, and a device. The planner finds the shortest chain of stages
+//! for a scene, and states a reason for every stage that it includes or leaves out. The renderer
+//! runs exactly that chain.
 //!
 //! From a scene to samples:
 //!
-//! 1. `load`: the file, its assets, trace and response. Problems are findings.
-//! 2. `requirements`: the motion, simulated as the renderer will play it: which surfaces are
-//!    touched, which speeds and forces occur, what the device needs.
-//! 3. `representation`: the model of each surface, by the budget.
-//! 4. `plan`: each effect of the table (`stages`) is asked whether it is needed. One that is not is
-//!    not built, and each decision has its reason.
-//! 5. `render` pulls: stages of the device, resampler, sum of the surfaces of one rate, stages of a
-//!    surface (`track`), voice.
+//! 1. `load` reads the file, its assets, trace and response. Problems become findings.
+//! 2. `requirements` simulates the motion as the renderer will play it: which surfaces are touched,
+//!    which speeds and forces occur, and what the device needs.
+//! 3. `representation` chooses the model of each surface within the budget.
+//! 4. `plan` asks each effect in the table (`stages`) whether it is needed. An effect that is not
+//!    needed is not built. Each decision has a reason.
+//! 5. `render` pulls samples through the chain: the device's stages request them from the
+//!    resampler, which requests the sum of the surfaces of one rate, which requests the stages of
+//!    each surface (`track`), which request its voice.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

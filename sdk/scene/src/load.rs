@@ -1,4 +1,4 @@
-//! Loading a scene with the files it names.
+//! Loads a scene and the files that it names.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -20,7 +20,7 @@ use crate::rules as rule;
 use crate::trace::Trace;
 use crate::validate::read_scene;
 
-/// Models and devices with which a scene is loaded.
+/// The models and devices that are available to a scene.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
     pub models: &'a Registry,
@@ -29,12 +29,12 @@ pub struct Surroundings<'a> {
     pub devices: &'a Devices,
 }
 
-/// The files that a scene names, of a program that does not have them in a folder.
+/// Gives a scene its files, for programs that do not keep them in a folder.
 pub trait SceneFiles {
-    /// Reads a file by its path as the scene has it.
+    /// Reads a file by its path, exactly as the scene states it.
     ///
     /// # Errors
-    /// Those of the program; [`io::ErrorKind::NotFound`] if there is no such file.
+    /// Errors of the program's own; [`io::ErrorKind::NotFound`] if there is no such file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 }
 
@@ -45,7 +45,7 @@ enum Place<'a> {
 }
 
 impl Place<'_> {
-    /// The folder that relative paths start from; empty if there is none.
+    /// The folder where relative paths start; empty if there is none.
     fn folder(&self) -> PathBuf {
         match self {
             Self::Folder(folder) => folder.clone(),
@@ -59,9 +59,9 @@ impl Place<'_> {
 pub struct LoadedScene {
     /// The contents of the file, with overrides applied to its device.
     pub scene: Scene,
-    /// Folder that relative paths start from.
+    /// Folder where relative paths start.
     pub folder: PathBuf,
-    /// The surfaces' assets, one for each surface.
+    /// The assets, one for each surface.
     pub assets: Vec<Asset>,
     /// The motion, if it is a trace.
     pub trace: Option<Trace>,
@@ -73,7 +73,7 @@ pub struct LoadedScene {
     pub notes: Vec<Finding>,
 }
 
-/// Error: a scene cannot be loaded.
+/// The reason why a scene cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
@@ -87,14 +87,14 @@ pub enum LoadError {
     /// The scene is invalid.
     #[error("invalid scene: {}", htex_finding::summary(.findings))]
     Invalid {
-        /// All findings, errors and others.
+        /// All findings, including those that are not errors.
         findings: Vec<Finding>,
     },
 }
 
 impl LoadError {
-    /// Shortens pointers to keys that the file leaves out, so that each refers to a value that is
-    /// there.
+    /// Shortens pointers to keys that the file leaves out, so that each pointer refers to an
+    /// existing value.
     fn pointing_into(mut self, bytes: &[u8]) -> Self {
         if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
             for Finding { pointer, .. } in findings {
@@ -108,7 +108,7 @@ impl LoadError {
 }
 
 impl LoadedScene {
-    /// The files it was read from, except the scene file.
+    /// Returns the files from which the scene was read, except the scene file.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let assets = self.scene.surfaces.iter().map(|surface| &surface.asset);
         let trace = match &self.scene.motion {
@@ -119,7 +119,7 @@ impl LoadedScene {
         all.map(|path| self.folder.join(path)).collect()
     }
 
-    /// The quantity of the assets; all have the same.
+    /// Returns the quantity of the assets, which is the same for all of them.
     pub fn quantity(&self) -> Quantity {
         let first = self.assets.first();
         first.map_or(Quantity::default(), Asset::quantity)
@@ -138,8 +138,8 @@ impl LoadedScene {
         Self::from_bytes(path, &read_file(path)?, around, device)
     }
 
-    /// Opens a scene in memory and the files it names; `path` is its notional location and is not
-    /// opened.
+    /// Opens a scene in memory and the files it names. `path` only says where the scene would be;
+    /// it is not opened.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -153,7 +153,7 @@ impl LoadedScene {
         Self::placed(bytes, &Place::Folder(folder(path)), around, device)
     }
 
-    /// Opens a scene in memory, whose files a program reads. Its `folder` is empty.
+    /// Opens a scene in memory whose files the program supplies. Its `folder` is empty.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -266,7 +266,7 @@ fn load(
     let settings = check_device(&scene.device, device, around.devices, held, findings);
     let assets = assets?;
     check_quantities(&assets, findings);
-    // An invalid motion has a finding already.
+    // An invalid motion already has a finding.
     if !findings.has_errors() {
         crate::beyond::check(&scene, &assets, trace.as_ref(), findings);
     }
@@ -284,7 +284,7 @@ fn load(
     })
 }
 
-/// The assets of all surfaces; each file is opened once.
+/// Opens the assets of all surfaces. Each file is opened only once.
 fn open_assets(
     scene: &Scene,
     place: &Place<'_>,
@@ -339,7 +339,7 @@ fn open_asset(
     })
 }
 
-/// Reports assets whose quantity differs from that of the first.
+/// Reports assets whose quantity differs from the first asset's.
 fn check_quantities(assets: &[Asset], findings: &mut Findings) {
     let Some(first) = assets.first().map(Asset::quantity) else {
         return;
@@ -361,8 +361,8 @@ fn check_quantities(assets: &[Asset], findings: &mut Findings) {
     }
 }
 
-/// Whether the path is a regular file or missing. Scenes may come from untrusted sources, and
-/// reading a device or a pipe may never end.
+/// Returns whether the path is a regular file or missing. Scenes may come from untrusted sources,
+/// and reading a device or a pipe may never end.
 fn may_be_read(path: &Path) -> bool {
     std::fs::metadata(path).map_or(true, |what| what.is_file())
 }
@@ -391,7 +391,7 @@ fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &m
             let first = tried.next().unwrap_or(Ok(()));
             first.or_else(|error| tried.find(Result::is_ok).unwrap_or(Err(error)))
         }
-        // An empty name has a finding already.
+        // An empty name already has a finding.
         name if name.trim().is_empty() => Ok(()),
         name => source(name),
     };
@@ -429,8 +429,8 @@ fn open_response(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> O
     opened(open, place, path, rules, "/device/response", findings)
 }
 
-/// Reports a response that is zero in the band of the textures, and warns of what its compensation
-/// raises.
+/// Reports a response that is zero in the textures' band, and warns about what its compensation
+/// amplifies.
 fn check_response(
     response: &Response,
     assets: &[Asset],
@@ -463,7 +463,7 @@ fn check_response(
 type Open<T> = fn(&Path) -> Result<T, ReadError>;
 type FromBytes<T> = fn(&str, &[u8]) -> Result<T, ReadError>;
 
-/// Opens a file; otherwise adds a finding that it is missing or invalid.
+/// Opens a file. If it is missing or invalid, adds a finding instead.
 fn opened<T>(
     (open, from_bytes): (Open<T>, FromBytes<T>),
     place: &Place<'_>,

@@ -1,4 +1,4 @@
-//! Measurement of the run times of models and stages on this machine.
+//! Measures the run times of models and stages on this machine.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -19,23 +19,23 @@ use crate::requirements::{Requirements, Span};
 use crate::stages::{Context, EFFECTS, Level, Stage, StagePlace};
 
 const BLOCK: usize = 64;
-/// Samples per timed run: short enough that some runs are not interrupted.
+/// Samples in one timed run. It is short enough that some runs are not interrupted.
 const STRETCH: usize = 2_048;
 const ROUNDS: usize = 400;
-/// Samples that a resampler pulls at a time, at the rates of the models.
+/// Number of samples that a resampler requests at a time, at the models' rates.
 const PULLED: usize = 8;
-/// Blocks that are pulled in a control block.
+/// Number of requested blocks in a control block.
 const CONTROL: usize = 2;
-/// Coefficients of the two filters that are measured.
+/// Number of coefficients of the two filters that are measured.
 const SHORT: usize = 201;
 const LONG: usize = 801;
-/// Converters of one stage with few and with many coefficients: from a rate to a rate, for a
-/// highest frequency, hertz.
+/// Single-stage converters with few and with many coefficients: input rate, output rate and highest
+/// frequency, hertz.
 const WHOLE: [[f64; 3]; 2] = [[4_000.0, 20_000.0, 1_000.0], [2_000.0, 6_000.0, 1_000.0]];
 const RATIONAL: [[f64; 3]; 2] = [[4_000.0, 44_100.0, 1_000.0], [2_000.0, 2_500.0, 1_000.0]];
 
 impl Costs {
-    /// Measures all models of a registry and all stages; takes about a second.
+    /// Measures all models in a registry and all stages. Takes about a second.
     ///
     /// # Errors
     /// If a model cannot be fitted or played.
@@ -60,7 +60,8 @@ impl Costs {
     }
 }
 
-/// Minimum time over many runs, nanoseconds per sample; longer times are caused by interruptions.
+/// Returns the minimum time over many runs, nanoseconds per sample. Interruptions cause the longer
+/// times.
 fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     let mut block = [0.0f32; BLOCK];
     let mut stretch = || {
@@ -73,8 +74,8 @@ fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     (0..ROUNDS).map(|_| stretch()).fold(f64::INFINITY, f64::min)
 }
 
-/// Time per sample at the model's own rate, and time of interpolating parameters and retuning, both
-/// in nanoseconds.
+/// Returns the time per sample at the model's own rate, and the time to interpolate parameters and
+/// retune, both in nanoseconds.
 fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     let (one, other) = (fitted(model, 200.0)?, fitted(model, 300.0)?);
     let rate_hz = model.voice_rate_hz(&one, Band::TACTILE, 20_000.0)?;
@@ -100,7 +101,7 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))
 }
 
-/// Parameters of a noise-like spectrum that falls above `corner_hz`.
+/// Returns parameters for a noise-like spectrum that falls above `corner_hz`.
 fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
@@ -117,7 +118,7 @@ fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     Ok(model.fit(&request)?.parameters)
 }
 
-/// The cost of a filter from the work and the time of a short and a long one, per sample.
+/// Derives the cost of a filter from the work and the time, per sample, of a short and a long one.
 fn filter_cost([(few, short_ns), (many, long_ns)]: [(Part, f64); 2]) -> FilterCost {
     let per_sample = |part: Part| part.macs / part.samples;
     let [short_ns, long_ns] = [short_ns / few.samples, long_ns / many.samples];
@@ -125,7 +126,7 @@ fn filter_cost([(few, short_ns), (many, long_ns)]: [(Part, f64); 2]) -> FilterCo
     FilterCost { sample_ns: (short_ns - per_sample(few) * mac_ns).max(0.0), mac_ns }
 }
 
-/// Measures filters of two lengths, in the blocks that a resampler pulls.
+/// Measures filters of two lengths, in blocks as short as a resampler requests them.
 fn compensation() -> FilterCost {
     let source_ns = least(signal());
     filter_cost([SHORT, LONG].map(|taps| {
@@ -140,7 +141,7 @@ fn compensation() -> FilterCost {
     }))
 }
 
-/// Measures two converters of one stage: from a rate to a rate, for a highest frequency, hertz.
+/// Measures two single-stage converters: input rate, output rate and highest frequency, hertz.
 fn conversion(rates_hz: [[f64; 3]; 2]) -> Result<FilterCost, UnusableRates> {
     let one = |[from_hz, to_hz, top_hz]: [f64; 3]| {
         let work = Resampler::work(from_hz, to_hz, top_hz, false)?.unwrap_or_default();
@@ -157,11 +158,11 @@ fn conversion(rates_hz: [[f64; 3]; 2]) -> Result<FilterCost, UnusableRates> {
     Ok(filter_cost([short?, long?]))
 }
 
-/// Stage to time.
+/// Time of each stage.
 type Times = BTreeMap<String, f64>;
 
-/// Time per sample of each stage at its own rate, nanoseconds, but of filters: where it is needed,
-/// and where it changes nothing.
+/// Returns the time per sample of each stage except filters, at its own rate, nanoseconds: first
+/// where the stage is needed, then where it changes nothing.
 fn stages() -> Result<(Times, Times), UnusableRates> {
     let (required, played) = (example_required(), example_surface());
     let (mut needed, mut neutral) = (BTreeMap::new(), BTreeMap::new());
@@ -169,7 +170,7 @@ fn stages() -> Result<(Times, Times), UnusableRates> {
     needed.insert("level".to_owned(), level);
     for entry in EFFECTS {
         for (costs, is_neutral) in [(&mut needed, false), (&mut neutral, true)] {
-            // A resampler pulls short blocks from what is before it.
+            // A resampler requests short blocks from the stages before it.
             let (mut stage, block) = match &entry.place {
                 StagePlace::Surface { build: None, .. } => continue,
                 StagePlace::Surface { build: Some(build), .. } => {
@@ -197,8 +198,8 @@ fn signal() -> impl FnMut(&mut [f32]) {
     }
 }
 
-/// Time per sample of a stage that is rendered in blocks of `pulled`. `moves`: the motion changes
-/// at every control block, of which one lasts about two blocks that are pulled.
+/// Returns the time per sample of a stage that renders blocks of `pulled` samples. `moves` says
+/// whether the motion changes at every control block, which lasts about two such blocks.
 fn measure_stage(stage: &mut dyn Stage, pulled: usize, moves: bool) -> f64 {
     let mut source = signal();
     let context = |turn: bool| Context {
@@ -258,7 +259,7 @@ fn example_required() -> Requirements {
     }
 }
 
-/// One condition, with the law of a finger.
+/// One condition, with a finger's law.
 fn example_motions() -> Motions {
     let condition =
         Condition { speed_mm_s: Some(80.0), force_n: Some(0.4), ..Condition::default() };

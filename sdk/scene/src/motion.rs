@@ -1,4 +1,4 @@
-//! The position and motion of the finger over the time of a scene.
+//! The position and motion of the finger over the course of a scene.
 
 use htex_play::exploration::{HOLD_S, MIN_SLIDING_MM_S, slides};
 
@@ -13,7 +13,7 @@ pub struct Finger {
     pub speed_mm_s: f64,
     /// Normal force, newtons.
     pub force_n: f64,
-    /// Position, mm; `None`: on every surface without a region.
+    /// Position, mm. `None` means that the finger is on every surface without a region.
     pub at_mm: Option<[f64; 2]>,
 }
 
@@ -26,19 +26,20 @@ impl Finger {
         htex_play::Motion::new(self.speed_mm_s.abs(), self.force_n)
     }
 
-    /// Whether a finger moves so: numbers, a force that is not negative, at most 1000 mm/s and 20
-    /// N. Else the reading has failed.
+    /// Returns whether a finger can move like this: all numbers are finite, the force is not
+    /// negative, the speed is at most 1000 mm/s and the force at most 20 N. Otherwise the reading
+    /// has failed.
     pub fn is_reading(&self) -> bool {
         let is_placed = self.at_mm.is_none_or(|at| at.iter().all(|x| x.is_finite()));
         is_placed && self.motion().checked().is_ok() && self.motion().is_plausible()
     }
 
-    /// Whether it is in contact and moving.
+    /// Whether the finger is in contact and moving.
     pub fn slides(&self) -> bool {
         slides(self.speed_mm_s, self.force_n)
     }
 
-    /// Whether it is inside a region; `None` covers everything.
+    /// Whether the finger is inside a region; `None` covers everything.
     pub(crate) fn is_in(&self, region: Option<&Region>) -> bool {
         match (region, self.at_mm) {
             (None, _) => true,
@@ -51,25 +52,25 @@ impl Finger {
     }
 }
 
-/// The readings of a finger: those that no finger has are replaced by the last good motion, for at
-/// most [`HOLD_S`]. Every motion of a scene goes through them, so that one bad reading changes
-/// nothing that is felt.
+/// Filters the readings of a finger. It replaces impossible readings by the last good motion, for
+/// at most [`HOLD_S`]. Every motion of a scene passes through this filter, so that one bad reading
+/// is not felt.
 #[derive(Debug)]
 pub(crate) struct Readings {
     last: Finger,
-    /// Control blocks for which a motion is held, and those for which it has been.
+    /// How many control blocks a motion is held at most, and for how many it has been held.
     most: u64,
     held: u64,
 }
 
 impl Readings {
-    /// Makes readings of one in each control block of a duration, seconds.
+    /// Makes a filter for one reading in each control block, whose duration is given in seconds.
     pub(crate) fn new(control_s: f64) -> Self {
         Self { last: Finger::AWAY, most: (HOLD_S / control_s) as u64, held: 0 }
     }
 
-    /// Takes a reading that holds for a number of control blocks; returns it, the held one at its
-    /// place, or no contact.
+    /// Takes a reading that lasts for a number of control blocks. Returns that reading, or the last
+    /// good one in its place, or no contact.
     pub(crate) fn take(&mut self, finger: Finger, blocks: u64) -> Finger {
         if finger.is_reading() {
             (self.last, self.held) = (finger, 0);
@@ -81,7 +82,7 @@ impl Readings {
         Finger { at_mm: finger.at_mm.filter(is_placed).or(self.last.at_mm), ..known }
     }
 
-    /// Whether the last reading was a good one.
+    /// Whether the last reading was good.
     pub(crate) fn is_good(&self) -> bool {
         self.held == 0
     }
@@ -110,7 +111,8 @@ impl Course {
         }
     }
 
-    /// The finger at `t_s` seconds; without contact if the motion is live. Does not allocate.
+    /// Returns the finger at `t_s` seconds; without contact if the motion is live. Does not
+    /// allocate.
     pub(crate) fn at(&self, t_s: f64) -> Finger {
         match self {
             Self::Constant(constant) => Finger {

@@ -5,9 +5,9 @@ use std::path::Path;
 /// Maximum length of a file extension, characters.
 const LONGEST_ENDING: usize = 8;
 
-/// Default output file of a scene or an asset: its name with the extension of the format, in the
-/// current folder. The extension is `wav` if the format is `auto` or not a plain word. For any
-/// input the result is a single file name in the current folder and not a hidden file.
+/// Returns the default output file of a scene or an asset: its name with the extension of the
+/// format, in the current folder. The extension is `wav` if the format is `auto` or not a plain
+/// word. The result is always a single file name in the current folder, and never a hidden file.
 ///
 /// ```
 /// # use htex_scene::output_name;
@@ -18,7 +18,8 @@ pub fn output_name(scene: &Path, format: &str) -> String {
     named(&stem(scene), format)
 }
 
-/// The file name of the scene or asset in `path` without its extension; never a hidden file's name.
+/// Returns the file name of the scene or asset in `path` without its extension. The result is never
+/// a hidden file's name.
 pub(crate) fn stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let stem =
@@ -30,7 +31,7 @@ pub(crate) fn stem(path: &Path) -> String {
     }
 }
 
-/// A stem with the extension of a format.
+/// Adds the extension of a format to a stem.
 pub(crate) fn named(stem: &str, format: &str) -> String {
     let is_word = |text: &str| text.bytes().all(|byte| byte.is_ascii_alphanumeric());
     let ending = match format {

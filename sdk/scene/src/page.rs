@@ -1,4 +1,4 @@
-//! Generation of `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
+//! Generates `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
 
 use htex_finding::rules_page;
 use serde_json::Value;
@@ -39,12 +39,12 @@ leaves out is the pointer to the nearest value around it that is there: `REPRESE
 A player has other reasons to refuse a scene, which it finds as it plans (sections 4 to 6 of [scene-1.md](scene-1.md)) and which have no code.
 ";
 
-/// The page with all rules: `spec/scene-findings.md`.
+/// Returns the page with all rules: `spec/scene-findings.md`.
 pub fn findings_page() -> String {
     rules_page(HEAD, RULES)
 }
 
-/// The JSON Schema of scenes of version 1.0: `spec/schemas/scene-1.json`.
+/// Returns the JSON Schema of version 1.0 scenes: `spec/schemas/scene-1.json`.
 pub fn scene_schema() -> Value {
     htex_schema::document::<Scene>("scene-1.json", "Scene of htex 1")
 }

@@ -1,8 +1,9 @@
-//! Position of the finger along its path, for models that follow the motion themselves. It
-//! increases in the direction of the first stroke and decreases against it, so that a place has the
-//! same position on forward and back strokes.
+//! Position of the finger along its path, for models that follow the motion themselves. The
+//! position increases in the direction of the first stroke and decreases against it, so a place has
+//! the same position on forward and back strokes.
 //!
-//! Of a trace the smoothed velocity is integrated, since the positions of trackers are stepped.
+//! For a trace it is the integral of the smoothed velocity, because the positions that trackers
+//! record change in steps.
 
 use crate::motion::{Course, Finger};
 use crate::trace::Trace;
@@ -10,7 +11,7 @@ use crate::trace::Trace;
 /// Position of the finger along its path over time.
 #[derive(Debug)]
 pub(crate) enum Path {
-    /// One speed, mm/s, from the start of the scene.
+    /// A constant speed, mm/s, from the start of the scene.
     Steady(f64),
     Trace(TracePath),
     Live(LivePath),
@@ -33,7 +34,7 @@ impl Path {
         }
     }
 
-    /// Speed and position at a time, seconds. Does not allocate.
+    /// Returns speed and position at a time in seconds. Does not allocate.
     pub(crate) fn at(&self, t_s: f64) -> PathPoint {
         match self {
             Self::Steady(speed_mm_s) => {
@@ -44,7 +45,7 @@ impl Path {
         }
     }
 
-    /// Updates the path of a live scene with the finger at a time, seconds.
+    /// Updates the path of a live scene: the finger is here at a time in seconds.
     pub(crate) fn moved(&mut self, finger: &Finger, t_s: f64) {
         if let Self::Live(path) = self {
             path.moved(finger, t_s);
@@ -52,8 +53,8 @@ impl Path {
     }
 }
 
-/// The path of a trace: the integral of its velocity. The positions of the trace have the steps of
-/// the tracker; the velocity is smoothed.
+/// The path of a trace: the integral of its smoothed velocity. The trace's own positions show the
+/// tracker's steps.
 #[derive(Debug)]
 pub(crate) struct TracePath {
     t_s: Vec<f64>,
@@ -62,7 +63,7 @@ pub(crate) struct TracePath {
 }
 
 impl TracePath {
-    /// The path of a trace whose first stroke goes `way`.
+    /// Makes the path of a trace whose first stroke goes in the direction `way`.
     fn new(trace: &Trace, way: [f64; 2]) -> Self {
         let signed = |[x, y]: &[f64; 2]| libm::hypot(*x, *y).copysign(x * way[0] + y * way[1]);
         let speed_mm_s: Vec<f64> = trace.velocity_mm_s.iter().map(signed).collect();
@@ -78,8 +79,8 @@ impl TracePath {
         Self { t_s: trace.t_s.clone(), speed_mm_s, position_mm }
     }
 
-    /// The speed interpolated linearly between rows, and its integral; at rest before the first and
-    /// after the last row.
+    /// Returns the speed, interpolated linearly between rows, and its integral. Before the first
+    /// row and after the last one the finger is at rest.
     fn at(&self, t_s: f64) -> PathPoint {
         let above = self.t_s.partition_point(|t| *t <= t_s);
         let row = above.saturating_sub(1);
@@ -101,8 +102,8 @@ impl TracePath {
     }
 }
 
-/// The path of a live finger between updates: the distance between successive places where both are
-/// known, else the integral of the speed.
+/// The path of a live finger between updates. If both places are known, it is the distance between
+/// them; otherwise it is the integral of the speed.
 #[derive(Debug, Default)]
 pub(crate) struct LivePath {
     t_s: f64,
@@ -124,7 +125,7 @@ impl LivePath {
         self.position_mm = match self.at_mm.zip(finger.at_mm) {
             Some(([x0, y0], [x1, y1])) => {
                 let way = libm::hypot(x1 - x0, y1 - y0).copysign(finger.speed_mm_s);
-                // Replaces the integral of the speed since the last update, which is an
+                // Replaces the integral of the speed since the last update, which is only an
                 // extrapolation.
                 self.position_mm + way
             }

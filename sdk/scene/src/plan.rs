@@ -14,29 +14,28 @@ use crate::representation::{self, Choice};
 use crate::requirements::Requirements;
 use crate::stages::{EFFECTS, Entry, HEADROOM, Need, StagePlace, resampling_work};
 
-/// A plan: the stages that run, the effects left out, and the reason for each.
+/// A plan: the stages that run, the effects that are left out, and the reason for each.
 #[derive(Debug, Serialize)]
 pub struct Plan {
     /// The stages in processing order.
     pub stages: Vec<PlannedStage>,
     /// The effects that are left out.
     pub left_out: Vec<LeftOut>,
-    /// The representation of each surface that is touched.
+    /// The representation of each surface that the finger touches.
     pub representation: Vec<Chosen>,
-    /// What the renderer takes beside the stages, nanoseconds per sample.
+    /// Time that the renderer takes apart from the stages, nanoseconds per sample.
     pub renderer_ns: f64,
-    /// Sum of the stages' costs and the renderer's, nanoseconds per sample.
+    /// Total cost of the stages and the renderer, nanoseconds per sample.
     pub ns_per_sample_total: f64,
-    /// Whether nothing changes while the scene plays, so that stages are not updated between
-    /// blocks.
+    /// Whether nothing changes while the scene plays. Stages are then not updated between blocks.
     pub constant: bool,
     /// Rate of the device, hertz.
     pub rate_hz: f64,
-    /// Frames of a control block, the interval at which the motion is read.
+    /// Frames in a control block, the interval at which the motion is read.
     pub block_frames: usize,
     /// Length in frames; `None` if endless.
     pub frames: Option<u64>,
-    /// Source of the costs.
+    /// Where the costs come from.
     pub costs: String,
     /// Reference level: the RMS that is mapped to the drive voltage or the preview level, in the
     /// assets' unit.
@@ -57,14 +56,14 @@ pub struct Plan {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlannedStage {
     pub name: &'static str,
-    /// Its surface; `None`: all surfaces.
+    /// The stage's surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Reason why it is included.
+    /// Why it is included.
     pub reason: String,
     /// Rate of its output, hertz.
     pub rate_hz: f64,
-    /// Its run time, nanoseconds per sample of the device, averaged over the scene.
+    /// Run time, nanoseconds per sample of the device, averaged over the scene.
     pub ns_per_sample: f64,
 }
 
@@ -73,10 +72,10 @@ pub struct PlannedStage {
 pub struct LeftOut {
     /// Name of the effect.
     pub name: &'static str,
-    /// Its surface; `None`: all surfaces.
+    /// The effect's surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Reason why it is left out.
+    /// Why it is left out.
     pub reason: String,
 }
 
@@ -86,18 +85,18 @@ pub struct Chosen {
     /// Index of the surface.
     pub surface: usize,
     pub model: String,
-    /// Reason for the choice.
+    /// Why it was chosen.
     pub why: String,
 }
 
-/// A surface with its own effects; the flag says whether an effect is neutral.
+/// A surface with its own effects. The flag says whether an effect is neutral.
 #[derive(Debug)]
 pub(crate) struct PlannedSurface {
     pub(crate) played: PlayedSurface,
     pub(crate) effects: BTreeMap<Effect, bool>,
 }
 
-/// Surfaces mixed at one rate, and the effects of the mix.
+/// Surfaces that are mixed at one rate, and the effects of the mix.
 #[derive(Debug)]
 pub(crate) struct Mix {
     /// Indices of the surfaces.
@@ -151,18 +150,18 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     })
 }
 
-/// Maximum percentage of samples that may be clipped at the drive: reached by noise 7 dB above the
-/// reference.
+/// Largest percentage of samples that the drive may clip. Noise 7 dB above the reference reaches
+/// it.
 const MOST_CLAMPED_PERCENT: f64 = 5.0;
 
-/// Rejects a texture that is far too strong for the drive. Noise at the reference level is clipped
-/// once in 75,000 samples.
+/// Rejects a texture that is far too strong for the drive. At the reference level, noise is clipped
+/// only once in 75,000 samples.
 fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneError> {
     let over = loudest_rms / required.level_rms;
     if required.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
         return Ok(());
     }
-    // For normally distributed noise, both tails.
+    // Both tails of the normal distribution.
     let percent = 100.0 * libm::erfc(HEADROOM / over / std::f64::consts::SQRT_2);
     if percent > MOST_CLAMPED_PERCENT {
         Err(SceneError::Clamped {
@@ -199,7 +198,7 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
     if constant {
         notes.push("nothing changes over the scene: the constant path is used".to_owned());
     }
-    // With the levels `own` the two differ.
+    // The two levels differ only with the levels `own`.
     if required.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != required.level_rms {
         let db = 20.0 * libm::log10(loudest_rms / required.level_rms);
         notes.push(format!(
@@ -263,8 +262,8 @@ impl<'a> Draft<'a> {
         stages.sum::<f64>() + self.renderer_ns()
     }
 
-    /// What the renderer takes itself, which reads the motion before every block unless nothing
-    /// changes.
+    /// Returns the time that the renderer itself takes. It reads the motion before every block,
+    /// unless nothing changes.
     fn renderer_ns(&self) -> f64 {
         let ends = |(entry, _): &(&Entry, bool)| entry.effect == Effect::Contact;
         let constant = is_constant(self.required, &self.surfaces);
@@ -343,7 +342,7 @@ impl<'a> Draft<'a> {
         }));
     }
 
-    /// Adds the stages of a mix of surfaces of one rate.
+    /// Adds the stages for a mix of surfaces that have the same rate.
     fn mix(&mut self, surfaces: &[PlayedSurface], group: Vec<usize>) -> Result<(), SceneError> {
         let first = &surfaces[group[0]];
         let surface = (group.len() == 1 && surfaces.len() > 1).then_some(first.surface);
@@ -363,7 +362,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Output rate of a mix's stage, and its cost per frame of the device.
+    /// Returns the output rate of a mix's stage, and its cost per frame of the device.
     fn mix_cost(&self, entry: &Entry, played: &PlayedSurface) -> Result<(f64, Ns), SceneError> {
         let costs = self.costs;
         let neutral = costs.neutral(entry.name);
@@ -385,7 +384,7 @@ impl<'a> Draft<'a> {
         })
     }
 
-    /// Includes an effect, returning whether it is neutral, or leaves it out.
+    /// Includes an effect and returns whether it is neutral, or leaves the effect out.
     fn decide(
         &mut self,
         entry: &'static Entry,
@@ -420,7 +419,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Whether the device would get invalid samples without the effect.
+    /// Whether the device would receive invalid samples without the effect.
     fn is_needed(&self, entry: &Entry) -> bool {
         match entry.effect {
             Effect::Resampling => true,
@@ -428,7 +427,7 @@ impl<'a> Draft<'a> {
                 !self.required.device.quantity.is_physical() || self.required.quantity_gain != 1.0
             }
             Effect::SquareRoot => !self.required.device.quantity.is_physical(),
-            // A voltage starts and ends at zero, stays within the drive, and charges nobody.
+            // A voltage must start and end at zero, stay within the drive, and not charge anybody.
             Effect::Contact | Effect::Limiter | Effect::Carrier => {
                 self.required.device.quantity == Quantity::DisplayVoltage
             }
@@ -460,7 +459,7 @@ fn always(played: &PlayedSurface) -> String {
     }
 }
 
-/// Indices of surfaces that can share one resampler, in groups.
+/// Groups the surfaces that can share one resampler, as indices.
 fn groups(surfaces: &[PlayedSurface]) -> Vec<Vec<usize>> {
     let key = |p: &PlayedSurface| (p.own_rate, [p.mix_rate_hz, p.fixed_ratio, p.top_hz]);
     let mut groups: Vec<Vec<usize>> = Vec::new();

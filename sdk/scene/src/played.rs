@@ -1,5 +1,4 @@
-//! A surface as it is played by one of its representations: its rates, its constant factors and its
-//! level.
+//! A surface as one of its representations plays it: its rates, its constant factors and its level.
 
 use std::sync::Arc;
 
@@ -12,11 +11,11 @@ use crate::file::{Effect, Switch};
 use crate::load::LoadedScene;
 use crate::requirements::{Requirements, Span, Touch};
 
-/// Largest frequency ratio that a live motion is prepared for.
+/// Largest frequency ratio for which a live scene is prepared.
 const LIVE_RATIO: f64 = 4.0;
-/// Largest factor of the level that a live motion is prepared for.
+/// Largest level factor for which a live scene is prepared.
 const LIVE_GAIN: f64 = 3.0;
-/// Rate of a voice before a compensation, relative to the highest frequency.
+/// Rate of a voice before compensation, relative to the highest frequency.
 const FILTERED_OVERSAMPLING: f64 = 2.5;
 
 /// A surface played by one of its representations.
@@ -24,19 +23,19 @@ const FILTERED_OVERSAMPLING: f64 = 2.5;
 pub(crate) struct PlayedSurface {
     pub(crate) surface: usize,
     pub(crate) model: String,
-    /// Error by which the representation is chosen, by the budget's measure, decibels; `None` if
-    /// not measured.
+    /// The error by which the budget chooses the representation, in the budget's measure, decibels;
+    /// `None` if not measured.
     pub(crate) error_db: Option<f64>,
-    /// Largest error over the measured conditions, which the budget limits, decibels.
+    /// Largest error over the measured conditions, decibels. The budget limits it.
     pub(crate) largest_error_db: Option<f64>,
     /// Number of known conditions.
     pub(crate) known: usize,
-    /// Known speeds and forces, and the law beyond them.
+    /// Known speeds and forces, and the law that applies outside them.
     pub(crate) motions: Arc<Motions>,
-    /// Factors of frequencies and of the level that occur.
+    /// The frequency and level factors that occur.
     pub(crate) frequency: Span,
     pub(crate) level: Span,
-    /// The model follows the motion itself.
+    /// Whether the model follows the motion itself.
     pub(crate) follows_motion: bool,
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
@@ -46,7 +45,7 @@ pub(crate) struct PlayedSurface {
     pub(crate) start: Option<htex_play::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,
-    /// The model has this rate whichever is wanted, and nothing changes it before the conversion.
+    /// Whether the model always has this rate and nothing changes it before the conversion.
     pub(crate) own_rate: bool,
     /// Rate after speed scaling, relative to the rate of the model.
     pub(crate) oversampling: f64,
@@ -59,14 +58,14 @@ pub(crate) struct PlayedSurface {
     pub(crate) fixed_ratio: f64,
     /// Constant factor of the level.
     pub(crate) fixed_gain: f64,
-    /// Factor on the asset's level.
+    /// Factor that multiplies the asset's level.
     pub(crate) gain: f64,
     /// Largest RMS after compensation, in the asset's unit.
     pub(crate) level_rms: f64,
 }
 
 impl PlayedSurface {
-    /// Takes the representation of `model` for a surface.
+    /// Makes a surface that the representation of `model` plays.
     pub(crate) fn new(
         scene: &LoadedScene,
         required: &Requirements,
@@ -118,8 +117,9 @@ impl PlayedSurface {
         Ok(played)
     }
 
-    /// Makes the surface's voice. A model that renders at any rate is given one that needs no
-    /// conversion after speed scaling, or, before a compensation, one at which its filter is short.
+    /// Makes the surface's voice. If the model can render at any rate, the rate is chosen so that
+    /// no conversion is needed after speed scaling or, before a compensation, so that its filter is
+    /// short.
     pub(crate) fn source(
         &self,
         scene: &LoadedScene,
@@ -138,7 +138,7 @@ impl PlayedSurface {
         )
     }
 
-    /// Finds the factors of all motions on the surface, as far as their effects are on.
+    /// Finds the factors of all motions on the surface, for the effects that are on.
     fn find_factors(&mut self, scene: &LoadedScene, touch: &Touch) {
         let is_on = |effect| scene.scene.effects.get(&effect) != Some(&Switch::Off);
         let explored = self.motions.explored();
@@ -158,7 +158,7 @@ impl PlayedSurface {
         }
     }
 
-    /// Applies the factor of frequencies to the rates: a constant one to the resampler, a changing
+    /// Applies the frequency factor to the rates: a constant factor to the resampler, a changing
     /// one to the warp.
     fn scale_frequencies(&mut self) {
         if self.frequency.is_point() {
@@ -171,8 +171,8 @@ impl PlayedSurface {
         self.top_hz *= fastest.max(1.0);
     }
 
-    /// Increases the oversampling of a changing speed until the rate is an integer fraction of the
-    /// device's: conversion by an integer factor takes a fraction of the time of other conversions.
+    /// Increases the oversampling for a changing speed until the rate is an integer fraction of the
+    /// device's. Converting by an integer factor takes a fraction of the time of other conversions.
     fn divide_rate(&mut self, device_hz: f64) {
         let parts = (device_hz / (self.rate_hz * self.fixed_ratio * self.oversampling)).floor();
         if self.oversampling > 1.0 && parts >= 1.0 {
@@ -180,8 +180,7 @@ impl PlayedSurface {
         }
     }
 
-    /// Applies a constant factor of the level to the gain; returns the largest factor of a changing
-    /// one.
+    /// Applies a constant level factor to the gain. Returns the largest factor if it changes.
     fn scale_level(&mut self) -> f64 {
         if self.level.is_point() {
             self.fixed_gain = self.level.only();
@@ -191,7 +190,7 @@ impl PlayedSurface {
         if self.level.high.is_finite() { self.level.high } else { LIVE_GAIN }
     }
 
-    /// Ratio of the RMS after the compensation to that before it.
+    /// Returns the ratio of the RMS after compensation to the RMS before it.
     fn compensated(
         &self,
         required: &Requirements,
@@ -213,13 +212,13 @@ impl PlayedSurface {
     }
 }
 
-/// The representation of a model.
+/// Returns the representation of a model.
 fn representation<'a>(asset: &'a htex_play::Asset, model: &str) -> Option<&'a Representation> {
     let all = &asset.manifest().representations;
     all.iter().find(|r| r.model == model)
 }
 
-/// The largest level of a representation, in the asset's unit.
+/// Returns the largest level of a representation, in the asset's unit.
 fn loudest(asset: &htex_play::Asset, model: &str, level_rms: f64) -> f64 {
     let found = representation(asset, model).into_iter();
     let levels = found.flat_map(|r| &r.at).map(|at| at.level_rms);

@@ -11,7 +11,7 @@ use crate::requirements::Requirements;
 use crate::stages::{Chain, Context, Slot, StagePlace, StageRun, Statistics};
 use crate::track::{FingerOnPath, Track};
 
-/// Maximum number of samples mixed at a time.
+/// Largest number of samples mixed at a time.
 const PIECE: usize = 256;
 
 /// Plays a scene. [`Renderer::render`] is real-time safe: it does not allocate, lock or wait.
@@ -28,8 +28,8 @@ pub struct Renderer {
     frame: u64,
     /// Frames until the next control block.
     left: usize,
-    /// Whether stages are updated at control blocks; else the scene does not change and is rendered
-    /// ahead.
+    /// Whether stages are updated at control blocks. If not, the scene does not change and is
+    /// rendered ahead.
     follows: bool,
     ahead: Ahead,
     timed: bool,
@@ -55,7 +55,7 @@ impl Timing {
     }
 }
 
-/// Surfaces of one rate, and the stages after their sum.
+/// Surfaces that have the same rate, and the stages after their sum.
 struct MixChain {
     tracks: Vec<Track>,
     chain: Chain,
@@ -102,7 +102,8 @@ impl Renderer {
         })
     }
 
-    /// Makes a renderer without surfaces and stages, to measure what it takes itself.
+    /// Makes a renderer without surfaces and stages, to measure the time that the renderer itself
+    /// takes.
     pub(crate) fn silent(required: &Requirements, constant: bool) -> Self {
         let course = Course::Live;
         Self {
@@ -124,7 +125,7 @@ impl Renderer {
         }
     }
 
-    /// Enables timing of each stage, which slows rendering down.
+    /// Enables timing of each stage, which slows down rendering.
     #[must_use]
     pub fn timed(mut self) -> Self {
         self.timed = true;
@@ -135,13 +136,13 @@ impl Renderer {
         self.timing.rate_hz
     }
 
-    /// Sets the position and motion of the finger of a live scene. Numbers that no finger has
-    /// ([`Finger::is_reading`]) are a failed reading: the last good motion is held for at most 100
-    /// ms, then there is no contact until the next good one.
+    /// Sets the position and motion of the finger in a live scene. Numbers that are impossible for
+    /// a finger ([`Finger::is_reading`]) count as a failed reading: the last good motion is held
+    /// for at most 100 ms, then there is no contact until the next good one.
     ///
     /// # Errors
-    /// [`SceneError::Motion`] if a number is not finite or the force is negative; that is a failed
-    /// reading, too.
+    /// [`SceneError::Motion`] if a number is not finite or the force is negative. This also counts
+    /// as a failed reading.
     pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
         self.live = finger;
         if finger.is_reading() {
@@ -160,7 +161,7 @@ impl Renderer {
         self.frame as f64 / self.timing.rate_hz
     }
 
-    /// Ends the scene with a ramp to silence, as early as possible.
+    /// Ends the scene as early as possible, with a ramp to silence.
     pub fn stop(&mut self) {
         let end = self.frame + self.timing.ramp + self.timing.control as u64;
         self.timing.frames = Some(self.timing.frames.map_or(end, |frames| frames.min(end)));
@@ -172,14 +173,15 @@ impl Renderer {
     }
 
     /// Fills `out` with the next samples, in the unit of the device, and returns their number,
-    /// which is smaller at the end of the scene. The samples do not depend on the size of `out`. If
-    /// a model fails, its surface is silent and the others continue; see [`Self::take_failure`].
+    /// which is smaller at the end of the scene. The samples do not depend on the length of `out`.
+    /// If a model fails, its surface is silent and the others continue; see [`Self::take_failure`].
     pub fn render(&mut self, out: &mut [f32]) -> usize {
         if self.follows { self.render_blocks(out) } else { self.render_ahead(out) }
     }
 
-    /// Renders many samples at once even if few are requested, so that renderers that run in turn
-    /// load the memory of their chains once for many blocks. For scenes that do not change.
+    /// Renders many samples at once even if few are requested. When several renderers run in turn,
+    /// each then loads the memory of its chain once for many blocks. Only for scenes that do not
+    /// change.
     fn render_ahead(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         loop {
@@ -201,7 +203,7 @@ impl Renderer {
 
     /// Renders at most `left` samples ahead.
     fn fill_ahead(&mut self, left: u64) {
-        // The motion is constant: one update at the start suffices.
+        // The motion is constant, so one update at the start suffices.
         if self.frame == 0 {
             let (_, on_path) = self.finger();
             let tracks = self.mixes.iter_mut().flat_map(|mix| &mut mix.tracks);
@@ -243,8 +245,8 @@ impl Renderer {
         self.peak = peak;
     }
 
-    /// The finger at the current frame, as far as its readings are good, and its position along the
-    /// path.
+    /// Returns the finger at the current frame, after failed readings were replaced, and its
+    /// position along the path.
     fn finger(&mut self) -> (Finger, FingerOnPath) {
         let t_s = self.seconds();
         let reading = match self.course {
@@ -276,7 +278,7 @@ impl Renderer {
         self.device.follow(&context);
     }
 
-    /// Statistics of each stage so far, in the order of the plan.
+    /// Returns statistics of each stage so far, in the order of the plan.
     pub fn stages_run(&self) -> Vec<StageRun> {
         let frames = self.timed.then_some(self.frame);
         let mut tracks: Vec<&Track> = self.mixes.iter().flat_map(|mix| &mix.tracks).collect();
@@ -287,18 +289,18 @@ impl Renderer {
         tracks.chain(behind).collect()
     }
 
-    /// Largest magnitude so far, in the unit of the device. In constant motion up to 1,024 samples
-    /// are rendered ahead; this value and the counts below include them.
+    /// Returns the largest absolute sample so far, in the unit of the device. In constant motion,
+    /// up to 1,024 samples are rendered ahead; this value and the counts below include them.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }
 
-    /// Number of samples clipped at the device's limit.
+    /// Returns the number of samples clipped at the device's limit.
     pub fn limited_samples(&self) -> u64 {
         self.statistics().limited
     }
 
-    /// Number of samples whose radicand was negative and set to zero.
+    /// Returns the number of samples with a negative radicand, which was set to zero.
     pub fn rooted_samples(&self) -> u64 {
         self.statistics().rooted
     }
@@ -366,7 +368,7 @@ impl MixChain {
     }
 }
 
-/// The sum of the audible surfaces.
+/// Sums the audible surfaces.
 fn sum_of(tracks: &mut [Track], piece: &mut [f32], timed: bool, out: &mut [f32]) {
     let mut first = true;
     for track in tracks {

@@ -1,4 +1,4 @@
-//! Choice of the representation of each surface.
+//! Chooses the representation of each surface.
 
 use std::cmp::Ordering;
 
@@ -9,9 +9,9 @@ use crate::load::LoadedScene;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// Safety factor of a plan over the measured times of its stages. The fastest chain takes 1.3 times
-/// their sum in blocks of 64 (the example `chains`), because of the calls between stages and the
-/// peak measurement.
+/// Safety factor for the measured times of the stages in a plan. In blocks of 64, the fastest chain
+/// takes 1.3 times the sum of its stages (the example `chains`), because of the calls between
+/// stages and the peak measurement.
 const RESERVE: f64 = 1.5;
 
 /// A representation and the reason for its choice.
@@ -21,11 +21,11 @@ pub(crate) struct Choice {
     pub(crate) why: String,
 }
 
-/// Gives the time of a set of representations, nanoseconds per sample, or why they cannot be
-/// planned.
+/// Computes the time of a set of representations, nanoseconds per sample, or returns why they
+/// cannot be planned.
 type Cost<'a> = &'a dyn Fn(&[PlayedSurface]) -> Result<f64, SceneError>;
 
-/// The candidate representations of a surface, the first of which is chosen without a budget.
+/// The candidate representations of a surface. Without a budget, the first one is chosen.
 #[derive(Clone)]
 struct Candidates {
     surface: usize,
@@ -34,7 +34,7 @@ struct Candidates {
     named: bool,
 }
 
-/// Chooses a representation for each surface that is touched.
+/// Chooses a representation for each surface that the finger touches.
 pub(crate) fn choose(
     scene: &LoadedScene,
     required: &Requirements,
@@ -52,8 +52,9 @@ pub(crate) fn choose(
     Ok(options.into_iter().zip(&all).map(why).collect())
 }
 
-/// Reference level if levels are not normalised, in the assets' unit: the scene's, else that of the
-/// strongest representation of the surfaces that are touched, whichever plays them.
+/// Returns the reference level for levels that are not normalised, in the assets' unit. It is the
+/// scene's own if set; otherwise it is the level of the strongest representation among the touched
+/// surfaces, whichever representation plays them.
 pub(crate) fn reference_rms(scene: &LoadedScene, required: &Requirements) -> f64 {
     if let Some(given_n) = scene.scene.device.reference_rms {
         return given_n;
@@ -86,7 +87,7 @@ fn candidates(
             named: true,
         });
     }
-    // In the order in which all programs choose.
+    // All programs choose in this order.
     let ranked = asset.ranked(scene.scene.budget.error).into_iter();
     let known = ranked.map(|i| &all[i].model[..]).filter(|id| asset.knows_model(id));
     let options = known
@@ -118,7 +119,7 @@ fn within(
 }
 
 impl Candidates {
-    /// Leaves the representations whose largest error is within the limit.
+    /// Keeps only the representations whose largest error is within the limit.
     fn within(&self, wanted_db: f64) -> Result<Self, SceneError> {
         let is_within =
             |p: &&PlayedSurface| p.largest_error_db.is_some_and(|error_db| error_db <= wanted_db);
@@ -136,7 +137,8 @@ impl Candidates {
     }
 }
 
-/// Parts with the smallest error bound for which the fastest choice is within the time limit.
+/// Returns the candidates below the smallest error bound for which the fastest choice meets the
+/// time limit.
 fn nearest_within(
     all: &[Candidates],
     error_db: Option<f64>,
@@ -168,7 +170,8 @@ fn nearest_within(
     })
 }
 
-/// The fastest representation of each surface with an error of at most `bound`; `None` for any.
+/// Returns the fastest representation of each surface with an error of at most `bound`; `None`
+/// accepts any error.
 ///
 /// # Errors
 /// If none of a surface's representations can be planned.
@@ -199,7 +202,7 @@ fn quickest(
     all.iter().map(one).collect()
 }
 
-/// The order of errors; one that was not measured comes last.
+/// Orders errors. An error that was not measured comes last.
 fn by_error(a: Option<f64>, b: Option<f64>) -> Ordering {
     let order = |error_db: Option<f64>| (error_db.is_none(), error_db.unwrap_or_default());
     let (a, b) = (order(a), order(b));

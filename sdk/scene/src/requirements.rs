@@ -12,9 +12,9 @@ use crate::load::LoadedScene;
 use crate::motion::{Course, Finger, Readings, topmost};
 use crate::response::Inverse;
 
-/// Relative difference of speeds and forces that is attributed to rounding.
+/// Relative difference of speeds and forces that counts as rounding.
 const SAME: f64 = 1e-6;
-/// Maximum number of control blocks examined before a scene plays, nearly an hour of motion; a
+/// Largest number of control blocks examined before a scene plays: nearly an hour of motion. A
 /// longer scene is sampled at larger intervals.
 const MOST_LOOKS: u64 = 1 << 20;
 /// Duration of a control block, seconds.
@@ -39,17 +39,17 @@ impl Span {
         self.high = self.high.max(x);
     }
 
-    /// Whether it contains one value, within rounding, or none.
+    /// Whether it contains at most one value, within rounding.
     pub(crate) fn is_point(&self) -> bool {
         self.low >= self.high - SAME * self.high.abs()
     }
 
-    /// The value of a span of one; 1 if it contains none.
+    /// Returns the value of a span with a single value; 1 if the span is empty.
     pub(crate) fn only(&self) -> f64 {
         if self.low <= self.high { self.low } else { 1.0 }
     }
 
-    /// Whether it is 1, within rounding, or contains no value.
+    /// Whether its only value is 1, within rounding, or it is empty.
     pub(crate) fn is_one(&self) -> bool {
         let near = |x: f64| (x - 1.0).abs() <= SAME;
         self.low > self.high || (near(self.low) && near(self.high))
@@ -69,7 +69,7 @@ impl Span {
 pub(crate) struct Requirements {
     pub(crate) device: Capabilities,
     pub(crate) rate_hz: f64,
-    /// Frames of a control block.
+    /// Frames in a control block.
     pub(crate) control: usize,
     /// Length in frames; `None` if endless.
     pub(crate) frames: Option<u64>,
@@ -89,7 +89,7 @@ pub(crate) struct Requirements {
     pub(crate) pitch: f64,
     pub(crate) seed: u64,
     pub(crate) compensation: Option<Inverse>,
-    /// Touch of each surface.
+    /// How each surface is touched.
     pub(crate) touches: Vec<Touch>,
 }
 
@@ -103,7 +103,7 @@ pub(crate) struct Touch {
     pub(crate) force_n: Span,
     /// The finger at the first contact.
     pub(crate) first: Option<Finger>,
-    /// The motions in contact, each different from the one before.
+    /// The motions in contact, each different from the previous one.
     pub(crate) motions: Vec<Motion>,
 }
 
@@ -173,7 +173,7 @@ impl Requirements {
             }
             return;
         }
-        // A constant motion needs one step.
+        // A constant motion needs only one step.
         let still = course.is_constant() && surfaces.len() == 1 && surfaces[0].region.is_none();
         let frames = self.frames.unwrap_or(1);
         let controls = if still { 1 } else { frames.div_ceil(self.control as u64).max(1) };

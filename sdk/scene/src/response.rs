@@ -9,17 +9,17 @@ use htex_recording::{ReadError, ReadProblem};
 
 pub use htex_recording::SetupResponse as Response;
 
-/// Reads a response from a CSV with the columns `frequency_hz` and `magnitude` (output over input).
-/// Any unit is valid, since only the shape is compensated.
+/// Reads a response from a CSV file with the columns `frequency_hz` and `magnitude` (output over
+/// input). The unit does not matter, because only the shape is compensated.
 ///
 /// # Errors
-/// As [`read_response`]; and if no magnitude is above 0.
+/// As [`read_response`], and if no magnitude is above 0.
 pub fn open(path: &Path) -> Result<Response, ReadError> {
     let file = path.file_name().unwrap_or(path.as_os_str());
     not_zero(read_response(path)?, &file.to_string_lossy())
 }
 
-/// As [`open`], of a file in memory; messages name `file`.
+/// As [`open`], for a file in memory. Messages name `file`.
 pub(crate) fn from_bytes(file: &str, bytes: &[u8]) -> Result<Response, ReadError> {
     not_zero(response_from_bytes(file, bytes)?, file)
 }
@@ -38,7 +38,7 @@ fn not_zero(response: Response, file: &str) -> Result<Response, ReadError> {
 }
 
 /// The inverse of a response. Only its shape counts: it is normalised to its largest magnitude in
-/// the band of the textures, where the gain is near 1; at other frequencies the gain is higher.
+/// the textures' band, where the gain is near 1. At other frequencies the gain is higher.
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     response: Response,
@@ -50,7 +50,7 @@ pub(crate) struct Inverse {
 }
 
 impl Inverse {
-    /// `pitch` is the factor on the frequencies of all textures.
+    /// `pitch` is the factor that multiplies the frequencies of all textures.
     pub(crate) fn new(response: &Response, assets: &[Asset], pitch: f64, depth_db: f64) -> Self {
         let band = played_band(assets, pitch);
         Self {
@@ -61,8 +61,9 @@ impl Inverse {
         }
     }
 
-    /// Gain at a frequency, near 1/|H| and at most 1/(2 floor): |H| / (|H|² + floor²), with H
-    /// relative to its largest magnitude in the band; 0 where the response is 0.
+    /// Returns the gain at a frequency: |H| / (|H|² + floor²), where H is relative to its largest
+    /// magnitude in the band. It is near 1/|H| and at most 1/(2 floor), and 0 where the response is
+    /// 0.
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;
@@ -75,7 +76,7 @@ impl Inverse {
         self.largest > 0.0
     }
 
-    /// The part of the band that is amplified, and by how much.
+    /// Returns which part of the band is amplified, and by how much.
     pub(crate) fn raised(&self) -> Option<Raised> {
         let grid = self.band.grid_hz();
         raised(&grid, grid.iter().map(|&hz| self.at(hz)))
@@ -86,7 +87,7 @@ impl Inverse {
     }
 }
 
-/// Band from the lowest to the highest frequency of the textures.
+/// Returns the band from the lowest to the highest frequency of the textures.
 fn played_band(assets: &[Asset], pitch: f64) -> Band {
     let bands = || assets.iter().map(Asset::band);
     Band {

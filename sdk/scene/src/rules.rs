@@ -1,8 +1,8 @@
 //! All rules for scenes, in one table.
 //!
-//! A scene is refused where an asset would get a warning: a misspelt key has no effect in an asset,
-//! but changes what is felt in a scene. A scene may come from anyone, so it names neither a file to
-//! write outside its folder nor a driver.
+//! A scene is refused in cases where an asset only gets a warning: a misspelt key has no effect in
+//! an asset, but changes what is felt in a scene. A scene may come from anyone, so it must not name
+//! a file to write outside its folder, and no driver.
 
 htex_finding::rule_table! {
     SCENE_FILE_TOO_LARGE Error:

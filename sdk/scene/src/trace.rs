@@ -1,7 +1,7 @@
 //! A recorded motion, interpolated at any time.
 //!
-//! Its speed is the second difference of the position's integral: exact for a steady motion with
-//! any spacing of the rows, and insensitive to the steps of a 60 Hz tracker.
+//! The speed is the second difference of the position's integral. It is exact for a steady motion
+//! with any spacing of the rows, and insensitive to the steps of a 60 Hz tracker.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use htex_play::exploration::{HOLD_S, MOST_FORCE_N, MOST_SPEED_MM_S};
 use htex_recording::velocity;
 use htex_recording::{ReadError, TraceColumns, read_trace, trace_from_bytes};
 
-/// Tolerance of times, seconds: a trace's rows are at least this far apart.
+/// Tolerance of times, seconds. Rows of a trace are at least this far apart.
 const ROUNDING_S: f64 = 1e-9;
 
-/// A motion over time. The vectors have equal lengths of at least 2; time 0 is the first row.
+/// A motion over time. All vectors have the same length, at least 2. Time 0 is the first row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// Time, seconds, strictly ascending from 0.
@@ -23,8 +23,8 @@ pub struct Trace {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons, not negative.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, not negative: from the trace if it has a speed column, else from the
-    /// velocity.
+    /// Sliding speed, mm/s, not negative. It is taken from the trace if that has a speed column,
+    /// otherwise computed from the velocity.
     pub speed_mm_s: Vec<f64>,
     /// Velocity along x and y, mm/s, computed from the positions.
     pub velocity_mm_s: Vec<[f64; 2]>,
@@ -50,8 +50,8 @@ pub struct TracePoint {
 }
 
 impl Trace {
-    /// Reads a trace from a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and, if known,
-    /// `speed_mm_s`.
+    /// Reads a trace from a CSV file with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and, if
+    /// known, `speed_mm_s`.
     ///
     /// # Errors
     /// As [`read_trace`].
@@ -59,7 +59,7 @@ impl Trace {
         Ok(Self::new(read_trace(path)?))
     }
 
-    /// As [`Self::open`], of a file in memory; messages name `file`.
+    /// As [`Self::open`], for a file in memory. Messages name `file`.
     ///
     /// # Errors
     /// As [`read_trace`].
@@ -69,10 +69,11 @@ impl Trace {
 
     /// Makes a trace from columns.
     ///
-    /// The velocity is that of [`velocity`]: exact when it is constant, and insensitive to the
-    /// steps of a tracker of 60 Hz. Negative forces, caused by a sensor's offset, become 0. Rows
-    /// that no finger has (above 1000 mm/s or 20 N) are replaced by the last good one for at most
-    /// 100 ms, and have no contact after that: between rows, values are linear, and half of a bad
+    /// The velocity is computed by [`velocity`]. It is exact when it is constant, and insensitive
+    /// to the steps of a 60 Hz tracker. Negative forces, which a sensor's offset causes, become 0.
+    /// Impossible rows (above 1000 mm/s or 20 N) are replaced by the last good row for at most 100
+    /// ms, and have no contact after that. This happens here because values between rows are
+    /// interpolated, and half of a bad value may look good.
     /// one may look good.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
@@ -101,8 +102,9 @@ impl Trace {
         }
     }
 
-    /// The motion at `t_s` seconds, linear between rows. Before the first row and after the last
-    /// one the finger rests there without contact: speed and force are 0. Does not allocate.
+    /// Returns the motion at `t_s` seconds, interpolated linearly between rows. Before the first
+    /// row and after the last one the finger rests there without contact: speed and force are 0.
+    /// Does not allocate.
     pub fn at(&self, t_s: f64) -> TracePoint {
         let last = self.t_s.len().saturating_sub(1);
         let above = self.t_s.partition_point(|t| *t <= t_s);
@@ -139,8 +141,8 @@ impl Trace {
     }
 }
 
-/// The row whose reading each row has: its own if that is good, else the last good one within
-/// [`HOLD_S`].
+/// For each row, returns the row whose reading is used: the row itself if its reading is good,
+/// otherwise the last good row within [`HOLD_S`].
 fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
     let mut last = None;
     let row = |row: usize| {
@@ -152,7 +154,7 @@ fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> 
     (0..t_s.len()).map(row).collect()
 }
 
-/// The values of these rows; zero where there is none.
+/// Returns the values of these rows; zero for `None`.
 fn taken<T: Copy + Default>(rows: &[Option<usize>], values: &[T]) -> Vec<T> {
     let value = |row: &Option<usize>| row.and_then(|row| values.get(row).copied());
     rows.iter().map(|row| value(row).unwrap_or_default()).collect()
@@ -180,7 +182,8 @@ mod tests {
 
     #[test]
     fn a_quantised_tracker_gives_a_constant_speed() {
-        // 60 Hz and 0.1 mm, as read by a recorder of 1 kHz that repeats the last value.
+        // A 60 Hz tracker with steps of 0.1 mm, read by a 1 kHz recorder that repeats the last
+        // value.
         let held = |t: f64| 80.0 * (t * 60.0 + 1e-9).floor() / 60.0;
         for (rate_hz, x_mm) in
             [(60.0, &(|t: f64| 80.0 * t) as &dyn Fn(f64) -> f64), (1000.0, &held)]
@@ -213,8 +216,8 @@ mod tests {
         }
     }
 
-    /// One row of no finger, in the speed or in the force, changes nothing; after 100 ms of them
-    /// there is no contact.
+    /// One row with an impossible speed or force changes nothing; after 100 ms of such rows there
+    /// is no contact.
     #[test]
     fn rows_that_no_finger_has_are_held_and_then_lost() {
         let made = |bad: std::ops::Range<usize>, speed_mm_s: f64, force_n: f64| {

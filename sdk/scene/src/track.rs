@@ -17,11 +17,11 @@ pub(crate) struct Track {
     pub(crate) asset: std::path::PathBuf,
     pub(crate) synthesis: Synthesis,
     synthesis_run: Count,
-    /// With whether it is neutral.
+    /// The flag says whether it is neutral.
     interpolation: Option<(Count, bool)>,
     chain: Chain,
     crossfade: Option<(Crossfade, Count)>,
-    /// Whether it is audible: touched, or fading out.
+    /// Whether the surface is audible: touched, or fading out.
     pub(crate) sounds: bool,
     /// `Some` if the model follows the motion itself.
     follower: Option<Follower>,
@@ -42,11 +42,11 @@ pub(crate) struct FingerOnPath {
     pub(crate) t_s: f64,
     pub(crate) force_n: f64,
     pub(crate) point: PathPoint,
-    /// Where it is known, mm.
+    /// Place on the surface, mm, if known.
     pub(crate) place_mm: Option<[f64; 2]>,
 }
 
-/// Number of runs of a stage outside the chain, and their total time.
+/// How often a stage outside the chain ran, and its total time.
 #[derive(Default)]
 struct Count {
     blocks: u64,
@@ -72,8 +72,8 @@ impl Track {
                 chain.slots.push(Slot::new(entry.name, Some(played.surface), stage));
             }
         }
-        // The level stage follows stages that change the rate and precedes stages that change the
-        // level.
+        // The level stage comes after the stages that change the rate, and before those that change
+        // the level.
         let scaled = planned.effects.contains_key(&Effect::FrequencyScaling);
         let level = Level::new(played, synthesis.level_rms());
         let level = Slot::new("level", Some(played.surface), Box::new(level));
@@ -106,8 +106,8 @@ impl Track {
     pub(crate) fn follow(&mut self, context: &Context, touched: bool, timed: bool) {
         if let Some((crossfade, _)) = &mut self.crossfade {
             crossfade.set(touched);
-            // Changes only at control blocks, so that samples do not depend on the block sizes of
-            // the caller.
+            // This changes only at control blocks, so that samples do not depend on the caller's
+            // block sizes.
             self.sounds = touched || !crossfade.is_silent();
         }
         if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
@@ -122,8 +122,8 @@ impl Track {
     }
 
     /// Passes motion, position and place to a model that follows the motion itself, while its
-    /// surface is audible. Position and time are in the voice's time, so both are multiplied by the
-    /// pitch; a place stays where it is on the surface.
+    /// surface is audible. Position and time are in the voice's time, so the pitch multiplies both.
+    /// A place on the surface stays unchanged.
     pub(crate) fn set_finger(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;

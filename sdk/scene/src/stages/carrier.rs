@@ -4,7 +4,7 @@ use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-/// Samples after which the oscillator restarts from its exact phase.
+/// Number of samples after which the oscillator restarts from its exact phase.
 const RENEW: u32 = 1024;
 
 pub(crate) const ENTRY: Entry =

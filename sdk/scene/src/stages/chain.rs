@@ -1,7 +1,7 @@
-//! A chain of stages, with counts and times of each.
+//! A chain of stages, with counts and times for each.
 //!
-//! Stages pull: a stage requests the samples that it needs from its source, so that a rate
-//! converter is a stage like any other and the samples are the same for all block sizes.
+//! Stages pull: a stage requests the samples it needs from its source. A rate converter is
+//! therefore a stage like any other, and the samples are the same for all block sizes.
 
 use std::time::Instant;
 
@@ -22,7 +22,7 @@ pub(crate) struct Slot {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageRun {
     pub name: &'static str,
-    /// Its surface; `None`: all surfaces.
+    /// The stage's surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
     /// Number of blocks it processed.
@@ -40,7 +40,7 @@ impl Slot {
         self.stage.follow(context);
     }
 
-    /// Runs the stage; its time excludes that of its source.
+    /// Runs the stage. Its time excludes the time of its source.
     pub(crate) fn render(
         &mut self,
         timed: bool,
@@ -64,7 +64,7 @@ impl Slot {
         self.stage.count(statistics);
     }
 
-    /// Statistics after a rendering of `timed_frames` frames, with times if that is not `None`.
+    /// Returns statistics after rendering; with times if `timed_frames` gives the number of frames.
     pub(crate) fn run(&self, timed_frames: Option<u64>) -> StageRun {
         StageRun {
             name: self.name,
@@ -75,7 +75,7 @@ impl Slot {
     }
 }
 
-/// A chain of stages; the last one gives the output.
+/// A chain of stages. The last one produces the output.
 #[derive(Default)]
 pub(crate) struct Chain {
     pub(crate) slots: Vec<Slot>,

@@ -1,6 +1,6 @@
-//! Compensation of the response of finger and display, so that the friction on the finger has the
-//! texture's spectrum: the gain is 1/|H| where |H| is large, and is limited by the depth below the
-//! maximum in the band.
+//! Compensates the response of finger and display, so that the friction on the finger has the
+//! texture's spectrum. The gain is 1/|H| where |H| is large; the depth below the maximum in the
+//! band limits it.
 
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;

@@ -1,5 +1,5 @@
-//! Silence without contact or slip, and at the start and end of a scene on a device that people
-//! touch or hear.
+//! Silence without contact or slip and, on a device that people touch or hear, at the start and end
+//! of a scene.
 
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;
@@ -44,7 +44,7 @@ impl Stage for Contact {
         }
         match context.ends_in {
             Some(left) if left <= u64::from(self.ramp) => {
-                // The last of them is zero, like the first one of a scene.
+                // The last sample is zero, like the first sample of a scene.
                 self.gain.set_within(0.0, (left as u32).saturating_sub(1));
             }
             _ => self.gain.set(if context.finger.slides() { 1.0 } else { 0.0 }),

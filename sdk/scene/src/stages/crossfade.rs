@@ -1,5 +1,5 @@
-//! Cross-fades between surfaces, and fades at their edges: equal power, since textures are
-//! uncorrelated. A surface that is not touched is not rendered.
+//! Cross-fades between surfaces, and fades at their edges. They have equal power, because textures
+//! are uncorrelated. A surface that is not touched is not rendered.
 
 use htex_dsp::glide::Glide;
 
@@ -8,7 +8,8 @@ use crate::file::Effect;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// Duration of a cross-fade, seconds: a fingertip of 10 mm at 1 m/s.
+/// Duration of a cross-fade, seconds: the time in which a 10 mm fingertip moves its own length at 1
+/// m/s.
 const FADE_S: f64 = 0.010;
 
 pub(crate) const ENTRY: Entry = Entry {

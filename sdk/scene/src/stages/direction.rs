@@ -1,4 +1,4 @@
-//! Friction opposes the motion: its sign changes with the stroke.
+//! The sign of the friction: friction opposes the motion, so its sign changes with the stroke.
 
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;

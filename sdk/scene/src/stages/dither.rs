@@ -1,5 +1,5 @@
-//! Triangular dither of one step in either direction, which makes the rounding error of integer
-//! files independent of the signal.
+//! Triangular dither of one step in either direction. It makes the rounding error of integer files
+//! independent of the signal.
 
 use htex_device::Quantity;
 use rand_core::{Rng, SeedableRng};

@@ -1,5 +1,4 @@
-//! Scaling of frequencies with the scanning speed outside the recorded speeds, by the law of the
-//! asset.
+//! Scales frequencies with the scanning speed, by the asset's law, outside the recorded speeds.
 
 use std::sync::Arc;
 
@@ -62,8 +61,8 @@ struct FrequencyScaling {
     scales: bool,
     warp: Warp,
     ratio: f64,
-    /// Output samples per source sample, so that higher frequencies of a faster finger stay below
-    /// the Nyquist frequency.
+    /// Output samples per source sample. Oversampling keeps the higher frequencies of a faster
+    /// finger below the Nyquist frequency.
     oversampling: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Conversion from the textures' unit to the device's: a stated gain, the level of a preview, or
+//! Converts the textures' unit to the device's: by a stated gain, to the level of a preview, or to
 //! the radicand of a drive.
 
 use htex_device::Quantity;
@@ -7,11 +7,12 @@ use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-/// Assumed peak of a stream, in units of its RMS. Normally distributed noise exceeds it once in
-/// 150,000 samples on either side, ten equal sinusoids never.
+/// Assumed peak of a stream, as a multiple of its RMS. Normally distributed noise exceeds it once
+/// in 150,000 samples on either side; ten equal sinusoids never do.
 pub(crate) const HEADROOM: f64 = 4.5;
 
-/// RMS in the textures' unit below which a stream counts as silent: its gain would not be finite.
+/// A stream with an RMS below this value, in the textures' unit, counts as silent, because its gain
+/// would not be finite.
 const LEAST_RMS: f64 = 1e-20;
 
 pub(crate) const ENTRY: Entry =
@@ -21,7 +22,7 @@ pub(crate) const ENTRY: Entry =
 /// sqrt(y + 1), where y is the force over [`HEADROOM`] times its RMS and V_g = drive / sqrt(2).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drive {
-    /// V² per unit of the textures.
+    /// V² per textures' unit.
     pub(crate) gain: f64,
     /// Shift, V².
     pub(crate) shift: f64,
@@ -34,7 +35,8 @@ impl Drive {
     }
 }
 
-/// Gain that maps the scene's reference level to `level`; 0 if there is no reference level.
+/// Returns the gain that maps the scene's reference level to `level`; 0 if there is no reference
+/// level.
 fn brings_level_to(level: f64, required: &Requirements) -> f64 {
     if required.level_rms > LEAST_RMS { level / required.level_rms } else { 0.0 }
 }

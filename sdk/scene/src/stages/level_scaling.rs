@@ -1,5 +1,4 @@
-//! Scaling of the level with speed and normal force outside the recorded motions, by the law of the
-//! asset.
+//! Scales the level with speed and normal force, by the asset's law, outside the recorded motions.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Clipping at the device's limit and at the drive of a display. Clipped samples are counted; NaN
-//! becomes zero.
+//! Clips samples at the device's limit and at the drive of a display. Clipped samples are counted,
+//! and NaN becomes zero.
 
 use htex_device::Quantity;
 
@@ -21,10 +21,11 @@ fn need(required: &Requirements) -> Need {
     }
 }
 
-/// The largest magnitude of a sample.
+/// Returns the largest absolute value that a sample may have.
 fn limit(required: &Requirements) -> Option<f64> {
     match (required.device.quantity, required.device.limit) {
-        // The highest step of the device within the limit, so that rounding never exceeds it.
+        // The highest step of the device within the limit, so that rounding never exceeds the
+        // limit.
         (Quantity::DisplayVoltage, Some(limit)) => {
             let most = limit.min(required.drive_v);
             let step = required.device.step.unwrap_or(0.0);
@@ -40,7 +41,7 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     Box::new(Limiter { limit: limit.map_or(f32::INFINITY, at_most), held: 0 })
 }
 
-/// The largest 32-bit float not above a number.
+/// Returns the largest 32-bit float that is not above a number.
 fn at_most(limit: f64) -> f32 {
     let near = limit as f32;
     if f64::from(near) > limit { near.next_down() } else { near }

@@ -1,10 +1,11 @@
-//! The stages of a chain: one file per effect, with the condition under which it is needed.
+//! The stages of a chain: one file per effect, with the condition under which the effect is needed.
 //!
-//! An effect that is constant needs no stage: a constant factor of frequencies is part of the
-//! resampler's ratio, one of the level is part of the level. Linear effects of a texture run at the
-//! model's rate, before the one resampling; frequency scaling alone reads at a changing ratio
-//! there. An effect that a scene forces on without need is neutral, bit by bit or to 1e-6 of full
-//! scale (`sdk/scene/tests/equivalence.rs`): leaving it out is only an optimisation.
+//! A constant effect needs no stage: a constant frequency factor becomes part of the resampler's
+//! ratio, and a constant level factor part of the level. Linear effects of a texture run at the
+//! model's rate, before the only resampling; of them, only frequency scaling reads at a changing
+//! ratio. An effect that a scene forces on although it is not needed is neutral, either bit for bit
+//! or to 1e-6 of full scale (`sdk/scene/tests/equivalence.rs`), so leaving it out is only an
+//! optimisation.
 
 mod carrier;
 mod chain;
@@ -40,15 +41,15 @@ use crate::motion::Finger;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// A stage of a chain, pull-based: it requests the input it needs from its source.
+/// A stage of a chain. It pulls: it requests the input it needs from its source.
 pub(crate) trait Stage: Send {
-    /// Takes the motion before each control block.
+    /// Receives the motion before each control block.
     fn follow(&mut self, _now: &Context) {}
 
     /// Fills `out`. Does not allocate, lock or do I/O.
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32]));
 
-    /// Adds what the stage did to the samples.
+    /// Adds the number of samples that the stage corrected.
     fn count(&self, _statistics: &mut Statistics) {}
 }
 
@@ -62,7 +63,7 @@ pub(crate) struct Context {
     pub(crate) ends_in: Option<u64>,
 }
 
-/// Reason to leave out the scaling of frequencies and of the level.
+/// Reason for leaving out the scaling of frequencies and of the level.
 pub(crate) const FOLLOWS: &str = "the model follows the motion itself";
 
 /// Counts of corrected samples.
@@ -91,17 +92,18 @@ impl Need {
     }
 }
 
-/// Stage of the chain where an effect is applied, with the functions that decide whether it is
-/// needed and that build it. `neutral`: the effect is not needed and must not change any sample.
+/// Where in the chain an effect is applied, with the functions that decide whether it is needed and
+/// that build it. `neutral` means that the effect is not needed and must not change any sample.
 #[derive(Debug)]
 pub(crate) enum StagePlace {
-    /// Per surface, at the model's rate, before surfaces are mixed.
+    /// Once per surface, at the model's rate, before surfaces are mixed.
     Surface {
         need: fn(&Requirements, &PlayedSurface) -> Need,
-        /// `None`: the effect has no stage of its own in the chain.
+        /// `None` if the effect has no stage of its own in the chain.
         build: Option<BuildFor>,
     },
-    /// Per mix of surfaces of one rate; the need is that of one of them.
+    /// Once per mix of surfaces with the same rate. One of the surfaces decides whether it is
+    /// needed.
     Mix { need: fn(&Requirements, &PlayedSurface) -> Need, build: BuildMix },
     /// Once, after mixing, at the device's rate.
     Device {
@@ -113,7 +115,7 @@ pub(crate) enum StagePlace {
 /// Builds the stage of an effect for a surface.
 type BuildFor = fn(&Requirements, &PlayedSurface, neutral: bool) -> Box<dyn Stage>;
 
-/// Builds the stage of an effect for a mix of surfaces of one rate.
+/// Builds the stage of an effect for a mix of surfaces with the same rate.
 type BuildMix =
     fn(&Requirements, &PlayedSurface, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>;
 

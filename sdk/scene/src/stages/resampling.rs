@@ -1,4 +1,4 @@
-//! Conversion from the rate of the models to the rate of the device, once for all surfaces of a
+//! Converts the rate of the models to the rate of the device, once for all surfaces with the same
 //! rate.
 
 use htex_dsp::resample::{Resampler, UnusableRates, Work};
@@ -22,7 +22,7 @@ fn need(required: &Requirements, played: &PlayedSurface) -> Need {
                 required.rate_hz
             ))
         }
-        // Rates that cannot be converted are refused when the stage is planned.
+        // Planning the stage refuses rates that cannot be converted.
         Ok(Some(_)) | Err(_) => Need::yes(format!(
             "the model renders at {:.0} Hz, the device runs at {:.0} Hz",
             played.mix_rate_hz * played.fixed_ratio,
@@ -32,14 +32,14 @@ fn need(required: &Requirements, played: &PlayedSurface) -> Need {
     }
 }
 
-/// Input rate, output rate and highest frequency of a surface's converter, hertz; a constant speed
-/// is included in the ratio.
+/// Returns input rate, output rate and highest frequency of a surface's converter, hertz. A
+/// constant speed is included in the ratio.
 fn rates(required: &Requirements, played: &PlayedSurface) -> (f64, f64, f64) {
     let ratio = played.fixed_ratio;
     (played.mix_rate_hz * ratio, required.rate_hz, played.top_hz * ratio)
 }
 
-/// Work per sample of the device; `None` if no conversion is needed.
+/// Returns the work per sample of the device; `None` if no conversion is needed.
 pub(crate) fn work(
     required: &Requirements,
     played: &PlayedSurface,

@@ -1,11 +1,11 @@
-//! Shift and square root: the friction that an electrovibration display adds is proportional to the
+//! Shift and square root. The friction that an electrovibration display adds is proportional to the
 //! square of its voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration
 //! rendering, prints min|y|, which allows negative radicands.)
 //!
-//! The minimum of a stream is not known in advance. The shift is [`HEADROOM`] times the RMS of the
-//! scene's loudest surface instead; radicands that are still negative are set to zero and counted.
+//! The minimum of a stream is not known in advance, so the shift is [`HEADROOM`] times the RMS of
+//! the scene's loudest surface. Radicands that are still negative are set to zero and counted.
 //!
-//! A shift that followed the minimum would be felt.
+//! The shift does not follow the minimum, because its changes would be felt.
 
 use htex_device::Quantity;
 

@@ -27,8 +27,9 @@ impl Synthesis {
         }
     }
 
-    /// Tells a model that follows the motion itself where the finger is, so many seconds after the
-    /// first sample. A model that refuses it plays on as before, and says so.
+    /// Tells a model that follows the motion itself where the finger is, `at_s` seconds after the
+    /// first sample. If the model refuses the motion, it plays on as before and the failure is
+    /// stored.
     pub(crate) fn set_finger(&mut self, finger: Finger, at_s: f64) {
         if let Err(error) = self.source.set_finger(finger, at_s) {
             self.failed.get_or_insert(error);

@@ -11,7 +11,7 @@ use crate::pointers::{needed_text, place, slice, slice_mut, text, write_text};
 use crate::reader::{Reader, htex_reader};
 use crate::status::{Failure, guarded, htex_status};
 
-/// An opened asset. Several threads may use it at a time. Zero is no asset.
+/// An opened asset. Several threads may use it at the same time. Zero is not an asset.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_asset {
@@ -23,13 +23,13 @@ pub struct htex_asset {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_condition {
-    /// Scanning speed, mm/s; NAN if it is not known.
+    /// Scanning speed, mm/s; NAN if unknown.
     pub speed_mm_s: f64,
-    /// Normal force, N; NAN if it is not known.
+    /// Normal force, N; NAN if unknown.
     pub force_n: f64,
 }
 
-/// A band of frequencies.
+/// A frequency band.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_band {
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn htex_asset_open(
     })
 }
 
-/// [any thread; reads a file] As htex_asset_open, of a path of Windows in UTF-16.
+/// [any thread; reads a file] As htex_asset_open, for a Windows path in UTF-16.
 #[cfg(windows)]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_open_wide(
@@ -85,8 +85,8 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     })
 }
 
-/// [any thread; calls the reader] Opens an asset that the program reads. The reader is closed
-/// before this returns. `options` may be NULL.
+/// [any thread; calls the reader] Opens an asset whose bytes the program reads. The reader is
+/// closed before this returns. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_open_reader(
     reader: *const htex_reader,
@@ -119,16 +119,17 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     })
 }
 
-/// [any thread] Frees an asset; its voices play on. HTEX_STATUS_BUSY if another thread uses it at
-/// this moment.
+/// [any thread] Frees an asset. Its voices continue to play. HTEX_STATUS_BUSY if another thread is
+/// using the asset.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_asset_free(asset: htex_asset) -> htex_status {
     guarded(|| ASSETS.remove(asset.id).map(drop))
 }
 
-/// [any thread] The asset's manifest as JSON: name, conditions, representations, qualities and all
-/// else that it states. Writes at most `capacity` bytes with the zero at the end, and the length
-/// without the zero to `length`, which may be NULL; a `capacity` of 0 asks for the length.
+/// [any thread] Writes the asset's manifest as JSON: name, conditions, representations, qualities
+/// and everything else that it states. At most `capacity` bytes are written, including a
+/// terminating zero. `length` receives the length without the zero, and may be NULL. With a
+/// `capacity` of 0 only the length is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_manifest_json(
     asset: htex_asset,
@@ -145,7 +146,7 @@ pub unsafe extern "C" fn htex_asset_manifest_json(
     })
 }
 
-/// [any thread] Name of the asset. Written as by htex_asset_manifest_json.
+/// [any thread] Writes the asset's name, as htex_asset_manifest_json does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_name(
     asset: htex_asset,
@@ -160,7 +161,7 @@ pub unsafe extern "C" fn htex_asset_name(
     })
 }
 
-/// [any thread] Unit of the samples, such as "N". Written as by htex_asset_manifest_json.
+/// [any thread] Writes the unit of the samples, such as "N", as htex_asset_manifest_json does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_unit(
     asset: htex_asset,
@@ -175,7 +176,7 @@ pub unsafe extern "C" fn htex_asset_unit(
     })
 }
 
-/// [any thread] Band of the asset's spectra.
+/// [any thread] Writes the frequency band of the asset's spectra.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_band(asset: htex_asset, out: *mut htex_band) -> htex_status {
     guarded(|| {
@@ -186,7 +187,7 @@ pub unsafe extern "C" fn htex_asset_band(asset: htex_asset, out: *mut htex_band)
     })
 }
 
-/// [any thread] Number of recorded conditions.
+/// [any thread] Writes the number of recorded conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_condition_count(
     asset: htex_asset,
@@ -200,7 +201,7 @@ pub unsafe extern "C" fn htex_asset_condition_count(
     })
 }
 
-/// [any thread] A recorded condition, counted from 0.
+/// [any thread] Writes a recorded condition. Indices start at 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_condition(
     asset: htex_asset,
@@ -222,7 +223,7 @@ pub unsafe extern "C" fn htex_asset_condition(
     })
 }
 
-/// [any thread] Number of representations.
+/// [any thread] Writes the number of representations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_representation_count(
     asset: htex_asset,
@@ -236,8 +237,8 @@ pub unsafe extern "C" fn htex_asset_representation_count(
     })
 }
 
-/// [any thread] Id of the model of a representation, counted from 0. Written as by
-/// htex_asset_manifest_json.
+/// [any thread] Writes the model id of a representation, as htex_asset_manifest_json does. Indices
+/// start at 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_representation_model(
     asset: htex_asset,
@@ -257,11 +258,11 @@ pub unsafe extern "C" fn htex_asset_representation_model(
     })
 }
 
-/// [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in
-/// Hz, in the asset's unit. `model` may be NULL (the representation of least error), and so may
-/// `at` (its first condition, or its strongest if the first is silent). Between conditions it is
-/// interpolated, outside them it follows the law of the asset, and where the finger does not slide
-/// it is 0.
+/// [any thread; may load a model] Writes the magnitudes that a recording of the voice would show,
+/// in the asset's unit, at frequencies in Hz. `model` may be NULL for the representation with the
+/// smallest error. `at` may be NULL for its first condition, or its strongest if the first is
+/// silent. Between conditions the magnitude is interpolated, outside them it follows the asset's
+/// law, and where the finger does not slide it is 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_magnitude(
     asset: htex_asset,
@@ -285,8 +286,8 @@ pub unsafe extern "C" fn htex_asset_magnitude(
     })
 }
 
-/// [any thread; may load a model] Level of the voice of a representation, RMS in the asset's unit.
-/// `model` and `at` as for htex_asset_magnitude.
+/// [any thread; may load a model] Writes the level of a representation's voice, RMS in the asset's
+/// unit. `model` and `at` are as for htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_level_rms(
     asset: htex_asset,

@@ -1,5 +1,5 @@
 //! Memory for the arguments and results of JavaScript (`sdk/web/src/core.js`), which has no other
-//! way to get any. Not part of the C interface.
+//! way to allocate any. Not part of the C interface.
 
 #[cfg(feature = "library")]
 mod library;
@@ -7,13 +7,13 @@ mod texture;
 
 use crate::memory::{allocate, free};
 
-/// Allocates bytes, at a multiple of 8; NULL if there are none.
+/// Allocates bytes, aligned to 8; NULL if there is no memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_alloc(bytes: usize) -> *mut u8 {
     allocate(bytes)
 }
 
-/// Frees bytes that [`htex_alloc`] returned for the same number.
+/// Frees memory from [`htex_alloc`]. The number of bytes must be the same.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_free(at: *mut u8, bytes: usize) {
     // SAFETY: the caller says so.

@@ -1,10 +1,11 @@
-//! Devices: what plays the samples, by name. Without the feature `scene` each call says so.
+//! Devices play samples, and are selected by name. Without the feature `scene`, each call returns
+//! an error that says so.
 
 use std::ffi::c_char;
 
 use crate::status::htex_status;
 
-/// A device that is open. One thread at a time may use it. Zero is no device.
+/// An open device. Only one thread at a time may use it. Zero is not a device.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_device {
@@ -12,26 +13,27 @@ pub struct htex_device {
     pub id: u64,
 }
 
-/// What a device did since it was opened. Set `size` to sizeof(htex_device_counts) before the call.
+/// What a device has done since it was opened. Set `size` to sizeof(htex_device_counts) before the
+/// call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_device_counts {
     /// sizeof(htex_device_counts).
     pub size: u32,
-    /// Samples that it took.
+    /// Number of samples written to the device.
     pub frames_written: u64,
-    /// Samples that came out.
+    /// Number of samples played.
     pub frames_played: u64,
-    /// Times it ran dry.
+    /// Number of times the device ran out of samples.
     pub underruns: u64,
     /// Time from writing a sample to its output, s.
     pub latency_s: f64,
-    /// Largest magnitude written, in the device's unit.
+    /// Largest absolute value written, in the device's unit.
     pub peak: f64,
 }
 
-/// [any thread; asks drivers] The devices that this library has as JSON, each with `id`, `name`,
-/// the names of what is connected now as `endpoints`, and `problem`, which is null or says what to
+/// [any thread; asks drivers] Writes the devices of this library as JSON. Each has `id`, `name`,
+/// `endpoints` (the names of what is connected now) and `problem`, which is null or says what to
 /// install. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_list_json(
@@ -43,10 +45,10 @@ pub unsafe extern "C" fn htex_device_list_json(
     unsafe { calls::list_json(out, capacity, length) }
 }
 
-/// [any thread; asks drivers] A device as JSON: its `descriptor` with its settings and what becomes
-/// of the samples (`mapping`), and its `capabilities` with these settings: the quantity of its
-/// samples, rates, the largest magnitude; null, and a `problem`, where it cannot be used with them.
-/// `settings` as in htex_device_open.
+/// [any thread; asks drivers] Writes a device as JSON. `descriptor` has its settings and says what
+/// happens to the samples (`mapping`). `capabilities` holds what it can do with these settings: the
+/// quantity of its samples, rates, the largest magnitude. If it cannot be used with them,
+/// `capabilities` is null and `problem` says why. `settings` is as in htex_device_open.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_info_json(
     name: *const c_char,
@@ -59,12 +61,12 @@ pub unsafe extern "C" fn htex_device_info_json(
     unsafe { calls::info_json(name, settings, out, capacity, length) }
 }
 
-/// [any thread; asks drivers] Opens a device, at rest: `sdl`, `parametric`, `channels`, `file`, or
-/// its id. `settings` are lines NAME=VALUE; NULL: the defaults. `rate_hz` is that of the samples;
-/// 0: the device's own. Samples are of the quantity that htex_device_info_json tells; a texture's
-/// in newtons become parts of full scale by the gain of its voice. A display that is driven by a
-/// voltage is not opened here: it needs a process that takes the voltage away if the program dies
-/// (`htex play`).
+/// [any thread; asks drivers] Opens a device at rest: `sdl`, `parametric`, `channels`, `file`, or
+/// its id. `settings` holds lines NAME=VALUE; NULL for the defaults. `rate_hz` is the sample rate;
+/// 0 for the device's own. Samples have the quantity that htex_device_info_json states. A texture's
+/// samples in newtons become fractions of full scale through the gain of its voice. A display
+/// driven by a voltage cannot be opened here: it needs a separate process that removes the voltage
+/// if the program dies (`htex play`).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_open(
     name: *const c_char,
@@ -76,17 +78,16 @@ pub unsafe extern "C" fn htex_device_open(
     unsafe { calls::open(name, settings, rate_hz, out) }
 }
 
-/// [one thread at a time] Rate of the samples, Hz.
+/// [one thread at a time] Writes the sample rate, Hz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_rate_hz(device: htex_device, out: *mut f64) -> htex_status {
     // SAFETY: the place is the caller's.
     unsafe { calls::rate_hz(device, out) }
 }
 
-/// [one thread at a time; waits] Gives samples to a device, as many as it takes within
-/// `timeout_ms`, and writes their number to `written`. The first samples start it; when later ones
-/// come too late it goes to rest, and the call fails. After an error it is at rest, and stays
-/// there.
+/// [one thread at a time; waits] Passes samples to a device, as many as it accepts within
+/// `timeout_ms`, and writes their number to `written`. The first samples start the device. If later
+/// samples arrive too late, it goes to rest and the call fails. After an error it stays at rest.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_write(
     device: htex_device,
@@ -99,7 +100,7 @@ pub unsafe extern "C" fn htex_device_write(
     unsafe { calls::write(device, samples, frames, timeout_ms, written) }
 }
 
-/// [one thread at a time] Writes what the device did so far.
+/// [one thread at a time] Writes what the device has done so far.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_status(
     device: htex_device,
@@ -109,15 +110,15 @@ pub unsafe extern "C" fn htex_device_status(
     unsafe { calls::status(device, out) }
 }
 
-/// [one thread at a time; waits] Plays what was written to its end, goes to rest, and keeps the
+/// [one thread at a time; waits] Plays everything that was written, goes to rest, and saves the
 /// result: a file appears under its name. Nothing can be written afterwards.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_finish(device: htex_device) -> htex_status {
     calls::finish(device)
 }
 
-/// [one thread at a time; may wait] Frees a device. One that was not finished goes to rest at once,
-/// and leaves no file behind.
+/// [one thread at a time; may wait] Frees a device. If htex_device_finish was not called, the
+/// device goes to rest at once and leaves no file behind.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_free(device: htex_device) -> htex_status {
     calls::free(device)
@@ -131,7 +132,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! What a library without devices returns.
+    //! Replacements in a library without devices.
     use super::*;
     use crate::status::{Failure, guarded};
 

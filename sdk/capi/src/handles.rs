@@ -1,9 +1,9 @@
 //! Handles of objects: an index and a generation, so that the handle of a freed object is
 //! recognised.
 //!
-//! A lookup neither locks nor allocates. An object is used by one thread at a time, or read by
-//! several: a counter in its slot says which, and a call that would break the rule fails at once. A
-//! handle also has its kind, so that that of a voice is no asset.
+//! A lookup neither locks nor allocates. Either one thread uses an object or several read it. A
+//! counter in the object's slot records which, and a call that would break the rule fails at once.
+//! Handles carry their type, so passing a voice where an asset is expected is an error.
 
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
@@ -16,7 +16,7 @@ use crate::status::{Failure, htex_status};
 const FIRST: usize = 64;
 const CHUNKS: usize = 20;
 
-/// The lower half of a handle: the index and one, below the kind.
+/// The lower half of a handle is the index plus one, below the bits of the kind.
 const KIND_SHIFT: u32 = 27;
 const _: () = assert!(FIRST << CHUNKS <= 1 << KIND_SHIFT);
 
@@ -35,9 +35,9 @@ pub(crate) enum Kind {
     Index = 5,
 }
 
-/// The users of an object that is used exclusively.
+/// Value of the user count while one thread uses an object exclusively.
 const EXCLUSIVE: u64 = u32::MAX as u64;
-/// Most readers at a time; far more than threads.
+/// Largest number of simultaneous readers; far more than there are threads.
 const MOST_USERS: u64 = EXCLUSIVE - 1;
 
 /// The objects of one kind.
@@ -47,19 +47,21 @@ pub(crate) struct Table<T> {
     spare: Mutex<Spare>,
 }
 
-/// Free indices, and how many there have been since the table was last cleared.
+/// Free indices, and how many indices were made since the table was last cleared.
 struct Spare {
     free: Vec<usize>,
     made: usize,
-    /// Generation of an unused slot, above those of handles from before the table was cleared.
+    /// Generation of an unused slot. It is above the generations of handles from before the table
+    /// was cleared.
     unused: u64,
 }
 
-/// A place for an object.
+/// A slot for an object.
 struct Slot<T> {
-    /// Generation in the upper half, odd while an object is here; users in the lower half.
+    /// The upper half is the generation, which is odd while the slot holds an object. The lower
+    /// half is the number of users.
     state: AtomicU64,
-    /// In a box, so that the slots of a table that is hardly used are small.
+    /// Boxed, so that the slots of a table that is hardly used stay small.
     value: UnsafeCell<Option<Box<T>>>,
 }
 
@@ -84,7 +86,7 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// Keeps an object; returns its handle, which is never 0. Allocates and locks.
+    /// Stores an object and returns its handle, which is never 0. Allocates and locks.
     pub(crate) fn insert(&self, value: T) -> Result<u64, Failure> {
         let value = Box::new(value);
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
@@ -110,7 +112,7 @@ impl<T: Send + 'static> Table<T> {
         Ok(next << 32 | (self.kind as u64) << KIND_SHIFT | (index as u64 + 1))
     }
 
-    /// Makes the chunk of an index if it is the first in it.
+    /// Makes the chunk of an index if this is the first index in it.
     fn make_chunk(&self, index: usize, unused: u64) -> Result<(), Failure> {
         let (chunk, _) = place(index);
         let pointer = self.chunks.get(chunk).ok_or(FULL)?;
@@ -118,7 +120,7 @@ impl<T: Send + 'static> Table<T> {
             let slots: Box<[Slot<T>]> = (0..FIRST << chunk)
                 .map(|_| Slot { state: AtomicU64::new(unused << 32), value: UnsafeCell::new(None) })
                 .collect();
-            // Slots live until `clear`: stale handles are looked up in them.
+            // Slots live until `clear`, because stale handles are still looked up in them.
             pointer.store(Box::leak(slots).as_mut_ptr(), Ordering::Release);
         }
         Ok(())
@@ -131,7 +133,7 @@ impl<T: Send + 'static> Table<T> {
         (!slots.is_null()).then(|| unsafe { &*slots.add(offset) })
     }
 
-    /// The slot of a handle, and its generation.
+    /// Returns the slot of a handle, its generation and its index.
     fn find(&self, handle: u64) -> Result<(&'static Slot<T>, u64, usize), Failure> {
         let low = handle & EXCLUSIVE;
         if low >> KIND_SHIFT != self.kind as u64 {
@@ -147,7 +149,8 @@ impl<T: Send + 'static> Table<T> {
         Ok((slot, wanted, index))
     }
 
-    /// Changes the users of a slot of a generation, as `change` says: `None` if they may not.
+    /// Changes the number of users of a slot with this generation by `change`, which returns `None`
+    /// if entry is not allowed.
     fn enter(
         slot: &Slot<T>,
         wanted: u64,
@@ -165,7 +168,7 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// The object of a handle, for this call alone.
+    /// Returns the object of a handle, for this call only.
     pub(crate) fn exclusive(&self, handle: u64) -> Result<Exclusive<T>, Failure> {
         let (slot, wanted, _) = self.find(handle)?;
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
@@ -176,7 +179,7 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// The object of a handle, which other threads may read too.
+    /// Returns the object of a handle, which other threads may read at the same time.
     pub(crate) fn shared(&self, handle: u64) -> Result<Shared<T>, Failure>
     where
         T: Sync,
@@ -190,7 +193,7 @@ impl<T: Send + 'static> Table<T> {
         }
     }
 
-    /// Takes an object out; its handle is then bad.
+    /// Removes an object. Its handle is then invalid.
     pub(crate) fn remove(&self, handle: u64) -> Result<T, Failure> {
         let (slot, wanted, index) = self.find(handle)?;
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
@@ -198,14 +201,16 @@ impl<T: Send + 'static> Table<T> {
         let value = unsafe { (*slot.value.get()).take() };
         slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
-        // The last generation is not used again: a handle of the first would be its twin.
+        // The last generation is not reused: after it, the counter would start again, and an old
+        // handle would match a new object.
         if wanted + 1 < EXCLUSIVE {
             spare.free.push(index);
         }
         value.map(|value| *value).ok_or(BAD)
     }
 
-    /// Frees all objects and slots; their handles stay bad. Frees nothing if an object is in use.
+    /// Frees all objects and slots; their handles stay invalid. Frees nothing if an object is in
+    /// use.
     ///
     /// # Safety
     /// No other thread uses this table during the call.
@@ -230,14 +235,14 @@ impl<T: Send + 'static> Table<T> {
         *spare = Spare {
             free: Vec::new(),
             made: 0,
-            // Even: no object is there.
+            // Even, because the slot holds no object.
             unused: highest.next_multiple_of(2),
         };
         Ok(())
     }
 }
 
-/// The chunk of an index, and its place there.
+/// Returns the chunk of an index, and the offset in that chunk.
 const fn place(index: usize) -> (usize, usize) {
     let chunk = (index / FIRST + 1).ilog2() as usize;
     (chunk, index - FIRST * ((1 << chunk) - 1))
@@ -262,7 +267,7 @@ pub(crate) struct Exclusive<T: 'static> {
     slot: &'static Slot<T>,
 }
 
-/// An object that this call reads.
+/// An object that this call reads, perhaps together with others.
 pub(crate) struct Shared<T: 'static> {
     value: &'static T,
     slot: &'static Slot<T>,
@@ -284,7 +289,7 @@ impl<T> DerefMut for Exclusive<T> {
 
 impl<T> Drop for Exclusive<T> {
     fn drop(&mut self) {
-        // No other thread changes the state of a slot that is used exclusively, so that a store
+        // While a slot is used exclusively, no other thread changes its state, so a plain store
         // suffices.
         let state = self.slot.state.load(Ordering::Relaxed);
         self.slot.state.store(state & !EXCLUSIVE, Ordering::Release);
@@ -375,8 +380,8 @@ mod tests {
         assert_eq!(TABLE.remove(handle).unwrap(), 2);
     }
 
-    /// Threads make, use and free objects, and try handles of the others: no update is lost, and no
-    /// handle finds another's object.
+    /// Threads make, use and free objects, and try each other's handles. No update is lost, and no
+    /// handle finds another object.
     #[test]
     fn threads_meet_at_one_table() {
         static TABLE: Table<(u64, u64)> = Table::new(Kind::Asset);

@@ -1,10 +1,10 @@
 //! libhtex: the player, the libraries and the scenes of [`htex`] as C functions. `include/htex.h`
 //! is generated from this crate.
 //!
-//! - Objects are handles, a number each. A freed handle, a foreign number or an object that another
-//!   thread uses at the same time is an error, not undefined behaviour (`handles`).
-//! - A call returns a [`htex_status`]; the text of the last error of a thread is
-//!   [`htex_last_error`]. No call unwinds.
+//! - Objects are handles, one number each. A freed handle, a number that is not a handle, or an
+//!   object that another thread is using is an error, not undefined behaviour (`handles`).
+//! - A call returns a [`htex_status`]. The text of a thread's last error is [`htex_last_error`]. No
+//!   call unwinds.
 //! - A struct of options begins with its size in bytes. Zero in the other fields selects the
 //!   defaults, so programs that were compiled against an older header still run.
 #![warn(missing_docs)]
@@ -28,8 +28,8 @@ mod shutdown;
 mod status;
 mod voice;
 
-/// What the functions of this crate are made of, for those that the module of `sdk/web/author`
-/// adds. Not part of the C interface.
+/// Building blocks of the functions in this crate, for the functions that the module in
+/// `sdk/web/author` adds. Not part of the C interface.
 #[doc(hidden)]
 pub mod calls {
     pub use crate::memory::{allocate, free};
@@ -51,16 +51,18 @@ pub use shutdown::htex_shutdown;
 pub use status::{htex_last_error, htex_status, htex_status_text};
 pub use voice::*;
 
-/// Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
+/// Version of this interface, major and minor: 0x00010000 is 1.0. A new minor version only adds to
+/// it.
 pub const HTEX_API_VERSION: u32 = 0x0001_0000;
 
-/// [any thread] Version of the interface of the library that is loaded, as HTEX_API_VERSION.
+/// [any thread] Returns the interface version of the loaded library, in the form of
+/// HTEX_API_VERSION.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_api_version() -> u32 {
     HTEX_API_VERSION
 }
 
-/// [any thread] Version of the library, such as "0.2.0". Static.
+/// [any thread] Returns the version of the library, such as "0.2.0". The text is static.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_version() -> *const std::ffi::c_char {
     const TEXT: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");

@@ -1,5 +1,6 @@
-//! Libraries: files with thousands of textures. Without the feature `library` each call says so,
-//! and so it does in a browser, which has functions of its own (`browser/library.rs`).
+//! Libraries: files with thousands of textures. Without the feature `library`, each call returns an
+//! error that says so. So does each call in a browser, which has its own functions
+//! (`browser/library.rs`).
 
 use std::ffi::c_char;
 
@@ -8,7 +9,7 @@ use crate::options::htex_open_options;
 use crate::reader::htex_reader;
 use crate::status::htex_status;
 
-/// An opened library. Several threads may use it at a time. Zero is no library.
+/// An opened library. Several threads may use it at the same time. Zero is not a library.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_library {
@@ -16,7 +17,7 @@ pub struct htex_library {
     pub id: u64,
 }
 
-/// [any thread; reads a file] Opens a library file. Its index is read page by page, its textures
+/// [any thread; reads a file] Opens a library file. The index is read page by page, and textures
 /// one at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open(
@@ -27,7 +28,7 @@ pub unsafe extern "C" fn htex_library_open(
     unsafe { calls::open(path, out) }
 }
 
-/// [any thread; reads a file] As htex_library_open, of a path of Windows in UTF-16.
+/// [any thread; reads a file] As htex_library_open, for a Windows path in UTF-16.
 #[cfg(windows)]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_wide(
@@ -49,8 +50,8 @@ pub unsafe extern "C" fn htex_library_from_bytes(
     unsafe { calls::from_bytes(bytes, len, out) }
 }
 
-/// [any thread; calls the reader] Opens a library that the program reads. The struct is copied; its
-/// functions are called until the library is freed.
+/// [any thread; calls the reader] Opens a library whose bytes the program reads. The struct is
+/// copied. Its functions are called until the library is freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_reader(
     reader: *const htex_reader,
@@ -60,14 +61,14 @@ pub unsafe extern "C" fn htex_library_open_reader(
     unsafe { calls::open_reader(reader, out) }
 }
 
-/// [any thread] Frees a library; its assets stay open. HTEX_STATUS_BUSY if another thread uses it
-/// at this moment.
+/// [any thread] Frees a library. Its assets stay open. HTEX_STATUS_BUSY if another thread is using
+/// the library.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_library_free(library: htex_library) -> htex_status {
     calls::free(library)
 }
 
-/// [any thread] Name of the library, which may be empty. Written as by htex_asset_manifest_json.
+/// [any thread] Writes the library's name, which may be empty, as htex_asset_manifest_json does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_name(
     library: htex_library,
@@ -79,14 +80,14 @@ pub unsafe extern "C" fn htex_library_name(
     unsafe { calls::name(library, out, capacity, length) }
 }
 
-/// [any thread] Number of textures.
+/// [any thread] Writes the number of textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_count(library: htex_library, out: *mut u64) -> htex_status {
     // SAFETY: the place is the caller's.
     unsafe { calls::count(library, out) }
 }
 
-/// [any thread] Number of pages of the index.
+/// [any thread] Writes the number of pages in the index.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_count(
     library: htex_library,
@@ -96,9 +97,9 @@ pub unsafe extern "C" fn htex_library_page_count(
     unsafe { calls::page_count(library, out) }
 }
 
-/// [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON
-/// array: the textures' names in ascending order, tags, models, ranges of recorded speeds and
-/// forces, bytes and hashes. Written as by htex_asset_manifest_json.
+/// [any thread; reads the file] Writes the entries of a page of the index as a JSON array: the
+/// textures' names in ascending order, tags, models, ranges of recorded speeds and forces, bytes
+/// and hashes. Page numbers start at 0. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_json(
     library: htex_library,
@@ -111,8 +112,8 @@ pub unsafe extern "C" fn htex_library_page_json(
     unsafe { calls::page_json(library, page, out, capacity, length) }
 }
 
-/// [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json;
-/// HTEX_STATUS_ABSENT if there is none of this name.
+/// [any thread; reads the file] Writes the entry of a texture as JSON, as in
+/// htex_library_page_json. HTEX_STATUS_ABSENT if there is no texture with this name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_entry_json(
     library: htex_library,
@@ -125,8 +126,8 @@ pub unsafe extern "C" fn htex_library_entry_json(
     unsafe { calls::entry_json(library, name, out, capacity, length) }
 }
 
-/// [any thread; reads the file] Opens a texture of the library; HTEX_STATUS_ABSENT if there is none
-/// of this name. `options` may be NULL.
+/// [any thread; reads the file] Opens a texture of the library. HTEX_STATUS_ABSENT if there is no
+/// texture with this name. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_asset(
     library: htex_library,
@@ -146,7 +147,7 @@ pub(crate) use calls::clear;
 
 #[cfg(any(not(feature = "library"), target_family = "wasm"))]
 mod calls {
-    //! What a build without libraries returns.
+    //! Replacements in a build without libraries.
     use super::*;
     use crate::status::{Failure, guarded};
 

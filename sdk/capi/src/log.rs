@@ -1,4 +1,4 @@
-//! Messages for the user of a program: what was noticed, and is no error of a call.
+//! Messages for the user of a program: observations that are not an error of a call.
 
 use std::ffi::{CString, c_char, c_void};
 use std::sync::{PoisonError, RwLock};
@@ -15,7 +15,8 @@ pub enum htex_log_level {
     HTEX_LOG_WARNING = 1,
 }
 
-/// Receives a message, UTF-8, valid during the call. `context` is that of htex_set_log.
+/// Receives a message in UTF-8, which is valid during the call. `context` is the value that was
+/// passed to htex_set_log.
 pub type htex_log_callback = Option<
     unsafe extern "C" fn(level: htex_log_level, message: *const c_char, context: *mut c_void),
 >;
@@ -32,11 +33,11 @@ unsafe impl Sync for Log {}
 
 static LOG: RwLock<Option<Log>> = RwLock::new(None);
 
-/// [any thread] Sets the function that receives messages; NULL: none, which is the default. It is
-/// called in the thread of the call that has the message, which is never one that renders or sets a
-/// motion, and must not call back into the library.
+/// [any thread] Sets the function that receives messages; NULL for none, which is the default. It
+/// is called in the thread of the call that produces the message, which is never a call that
+/// renders or sets a motion. It must not call back into the library.
 ///
-/// Once this returns the previous function is not called any more.
+/// Once this returns, the previous function is not called any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_set_log(
     callback: htex_log_callback,
@@ -49,12 +50,12 @@ pub unsafe extern "C" fn htex_set_log(
     })
 }
 
-/// Passes messages to nobody any more.
+/// Removes the function that receives messages.
 pub(crate) fn forget_log() {
     *LOG.write().unwrap_or_else(PoisonError::into_inner) = None;
 }
 
-/// Passes a message on.
+/// Passes a message to the function that receives messages, if there is one.
 pub(crate) fn log(level: htex_log_level, message: &str) {
     let log = LOG.read().unwrap_or_else(PoisonError::into_inner);
     let (Some(log), Ok(message)) = (&*log, CString::new(message.replace('\0', " "))) else {

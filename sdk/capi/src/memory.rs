@@ -2,7 +2,7 @@
 
 use std::alloc::{Layout, alloc, dealloc};
 
-/// Alignment of all that is allocated.
+/// Alignment of all allocations.
 const ALIGNMENT: usize = 8;
 
 fn layout(bytes: usize) -> Option<Layout> {
@@ -10,13 +10,13 @@ fn layout(bytes: usize) -> Option<Layout> {
     Layout::from_size_align(size, ALIGNMENT).ok()
 }
 
-/// Allocates bytes, at a multiple of 8; NULL if there are none.
+/// Allocates bytes, aligned to 8; NULL if there is no memory.
 pub fn allocate(bytes: usize) -> *mut u8 {
     // SAFETY: the size is not zero.
     layout(bytes).map_or(std::ptr::null_mut(), |layout| unsafe { alloc(layout) })
 }
 
-/// Frees bytes that [`allocate`] returned for the same number.
+/// Frees memory from [`allocate`]. The number of bytes must be the same.
 ///
 /// # Safety
 /// The caller says so; NULL is no memory.

@@ -1,4 +1,4 @@
-//! Motions as C has them.
+//! Motions in the form that C passes them.
 
 use std::mem::offset_of;
 
@@ -7,8 +7,8 @@ use htex::Motion;
 use crate::pointers::slice;
 use crate::status::Failure;
 
-/// Motion of a finger over a texture, at one moment. Later versions add what may be unknown at the
-/// end; what a program that was compiled against an earlier one does not have is not known.
+/// Motion of a finger over a texture at one moment. Later versions add optional values at the end.
+/// Values that a program's older header does not have count as unknown.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_motion {
@@ -18,13 +18,13 @@ pub struct htex_motion {
     pub speed_mm_s: f64,
     /// Normal force, N; finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm, of either sign; NAN if it is not known. Only models that follow
-    /// the position use it.
+    /// Position along the path, mm, of either sign; NAN if unknown. Only models that follow the
+    /// position use it.
     pub position_mm: f64,
-    /// Place on the surface, x and y, mm, of either sign; NAN, either or both, if it is not known.
-    /// Only models that are maps of a surface use it.
+    /// Place on the surface: coordinate x, mm, of either sign. The place is unknown if x, y or both
+    /// are NAN. Only models that are maps of a surface use it.
     pub x_mm: f64,
-    /// As `x_mm`, across it.
+    /// Coordinate y of the place, mm, at a right angle to `x_mm`.
     pub y_mm: f64,
 }
 
@@ -53,10 +53,10 @@ const UNKNOWN: htex_motion = htex_motion {
     y_mm: f64::NAN,
 };
 
-/// Bytes of the motions of versions of the header: speed and force are in all.
+/// Allowed sizes of a motion, bytes. Every version has at least speed and force.
 const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_mm)..=256;
 
-/// Motions of a caller, which may have been compiled against a shorter or longer struct.
+/// Motions from a caller, which may have been compiled against a shorter or longer struct.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Motions {
     first: *const u8,
@@ -102,7 +102,7 @@ impl Motions {
     }
 }
 
-/// The motion at `pointer`; `None` for NULL.
+/// Returns the motion at `pointer`; `None` for NULL.
 ///
 /// # Safety
 /// As [`Motions::of`].
@@ -114,7 +114,7 @@ pub(crate) unsafe fn motion(pointer: *const htex_motion) -> Result<Option<Motion
     Ok(unsafe { Motions::of(pointer, 1) }?.iter().next())
 }
 
-/// The motion at `pointer`, which must be there.
+/// Returns the motion at `pointer`, which must not be NULL.
 ///
 /// # Safety
 /// As [`Motions::of`].

@@ -1,4 +1,4 @@
-//! Options of opening an asset and of a voice.
+//! Options for opening an asset and for making a voice.
 
 use std::ffi::c_char;
 use std::path::PathBuf;
@@ -20,25 +20,25 @@ pub struct htex_bytes {
     pub len: usize,
 }
 
-/// Modules are not loaded: a texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
+/// Modules are not loaded. A texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
 pub const HTEX_ENGINE_OFF: u32 = 0;
-/// Modules run without handlers for signals: each access to memory is compared with its bound.
+/// Modules run without signal handlers: each memory access is checked against its bound.
 pub const HTEX_ENGINE_CHECKED: u32 = 1;
-/// Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay
-/// after htex_shutdown and pass on what is not of a module. The model of `examples/model-c-bursts`
-/// then takes 34 ns a sample instead of 42.
+/// Modules run with process-wide handlers for SIGSEGV, SIGBUS, SIGILL and SIGFPE. The handlers
+/// remain after htex_shutdown, and pass on signals that do not come from a module. The model of
+/// `examples/model-c-bursts` then takes 34 ns per sample instead of 42.
 pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 
-/// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to
-/// zero for the defaults: the built-in models alone, which make no thread, file or handler of
-/// signals.
+/// Options for opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to
+/// zero for the defaults: only the built-in models, which create no threads, files or signal
+/// handlers.
 ///
-/// WASM modules, which assets may bring along, are run by an engine that must be turned on. The
-/// library in `lib/whole` has one; in a build without it, turning it on is HTEX_STATUS_UNSUPPORTED
-/// when an asset is opened. Each module is compiled when it is first used (that example takes 0.07
-/// to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread
-/// sleeps and wakes every 50 ms to stop calls at their time limit. All is limited: 64 MiB of memory
-/// for a voice, 0.5 s for a block, 5 s to compile.
+/// Assets may embed models as WASM modules. These need an engine, which must be turned on. The
+/// library in `lib/whole` has one; in a build without it, turning it on gives
+/// HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is first used,
+/// unless `cache` has it: that takes 0.07 to 0.4 s for this example, and 5 s at most. While a
+/// module is loaded, one thread wakes every 50 ms to stop calls that exceed their time limit. All
+/// resources are limited: 64 MiB of memory per voice, 0.5 s per block, 5 s to compile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_open_options {
@@ -46,65 +46,67 @@ pub struct htex_open_options {
     pub size: u32,
     /// HTEX_ENGINE_OFF, HTEX_ENGINE_CHECKED or HTEX_ENGINE_SIGNALS.
     pub engine: u32,
-    /// Files of models to load, native libraries or WASM modules. A native library runs with all
-    /// rights of the program.
+    /// Model files to load: native libraries or WASM modules. A native library runs with all rights
+    /// of the program.
     pub plugins: *const *const c_char,
     /// Number of `plugins`.
     pub plugins_len: usize,
-    /// WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call
-    /// alone.
+    /// WASM modules of models, in memory. They run in a sandbox. The bytes are only used during the
+    /// call.
     pub modules: *const htex_bytes,
     /// Number of `modules`.
     pub modules_len: usize,
-    /// Folder for compiled modules, made for this user alone; NULL: none is written. With one, a
-    /// key that authenticates the files in it is kept as `wasm.key` in the user's folder of
-    /// settings, such as `~/.config/htex`.
+    /// Folder for compiled modules, created for this user only; NULL to write none. With a folder,
+    /// a key that authenticates its files is stored as `wasm.key` in the user's settings folder,
+    /// such as `~/.config/htex`.
     pub cache: *const c_char,
-    /// Not 0: modules that assets bring along do not run even with an engine.
+    /// If not 0, modules embedded in assets do not run even with an engine.
     pub no_embedded: u32,
-    /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the
-    /// user's.
+    /// If not 0, installed models are also searched for, in the folders of HTEX_PLUGIN_PATH and in
+    /// the user's folder.
     pub installed: u32,
 }
 
-/// Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the
-/// defaults.
+/// Options for making a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for
+/// the defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_voice_options {
     /// sizeof(htex_voice_options).
     pub size: u32,
-    /// The model of the representation, by its id or short name; NULL: the representation of least
-    /// error.
+    /// The model of the representation, by its id or short name; NULL for the representation with
+    /// the smallest error.
     pub model: *const c_char,
-    /// Rate of the samples, Hz, at least twice the asset's highest frequency; 0: 20000.
+    /// Sample rate, Hz, at least twice the asset's highest frequency; 0 for 20000.
     pub rate_hz: f64,
     /// Seed of the noise. Equal seeds give equal samples.
     pub seed: u64,
-    /// Motion of the start; NULL: the first recorded condition, or the strongest if the first is
+    /// Motion at the start; NULL for the first recorded condition, or the strongest if the first is
     /// silent.
     pub motion: *const htex_motion,
-    /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
+    /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL for streamed.
     pub synthesis: *const c_char,
-    /// Gain of the samples; 0: 1. htex_voice_set_gain changes it.
+    /// Gain of the samples; 0 for 1. htex_voice_set_gain changes it.
     pub gain: f64,
-    /// Greatest magnitude of a sample after the gain, in the asset's unit; 0: no limit. The gain
-    /// falls at once where a sample would exceed it, and returns with a time constant of 50 ms.
+    /// Largest absolute value of a sample after the gain, in the asset's unit; 0 for no limit. The
+    /// gain drops at once when a sample would exceed the limit, and recovers with a time constant
+    /// of 50 ms.
     pub limit: f64,
-    /// Number of bands of htex_voice_envelope, 1 to 32; 0: no envelope, which takes no time.
+    /// Number of bands in htex_voice_envelope, 1 to 32; 0 switches the envelope off and costs no
+    /// time.
     pub envelope_bands: u32,
-    /// Not 0: frequencies do not follow speeds beyond the recorded ones.
+    /// If not 0, frequencies do not follow speeds beyond the recorded ones.
     pub no_frequency_scaling: u32,
-    /// Not 0: the level does not follow forces beyond the recorded ones.
+    /// If not 0, the level does not follow forces beyond the recorded ones.
     pub no_level_scaling: u32,
-    /// Not 0: a finger that rests is not silent.
+    /// If not 0, a finger at rest is not silent.
     pub no_contact: u32,
-    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest
-    /// recorded level; 0: 4. Otherwise above 0 and finite.
+    /// Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
+    /// recorded level; above 0 and finite. 0 for 4.
     pub ceiling: f64,
 }
 
-/// The first `size` bytes of a struct of options, with zeros for the rest.
+/// Reads the first `size` bytes of a struct of options, with zeros for the rest.
 ///
 /// # Safety
 /// NULL, or `size` bytes of a struct `T` that begins with its size.
@@ -128,7 +130,7 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
         let to = (&raw mut options).cast::<u8>();
         to.copy_from_nonoverlapping(pointer.cast(), size.min(size_of::<T>()));
     }
-    // What a newer header has beyond this struct must have its default.
+    // A newer header may have more fields than this struct. They must have their default, zero.
     // SAFETY: `size` bytes are there.
     let rest = unsafe {
         let known = size_of::<T>().min(size);
@@ -143,7 +145,7 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
     Ok(options)
 }
 
-/// The models, and whether those of assets may run.
+/// The models, and whether embedded models may run.
 pub(crate) struct Models {
     pub(crate) registry: Registry,
     pub(crate) embedded: bool,
@@ -198,7 +200,7 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     Ok(Models { registry, embedded: options.no_embedded == 0 && engine != WasmEngine::Off })
 }
 
-/// The engine of a number; one that this build does not have is an error here, and not where a
+/// Returns the engine for a number. An engine that this build lacks is an error here, not where a
 /// module is first used.
 fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
     match number {
@@ -216,7 +218,7 @@ fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
     }
 }
 
-/// The model and the other options.
+/// Reads the model and the other options.
 ///
 /// # Safety
 /// As [`options`]; the text lives as long as the result.

@@ -1,6 +1,6 @@
-//! Pointers of C as Rust values. A caller of a C function promises what C cannot check: a pointer
-//! that is not NULL points to as many values as its length says, and they stay there during the
-//! call.
+//! Converts C pointers to Rust values. The caller of a C function guarantees what C cannot check: a
+//! pointer that is not NULL points to as many values as its length says, and they stay valid during
+//! the call.
 
 use std::ffi::{CStr, c_char};
 
@@ -19,7 +19,7 @@ pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Fai
     Ok(unsafe { std::slice::from_raw_parts(pointer, len) })
 }
 
-/// As [`slice`], to be written.
+/// As [`slice`], for writing.
 ///
 /// # Safety
 /// As the module says, and nothing else uses the values during the call.
@@ -42,7 +42,7 @@ fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The place at which a result is written.
+/// Returns a reference to where a result is written.
 ///
 /// # Safety
 /// As the module says.
@@ -54,7 +54,7 @@ pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     Ok(unsafe { &mut *pointer })
 }
 
-/// A text; `None` for NULL.
+/// Returns a text; `None` for NULL.
 ///
 /// # Safety
 /// As the module says: the text ends with a zero byte.
@@ -70,7 +70,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<Option<&'a str>,
     }
 }
 
-/// A text that must be there.
+/// Returns a text that must not be NULL.
 ///
 /// # Safety
 /// As `text`.
@@ -79,7 +79,7 @@ pub unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure
     unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))
 }
 
-/// A path of Windows, UTF-16 with a zero at its end.
+/// Returns a Windows path, UTF-16 with a terminating zero.
 ///
 /// # Safety
 /// As [`text`].
@@ -99,8 +99,8 @@ pub(crate) unsafe fn wide_path(path: *const u16) -> Result<std::path::PathBuf, F
     Ok(std::ffi::OsString::from_wide(units).into())
 }
 
-/// Writes a text with a zero at its end, and its length without the zero to `length` unless that is
-/// NULL. With a `capacity` of 0 only the length.
+/// Writes a text with a terminating zero, and its length without the zero to `length`, unless that
+/// is NULL. With a `capacity` of 0 only the length is written.
 ///
 /// # Safety
 /// As the module says.

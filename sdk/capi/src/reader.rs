@@ -1,4 +1,4 @@
-//! Files that a program reads for the library: from archives, packages of apps, or memory.
+//! Files whose bytes the program reads for the library: from archives, app packages, or memory.
 
 #[cfg(feature = "scene")]
 use std::ffi::CString;
@@ -8,36 +8,36 @@ use std::io;
 use crate::pointers::slice;
 use crate::status::Failure;
 
-/// A file that the program reads. Set `size` to sizeof(htex_reader).
+/// A file whose bytes the program reads. Set `size` to sizeof(htex_reader).
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_reader {
     /// sizeof(htex_reader).
     pub size: u32,
-    /// Bytes of the file.
+    /// Size of the file, bytes.
     pub len: u64,
-    /// The first argument of the functions.
+    /// First argument passed to the functions.
     pub context: *mut c_void,
-    /// Fills `buffer` with the `len` bytes from `offset` on, which are in the file. Returns 0, or
-    /// another number for an error. Is called in the thread of a call of the library, for a library
-    /// of textures in several threads at a time.
+    /// Fills `buffer` with the `len` bytes at `offset`, which lie within the file. Returns 0, or
+    /// another number for an error. It is called in the thread of a library call; for a library of
+    /// textures, several threads may call it at the same time.
     pub read: Option<
         unsafe extern "C" fn(context: *mut c_void, offset: u64, buffer: *mut u8, len: usize) -> i32,
     >,
-    /// Called once when the file is not read any more, also after an error; may be NULL.
+    /// Called once when the file is no longer read, also after an error; may be NULL.
     pub close: Option<unsafe extern "C" fn(context: *mut c_void)>,
 }
 
-/// The files that a scene names. Set `size` to sizeof(htex_files).
+/// Gives access to the files that a scene names. Set `size` to sizeof(htex_files).
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_files {
     /// sizeof(htex_files).
     pub size: u32,
-    /// The first argument of `open`.
+    /// First argument passed to `open`.
     pub context: *mut c_void,
-    /// Opens the file of a name, as the scene has it (UTF-8): fills `file`, whose `size` is set.
-    /// Returns 0, or another number if there is no such file.
+    /// Opens the file with a name as the scene states it (UTF-8), and fills `file`, whose `size` is
+    /// set. Returns 0, or another number if there is no such file.
     pub open: Option<
         unsafe extern "C" fn(
             context: *mut c_void,
@@ -47,10 +47,10 @@ pub struct htex_files {
     >,
 }
 
-/// Most bytes of a file that is read whole: recorded motions are the longest.
+/// Largest size, bytes, of a file that is read at once. Recorded motions are the largest.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// A file of the program, which is closed when it is dropped.
+/// A file that the program reads. It is closed when it is dropped.
 #[derive(Debug)]
 pub(crate) struct Reader {
     len: u64,
@@ -88,7 +88,7 @@ impl Reader {
         self.len
     }
 
-    /// Fills the buffer; returns how many bytes the file had there.
+    /// Fills the buffer and returns how many bytes the file had there.
     pub(crate) fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
         let there = self.len.saturating_sub(offset);
         let len = usize::try_from(there).map_or(buffer.len(), |there| there.min(buffer.len()));
@@ -146,7 +146,7 @@ impl Files {
         Ok(Self { files })
     }
 
-    /// Reads the file of a name.
+    /// Reads the file with a name.
     pub(crate) fn read_whole(&self, name: &str) -> io::Result<Vec<u8>> {
         let absent = || io::Error::from(io::ErrorKind::NotFound);
         let text = CString::new(name).map_err(|_| absent())?;

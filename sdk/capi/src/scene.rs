@@ -1,5 +1,5 @@
-//! Scenes: loading, planning, following a finger, rendering. Without the feature `scene` each call
-//! says so.
+//! Scenes: loading, planning, following a finger, rendering. Without the feature `scene`, each call
+//! returns an error that says so.
 
 use std::ffi::c_char;
 
@@ -7,7 +7,7 @@ use crate::options::htex_open_options;
 use crate::reader::htex_files;
 use crate::status::htex_status;
 
-/// A planned scene that is playing. One thread at a time may use it. Zero is no scene.
+/// A planned scene that is playing. Only one thread at a time may use it. Zero is not a scene.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene {
@@ -15,14 +15,14 @@ pub struct htex_scene {
     pub id: u64,
 }
 
-/// Options of a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for the
-/// defaults.
+/// Options for opening a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for
+/// the defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene_options {
     /// sizeof(htex_scene_options).
     pub size: u32,
-    /// Rate of the samples, Hz; 0: 20000.
+    /// Sample rate, Hz; 0 for 20000.
     pub rate_hz: f64,
 }
 
@@ -36,15 +36,14 @@ pub struct htex_finger {
     pub speed_mm_s: f64,
     /// Normal force, N; not negative.
     pub force_n: f64,
-    /// Position, mm; both NAN if it is not known: then the finger is on every surface without a
-    /// region.
+    /// Position, mm. If unknown, both are NAN, and the finger is on every surface without a region.
     pub x_mm: f64,
     /// See `x_mm`.
     pub y_mm: f64,
 }
 
-/// [any thread; reads files] Loads a scene file and its assets and plans it. Its samples have the
-/// assets' unit: the scene's own device is not used. `open` and `options` may be NULL.
+/// [any thread; reads files] Loads a scene file and its assets, and plans it. Its samples have the
+/// assets' unit, because the scene's own device is not used. `open` and `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_open(
     path: *const c_char,
@@ -56,7 +55,7 @@ pub unsafe extern "C" fn htex_scene_open(
     unsafe { calls::open_path(path, open, options, out) }
 }
 
-/// [any thread; reads files] As htex_scene_open, of a path of Windows in UTF-16.
+/// [any thread; reads files] As htex_scene_open, for a Windows path in UTF-16.
 #[cfg(windows)]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_open_wide(
@@ -69,8 +68,8 @@ pub unsafe extern "C" fn htex_scene_open_wide(
     unsafe { calls::open_wide(path, open, options, out) }
 }
 
-/// [any thread] As htex_scene_open, of a scene in memory, whose files the program reads. Bytes and
-/// `files` are used during the call alone.
+/// [any thread] As htex_scene_open, for a scene in memory whose files the program reads. The bytes
+/// and `files` are only used during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_from_bytes(
     bytes: *const u8,
@@ -90,8 +89,8 @@ pub extern "C" fn htex_scene_free(scene: htex_scene) -> htex_status {
     calls::free(scene)
 }
 
-/// [one thread at a time] The plan as JSON: the stages that run and those that are left out, with
-/// the reasons. Written as by htex_asset_manifest_json.
+/// [one thread at a time] Writes the plan as JSON: the stages that run, the stages that are left
+/// out, and the reasons. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_plan_json(
     scene: htex_scene,
@@ -103,7 +102,7 @@ pub unsafe extern "C" fn htex_scene_plan_json(
     unsafe { calls::plan_json(scene, out, capacity, length) }
 }
 
-/// [one thread at a time] Rate of the samples, Hz.
+/// [one thread at a time] Writes the sample rate, Hz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) -> htex_status {
     // SAFETY: the place is the caller's.
@@ -111,7 +110,7 @@ pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) ->
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the
-/// finger of a scene whose motion is live; in other scenes it changes nothing.
+/// finger in a scene with live motion. In other scenes it has no effect.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_set_finger(
     scene: htex_scene,
@@ -121,9 +120,9 @@ pub unsafe extern "C" fn htex_scene_set_finger(
     unsafe { calls::set_finger(scene, finger) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples; writes
-/// their number, which is smaller at the end of the scene, to `rendered`. If a model fails, its
-/// surface is silent, the others play on, and the call returns the error.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples and
+/// writes their number to `rendered`. It is smaller at the end of the scene. If a model fails, its
+/// surface is silent, the others continue, and the call returns the error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_render(
     scene: htex_scene,
@@ -135,8 +134,8 @@ pub unsafe extern "C" fn htex_scene_render(
     unsafe { calls::render(scene, out, frames, rendered) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Ends the scene with a ramp to
-/// silence, as early as possible.
+/// [one thread at a time; real-time: neither allocates nor locks] Ends the scene as early as
+/// possible, with a ramp to silence.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_scene_stop(scene: htex_scene) -> htex_status {
     calls::stop(scene)
@@ -150,7 +149,7 @@ pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
-    //! What a library without scenes returns.
+    //! Replacements in a library without scenes.
     use super::*;
     use crate::status::{Failure, guarded};
 

@@ -1,16 +1,16 @@
-//! The end of the use of the library.
+//! Shutting down the library.
 
 use crate::asset::ASSETS;
 use crate::log::forget_log;
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::VOICES;
 
-/// [no other call may run in any thread] Frees all assets, voices, libraries, scenes and devices
-/// (which go to rest), and all memory that was allocated for them, ends the threads of engines and
-/// forgets the function of htex_set_log, so that the library can be unloaded. Handles from before
-/// are bad afterwards, and new objects may be made. Constants of the models that were used stay:
-/// 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY, and nothing is freed of that
-/// kind, if an object is in use.
+/// [no other call may run in any thread] Prepares the library for being unloaded. It frees all
+/// assets, voices, libraries, scenes and devices (which go to rest), and all memory allocated for
+/// them. It ends the engines' threads and removes the function of htex_set_log. Existing handles
+/// become invalid; new objects may be made afterwards. Constants of the models that were used
+/// remain: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY if an object is in use;
+/// then no object of its kind is freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_shutdown() -> htex_status {
     guarded(|| {

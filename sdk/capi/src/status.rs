@@ -1,21 +1,22 @@
-//! Statuses of calls, and the text of the last error of a thread.
+//! Status codes of calls, and the text of a thread's last error.
 
 use std::cell::UnsafeCell;
 use std::ffi::{CStr, c_char};
 use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Status of a call. Later versions may return further values; all but HTEX_STATUS_OK are errors.
+/// Status of a call. Later versions may return further values. All values except HTEX_STATUS_OK are
+/// errors.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum htex_status {
     /// The call succeeded.
     HTEX_STATUS_OK = 0,
-    /// A pointer is NULL or misaligned, a text is not UTF-8, or a number is out of its range.
+    /// A pointer is NULL or misaligned, a text is not UTF-8, or a number is out of range.
     HTEX_STATUS_INVALID_ARGUMENT = 1,
     /// The handle was freed, or was never one of this kind.
     HTEX_STATUS_BAD_HANDLE = 2,
-    /// Another thread uses the object at this moment.
+    /// Another thread is using the object.
     HTEX_STATUS_BUSY = 3,
     /// A file could not be read.
     HTEX_STATUS_IO = 4,
@@ -33,15 +34,15 @@ pub enum htex_status {
     HTEX_STATUS_INVALID_SCENE = 10,
     /// This build of the library lacks the feature.
     HTEX_STATUS_UNSUPPORTED = 11,
-    /// The buffer is too small; it has the beginning of the text.
+    /// The buffer is too small. It contains the beginning of the text.
     HTEX_STATUS_TRUNCATED = 12,
-    /// An error of the library itself. The object of the call must be freed.
+    /// An error in the library itself. The object of the call must be freed.
     HTEX_STATUS_INTERNAL = 13,
-    /// The library of textures is invalid.
+    /// The texture library is invalid.
     HTEX_STATUS_INVALID_LIBRARY = 14,
-    /// The library has no texture of this name.
+    /// The library has no texture with this name.
     HTEX_STATUS_ABSENT = 15,
-    /// The device or its driver is missing, in use, or failed; it is at rest.
+    /// The device or its driver is missing, in use, or failed. The device is at rest.
     HTEX_STATUS_DEVICE = 16,
 }
 
@@ -55,7 +56,7 @@ pub struct Failure {
 #[derive(Debug)]
 enum Text {
     Plain(&'static str),
-    /// Not in a box: calls in a real-time thread fail without allocating.
+    /// Not boxed: calls in a real-time thread fail without allocating.
     Playing(htex::Error),
     #[cfg(feature = "scene")]
     Scene(htex::scene::SceneError),
@@ -69,19 +70,19 @@ impl Failure {
         Self { status, text }
     }
 
-    /// As a wrong argument; does not allocate.
+    /// Makes an error for an invalid argument; does not allocate.
     pub const fn argument(text: &'static str) -> Self {
         Self::plain(htex_status::HTEX_STATUS_INVALID_ARGUMENT, text)
     }
 
-    /// As an error of a scene; does not allocate.
+    /// Makes an error for a scene; does not allocate.
     #[cfg(feature = "scene")]
     pub(crate) fn of_scene(status: htex_status, error: htex::scene::SceneError) -> Self {
         let text = Text::Scene(error);
         Self { status, text }
     }
 
-    /// As an error of an `htex` crate.
+    /// Makes an error from an error of an `htex` crate.
     pub fn of(status: htex_status, error: impl std::error::Error + 'static) -> Self {
         let text = Text::Of(Box::new(error));
         Self { status, text }
@@ -127,10 +128,11 @@ impl From<htex::Error> for Failure {
     }
 }
 
-/// Bytes of the last error's text, with the zero at its end.
+/// Size of the last error's text, bytes, including a terminating zero.
 const TEXT_BYTES: usize = 1024;
 
-/// The text of a thread's last error, in memory of the thread: setting it allocates nothing.
+/// The text of a thread's last error, in memory of that thread, so that setting it does not
+/// allocate.
 #[repr(C)] // `bytes` comes first: `htex_last_error` returns its address.
 struct LastError {
     bytes: [u8; TEXT_BYTES],
@@ -144,7 +146,7 @@ thread_local! {
 }
 
 impl Write for LastError {
-    /// Appends what fits, in whole characters.
+    /// Appends as many whole characters as fit.
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let space = TEXT_BYTES - 1 - self.len;
         let len = text.floor_char_boundary(space);
@@ -160,7 +162,7 @@ fn remember(text: &Text) {
         // SAFETY: only this thread has access, and `write!` calls nothing that comes back here.
         let last = unsafe { &mut *last.get() };
         last.len = 0;
-        // An error means that the text was cut.
+        // An error only means that the text was cut off.
         let _ = match text {
             Text::Plain(text) => last.write_str(text),
             Text::Playing(error) => write!(last, "{error}"),
@@ -171,16 +173,16 @@ fn remember(text: &Text) {
     });
 }
 
-/// [any thread] Text of the last error of the calling thread, in English, UTF-8 and at most 1023
-/// bytes; empty if there was none. Valid until the thread's next call that fails. A call that
-/// succeeds leaves it as it is.
+/// [any thread] Returns the text of the calling thread's last error, in English, UTF-8, at most
+/// 1023 bytes; empty if there was none. It is valid until the thread's next call that fails. A
+/// successful call does not change it.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_last_error() -> *const c_char {
     LAST.with(|last| last.get().cast::<c_char>().cast_const())
 }
 
-/// [any thread; real-time] What a status means, in English. Static; "unknown status" for other
-/// numbers.
+/// [any thread; real-time] Returns what a status means, in English; "unknown status" for other
+/// numbers. The text is static.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
     let text: &CStr = match status {
@@ -206,7 +208,7 @@ pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
     text.as_ptr()
 }
 
-/// Runs the body of a C function: keeps the text of an error, and stops panics.
+/// Runs the body of a C function. It stores the text of an error and catches panics.
 pub fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> htex_status {
     let result = catch_unwind(AssertUnwindSafe(body)).unwrap_or(Err(Failure::plain(
         htex_status::HTEX_STATUS_INTERNAL,

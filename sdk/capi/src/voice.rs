@@ -1,4 +1,4 @@
-//! Voices: playing an asset at a motion.
+//! Voices: play an asset at a motion.
 
 use std::ffi::c_char;
 use std::ops::{Deref, DerefMut};
@@ -12,7 +12,7 @@ use crate::options::{htex_voice_options, voice_options};
 use crate::pointers::{place, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
-/// A playing texture. One thread at a time may use it. Zero is no voice.
+/// A texture that is playing. Only one thread at a time may use it. Zero is not a voice.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_voice {
@@ -20,11 +20,11 @@ pub struct htex_voice {
     pub id: u64,
 }
 
-/// A voice, and what it takes to make it again.
+/// A voice, and everything needed to make it again.
 pub(crate) struct Playing {
     voice: Voice,
     asset: Asset,
-    /// The representation, by the id of its model.
+    /// The representation, as the id of its model.
     model: String,
     options: VoiceOptions<'static>,
 }
@@ -66,17 +66,17 @@ impl DerefMut for Playing {
 pub struct htex_envelope {
     /// sizeof(htex_envelope).
     pub size: u32,
-    /// RMS of the samples, in the asset's unit, exactly; 0 for none.
+    /// Exact RMS of the samples, in the asset's unit; 0 if there are none.
     pub level_rms: f64,
     /// Mean frequency, weighted by power, Hz; 0 for silence.
     pub centroid_hz: f64,
-    /// Number of the samples.
+    /// Number of samples.
     pub frames: u64,
 }
 
 pub(crate) static VOICES: Table<Playing> = Table::new(Kind::Voice);
 
-/// [any thread; may load a model] Makes a voice of an asset. `options` may be NULL.
+/// [any thread; may load a model] Makes a voice from an asset. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_new(
     asset: htex_asset,
@@ -98,9 +98,9 @@ pub extern "C" fn htex_voice_free(voice: htex_voice) -> htex_status {
     guarded(|| VOICES.remove(voice.id).map(drop))
 }
 
-/// [one thread at a time; not the real-time thread] Makes the voice as it was when it was made,
-/// with the same options and the same handle: the samples are those of a new voice. `motion` may be
-/// NULL (the motion of its options). After an error the voice plays on as before.
+/// [one thread at a time; not the real-time thread] Restarts the voice with the same options and
+/// the same handle: its samples are those of a new voice. `motion` may be NULL for the motion in
+/// its options. After an error the voice plays on as before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_reset(
     voice: htex_voice,
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn htex_voice_reset(
     })
 }
 
-/// [one thread at a time] Id of the model that plays: of the options, or that of the representation
+/// [one thread at a time] Writes the id of the model that plays: the one in the options, or the one
 /// that was chosen. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_model(
@@ -136,15 +136,15 @@ pub unsafe extern "C" fn htex_voice_model(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which is not
-/// negative and changes within 10 ms.
+/// [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which must not be
+/// negative. The change takes 10 ms.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_voice_set_gain(voice: htex_voice, gain: f64) -> htex_status {
     guarded(|| Ok(VOICES.exclusive(voice.id)?.set_gain(gain)?))
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice rests, so
-/// that its samples are 0 until a motion is felt again, else 0. A voice that rests takes hardly any
+/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice is silent
+/// (its samples are 0 until the finger slides again), otherwise 0. A silent voice takes hardly any
 /// time to render.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) -> htex_status {
@@ -156,8 +156,8 @@ pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) 
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger;
-/// spectrum and level glide to it. After an error the voice plays on as before.
+/// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger.
+/// Spectrum and level change gradually. After an error the voice plays on as before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_set_motion(
     voice: htex_voice,
@@ -187,8 +187,8 @@ pub unsafe extern "C" fn htex_voice_render(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Adds the next samples, multiplied
-/// by `gain`, to `out`: for a mix of voices.
+/// [one thread at a time; real-time: neither allocates nor locks] Multiplies the next samples by
+/// `gain` and adds them to `out`, to mix several voices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_add(
     voice: htex_voice,
@@ -204,15 +204,15 @@ pub unsafe extern "C" fn htex_voice_render_add(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Tells what the voice played since
-/// the last call, effects, gain and limit included, for phones, pads and motors, which take level
-/// and frequency. Writes the mean square in each of the voice's `envelope_bands`, in the squared
-/// unit, to `bands`, which may be NULL with a `bands_len` of 0.
+/// [one thread at a time; real-time: neither allocates nor locks] Writes what the voice played
+/// since the last call, including effects, gain and limit, for phones, pads and motors that are
+/// driven by level and frequency. `bands` receives the mean square in each of the voice's
+/// `envelope_bands`, in the squared unit. It may be NULL if `bands_len` is 0.
 ///
-/// The level is exact. Frequency and bands are those of Hann windows of N samples, the least power
-/// of two that lasts 40 ms (20 kHz: 1024), of which one ends every N / 4 samples; a call has the
-/// mean of the windows that ended since the last call, and the numbers of that call if none did.
-/// The middle of a window is N / 2 samples before its end.
+/// The level is exact. Frequency and bands are computed from Hann windows of N samples, where N is
+/// the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A window ends every N / 4
+/// samples, and its middle is N / 2 samples before its end. A call returns the mean of the windows
+/// that ended since the last call; if none did, it returns the values of that call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope(
     voice: htex_voice,
@@ -237,9 +237,10 @@ pub unsafe extern "C" fn htex_voice_envelope(
     })
 }
 
-/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, one more than
-/// bands, Hz: equal ratios from the lowest to the highest frequency of the asset. The first band
-/// reaches down to 0 Hz, and the last up to half the rate.
+/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz: one more than
+/// there are bands, spaced by equal ratios from the lowest to the highest frequency of the asset.
+/// The first band also includes everything down to 0 Hz, and the last everything up to half the
+/// sample rate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope_edges(
     voice: htex_voice,
@@ -262,8 +263,8 @@ pub unsafe extern "C" fn htex_voice_envelope_edges(
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames`
-/// samples for each of `motions_len` motions, which is set before its block: `motions_len * frames`
-/// samples. Stops at the first error; the rest of `out` is then unchanged.
+/// samples for each of `motions_len` motions, in total `motions_len * frames` samples. Each motion
+/// is set before its block. Stops at the first error; the rest of `out` is then unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_path(
     voice: htex_voice,
@@ -290,8 +291,8 @@ pub unsafe extern "C" fn htex_voice_render_path(
     })
 }
 
-/// [one thread at a time] How the voice plays a motion, and whether that is within the recorded
-/// conditions, as English text. Written as by htex_asset_manifest_json.
+/// [one thread at a time] Writes how the voice plays a motion, and whether the motion lies within
+/// the recorded conditions, as English text. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage(
     voice: htex_voice,

@@ -1,4 +1,4 @@
-//! The plugin for FMOD: compiled against stubs of FMOD's headers, which were written from its
+//! The FMOD plugin, compiled against stubs of FMOD's headers that were written from its
 //! documentation, and run by hosts that do what FMOD does. FMOD itself was not run.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 #![cfg(target_os = "linux")]
@@ -16,8 +16,8 @@ use htex::{Asset, Motion, Registry, VoiceOptions};
 use programs::{Language, Project, asset};
 use xtask::needs;
 
-/// Speeds (mm/s) and forces (N) of strokes, numbers that a float holds: two speeds, rests, a lifted
-/// finger, forces beyond the recorded one.
+/// Speeds (mm/s) and forces (N) of strokes, all exactly representable as floats: two speeds, rests,
+/// a lifted finger, and forces beyond the recorded one.
 const STROKES: [(f64, f64); 8] = [
     (80.0, 0.5),
     (120.0, 0.5),
@@ -32,7 +32,7 @@ const STROKE_FRAMES: usize = 6_144;
 const RATE_HZ: f64 = 48_000.0;
 const SEED: u64 = 7;
 
-/// With the counter of allocations, which sanitizers and valgrind do without.
+/// Counts allocations. Sanitizers and valgrind run without the counter.
 const COUNTED: &[&str] = &["-DCOUNTED"];
 const SANITIZED: &[&str] = &["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 
@@ -40,7 +40,7 @@ fn capi(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// The plugin and the programs that load it, in the folder of a project.
+/// The plugin and the programs that load it, in a project's folder.
 struct Built {
     project: Project,
     plugin: PathBuf,
@@ -74,8 +74,8 @@ impl Built {
         }
     }
 
-    /// The samples of the strokes, played in blocks of so many frames, and the counts of blocks
-    /// that were played and left out.
+    /// Returns the samples of the strokes, played in blocks of `frames`, and how many blocks were
+    /// played and skipped.
     fn played(&self, frames: usize) -> (Vec<u8>, Vec<usize>) {
         let (asset, out) = (asset(), self.project.folder().join("out.f32"));
         let frames = frames.to_string();
@@ -91,7 +91,7 @@ impl Built {
         (fs::read(out).unwrap(), counts.collect())
     }
 
-    /// What the checks print.
+    /// Returns what the checks print.
     fn checked(&self, under: &[&str], changes: usize) -> String {
         let (asset, changes) = (asset(), changes.to_string());
         let arguments = [self.plugin.as_os_str(), asset.as_os_str(), OsStr::new(&changes)];
@@ -118,8 +118,8 @@ fn expected() -> Vec<u8> {
     samples.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// In blocks of any length, with gcc and clang; while the finger rests FMOD is told to leave the
-/// plugin out.
+/// The plugin plays in blocks of any length, built with gcc and clang. While the finger rests it
+/// tells FMOD to skip it.
 #[test]
 fn the_plugin_plays_the_samples_of_the_library() {
     let expected = expected();
@@ -130,7 +130,7 @@ fn the_plugin_plays_the_samples_of_the_library() {
         for frames in [256, 512, 1_024] {
             let (samples, counts) = built.played(frames);
             assert!(samples == expected, "{language:?}, {frames}");
-            // Three of eight strokes are silent, but for the block or blocks in which the texture
+            // Three of the eight strokes are silent, except for the blocks in which the texture
             // fades.
             let fading = 960usize.div_ceil(frames);
             let silent = 3 * (STROKE_FRAMES / frames - fading);
@@ -140,8 +140,8 @@ fn the_plugin_plays_the_samples_of_the_library() {
     }
 }
 
-/// Silence, refusals, parameters, instances and a mixer that runs meanwhile, without an allocation
-/// in it. The README has the parameters, and the plugin the models of the library.
+/// Silence, refusals, parameters, instances, and a mixer that runs at the same time without
+/// allocating. The README lists the parameters, and the plugin offers the library's models.
 #[test]
 fn the_plugin_keeps_to_its_description() {
     let Some(built) = Built::new(Language::C, "fmod_checks", COUNTED) else {

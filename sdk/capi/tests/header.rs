@@ -1,17 +1,18 @@
-//! `include/htex.h` is that of the functions, and its contents are frozen.
+//! `include/htex.h` matches the functions, and its contents are frozen.
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; a text of C is read.
 
 use std::path::Path;
 
 use htex_c::HTEX_API_VERSION;
 
-/// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
+/// FNV-1a hash of the listing of each minor version of this major version, oldest first. New
+/// versions only add lines.
 const FROZEN: &[(&str, u64)] = &[("1.0", 0x4a97_6c36_6e0f_de5e)];
 
 const THAW: &str = "The interface of libhtex is frozen: programs were compiled against it. Take the change back; or, if it only \
     adds, raise the minor version in HTEX_API_VERSION, and add the new listing's version and hash to FROZEN.";
 
-/// The header as the functions are now.
+/// The header generated from the current functions.
 fn header() -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).unwrap();
@@ -39,14 +40,14 @@ fn generated_listing_is_frozen() {
         let path = format!("../../spec/abi/libhtex-{earlier}.txt");
         let kept = std::fs::read_to_string(path).unwrap();
         assert_eq!(fnv(kept.as_bytes()), *hash, "{THAW}");
-        // The version itself is the one line that changes.
+        // The version itself is the only line that may change.
         let mut lines = kept.lines().filter(|line| !line.contains("HTEX_API_VERSION"));
         assert!(lines.all(|line| now.contains(line)), "{THAW}");
     }
 }
 
-/// The header, C# and the npm package have the statuses of the Rust enumeration, and each has a
-/// text.
+/// The header, C# and the npm package have the same statuses as the Rust enumeration, and each
+/// status has a text.
 #[test]
 fn all_tables_of_statuses_agree() {
     let header = header();
@@ -85,7 +86,7 @@ fn all_tables_of_statuses_agree() {
     assert_eq!(own, wanted, "core.js");
 }
 
-/// The declarations, one on each line, without comments.
+/// The declarations, one per line, without comments.
 fn listing(header: &str) -> String {
     let mut code = String::new();
     let mut rest = header;
@@ -104,7 +105,7 @@ fn listing(header: &str) -> String {
     for line in lines {
         let line = line.split("//").next().unwrap().trim_end();
         listing.push_str(line);
-        // A declaration ends here, or a member.
+        // A declaration or a member ends here.
         let ends =
             line.ends_with([';', ',', '{', '}']) && !line.ends_with(",") || line.starts_with('#');
         listing.push(if ends || is_constant(line) { '\n' } else { ' ' });

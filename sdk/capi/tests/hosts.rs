@@ -1,5 +1,5 @@
-//! What libhtex takes from the program that it is part of: allocations in its real-time calls,
-//! memory, threads, files and handlers of signals.
+//! What libhtex costs the program that contains it: allocations in real-time calls, memory,
+//! threads, files and signal handlers.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 #![cfg(target_os = "linux")]
 
@@ -24,7 +24,7 @@ fn hosts(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(file)
 }
 
-/// Builds a program of this folder.
+/// Builds a program in this folder.
 fn build(project: &Project, file: &str, more: &[&str]) -> PathBuf {
     let include = format!("-I{}", hosts("").display());
     let source = fs::read_to_string(hosts(file)).unwrap();
@@ -78,8 +78,8 @@ fn the_library_is_clean_under_valgrind_and_sanitizers() {
     }
 }
 
-/// The first voice of a model takes at most 64 kB more than the next ones, and the end of the
-/// library leaves constants alone.
+/// The first voice of a model takes at most 64 kB more than the next ones, and shutting down the
+/// library leaves only constants.
 #[test]
 fn voices_are_small_and_the_end_gives_everything_back() {
     let Some(project) = Project::new(Language::C, "memory") else {
@@ -91,7 +91,7 @@ fn voices_are_small_and_the_end_gives_everything_back() {
     println!("{}", passed("memory", &run));
 }
 
-/// A texture recorded at two speeds, in these models.
+/// A texture recorded at two speeds, with these models.
 fn fitted(registry: &Registry, models: &[&str]) -> htex::AssetData {
     let take = |speed_mm_s| {
         let options =
@@ -106,7 +106,7 @@ fn fitted(registry: &Registry, models: &[&str]) -> htex::AssetData {
     fit_asset(&[take(60.0), take(120.0)], &request).unwrap().asset
 }
 
-/// A texture in all models, in the folder of a program.
+/// A texture with all models, in a program's folder.
 fn all_models(project: &Project) -> PathBuf {
     let asset = fitted(&Registry::builtin(), &Registry::builtin_names());
     let path = project.folder().join("all.htex");
@@ -114,7 +114,7 @@ fn all_models(project: &Project) -> PathBuf {
     path
 }
 
-/// An asset of sBeta and of a model that it brings along.
+/// An asset with sBeta and an embedded model.
 fn asset_with_module(module: &Path) -> Vec<u8> {
     let search = Search::builtin().with_files(vec![module.to_owned()]);
     let registry = Registry::search(&search).unwrap();
@@ -123,8 +123,8 @@ fn asset_with_module(module: &Path) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// A program that opens an asset with a module and asked for none has no new thread, file or
-/// handler of signals.
+/// A program that opens an asset with a module but turned no engine on has no new thread, file or
+/// signal handler.
 #[test]
 fn modules_run_only_in_a_program_that_asks_for_them() {
     let Some(project) = Project::new(Language::C, "host_of_modules") else {
@@ -153,7 +153,7 @@ fn modules_run_only_in_a_program_that_asks_for_them() {
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
 }
 
-/// The lines that programs print: names and values.
+/// The lines that programs print, as names and values.
 fn lines(printed: &str) -> BTreeMap<&str, &str> {
     let lines = printed.lines().filter_map(|line| line.split_once(' '));
     lines.collect()
@@ -163,7 +163,7 @@ fn numbers(text: &str) -> Vec<f64> {
     text.split(' ').map(|word| word.parse().unwrap()).collect()
 }
 
-/// C++ and C# have names, levels, bands, envelopes, mixes and the rest as Rust has them.
+/// C++ and C# return the same names, levels, bands, envelopes, mixes and other results as Rust.
 #[test]
 fn calls_of_each_language_tell_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -198,7 +198,7 @@ fn calls_of_each_language_tell_the_same() {
             continue;
         };
         let source = fs::read_to_string(hosts(file)).unwrap();
-        // As a recent Unity compiles it, but for its types.
+        // Compiled as a recent Unity does, apart from Unity's own types.
         let unity = hosts("../../unity/Runtime/HtexNativeArray.cs");
         let files = [unity, hosts("NativeArray.cs")].map(|file| file.display().to_string());
         let [unity, types] = &files;
@@ -230,7 +230,7 @@ fn calls_of_each_language_tell_the_same() {
         assert_eq!(lines["status"], "another thread uses the object");
         played.push(fs::read(channels).unwrap());
     }
-    // Four channels of 2,000 samples, the same from each language.
+    // Four channels of 2,000 samples, identical from every language.
     assert!(played.iter().all(|file| *file == played[0] && file.len() > 2_000 * 4 * 4));
 }
 

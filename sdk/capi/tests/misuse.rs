@@ -1,5 +1,5 @@
-//! Invalid use of the C functions is an error with a status and a text, whatever is passed that C
-//! cannot exclude.
+//! Invalid use of the C functions returns an error with a status and a text, whatever is passed
+//! that C cannot rule out.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -58,12 +58,12 @@ fn freed_and_foreign_handles_are_refused() {
     let mut block = [0.0f32; 64];
     // SAFETY: live pointers.
     unsafe {
-        // The voice plays on without its asset.
+        // The voice continues without its asset.
         assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_OK);
         let mut out = htex_voice { id: 0 };
         is(htex_voice_new(asset, null(), &mut out), HTEX_STATUS_BAD_HANDLE);
         assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
-        // Other tests have objects at the same time: the places of these handles are nobody else's.
+        // Other tests have objects at the same time. These handles belong to none of them.
         let never = [0, 1, 1 << 20, u64::MAX];
         for id in never.into_iter().chain([voice.id]) {
             let voice = htex_voice { id };
@@ -77,7 +77,7 @@ fn freed_and_foreign_handles_are_refused() {
         for id in never {
             is(htex_scene_stop(htex_scene { id }), HTEX_STATUS_BAD_HANDLE);
         }
-        // A handle of one kind is none of another.
+        // A handle of one kind is not accepted as another kind.
         let (asset, voice) = (opened(), voice_of(opened()));
         is(htex_asset_free(htex_asset { id: voice.id }), HTEX_STATUS_BAD_HANDLE);
         is(htex_voice_free(htex_voice { id: asset.id }), HTEX_STATUS_BAD_HANDLE);
@@ -164,7 +164,7 @@ fn motions_out_of_range_leave_the_voice_as_it_was() {
         for motion in [far, place(f64::INFINITY, 0.0), place(0.0, f64::INFINITY)] {
             is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
         }
-        // A place of which one number is known is not known.
+        // A place with only one known coordinate counts as unknown.
         assert_eq!(htex_voice_set_motion(voice, &place(f64::NAN, 1.0)), HTEX_STATUS_OK);
         assert_eq!(htex_voice_set_motion(twin, &MOTION), HTEX_STATUS_OK);
         for (voice, block) in [voice, twin].into_iter().zip(&mut blocks) {
@@ -242,7 +242,8 @@ fn options_are_checked_by_their_size() {
     }
     options.ceiling = 0.0;
 
-    // One compiled against a newer, longer struct, with an option that is not known here.
+    // A program that was compiled against a newer, longer struct, with an option that is unknown
+    // here.
     #[repr(C)]
     struct Newer {
         known: htex_voice_options,
@@ -281,8 +282,8 @@ fn texts_tell_their_length() {
     htex_asset_free(asset);
 }
 
-/// Motions of programs that were compiled against other headers: of speed and force alone, and with
-/// more at the end.
+/// Motions from programs compiled against other headers: with only speed and force, and with more
+/// fields at the end.
 #[test]
 fn motions_have_the_size_of_their_header() {
     #[repr(C)]
@@ -317,7 +318,7 @@ fn motions_have_the_size_of_their_header() {
     htex_asset_free(asset);
 }
 
-/// Mutated files are refused or play; they neither crash nor leave handles.
+/// Mutated files are refused or play. They never crash or leave handles behind.
 #[test]
 fn mutated_files_are_errors() {
     let original = std::fs::read(asset_path()).unwrap();
@@ -371,7 +372,7 @@ unsafe extern "C" fn count(_: htex_log_level, message: *const c_char, context: *
     MESSAGES.fetch_add(1, Ordering::Relaxed);
 }
 
-/// A scene plays the samples of the Rust crate; its notes go to the log.
+/// A scene plays the same samples as the Rust crate, and its notes go to the log.
 #[cfg(feature = "scene")]
 #[test]
 fn a_scene_plays_and_reports() {
@@ -429,8 +430,8 @@ fn a_scene_plays_and_reports() {
     }
 }
 
-/// A device is refused with what to do, takes samples until it is finished, and is at rest when it
-/// is freed.
+/// A refused device says what to do. An accepted one takes samples until it is finished, and is at
+/// rest once it is freed.
 #[cfg(feature = "scene")]
 #[test]
 fn a_device_is_opened_by_its_name() {

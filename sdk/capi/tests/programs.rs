@@ -1,4 +1,4 @@
-//! Programs in C, C++ and C# render the samples of the Rust crate, bit for bit.
+//! Programs in C, C++ and C# render the same samples as the Rust crate, bit for bit.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/programs.rs"]
@@ -39,7 +39,7 @@ fn examples_play_the_same_samples() {
         let run = project.run(&program, &[asset().as_os_str(), out.as_os_str()]);
         assert!(run.status.success(), "{language:?}: {run:?}");
         assert!(fs::read(&out).unwrap() == expected, "{language:?}");
-        // A file that is not there, and one that is no asset.
+        // A missing file, and one that is not an asset.
         for bad in ["missing.htex", "bad.htex"] {
             fs::write(project.folder().join("bad.htex"), b"PK\x03\x04 no asset").unwrap();
             let path = project.folder().join(bad);
@@ -71,7 +71,7 @@ fn examples_of_the_readme_run() {
     }
 }
 
-/// A program that prints the number of textures of a library, its first page, and the model of one
+/// A program that prints the number of textures in a library, its first page, and the model of one
 /// texture.
 fn look_into_a_library(language: Language) -> &'static str {
     match language {
@@ -159,7 +159,7 @@ fn libraries_open_in_each_language() {
 }
 
 /// C# passes modules to the library: a model in C is loaded, and other bytes are an error that
-/// names their place.
+/// names which module is invalid.
 #[test]
 fn modules_reach_the_library_from_csharp() {
     let Some(project) = Project::new(Language::Csharp, "modules") else {
@@ -198,8 +198,8 @@ fn modules_reach_the_library_from_csharp() {
     assert!(lines[2].contains("module 0"), "{printed}");
 }
 
-/// The example in C under valgrind, and with the sanitizers of gcc and clang: neither invalid
-/// accesses nor leaks.
+/// The C example makes no invalid accesses and has no leaks, under valgrind and with the sanitizers
+/// of gcc and clang.
 #[test]
 fn the_example_has_no_memory_errors() {
     let source = fs::read_to_string(Language::C.example()).unwrap();

@@ -1,4 +1,4 @@
-//! Assets, libraries and scenes that a program reads are those of files, and are closed once.
+//! Assets, libraries and scenes that a program reads play like files, and are closed once.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -14,7 +14,7 @@ fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes")
 }
 
-/// A file of the program, and how often it was read and closed; reads beyond `most` bytes fail.
+/// A file of the program. It counts reads and closes, and refuses reads beyond `most` bytes.
 struct File {
     bytes: Vec<u8>,
     most: u64,
@@ -93,7 +93,7 @@ fn an_asset_is_read_whole_and_closed() {
         file.most = 100;
         let status = htex_asset_open_reader(&file.reader(), null(), &mut read);
         assert_eq!((status, file.closed()), (HTEX_STATUS_IO, 2));
-        // A length that no asset has is not allocated.
+        // The library does not allocate a length that no asset can have.
         let endless = htex_reader { len: u64::MAX, ..file.reader() };
         let status = htex_asset_open_reader(&endless, null(), &mut read);
         assert_eq!((status, file.closed()), (HTEX_STATUS_IO, 3));

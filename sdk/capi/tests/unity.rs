@@ -1,5 +1,5 @@
-//! The Unity package is whole: its `.meta` files, its assemblies for each target, its tests with
-//! libhtex, what it allocates; and the layout of the NuGet package beside it.
+//! The Unity package is complete: its `.meta` files, its assemblies for each target, its tests with
+//! libhtex, its allocations, and the layout of the matching NuGet package.
 #![allow(clippy::unwrap_used, clippy::panic)] // They fail a test.
 #![cfg(target_os = "linux")]
 
@@ -32,7 +32,7 @@ fn hosts() -> PathBuf {
     capi("tests/hosts")
 }
 
-/// Runs a program of mono in the folder of a project; returns what it prints.
+/// Runs a mono program in a project's folder and returns what it prints.
 fn run(project: &Project, program: &str, arguments: &[&str]) -> String {
     let arguments: Vec<&OsStr> = arguments.iter().map(OsStr::new).collect();
     let run = project.run(Path::new(program), &arguments);
@@ -40,7 +40,8 @@ fn run(project: &Project, program: &str, arguments: &[&str]) -> String {
     String::from_utf8(run.stdout).unwrap()
 }
 
-/// Each file and folder has its `.meta` file, with the GUID of its path, and there is no other.
+/// Each file and folder has its `.meta` file with the GUID of its path, and there are no other
+/// `.meta` files.
 #[test]
 fn generated_metas_are_those_of_the_files() {
     let metas = metas::all(&package());
@@ -56,7 +57,7 @@ fn generated_metas_are_those_of_the_files() {
     assert!(guids.iter().all(|guid| guid.len() == "guid: ".len() + 32));
 }
 
-/// What users of earlier versions refer to has the GUID that it had.
+/// Whatever users of earlier versions refer to keeps its GUID.
 #[test]
 fn a_guid_stays_the_same() {
     assert_eq!(metas::guid("Runtime/HtexSource.cs"), "d730aa622899ec37c515d7e2433d9e1f");
@@ -80,8 +81,7 @@ fn the_manifest_names_what_is_there() {
     }
 }
 
-/// The scene of the sample refers to scripts of the package, and its texture is that of the
-/// examples.
+/// The sample's scene refers to scripts of the package, and its texture is the one of the examples.
 #[test]
 fn the_sample_has_its_scripts_and_its_texture() {
     let sample = package().join("Samples~/Touch");
@@ -97,8 +97,8 @@ fn the_sample_has_its_scripts_and_its_texture() {
     assert!(texture == fs::read(asset()).unwrap());
 }
 
-/// In the editor: the tests of the package import a texture, play it and render it in a job, with
-/// the real library.
+/// In the editor, the package's tests import a texture, play it and render it in a job, with the
+/// real library.
 #[test]
 fn the_tests_of_the_package_pass_in_the_editor() {
     let Some(project) = Project::new(Language::Csharp, "unity") else {
@@ -127,8 +127,8 @@ fn the_tests_of_the_package_pass_in_the_editor() {
     assert_eq!(touch_the_sample(&project), "speed 80 force 0.4\n");
 }
 
-/// Imports a library of one texture in a project with the assemblies of the editor; returns what is
-/// printed of it.
+/// Imports a library with one texture in a project with the editor's assemblies, and returns what
+/// it prints.
 fn import_library(project: &Project) -> String {
     let library = project.folder().join("Assets/floors.htexlib");
     let mut writer = htex::library::Writer::create(&library, "Floors").unwrap();
@@ -142,8 +142,8 @@ fn import_library(project: &Project) -> String {
     run(project, "libraries.exe", &["Assets/floors.htexlib"])
 }
 
-/// Moves the mouse over the sample in a project with its assemblies; returns what is printed of its
-/// source.
+/// Moves the mouse over the sample in a project with its assemblies, and returns what its source
+/// prints.
 fn touch_the_sample(project: &Project) -> String {
     let source = [hosts().join("unity/Sample.cs")];
     let references = ["UnityEngine", "Htex", "Sample"].map(|name| format!("-r:{name}.dll"));
@@ -151,7 +151,7 @@ fn touch_the_sample(project: &Project) -> String {
     run(project, "touch.exe", &[&asset().display().to_string()])
 }
 
-/// In players: the package compiles, native code calls only marked static methods, and iOS links
+/// For players, the package compiles, native code calls only marked static methods, and iOS links
 /// the library into the program.
 #[test]
 fn the_package_compiles_for_players() {
@@ -187,7 +187,7 @@ fn messages_do_not_reach_code_that_the_editor_unloaded() {
     assert_eq!(printed, "notes 1\n");
 }
 
-/// 10,000 blocks of `HtexSource`, of a voice and of a job put nothing on the heap of C#.
+/// 10,000 blocks of `HtexSource`, of a voice and of a job allocate nothing on the C# heap.
 #[test]
 fn the_audio_thread_allocates_nothing_in_csharp() {
     let Some(project) = Project::new(Language::Csharp, "allocations") else {
@@ -204,8 +204,8 @@ fn the_audio_thread_allocates_nothing_in_csharp() {
     assert_eq!(printed, "source 0\nvoice 0\njob 0\n");
 }
 
-/// The NuGet package has the file of the Unity package and each library of a release. `dotnet`,
-/// which packs it, is not run here.
+/// The NuGet package has the file of the Unity package and every library of a release. The test
+/// does not run `dotnet`, which packs it.
 #[test]
 fn the_nuget_package_has_its_files() {
     let folder = capi("nuget");

@@ -1,8 +1,8 @@
-//! Measures the time saved by short chains, whether budgets are met, and how many voices one core
-//! plays: `cargo run --release -p htex-scene --example chains`, followed by `--` and `saved`,
-//! `live`, `budgets`, `voices` or `fingers` for a single table.
+//! Measures how much time short chains save, whether budgets are met, and how many voices one core
+//! can play: `cargo run --release -p htex-scene --example chains`. Add `--` and `saved`, `live`,
+//! `budgets`, `voices` or `fingers` for a single table.
 //!
-//! Times are the minimum over many short runs; all runs of a table are interleaved.
+//! Times are the minimum over many short runs. All runs of a table are interleaved.
 #![allow(clippy::unwrap_used)] // A program for developers: a failure may end it.
 
 #[path = "../tests/common/mod.rs"]
@@ -85,7 +85,7 @@ fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
     least
 }
 
-/// The typical scenes, with a response of the display that is compensated, and with all effects on.
+/// The typical scenes as they are, with a compensated display response, and with all effects on.
 fn variants() -> Vec<(String, LoadedScene, Capabilities)> {
     let mut all = Vec::new();
     for (name, scene, device) in typical() {
@@ -111,7 +111,7 @@ fn response() -> Response {
     }
 }
 
-/// What the plans of all chains state, by costs that are measured here, and what the chains take.
+/// Compares the cost that each plan states, by costs measured here, with the time its chain takes.
 fn stated() {
     let costs = Costs::measure(&Registry::builtin(), "this machine").unwrap();
     println!(
@@ -125,7 +125,8 @@ fn stated() {
     }
 }
 
-/// The minimum time per sample over whole strokes, nanoseconds, within which the motion changes.
+/// Returns the minimum time per sample, nanoseconds, over whole strokes during which the motion
+/// changes.
 fn over_strokes(renderer: &mut Renderer) -> f64 {
     let blocks = (renderer.rate_hz() * STROKES_S / BLOCK as f64).ceil() as usize;
     let mut block = [0.0f32; BLOCK];
@@ -141,7 +142,7 @@ fn over_strokes(renderer: &mut Renderer) -> f64 {
     least
 }
 
-/// Duration of a stroke to and fro, seconds.
+/// Duration of a back-and-forth stroke, seconds.
 const STROKES_S: f64 = 1.0;
 
 fn saved() {
@@ -164,7 +165,7 @@ fn saved() {
     }
 }
 
-/// A live motion that is set before every block, and its cost compared with a constant one.
+/// A live motion that is set before every block, and its cost compared with a constant motion.
 fn live() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz     constant  live, one condition  live, nine conditions"
@@ -189,10 +190,10 @@ fn live() {
     }
 }
 
-/// Number of consecutive runs, which together cover a path over the grid.
+/// Number of consecutive runs. Together they cover a path over the grid.
 const STRETCHES: usize = 10;
 
-/// Time per sample of a live renderer, nanoseconds: the mean over several runs.
+/// Returns the time per sample of a live renderer, nanoseconds: the mean over several runs.
 fn stretches(renderer: &mut [Renderer; 1]) -> f64 {
     let mut block = [0.0f32; BLOCK];
     let [renderer] = renderer;
@@ -228,8 +229,8 @@ fn budgets() {
     }
 }
 
-/// Time per sample of one of many voices, each with a chain and a resampler of its own, and the
-/// number of voices that one core plays at 20 kHz, extrapolated from the cost among 5,000. Voices
+/// The time per sample of one of many voices, each with its own chain and resampler, and the number
+/// of voices that one core plays at 20 kHz, extrapolated from the cost with 5,000 voices. Voices
 /// start at different times, like independent fingers.
 fn voices() {
     println!(
@@ -256,7 +257,7 @@ fn row<V: FnMut(&mut [f32])>(name: &str, make: impl Fn(u64) -> V) {
     for count in [1, 1_000, 5_000, 10_000] {
         while many.len() < count {
             let mut voice = make(many.len() as u64);
-            // Within the time in which each voice computes a frame.
+            // Starts within the time in which each voice computes one frame.
             voice(&mut vec![0.0; BLOCK * (many.len() * 61 % FRAME_BLOCKS)]);
             many.push(voice);
         }
@@ -284,11 +285,11 @@ fn app_voice(model: &str, seed: u64) -> htex_play::Voice {
     single().voice(&options).unwrap()
 }
 
-/// Blocks in 0.36 s of sound, in which each voice computes a frame.
+/// Blocks in 0.36 s of sound. In this time each voice computes one frame.
 const FRAME_BLOCKS: usize = 112;
 
-/// Time per sample of voices rendered in turn, nanoseconds, and that of the slowest block,
-/// milliseconds: the minimum over several runs.
+/// Returns the time per sample of voices rendered in turn, nanoseconds, and the time of the slowest
+/// block, milliseconds: the minimum over several runs.
 fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     let mut block = [0.0f32; BLOCK];
     let mut least = (f64::INFINITY, f64::INFINITY);
@@ -308,8 +309,8 @@ fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     least
 }
 
-/// A thousand live voices of each model over nine conditions, each with a motion of its own that
-/// changes all the time and starts at a time of its own.
+/// A thousand live voices of each model over nine conditions. Each has its own motion, which
+/// changes all the time, and its own start time.
 fn fingers() {
     println!("\n1,000 live voices over nine conditions, blocks of 64 at 20 kHz: part of one core");
     for model in Registry::builtin_names() {

@@ -12,7 +12,8 @@ use htex_scene::{Costs, Plan, SceneError, plan};
 /// Safety factor of a plan.
 const RESERVE: f64 = 1.5;
 
-/// Error of each representation, and the time budget needed by the plan with it alone.
+/// The error of each representation, and the time budget that a plan with only this representation
+/// needs.
 fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
     let manifest = single().manifest();
     let one = |r: &htex_format::Representation| {
@@ -41,7 +42,7 @@ fn a_smaller_time_budget_never_reduces_the_error() {
     let all = measured(ErrorMeasure::NineBand);
     let cheapest = all.iter().map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
     let (mut last_error, mut choices) = (0.0, std::collections::BTreeSet::new());
-    // Just above and just below what each representation takes.
+    // Slightly above and slightly below the time that each representation takes.
     let mut budgets: Vec<f64> =
         all.iter().flat_map(|(.., ns)| [1.0001 * ns, 0.9999 * ns]).collect();
     budgets.sort_by(|a, b| b.total_cmp(a));
@@ -52,7 +53,7 @@ fn a_smaller_time_budget_never_reduces_the_error() {
                 assert!(RESERVE * plan.ns_per_sample_total <= ns);
                 let error_db = error_of(&all, &plan);
                 assert!(error_db >= last_error, "{ns} ns: {error_db} dB after {last_error} dB");
-                // No representation of smaller error is within the time budget.
+                // No representation with a smaller error meets the time budget.
                 let nearer = all.iter().find(|(_, e, t)| *e < error_db && *t <= ns);
                 assert!(nearer.is_none(), "{nearer:?}");
                 last_error = error_db;
@@ -95,7 +96,7 @@ fn a_larger_error_budget_never_takes_more_time() {
     }
 }
 
-/// Without a budget a scene plays the representation that a voice plays, also where conditions were
+/// Without a budget, a scene plays the same representation as a voice does, even if conditions were
 /// computed or none was measured.
 #[test]
 fn a_scene_chooses_as_a_voice_does() {
@@ -118,13 +119,14 @@ fn a_scene_chooses_as_a_voice_does() {
         assert_eq!(chosen.representation[0].model, voice);
         assert!(!chosen.representation[0].why.contains("inf"));
     }
-    // Sandpaper is nearest by Bands; a choice by infinity took the first in the file.
+    // Bands has the smallest error for sandpaper. Comparing by infinity would choose the first in
+    // the file.
     let first = &later.manifest().representations[0].model;
     assert_ne!(later.representation_id(None).unwrap(), first);
     assert_eq!(unmeasured.representation_id(None).unwrap(), first);
 }
 
-/// The budget limits the largest error over the conditions that were measured.
+/// The budget limits the largest error over the measured conditions.
 #[test]
 fn computed_conditions_do_not_break_a_budget() {
     let with = |asset: &Asset, most_db: f64| {

@@ -17,7 +17,7 @@ fn response(frequency_hz: &[f64], magnitude: &[f64]) -> Response {
     }
 }
 
-/// The output of a newton device in 20 s, and the plan's reason for the compensation.
+/// The output of a newton device over 20 s, and the plan's reason for the compensation.
 fn played(response: Option<Response>) -> (Vec<f32>, Option<String>) {
     let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
     scene.scene.surfaces[0].representation = "sbeta".to_owned();
@@ -29,7 +29,7 @@ fn played(response: Option<Response>) -> (Vec<f32>, Option<String>) {
     (rendered(&mut Renderer::new(&scene, &plan).unwrap()), reason)
 }
 
-/// Energies from 40 to 200, to 500, to 930 Hz, dB.
+/// Energies from 40 to 200, from 200 to 500, and from 500 to 930 Hz, dB.
 fn energies_db(samples: &[f32]) -> [f64; 3] {
     let signal = samples.iter().map(|&x| f64::from(x)).collect();
     let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);

@@ -1,4 +1,4 @@
-//! The conformance scenes of `spec/` with their reports, the page of findings and the schema.
+//! The conformance scenes of `spec/` with their reports, the findings page and the schema.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "common/cases.rs"]
@@ -18,12 +18,12 @@ use xtask::generated::{file, file_with, folder};
 
 const FOLDER: &str = "spec/scene-conformance";
 
-/// Rules that no conformance file breaks: they take a scene of a megabyte, a device with hardware
+/// Rules that no conformance file breaks. They need a scene of a megabyte, a device with hardware
 /// settings (tested in `cli/tests/live/drive.rs`; the file device has none), or a device that is
 /// not connected.
 const WITHOUT_FILE: [&str; 3] = ["SCENE_FILE_TOO_LARGE", "DEVICE_HARDWARE", "DEVICE_ABSENT"];
 
-/// The folder of the specification, from that of this package, in which tests run.
+/// The specification's folder, relative to this package's folder, in which the tests run.
 fn spec() -> &'static Path {
     Path::new("../../spec")
 }
@@ -37,7 +37,7 @@ fn generated_scenes_and_reports_are_fresh() {
         let scene = path(&format!("{}.scene.json", case.name));
         all.push((scene, case.text.as_bytes().to_vec()));
     }
-    // The reports are those of the scenes as files, with the files that they name.
+    // The reports are made from the scenes as files, together with the files that they name.
     all.iter().for_each(|(path, bytes)| file(path, bytes));
     for case in cases() {
         let report = path(&format!("{}.report.json", case.name));
@@ -59,7 +59,7 @@ fn scenes_raise_the_code_they_are_named_after_and_every_rule_has_one() {
         let is_named = codes.iter().any(|code| name.starts_with(code));
         assert!(is_named || codes.is_empty() && name.starts_with("VALID"), "{name} gets {codes:?}");
         raised.extend(codes.into_iter().map(str::to_owned));
-        // Of a file that cannot be read as JSON, findings concern the whole.
+        // If a file is not valid JSON, its findings concern the whole file.
         let scene: Value = serde_json::from_str(&case.text).unwrap_or_default();
         for finding in findings {
             let pointer = finding["pointer"].as_str().unwrap();
@@ -95,7 +95,7 @@ fn the_text_has_every_setting_of_the_adapter_file() {
     }
 }
 
-/// Cells of the rows of a table of the text, without code marks.
+/// Returns the cells of a table in the text, row by row, without code marks.
 fn rows<'t>(text: &'t str, head: &str) -> Vec<Vec<&'t str>> {
     let (_, rest) = text.split_once(head).unwrap();
     let lines = rest.lines().skip(2).take_while(|line| line.starts_with('|'));
@@ -118,7 +118,7 @@ fn the_columns_of_traces_have_the_names_and_units_of_the_text() {
     for (column, row) in rows.iter().enumerate() {
         let (base, unit) = usual[column].split_once('_').unwrap();
         let listed = |cell: &str| -> Vec<String> {
-            // The names of the axis y are those of x.
+            // The names for the axis y are those for x with y in place of x.
             let x = rows[1][1].replace('x', "y");
             let cell = if cell.starts_with('`') { cell } else { &x };
             cell.split(", ").map(|name| name.trim_matches('`').to_owned()).collect()

@@ -16,10 +16,10 @@ use htex_scene::{LoadedScene, Renderer, Response};
 
 const RATE_HZ: f64 = 50_000.0;
 const DRIVE_V: f64 = 100.0;
-/// Seven periods of twice the carrier are 25 samples at 50 kHz.
+/// Seven periods of twice the carrier frequency are 25 samples at 50 kHz.
 const PERIODS: usize = 25;
 
-/// The rig of the paper at 50 kHz, without quantisation.
+/// The paper's rig at 50 kHz, without quantisation.
 fn rig() -> Capabilities {
     Capabilities { default_rate_hz: RATE_HZ, step: None, ..display() }
 }
@@ -30,7 +30,7 @@ fn driven(scene: &mut LoadedScene) -> (Vec<f32>, Renderer) {
     (rendered(&mut renderer), renderer)
 }
 
-/// Twice the square, averaged over whole periods: proportional to the friction, V².
+/// Twice the square of the drive, averaged over whole periods: proportional to the friction, V².
 fn demodulated(drive: &[f32]) -> Vec<f64> {
     let squares: Vec<f64> = drive.iter().map(|v| 2.0 * f64::from(*v).powi(2)).collect();
     let mean = |w: &[f64]| w.iter().sum::<f64>() / PERIODS as f64;
@@ -60,7 +60,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
             scene.scene.surfaces[0].representation = model.to_owned();
             scene.response = response.clone();
             let (drive, renderer) = driven(&mut scene);
-            // Without the ramps at both ends.
+            // Leaves out the ramps at both ends.
             let steady = demodulated(&drive[RATE_HZ as usize..drive.len() - RATE_HZ as usize]);
             let grid = single().band().grid_hz();
             let droop = |f: f64| {
@@ -74,7 +74,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
             let wanted: Vec<f64> =
                 texture.iter().zip(&grid).map(|(m, f)| m * inverse(*f)).collect();
             let gain = energy_matching_gain(&wanted, &found);
-            // Bins in which the model has no magnitude have no ratio.
+            // Bins where the model has no magnitude have no ratio.
             let most = wanted.iter().copied().fold(0.0, f64::max);
             let errors: Vec<f64> = found
                 .iter()
@@ -92,8 +92,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
             );
             assert!(error_db < 1.0, "{model}: {error_db} dB");
 
-            // 4.5 times the RMS of the texture corresponds to half the square of the largest
-            // voltage.
+            // 4.5 times the texture's RMS corresponds to half the square of the largest voltage.
             let reach = 4.5 * level_rms(&found) / (DRIVE_V * DRIVE_V / 2.0);
             let reach_db = 20.0 * reach.log10();
             assert!(reach_db.abs() < 0.3, "{model}: {reach_db} dB");
@@ -101,7 +100,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
     }
 }
 
-/// Demodulated level of the drive of each model, dB RMS, and the level of its representation.
+/// The demodulated level of each model's drive, dB RMS, equals the level of its representation.
 #[test]
 fn levels_under_one_gain_are_normalised_or_the_representations_own() {
     let model = |name: &str, levels: Levels, reference_rms: Option<f64>| {
@@ -119,7 +118,8 @@ fn levels_under_one_gain_are_normalised_or_the_representations_own() {
     let all = single().manifest().representations.iter();
     let strongest_rms = all.map(|r| level_rms(&r.model)).fold(0.0, f64::max);
     let alike = model("ar", Levels::Normalised, None);
-    // The RMS of 20 s of noise with most of its power in about 30 Hz has an uncertainty of 0.2 dB.
+    // Over 20 s, the RMS of noise with most of its power in about 30 Hz has an uncertainty of 0.2
+    // dB.
     const SPREAD_DB: f64 = 0.5;
     for name in Registry::builtin_names() {
         let normalised = model(name, Levels::Normalised, None) - alike;
@@ -139,7 +139,7 @@ fn it_never_exceeds_the_limit_and_starts_and_ends_at_zero() {
     let lifted = |t: f64| if (0.5..0.7).contains(&t) { 0.0 } else { 0.4 };
     let motion = trace(2.0, |t| 10.0 * (12.0 * t).sin(), lifted);
     let mut scene = traced(single(), motion, 2.0);
-    // The largest drive.
+    // The largest drive voltage.
     scene.scene.device.drive_v = Some(150.0);
     let rig = Capabilities { default_rate_hz: RATE_HZ, ..display() };
     let mut renderer = Renderer::new(&scene, &planned(&scene, &rig)).unwrap();

@@ -1,5 +1,5 @@
 //! A planned chain gives the same samples as the full chain, in which every effect is switched on
-//! and is neutral if the scene does not need it.
+//! and neutral if the scene does not need it.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -75,7 +75,7 @@ fn cases() -> impl Strategy<Value = Case> {
 
 const SECONDS: f64 = 0.2;
 
-/// Scenes that are tried: a sample, unless all are asked for.
+/// Number of scenes that are tried: a sample, unless all are requested.
 fn count() -> u32 {
     if xtask::prove::whole() { 2_000 } else { 100 }
 }
@@ -88,7 +88,7 @@ impl Case {
             1 => traced(asset, self.trace(), SECONDS),
             _ => scene(asset, Motion::Live, SECONDS),
         };
-        // A constant motion has no position here, and so needs a surface that covers everything.
+        // A constant motion has no position here, so it needs a surface that covers everything.
         if self.surfaces > 1 && self.motion != 0 {
             self.tile(&mut scene);
         }
@@ -144,7 +144,7 @@ impl Case {
             2 => display(),
             _ => loudspeaker(),
         };
-        // 2,000 Hz is the model rate of AR.
+        // 2,000 Hz is the rate of the AR model.
         let rate_hz = [20_000.0, 44_100.0, 16_384.0, 2_000.0][usize::from(self.rate)];
         Capabilities {
             default_rate_hz: rate_hz,
@@ -153,14 +153,14 @@ impl Case {
         }
     }
 
-    /// All samples, rendered in blocks of the given sizes, with changes of a live motion in
+    /// Returns all samples, rendered in blocks of the given sizes. A live motion changes in
     /// between.
     fn samples(&self, renderer: &mut Renderer, blocks: &[usize]) -> Vec<f32> {
         let frames = renderer.frames_left().unwrap() as usize;
         let mut samples = vec![0.0f32; frames];
         let (mut done, mut sizes) = (0, blocks.iter().cycle());
         while done < frames {
-            // A live motion changes at fixed frames, independent of the blocks.
+            // A live motion changes at fixed frames, whatever the blocks.
             let (part, end) = (done / 1_024, (done / 1_024 + 1) * 1_024);
             if done % 1_024 == 0 {
                 renderer.set_motion(self.live(part)).unwrap();
@@ -210,13 +210,13 @@ proptest! {
             prop_assert!(a.is_finite() && (a - b).abs() <= 1e-6 * full_scale, "{i}: {a} {b}");
         }
 
-        // The stages that ran are the planned ones, and a full chain has every effect for each
-        // surface.
+        // The stages that ran are the planned ones. A full chain has every effect for each surface.
         for (renderer, plan) in [(&short, &short_plan), (&full, &full_plan)] {
             let runs = renderer.stages_run();
             let ran: Vec<_> = runs.iter().map(|run| (run.name, run.surface)).collect();
             prop_assert_eq!(ran, names(plan));
-            // With several surfaces, the finger may be on one for less than a sample of its model.
+            // With several surfaces, the finger may stay on one for less than a sample of its
+            // model.
             prop_assert!(case.surfaces > 1 || runs.iter().all(|run| run.blocks > 0), "{:?}", runs);
         }
         prop_assert!(short_plan.stages.len() <= full_plan.stages.len());

@@ -1,4 +1,4 @@
-//! A voice of the facade plays a motion like a scene does.
+//! A voice of the crate `htex` plays a motion as a scene does.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -17,7 +17,7 @@ const RECORDED: (f64, f64) = (80.0, 0.4);
 /// Frames between two motions, as in a scene at this rate.
 const CONTROL: usize = 64;
 
-/// A voice with the seed of the first surface of a scene.
+/// A voice with the same seed as the first surface of a scene.
 fn voice(model: &str, motion: Option<(f64, f64)>, effects: Effects) -> Voice {
     let options = VoiceOptions::default()
         .with_model(model)
@@ -38,7 +38,7 @@ fn rms_db(signal: &[f32]) -> f64 {
     10.0 * (power / signal.len() as f64).log10()
 }
 
-/// Power in octaves from `low_hz`, decibels relative to the total.
+/// Power per octave from `low_hz`, decibels relative to the total.
 fn octaves(signal: &[f32], low_hz: f64) -> Vec<f64> {
     let n = 4_000;
     let mut power = [0.0; 6];
@@ -75,7 +75,7 @@ fn a_constant_motion_plays_as_in_a_scene_from_the_start_or_after_a_change() {
 
 fn plays_as_in_a_scene(model: &str) {
     for motion in [RECORDED, (160.0, 0.8), (30.0, 0.2), (0.0, 0.4), (80.0, 0.0)] {
-        // Eight seconds of the octave from 20 Hz have an uncertainty of 0.35 dB.
+        // Over eight seconds, the power in the octave from 20 Hz has an uncertainty of 0.35 dB.
         let mut scene = scene(single(), constant(motion.0, motion.1), 8.0);
         scene.scene.surfaces[0].representation = model.to_owned();
         let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
@@ -87,7 +87,7 @@ fn plays_as_in_a_scene(model: &str) {
 
         let mut moved = voice(model, None, Effects::default());
         moved.set_motion(htex_play::Motion::new(motion.0, motion.1)).unwrap();
-        // After the ramps of level and contact.
+        // Waits until the ramps of level and contact end.
         samples(&mut moved, 1_000);
         let moved = samples(&mut moved, played.len());
         if peak == 0.0 {
@@ -99,9 +99,9 @@ fn plays_as_in_a_scene(model: &str) {
         let low_hz = 20.0 * motion.0 / RECORDED.0;
         for (k, (a, b)) in octaves(&moved, low_hz).iter().zip(octaves(&played, low_hz)).enumerate()
         {
-            // Octaves 30 dB below the total are not compared. The lowest octave contains the band's
-            // edge, where a voice after a change of motion plays up to 6 dB more between 5 and 7 Hz
-            // (of 7.5).
+            // Octaves 30 dB below the total are not compared. The lowest octave contains the edge
+            // of the band. There, a voice after a change of motion plays up to 6 dB more between 5
+            // and 7 Hz (of 7.5).
             let most_db = if k == 0 { 3.0 } else { 1.5 };
             assert!(
                 (a - b).abs() < most_db || b < -30.0,
@@ -111,7 +111,7 @@ fn plays_as_in_a_scene(model: &str) {
     }
 }
 
-/// A stroke of increasing speed and force that stops at its end.
+/// A stroke with increasing speed and force that stops at its end.
 fn stroke(block: usize, blocks: usize) -> (f64, f64) {
     let part = block as f64 / blocks as f64;
     if part < 0.9 { (40.0 + 160.0 * part, 0.2 + 0.6 * part) } else { (0.0, 0.4) }
@@ -136,7 +136,7 @@ fn a_live_motion_plays_as_in_a_scene() {
             voice.set_motion(htex_play::Motion::new(speed_mm_s, force_n)).unwrap();
             followed.extend(samples(&mut voice, CONTROL));
         }
-        // Windows of half a second during the stroke, and silence at its end.
+        // Windows of half a second during the stroke, then silence at its end.
         let window = RATE_HZ as usize / 2;
         for (i, (a, b)) in
             followed.chunks(window).zip(played.chunks(window)).enumerate().skip(1).take(6)
@@ -191,7 +191,7 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     assert!(none.slides && none.speed == outside);
     assert_eq!((none.scaling, none.excess()), (Scaling::NONE, 1.0));
 
-    // A texture of 1 kHz at a rate of 4 kHz: at most twice as fast.
+    // A 1 kHz texture at a sample rate of 4 kHz can play at most twice as fast.
     let options = VoiceOptions::default().with_rate_hz(4_000.0);
     let low = |speed: f64| {
         let mut voice = single().voice(&options).unwrap();
@@ -217,8 +217,8 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     assert_eq!(fast.excess(), 0.0);
 }
 
-/// Forces within the tolerance of one setting count as one: each plays as recorded, and others are
-/// scaled.
+/// Forces within the tolerance of one setting count as one. Each plays as recorded, and other
+/// forces are scaled.
 #[test]
 fn forces_within_tolerance_count_as_one() {
     let condition = |speed: f64, force: f64| Condition {
@@ -248,12 +248,12 @@ fn forces_within_tolerance_count_as_one() {
     }
     assert_eq!(level(80.0, 0.8138), 2.0);
     assert_eq!(level(80.0, 0.2007), 0.5);
-    // At most the ceiling, four times the strongest.
+    // At most the ceiling: four times the strongest level.
     assert_eq!(level(80.0, 12.0), 4.0);
 }
 
-/// A reading that no finger has is ignored for a tenth of a second, in voices and in scenes; after
-/// that there is silence.
+/// Voices and scenes ignore an impossible reading for a tenth of a second. After that there is
+/// silence.
 #[test]
 fn a_failed_reading_is_held_and_then_silent() {
     let failed = (80.0, 12_050.0);
@@ -283,7 +283,7 @@ fn a_failed_reading_is_held_and_then_silent() {
     assert!(play(failed, 1_000).iter().all(|x| *x == 0.0));
 }
 
-/// Samples of a live scene with one reading that is bad, if any.
+/// Samples of a live scene, with one bad reading if given.
 fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) -> Vec<f32> {
     let scene = scene(grid(), Motion::Live, 1.0);
     let mut renderer = Renderer::new(&scene, &planned(&scene, device)).unwrap();
@@ -307,8 +307,7 @@ fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) ->
     out
 }
 
-/// One bad reading of force, speed or place changes nothing that is felt, on any device: it is as
-/// if it had not come.
+/// One bad reading of force, speed or place changes nothing that is felt, on any device.
 #[test]
 fn one_bad_reading_changes_no_sample() {
     let place = Some([30.0, 0.0]);
@@ -331,8 +330,8 @@ fn one_bad_reading_changes_no_sample() {
     }
 }
 
-/// A voice takes a number that no motion has for a failed reading, too: it is refused, held, and
-/// then silent.
+/// A voice also treats an invalid number as a failed reading: it refuses the number, holds the last
+/// motion, and is then silent.
 #[test]
 fn a_reading_that_is_no_number_is_held_and_then_silent() {
     let hold = (htex_play::exploration::HOLD_S * RATE_HZ) as usize;
@@ -348,8 +347,8 @@ fn a_reading_that_is_no_number_is_held_and_then_silent() {
     }
 }
 
-/// A force of 20 N on a texture of 0.4 N would be 34 dB stronger by its law; it is four times as
-/// strong, or what is asked for.
+/// By its law, a texture of 0.4 N would be 34 dB stronger at 20 N. The ceiling limits it to four
+/// times as strong, or to the requested ceiling.
 #[test]
 fn no_voice_is_louder_than_its_ceiling() {
     let strong = |ceiling: f64| {

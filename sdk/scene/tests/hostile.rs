@@ -1,4 +1,4 @@
-//! Reading a scene file of any content terminates with a scene or a finding.
+//! Reading a scene file with any content ends with a scene or a finding.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/cases.rs"]
@@ -9,7 +9,7 @@ use htex_finding::Findings;
 use htex_scene::{Limits, read_scene};
 use proptest::prelude::*;
 
-/// Reads bytes as a scene; a valid scene remains valid after serialisation.
+/// Reads bytes as a scene. A valid scene must stay valid after serialisation.
 fn check(bytes: &[u8]) {
     let mut findings = Findings::default();
     let scene = read_scene(bytes, &Limits::default(), &mut findings);

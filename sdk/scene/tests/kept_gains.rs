@@ -35,7 +35,7 @@ fn concurrent_updates_lose_no_gain() {
     assert!(kept.iter().all(|gain| gain.drive_v == 70.0));
 }
 
-/// A key that is not known would be lost when the next gain is kept.
+/// An unknown key would be lost when the next gain is stored.
 #[test]
 fn a_file_with_unknown_keys_is_refused_and_kept() {
     let folder = tempfile::tempdir().unwrap();

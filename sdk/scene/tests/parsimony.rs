@@ -1,4 +1,4 @@
-//! For each effect, two scenes that differ only in whether they need it: the stage is in one plan
+//! For each effect, two scenes that differ only in whether they need it. The stage is in one plan
 //! and not in the other.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -14,13 +14,13 @@ use htex_scene::{LoadedScene, Renderer, Response};
 
 type Scene = (LoadedScene, Capabilities);
 
-/// A stroke at 80 mm/s on average, whose speed varies by the fraction `swing`.
+/// A stroke at an average speed of 80 mm/s, which varies by the fraction `swing`.
 fn strokes(asset: &htex_play::Asset, swing: f64) -> LoadedScene {
     let x = move |t: f64| 80.0 * t + 80.0 * swing * (4.0 * t).sin() / 4.0;
     traced(asset, trace(0.5, x, |_| 0.4), 0.5)
 }
 
-/// Two surfaces of 30 mm side by side, with a stroke from x = 0 at `reach_mm` per second.
+/// Two surfaces of 30 mm side by side, and a stroke from x = 0 at `reach_mm` per second.
 fn two(reach_mm: f64) -> LoadedScene {
     let mut scene = traced(single(), trace(0.5, move |t| reach_mm * t, |_| 0.4), 0.5);
     let at = |from: f64| Surface {
@@ -36,7 +36,7 @@ fn plain() -> LoadedScene {
     scene(single(), constant(80.0, 0.4), 0.5)
 }
 
-/// Scenes that do not need and that need the effect.
+/// A scene that does not need the effect, and one that does.
 fn pair(effect: Effect) -> (Scene, Scene) {
     let forces = |change: f64| {
         let force = move |t: f64| 0.4 + change * (5.0 * t).sin();
@@ -68,7 +68,7 @@ fn pair(effect: Effect) -> (Scene, Scene) {
         Effect::Compensation => {
             ((plain(), display()), (with(&|s| s.response = Some(response.clone())), display()))
         }
-        // sBeta renders at the rate that is wanted, AR at one of its own.
+        // sBeta renders at the requested rate; AR renders at its own.
         Effect::Resampling => {
             let sbeta = with(&|s| s.scene.surfaces[0].representation = "sbeta".to_owned());
             ((sbeta, model_rate), (ar, file()))

@@ -1,6 +1,6 @@
-//! Libraries whose bytes JavaScript fetches (`sdk/web/src/htexlib.js`): each call says which bytes
-//! it needs next, and is given them. Offsets are doubles, as in JavaScript: a file has less than
-//! 2^53 bytes.
+//! Libraries whose bytes JavaScript fetches (`sdk/web/src/htexlib.js`). Each call says which bytes
+//! it needs next, and JavaScript then passes them in. Offsets are doubles, as in JavaScript, so a
+//! file has less than 2^53 bytes.
 
 use std::ffi::c_char;
 use std::ops::Range;
@@ -12,11 +12,11 @@ use crate::handles::{Kind, Table};
 use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
-/// A library that is being opened, or is open.
+/// A library that is open or being opened.
 enum State {
     /// `None` after an error.
     Opening(Option<Opening>),
-    /// The page that was read last: its entries.
+    /// The index, and the entries of the page that was read last.
     Open(Box<Index>, Vec<Entry>),
 }
 
@@ -38,7 +38,7 @@ impl State {
         }
     }
 
-    /// The index, and the entry of this name in the page that was read last.
+    /// The index, and the entry with this name in the page that was read last.
     fn entry(&self, name: &str) -> Result<(&Index, &Entry), Failure> {
         let index = self.index()?;
         match self.entries().iter().find(|entry| entry.name == name) {
@@ -53,7 +53,7 @@ fn absent(name: &str) -> Failure {
     LibraryError::Absent { name }.into()
 }
 
-/// Starts to open a library.
+/// Starts opening a library.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_new(out: *mut u64) -> htex_status {
     guarded(|| {
@@ -70,7 +70,8 @@ pub extern "C" fn htex_index_free(index: u64) -> htex_status {
     guarded(|| INDEXES.remove(index).map(drop))
 }
 
-/// The bytes that are needed to open the library: start and end, which are equal when it is open.
+/// Writes which bytes are needed next to open the library: start and end. They are equal when it is
+/// open.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_status {
     guarded(|| {
@@ -84,7 +85,8 @@ pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_st
     })
 }
 
-/// Takes the wanted bytes; fewer if the file ends before them. The file has `file_bytes` bytes.
+/// Receives the requested bytes, or fewer if the file ends earlier. The file has `file_bytes`
+/// bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_give(
     index: u64,
@@ -108,7 +110,7 @@ pub unsafe extern "C" fn htex_index_give(
     })
 }
 
-/// The library's name and its numbers of textures and of pages, as JSON.
+/// Writes the library's name, its number of textures and its number of pages, as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_json(
     index: u64,
@@ -129,7 +131,7 @@ pub unsafe extern "C" fn htex_index_json(
     })
 }
 
-/// The page of the index that has a texture, if any has it.
+/// Writes which page of the index contains a texture, if any does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_page_of(
     index: u64,
@@ -146,7 +148,7 @@ pub unsafe extern "C" fn htex_index_page_of(
     })
 }
 
-/// The bytes of a page: start and end.
+/// Writes the byte range of a page: start and end.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_page_range(
     index: u64,
@@ -164,7 +166,7 @@ pub unsafe extern "C" fn htex_index_page_range(
     })
 }
 
-/// Reads a page of the index, of which the next calls look up entries.
+/// Reads a page of the index. The calls below look up entries in it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_read_page(
     index: u64,
@@ -184,7 +186,7 @@ pub unsafe extern "C" fn htex_index_read_page(
     })
 }
 
-/// The entries of the page that was read, as JSON.
+/// Writes the entries of the page that was read, as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_entries_json(
     index: u64,
@@ -200,7 +202,7 @@ pub unsafe extern "C" fn htex_index_entries_json(
     })
 }
 
-/// The entries of the page that was read that have all that a query asks for (`LibraryQuery` in
+/// Writes those entries of the page that match a query (`LibraryQuery` in
 /// `sdk/web/src/index.d.ts`), as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_find_json(
@@ -224,7 +226,7 @@ pub unsafe extern "C" fn htex_index_find_json(
     })
 }
 
-/// A query as JavaScript writes it.
+/// A query in the form that JavaScript writes.
 #[derive(Deserialize, Default)]
 #[serde(default, deny_unknown_fields)]
 struct Asked {
@@ -263,8 +265,8 @@ unsafe fn write_entries(
     unsafe { write_text(&json, out, capacity, length) }
 }
 
-/// The bytes of a texture of the page that was read: start and end of each of at most `capacity`
-/// ranges. Writes their number to `length`.
+/// Writes the byte ranges of a texture in the page that was read: start and end of each, for at
+/// most `capacity` ranges. `length` receives the number of ranges.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_ranges(
     index: u64,
@@ -288,8 +290,8 @@ pub unsafe extern "C" fn htex_index_ranges(
     })
 }
 
-/// Makes a texture of the page that was read of the bytes of its ranges, one after the other, and
-/// compares them with its hash. The texture has as many bytes.
+/// Assembles a texture in the page that was read from the bytes of its ranges, one after the other,
+/// and compares it with its hash. The texture has as many bytes as the ranges.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_assemble(
     index: u64,
@@ -316,7 +318,7 @@ pub unsafe extern "C" fn htex_index_assemble(
     })
 }
 
-/// Writes start and end of a range.
+/// Writes the start and end of a range.
 ///
 /// # Safety
 /// As for pointers: there are two numbers, or the pointer is NULL.

@@ -1,5 +1,5 @@
-//! What JavaScript asks of textures and voices (`sdk/web/src/texture.js`) beyond the C interface;
-//! what has parts is JSON.
+//! Calls about textures and voices that JavaScript needs beyond the C interface
+//! (`sdk/web/src/texture.js`). Structured results are JSON.
 
 use std::ffi::c_char;
 
@@ -12,8 +12,8 @@ use crate::pointers::{place, slice, slice_mut, text, write_text};
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::{VOICES, htex_voice};
 
-/// Id of the model of a representation that is named by its id or short name, or of the one that a
-/// voice chooses. Loads no model.
+/// Writes the model id of a representation that is given by its id or short name, or of the one
+/// that a voice would choose. Loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_chosen_model(
     asset: htex_asset,
@@ -31,8 +31,8 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
     })
 }
 
-/// Index of the condition at which a representation is played where no motion is given. `model` as
-/// for htex_asset_magnitude. Loads no model.
+/// Writes the index of the condition at which a representation is played when no motion is given.
+/// `model` is as for htex_asset_magnitude. Loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_default_condition(
     asset: htex_asset,
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn htex_asset_default_condition(
     })
 }
 
-/// The law of the asset, as in a manifest.
+/// Writes the asset's law, as in a manifest.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_law_json(
     asset: htex_asset,
@@ -66,8 +66,8 @@ pub unsafe extern "C" fn htex_asset_law_json(
     })
 }
 
-/// Parameters of a representation at a motion, by their names: numbers and lists of numbers.
-/// `model` and `at` as for htex_asset_magnitude.
+/// Writes the parameters of a representation at a motion: numbers and lists of numbers by name.
+/// `model` and `at` are as for htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_parameters_json(
     asset: htex_asset,
@@ -94,8 +94,9 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
     })
 }
 
-/// Magnitudes of a representation at a recorded condition, counted from 0, as a recording of its
-/// voice reads them, on the grid of the asset's band, of which there are `len`.
+/// Writes the magnitudes of a representation at a recorded condition, as a recording of its voice
+/// would show them, on the grid of the asset's band, which has `len` frequencies. Indices start at
+/// 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_read_magnitude(
     asset: htex_asset,
@@ -139,8 +140,8 @@ fn read_magnitude(
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Magnitudes that a recording of a voice reads at the motion that is set, at frequencies in Hz;
-/// the arrays may be the same one.
+/// Writes the magnitudes that a recording of a voice would show at its current motion, at
+/// frequencies in Hz. Both arrays may be the same one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_magnitude(
     voice: htex_voice,
@@ -158,8 +159,8 @@ pub unsafe extern "C" fn htex_voice_magnitude(
     })
 }
 
-/// How a voice plays a motion, or the one that is set, and whether that is within the recorded
-/// conditions.
+/// Writes how a voice plays a motion, or its current motion, and whether the motion lies within the
+/// recorded conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage_json(
     voice: htex_voice,

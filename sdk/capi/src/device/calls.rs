@@ -1,4 +1,4 @@
-//! The calls of devices.
+//! Implementation of the device calls.
 
 use std::ffi::c_char;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use crate::handles::{Kind, Table};
 use crate::pointers::{needed_text, place, slice, text, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
-/// A device, and the rate of its samples.
+/// An open device, and its sample rate.
 struct Open {
     device: Box<dyn Device>,
     rate_hz: f64,
@@ -32,7 +32,7 @@ impl From<DeviceError> for Failure {
     }
 }
 
-/// Frees all of them.
+/// Frees all devices.
 ///
 /// # Safety
 /// As [`Table::clear`].
@@ -75,7 +75,7 @@ pub(super) unsafe fn list_json(
     })
 }
 
-/// A device by its name, and its settings.
+/// Finds a device by its name, and parses its settings.
 ///
 /// # Safety
 /// Texts of the caller's.
@@ -128,7 +128,7 @@ pub(super) unsafe fn open(
         // SAFETY: the pointers are the caller's.
         let ((known, settings), out) = unsafe { (named(&devices, name, settings)?, place(out)?) };
         let can = known.adapter.capabilities(&settings)?;
-        // A file is no display.
+        // A file with the quantity of a display is allowed, because it drives no voltage.
         if can.quantity == Quantity::DisplayVoltage && can.paced {
             return Err(DRIVEN);
         }

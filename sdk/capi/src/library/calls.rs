@@ -1,4 +1,4 @@
-//! The calls of libraries.
+//! Implementation of the library calls.
 
 use std::ffi::c_char;
 use std::io;
@@ -15,7 +15,7 @@ use crate::pointers::{needed_text, place, slice, write_text};
 use crate::reader::{Reader, htex_reader};
 use crate::status::{Failure, guarded, htex_status};
 
-/// The bytes of a library.
+/// Where the bytes of a library come from.
 enum Source {
     File(LocalFile),
     Memory(Vec<u8>),
@@ -53,7 +53,7 @@ impl LibrarySource for Source {
 
 static LIBRARIES: Table<Library<Source>> = Table::new(Kind::Library);
 
-/// Frees all of them.
+/// Frees all libraries.
 ///
 /// # Safety
 /// As [`Table::clear`].

@@ -1,4 +1,4 @@
-//! The calls of scenes.
+//! Implementation of the scene calls.
 
 use std::collections::BTreeMap;
 use std::ffi::c_char;
@@ -20,7 +20,7 @@ use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
 use crate::reader::{Files, htex_files};
 use crate::status::{Failure, guarded, htex_status};
 
-/// A scene that plays, and its plan as JSON.
+/// A playing scene, and its plan as JSON.
 struct Playing {
     renderer: Renderer,
     plan_json: String,
@@ -28,7 +28,7 @@ struct Playing {
 
 static SCENES: Table<Playing> = Table::new(Kind::Scene);
 
-/// The device whose samples a program gets: numbers in the assets' unit.
+/// The device through which a program receives the samples: numbers in the assets' unit.
 const ADAPTER: &str = "org.htex.file";
 
 impl From<LoadError> for Failure {
@@ -53,7 +53,7 @@ impl From<SceneError> for Failure {
     }
 }
 
-/// Frees all of them.
+/// Frees all scenes.
 ///
 /// # Safety
 /// As [`Table::clear`].
@@ -62,7 +62,7 @@ pub(crate) unsafe fn clear() -> Result<(), Failure> {
     unsafe { SCENES.clear() }
 }
 
-/// What a scene is read from.
+/// Where a scene is read from.
 pub(super) enum Source<'a> {
     Path(PathBuf),
     Memory(&'a [u8], Files),
@@ -80,8 +80,8 @@ impl Source<'_> {
         }
     }
 
-    /// The quantity of the first surface's asset. A scene or an asset that cannot be read is an
-    /// error of loading it.
+    /// Returns the quantity of the first surface's asset. A scene or an asset that cannot be read
+    /// is reported later, when the scene is loaded.
     fn quantity(&self) -> Option<Quantity> {
         let first = |bytes: &[u8]| {
             let scene = read_scene(bytes, &Limits::default(), &mut Default::default())?;
@@ -182,7 +182,7 @@ unsafe fn open(
     })
 }
 
-/// The setting of the device: the quantity of the samples.
+/// The setting that gives the device the quantity of the samples.
 fn settings(quantity: Option<Quantity>) -> BTreeMap<String, String> {
     let quantity = quantity.map(|quantity| ("quantity".to_owned(), quantity.name().to_owned()));
     quantity.into_iter().collect()

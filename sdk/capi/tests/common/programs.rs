@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use xtask::needs::{self, Need};
 
-/// An asset of one condition.
+/// An asset with one condition.
 pub fn asset() -> PathBuf {
     workspace().join("examples/scenes/vinyl.htex")
 }
@@ -57,7 +57,7 @@ impl Language {
         })
     }
 
-    /// The program of this language in the README.
+    /// The program in this language from the README.
     pub fn in_readme(self, readme: &str) -> String {
         let fence = match self {
             Self::C | Self::Clang => "```c\n",
@@ -72,7 +72,7 @@ impl Language {
         }
     }
 
-    /// A printed sample: in C and C++ as a hexadecimal float.
+    /// Parses a printed sample; C and C++ print it as a hexadecimal float.
     pub fn number(self, text: &str) -> f32 {
         match self {
             Self::Csharp => text.parse().unwrap(),
@@ -100,7 +100,7 @@ pub struct Project {
 }
 
 impl Project {
-    /// An empty project; `None` without a compiler of the language.
+    /// Makes an empty project; `None` without a compiler for the language.
     pub fn new(language: Language, name: &str) -> Option<Self> {
         let (compiler, need) = language.compiler();
         let there = Command::new(compiler).arg("--version").output().is_ok();
@@ -110,7 +110,8 @@ impl Project {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{language:?}"));
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).unwrap();
-        // The second is the name that the library states for itself. Copies would take 2 GB in all.
+        // The second name is the one that the library states for itself. Copies would take 2 GB in
+        // all.
         for name in ["libhtex.so", "libhtex.so.1"] {
             fs::hard_link(library(), folder.join(name)).unwrap();
         }
@@ -121,12 +122,12 @@ impl Project {
         &self.folder
     }
 
-    /// Builds a program; a warning is an error.
+    /// Builds a program. A warning is an error.
     pub fn build(&self, source: &str) -> PathBuf {
         self.build_with(source, &[])
     }
 
-    /// As [`Self::build`], with further arguments of the compiler.
+    /// As [`Self::build`], with further arguments for the compiler.
     pub fn build_with(&self, source: &str, more: &[&str]) -> PathBuf {
         let file = self.folder.join(self.language.source());
         fs::write(&file, source).unwrap();
@@ -155,7 +156,7 @@ impl Project {
         program
     }
 
-    /// Whether a program builds with these arguments of the compiler.
+    /// Whether a program builds with these compiler arguments.
     pub fn builds(&self, arguments: &[&str]) -> bool {
         let file = self.folder.join("empty.c");
         fs::write(&file, "int main(void) { return 0; }\n").unwrap();
@@ -172,7 +173,7 @@ impl Project {
         self.run_under(under, program, arguments)
     }
 
-    /// Runs a program by another one with its arguments.
+    /// Runs a program under another one, such as valgrind, with its arguments.
     pub fn run_under(&self, under: &[&str], program: &Path, arguments: &[&OsStr]) -> Output {
         let mut command = match under {
             [] => Command::new(program),
@@ -188,7 +189,7 @@ impl Project {
     }
 }
 
-/// The shared library as cargo built it for these tests.
+/// The shared library that cargo built for these tests.
 fn library() -> PathBuf {
     let tests = std::env::current_exe().unwrap();
     let built = tests.parent().unwrap();

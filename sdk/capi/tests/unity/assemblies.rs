@@ -1,5 +1,5 @@
-//! The assemblies of the Unity package, compiled by mono as their `.asmdef` files say, against
-//! stubs of Unity.
+//! The assemblies of the Unity package, compiled with mono as their `.asmdef` files specify,
+//! against stubs of Unity.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,11 +7,11 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// What Unity defines for all targets.
+/// Symbols that Unity defines for all targets.
 const ALWAYS: [&str; 4] =
     ["UNITY_5_3_OR_NEWER", "UNITY_2021_2_OR_NEWER", "UNITY_2021_3_OR_NEWER", "UNITY_INCLUDE_TESTS"];
 
-/// What Unity compiles for.
+/// A platform for which Unity compiles.
 pub struct Target {
     pub name: &'static str,
     pub defines: &'static [&'static str],
@@ -35,7 +35,7 @@ pub const PLAYERS: [Target; 4] = [
     Target { name: "linux", defines: &["UNITY_STANDALONE_LINUX", "HTEX_BURST"], is_editor: false },
 ];
 
-/// Assemblies in the order of their references.
+/// Assemblies in the order in which they refer to each other.
 const ASMDEFS: [&str; 4] = [
     "Runtime/Htex.asmdef",
     "Editor/Htex.Editor.asmdef",
@@ -43,10 +43,10 @@ const ASMDEFS: [&str; 4] = [
     "Tests/Editor/Htex.Editor.Tests.asmdef",
 ];
 
-/// Assemblies of others that may be referred to. The stubs of Unity stand in for them.
+/// Third-party assemblies that may be referred to. The stubs of Unity stand in for them.
 const OTHERS: [&str; 3] = ["Unity.Burst", "UnityEngine.TestRunner", "UnityEditor.TestRunner"];
 
-/// Compiles sources in C# to a file of a folder; a warning is an error.
+/// Compiles C# sources to a file in a folder. A warning is an error.
 pub fn compile(folder: &Path, out: &str, sources: &[PathBuf], arguments: &[String]) {
     let mut compiler = Command::new("mcs");
     compiler
@@ -77,7 +77,7 @@ pub fn compile_stubs(folder: &Path, hosts: &Path) {
     compile(folder, "nunit.exe", &tests, &words(&[engine]));
 }
 
-/// The C# files of a folder, not of those in it.
+/// The C# files directly in a folder, without its subfolders.
 pub fn sources(folder: &Path) -> Vec<PathBuf> {
     let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let mut files: Vec<_> =
@@ -92,7 +92,7 @@ fn texts<'a>(asmdef: &'a Value, key: &str) -> Vec<&'a str> {
     list.map(|text| text.as_str().unwrap()).collect()
 }
 
-/// Compiles the assemblies of a target, and the scripts of the sample; returns the names of the
+/// Compiles a target's assemblies and the sample's scripts, and returns the names of the
 /// assemblies.
 pub fn compile_package(package: &Path, folder: &Path, target: &Target) -> Vec<String> {
     let defines = ALWAYS.iter().chain(target.defines);

@@ -1,7 +1,7 @@
 //! The `.meta` files of the Unity package: the GUID of each file and folder, and how Unity imports
 //! it.
 //!
-//! A GUID is that of a path, so that it stays the same: references in scenes of users are by GUID.
+//! A GUID is derived from the path, so that it never changes: users' scenes refer to files by GUID.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,9 +14,9 @@ const END: &str = "  userData: \n  assetBundleName: \n  assetBundleVariant: \n";
 
 /// Where a library is used.
 pub struct Plugin {
-    /// Path in the package. Git has its `.meta` file only.
+    /// Path in the package. Git contains only its `.meta` file.
     pub path: &'static str,
-    /// The operating system and the processor of editors that load it.
+    /// The operating system and processor of the editors that load it.
     editor: Option<(&'static str, &'static str)>,
     /// Group and name of the platform.
     platform: (&'static str, &'static str),
@@ -61,17 +61,17 @@ pub const PLUGINS: [Plugin; 5] = [
     },
 ];
 
-/// The platforms that a library says it is not for.
+/// The platforms that a library excludes in its `.meta` file.
 const PLATFORMS: [&str; 7] =
     ["Android", "Editor", "Linux64", "OSXUniversal", "Win", "Win64", "iOS"];
 
-/// The GUID of a path of the package.
+/// Returns the GUID for a path in the package.
 pub fn guid(path: &str) -> String {
     let hash = Sha256::digest(format!("org.htex.htex/{path}"));
     hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The `.meta` files that a package has, by their paths.
+/// Returns the `.meta` files that a package should have, by path.
 pub fn all(package: &Path) -> BTreeMap<String, String> {
     let mut assets = BTreeMap::new();
     walk(package, "", &mut assets);
@@ -86,8 +86,8 @@ pub fn all(package: &Path) -> BTreeMap<String, String> {
     metas.collect()
 }
 
-/// All that Unity imports, and whether it is a folder. Unity sees no folder whose name ends with
-/// `~`, but copies samples with their `.meta` files to a project.
+/// Collects everything that Unity imports, and whether it is a folder. Unity ignores folders whose
+/// name ends with `~`, but it copies samples together with their `.meta` files to a project.
 fn walk(package: &Path, folder: &str, assets: &mut BTreeMap<String, bool>) {
     for entry in fs::read_dir(package.join(folder)).unwrap() {
         let entry = entry.unwrap();
@@ -103,7 +103,7 @@ fn walk(package: &Path, folder: &str, assets: &mut BTreeMap<String, bool>) {
     }
 }
 
-/// The `.meta` files that are there.
+/// Returns the `.meta` files that exist.
 pub fn there(package: &Path) -> Vec<String> {
     fn add(package: &Path, folder: &str, metas: &mut Vec<String>) {
         for entry in fs::read_dir(package.join(folder)).unwrap() {
@@ -122,7 +122,7 @@ pub fn there(package: &Path) -> Vec<String> {
     metas
 }
 
-/// What Unity does with a file.
+/// Returns how Unity imports a file.
 fn importer(path: &str, is_folder: bool) -> String {
     if is_folder {
         return format!("folderAsset: yes\nDefaultImporter:\n  externalObjects: {{}}\n{END}");

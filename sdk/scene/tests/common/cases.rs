@@ -1,5 +1,5 @@
-//! The conformance scenes: valid ones, and at least one for each rule they break; and the files
-//! they name.
+//! The conformance scenes and the files that they name: valid scenes, and at least one scene for
+//! each rule that it breaks.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ impl Case {
     }
 }
 
-/// The files that the scenes name: (file name, bytes).
+/// The files that the scenes name, as file name and bytes.
 pub fn files() -> Vec<(&'static str, Vec<u8>)> {
     let trace = |header: &str, rows: &str| format!("{header}\n{rows}").into_bytes();
     let rows = "0,0,0,0.4\n0.5,40,0,0.4\n1,0,0,0.4\n";
@@ -115,7 +115,7 @@ fn field(name: &str) -> StoredField {
     }
 }
 
-/// A scene of one surface under a constant motion.
+/// A scene with one surface and a constant motion.
 pub fn plain() -> Value {
     json!({
         "htex_scene": "1.0",
@@ -125,8 +125,7 @@ pub fn plain() -> Value {
     })
 }
 
-/// [`plain`] with the values at some pointers set; parents are created as objects if they are
-/// missing.
+/// [`plain`] with the values at some pointers replaced. Missing parents are created as objects.
 fn with(changes: &[(&str, Value)]) -> String {
     let mut scene = plain();
     for (pointer, value) in changes {
@@ -149,7 +148,7 @@ fn without(key: &str) -> String {
     serde_json::to_string_pretty(&scene).unwrap() + "\n"
 }
 
-/// Two surfaces side by side; `second` is the range of the second one along x.
+/// Two surfaces side by side. `second` is the range of the second one along x.
 fn two(second: [f64; 2]) -> Value {
     let region = |x_mm: [f64; 2]| json!({ "x_mm": x_mm, "y_mm": [0, 50] });
     json!([

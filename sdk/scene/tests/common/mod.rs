@@ -12,20 +12,20 @@ use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, Scene, Surface};
 use htex_scene::{Costs, LoadedScene, Plan, Renderer, Trace, plan};
 use htex_simulate::{SimulationOptions, Surface as Simulated, simulate};
 
-/// An asset of one condition, 80 mm/s and 0.4 N.
+/// An asset with one condition, 80 mm/s and 0.4 N.
 pub fn single() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     ASSET.get_or_init(|| asset(Simulated::Sandpaper, &[(80.0, 0.4)]))
 }
 
-/// An asset of four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
+/// An asset with four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
 pub fn grid() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     let known = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)];
     ASSET.get_or_init(|| asset(Simulated::CoarseFabric, &known))
 }
 
-/// An asset of nine conditions, 60, 90 and 120 mm/s by 0.3, 0.45 and 0.6 N.
+/// An asset with nine conditions, 60, 90 and 120 mm/s by 0.3, 0.45 and 0.6 N.
 pub fn nine() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     let known = |i: usize| {
@@ -35,7 +35,7 @@ pub fn nine() -> &'static Asset {
     ASSET.get_or_init(|| asset(Simulated::CoarseFabric, &[0, 1, 2, 3, 4, 5, 6, 7, 8].map(known)))
 }
 
-/// An asset of three speeds, between which conditions were computed.
+/// An asset with three speeds and computed conditions between them.
 pub fn three_speeds() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     let known = [(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)];
@@ -60,7 +60,7 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
     Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
 }
 
-/// A scene of one surface without a region.
+/// A scene with one surface without a region.
 pub fn scene(asset: &Asset, motion: Motion, duration_s: f64) -> LoadedScene {
     LoadedScene {
         scene: Scene {
@@ -96,7 +96,7 @@ pub fn constant(speed_mm_s: f64, force_n: f64) -> Motion {
     Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 })
 }
 
-/// A trace at 200 rows per second from position along x (mm) and force (newtons) as functions of
+/// A trace with 200 rows per second. Position along x (mm) and force (newtons) are functions of
 /// time.
 pub fn trace(duration_s: f64, x_mm: impl Fn(f64) -> f64, force_n: impl Fn(f64) -> f64) -> Trace {
     let t_s: Vec<f64> = (0..=(duration_s * 200.0) as usize + 1).map(|i| i as f64 / 200.0).collect();
@@ -163,7 +163,7 @@ pub fn planned(scene: &LoadedScene, device: &Capabilities) -> Plan {
     plan(scene, device, &Costs::embedded()).unwrap()
 }
 
-/// All samples of a scene, rendered to its end.
+/// Renders a scene to its end and returns all samples.
 pub fn rendered(renderer: &mut Renderer) -> Vec<f32> {
     let mut all = Vec::new();
     let mut block = [0.0f32; 64];

@@ -1,9 +1,9 @@
-/** Textures made: recordings fitted, parameters written, textures mixed and edited. */
+/** Making textures: fit recordings, write parameters, mix and edit textures. */
 
 import type { Address, Bytes, Quantity, Readable, Texture } from "./index.js";
 import type { SignalLike, WorkerLike } from "./web.js";
 
-/** A file: its name, which tells what kind of recording it is, and its bytes. */
+/** A file: its bytes and its name, which tells what kind of recording it is. */
 export interface NamedBytes {
   name: string;
   bytes: Bytes;
@@ -12,13 +12,16 @@ export interface NamedBytes {
 /** A File, or a Blob with a name. */
 export type NamedFile = Readable & { readonly name: string };
 
-/** Settings that help against a problem: names of `ReadingSettings` and `FitSettings`, some with a value ("segments windows"). */
+/**
+ * Settings that would fix a problem: names from `ReadingSettings` and `FitSettings`, some with a
+ * value ("segments windows").
+ */
 export interface Notice {
   text: string;
   settings: string[];
 }
 
-/** A finding; `Author.explain` tells more of its code. */
+/** A finding. `Author.explain` explains its code. */
 export interface Finding {
   code: string;
   severity: "error" | "warning" | "info";
@@ -30,7 +33,7 @@ export interface Finding {
 
 export interface Report {
   kind: "texture" | "library" | "recording";
-  /** Whether no finding is an error. */
+  /** True if no finding is an error. */
   valid: boolean;
   findings: Finding[];
 }
@@ -44,10 +47,10 @@ export interface ModelField {
   unit: string;
   /** One number, or a list of at most `max_len`. */
   kind: { type: "scalar" } | { type: "list"; max_len: number };
-  /** Least and greatest value. */
+  /** Minimum and maximum. */
   min: number;
   max: number;
-  /** The range of most textures, and the scale on which it is even: for sliders. */
+  /** The range for most textures, and the scale on which sliders should show it. */
   usual?: { min: number; max: number; scale: "linear" | "log" };
   default?: number;
   description: string;
@@ -59,7 +62,7 @@ export interface Model {
   version: string;
   summary: string;
   fields: ModelField[];
-  /** Options of fitting. */
+  /** Options for fitting. */
   options: { name: string; default: number; min: number; max: number; choices: string[]; description: string }[];
   /** Whether the level is one of the parameters. */
   keeps_level?: boolean;
@@ -82,12 +85,12 @@ export interface Metadata {
   law?: { frequency_speed?: number; level_speed?: number; level_force?: number };
 }
 
-/** Parameters of a model at a condition. */
+/** A model's parameters at a condition. */
 export interface MadeAt {
-  /** Speed, mm/s, and force, N; both of all conditions, or of none. */
+  /** Speed, mm/s, and force, N. Give both for every condition, or neither. */
   speed?: number;
   force?: number;
-  /** RMS in the quantity's unit; may be absent of a model with `keeps_level`. */
+  /** RMS in the quantity's unit. May be absent for a model with `keeps_level`. */
   level?: number;
   parameters: Record<string, number | number[]>;
 }
@@ -96,23 +99,23 @@ export interface MakeOptions extends Metadata {
   representations: { model: string; conditions: MadeAt[] }[];
   /** Default "lateral_force". */
   quantity?: RecordedQuantity;
-  /** The quantity's unit, to be checked. */
+  /** The quantity's unit, which is checked. */
   unit?: string;
   /** Lowest and highest frequency, Hz. Default 20 to 1000. */
   band?: [number, number];
 }
 
-/** How recordings are read: the keywords of the Python package, by the same names. */
+/** How recordings are read. The names are the keywords of the Python package. */
 export interface ReadingSettings {
-  /** Sampling rate, where the file does not say. */
+  /** Sample rate, if the file does not state it. */
   rate_hz?: number;
   /** Roles of columns: `lateral=lateral_V:0.4444,normal=#3`. */
   map?: string;
-  /** Files with the finger's motion, one for each recording or one for all. */
+  /** Files with the finger's motion: one for each recording, or one for all. */
   tracker?: NamedBytes | NamedBytes[];
   tracker_map?: string;
   quantity?: RecordedQuantity;
-  /** What a full-scale sample of WAV, FLAC and NPY is, in the quantity's unit. */
+  /** Value of a full-scale sample in WAV, FLAC and NPY, in the quantity's unit. */
   scale?: number;
   /** Response of the recording setup, a CSV. */
   response?: NamedBytes;
@@ -121,14 +124,14 @@ export interface ReadingSettings {
   most_values?: number;
   segments?: "auto" | "sweeps" | "windows";
   averaging?: "magnitude" | "rms" | "complex";
-  /** Speed and force, where the recording does not say, or instead of what it says. */
+  /** Speed and force, if the recording does not state them or to override what it states. */
   speed_mm_s?: number;
   force_n?: number;
-  /** Refuse recordings with findings that are errors or warnings. */
+  /** Refuse recordings that have errors or warnings. */
   strict?: boolean;
 }
 
-/** How models are fitted, and what is said of the texture. */
+/** How models are fitted, and the texture's metadata. */
 export interface FitSettings extends ReadingSettings, Metadata {
   /** Models by short name or id. Default: all. */
   models?: string | string[];
@@ -137,9 +140,11 @@ export interface FitSettings extends ReadingSettings, Metadata {
   level?: "fitted" | "recording";
   /** Keep the recorded spectra in the texture. */
   keep_reference?: boolean;
-  /** A grid of conditions from recordings of a free motion: lines of speed (mm/s) and force (N). */
+  /**
+   * A grid of conditions for recordings of a free motion: lists of speeds (mm/s) and forces (N).
+   */
   grid?: "auto" | { speed?: number[]; force?: number[] };
-  /** Speed and force of each recording, or one for all. */
+  /** Speed and force: one for each recording, or one for all. */
   conditions?: { speed?: number; force?: number }[];
 }
 
@@ -153,23 +158,23 @@ export interface RecordedSpectrum {
   repeatability_rms_db: number | null;
 }
 
-/** What the columns of a file are taken to be. */
+/** How the columns of a file are interpreted. */
 export interface Columns {
   columns: {
     name: string;
-    /** "lateral", "normal", "time" and others; null for a column that is not read. */
+    /** "lateral", "normal", "time" and others; null for a column that is ignored. */
     role: string | null;
-    /** Factor to the unit. */
+    /** Factor that converts the column to the unit. */
     scale: number;
     unit: string;
-    /** The first numbers, as they are in the file. */
+    /** The first numbers, as the file states them. */
     first: number[];
   }[];
   /** The rate that the file states. */
   rate_hz: number | null;
-  /** The roles as the setting `map`, which may be corrected. */
+  /** The roles in the form of the setting `map`, so that they can be corrected. */
   map: string;
-  /** Why the file cannot be read as a recording, if it cannot. */
+  /** Why the file cannot be read as a recording; absent if it can. */
   problem: string | null;
 }
 
@@ -182,20 +187,26 @@ export interface Processed {
   spectrum: RecordedSpectrum;
   segments: number;
   from_sweeps: boolean;
-  /** Stretches that are read, s. */
+  /** Segments that are read, s. */
   read_s: [number, number][];
   condition: { speed: number | null; force: number | null };
-  /** Least and greatest over the segments. */
+  /** Minimum and maximum over the segments. */
   speed_spread: [number, number] | null;
   force_spread: [number, number] | null;
   findings: Finding[];
   warnings: Notice[];
   notes: Notice[];
-  /** The signals in at most 1000 steps of time: the least and the greatest of each step. "signal", "signal_y", "signal_z", "normal", "speed". */
+  /**
+   * The signals in at most 1000 time steps, as the minimum and maximum of each step: "signal",
+   * "signal_y", "signal_z", "normal", "speed".
+   */
   picture: { from_s: number; step_s: number; steps: number; signals: Record<string, { least: Float32Array; greatest: Float32Array }> };
 }
 
-/** What is read of a recording as sound: a loop without a seam, in the band, compensated and of one axis as its spectrum is. */
+/**
+ * A recording as sound: a seamless loop, limited to the band, compensated, and reduced to one axis
+ * in the same way as its spectrum.
+ */
 export interface RecordedLoop {
   /** Name of the recording. */
   recording: string;
@@ -203,7 +214,7 @@ export interface RecordedLoop {
   quantity: RecordedQuantity;
   unit: string;
   rate_hz: number;
-  /** RMS of the samples: the level of models that are fitted to the recording. */
+  /** RMS of the samples. Models fitted to the recording have this level. */
   level_rms: number;
   segments: number;
   samples: Float32Array<ArrayBuffer>;
@@ -212,17 +223,20 @@ export interface RecordedLoop {
 export interface BakeOptions {
   /** Name of the array. */
   name?: string;
-  /** Default: the representation of least error. */
+  /** Default: the representation with the smallest error. */
   model?: string;
-  /** Sampling rate of the player, Hz. Default 8000. */
+  /** Sample rate of the player, Hz. Default 8000. */
   rate?: number;
-  /** Largest error of nine bands between conditions, dB. Default 0.3. */
+  /** Largest nine-band error between conditions, dB. Default 0.3. */
   within?: number;
-  /** Speeds, mm/s, and forces, N, which are all combined. Default: the first condition, or the strongest if the first is silent. */
+  /**
+   * Speeds, mm/s, and forces, N. Every speed is combined with every force. Default: the first
+   * condition, or the strongest if the first is silent.
+   */
   grid?: { speed: number[]; force: number[] };
 }
 
-/** A block for the player on microcontrollers; see `docs/microcontroller.md`. */
+/** A block for players on microcontrollers; see `docs/microcontroller.md`. */
 export interface Rights {
   license: string | null;
   author: string | null;
@@ -240,16 +254,18 @@ export interface Baked {
   rate_hz: number;
   speeds: number[];
   forces: number[];
-  /** Largest errors of nine bands: at the conditions, midway between them, and beyond them, where that is known. */
+  /**
+   * Largest nine-band errors: at the conditions, midway between them and, if known, beyond them.
+   */
   error_at_conditions_db: number;
   error_between_db: number;
   error_beyond_db: number | null;
-  /** The block as a C header, and as Rust. */
+  /** The block as a C header and as Rust code. */
   c: string;
   rust: string;
 }
 
-/** What is felt of the difference between a model and the recording; see `spec/htex-1.md`. */
+/** How much of the difference between a model and the recording is felt; see `spec/htex-1.md`. */
 export interface FeltError {
   error_rms_db: number;
   largest_error_db: number;
@@ -259,27 +275,30 @@ export interface FeltError {
   within_repeatability: boolean;
 }
 
-/** A texture as it is felt: by a model, at a motion. */
+/** A texture to compare: played by a model, at a motion. */
 export interface FeltSide {
   texture: Texture | Bytes;
-  /** Default: the representation of least error. */
+  /** Default: the representation with the smallest error. */
   model?: string;
   /** Default: the first recorded condition, or the strongest if the first is silent. */
   at?: { speed?: number; force?: number };
 }
 
-/** What a fingertip feels of a difference: levels above the detection threshold in third octaves; see `docs/felt.md`. */
+/**
+ * What a fingertip feels of a difference: levels above the detection threshold in third octaves;
+ * see `docs/felt.md`.
+ */
 export interface Felt {
   centre_hz: number[];
-  /** Levels above the threshold of the reference and of the other one; negative below it. */
+  /** Levels of the reference and of the other texture above the threshold; negative if below it. */
   reference_db: number[];
   level_db: number[];
-  /** Difference of what is above the threshold. */
+  /** Difference between the parts above the threshold. */
   error_db: number[];
   error_rms_db: number;
   largest_error_db: number;
   total_error_db: number;
-  /** Whether no difference is felt, by the usual listener and by a sensitive one. */
+  /** Whether a typical and a sensitive listener feel no difference. */
   below_difference_threshold: boolean;
   below_if_sensitive: boolean;
 }
@@ -287,14 +306,14 @@ export interface Felt {
 export interface FitReport {
   models: {
     model: string;
-    /** Bytes of its parameters. */
+    /** Size of its parameters, bytes. */
     bytes: number;
     fit_ms: number;
-    /** At the condition where most is felt. */
+    /** At the condition where the difference is felt most. */
     felt: FeltError | null;
     at: { condition: number; level_rms: number; quality: Record<string, unknown> | null; left_out: Record<string, unknown> | null; felt: FeltError | null }[];
   }[];
-  /** Ids of the models, that of which least is felt first. */
+  /** Ids of the models, starting with the one whose difference is felt least. */
   ranked: string[];
   skipped: { model: string; reason: string }[];
   conditions: Record<string, unknown>[];
@@ -311,35 +330,47 @@ export interface Fitted {
   report: FitReport;
 }
 
-/** What makes textures, in the thread that calls. */
+/** Makes textures, in the calling thread. */
 export interface Author {
   models(): Model[];
-  /** Makes a texture of parameters; it states that it was made by hand. */
+  /** Makes a texture from parameters. The texture states that it was made by hand. */
   make(options: MakeOptions): Texture;
-  /** Makes a texture between two others; `weight` is the part of the second, 0 to 1. */
+  /** Makes a texture between two others. `weight` is the share of the second, 0 to 1. */
   mix(a: Texture | Bytes, b: Texture | Bytes, weight: number, metadata?: Metadata): Texture;
-  /** A texture with other metadata; an empty text removes an entry. */
+  /** Returns the texture with other metadata. An empty text removes an entry. */
   edit(texture: Texture | Bytes, metadata: Metadata): Texture;
-  /** Checks a file: a library and a texture are known by their bytes, a recording by its `name`. */
+  /**
+   * Checks a file. Libraries and textures are recognised by their bytes, recordings by their
+   * `name`.
+   */
   validate(bytes: Bytes, options?: { name?: string }): Report;
-  /** What a fingertip feels of the difference of a texture from a reference. */
+  /** Returns what a fingertip feels of the difference between a texture and a reference. */
   felt(reference: FeltSide, other: FeltSide): Felt;
-  /** The magnitudes at which sinusoids of frequencies in Hz are at the detection threshold, in the quantity's unit. */
+  /**
+   * Returns the magnitudes at which sinusoids of given frequencies, Hz, reach the detection
+   * threshold, in the quantity's unit.
+   */
   threshold(frequencies: ArrayLike<number>, options?: { quantity?: Quantity }): Float64Array;
-  /** What the code of a finding means. */
+  /** Returns what the code of a finding means. */
   explain(code: string): { code: string; severity: string; summary: string; explanation: string; fix: string; settings: string[] } | undefined;
-  /** What the columns of a recording are taken to be. */
+  /** Returns how the columns of a recording are interpreted. */
   columns(recording: NamedBytes, settings?: ReadingSettings): Columns;
   process(recording: NamedBytes, settings?: ReadingSettings): Processed;
-  /** What is read of recordings as sound, at a rate that is a multiple of 10 Hz. */
+  /** Returns recordings as sound, at a sample rate that is a multiple of 10 Hz. */
   recorded(recordings: NamedBytes | NamedBytes[], settings: ReadingSettings & { rate: number; conditions?: FitSettings["conditions"] }): RecordedLoop[];
-  /** Fits models to recordings; `fit` does it in a worker. */
+  /** Fits models to recordings. The function `fit` does this in a worker. */
   fit(recordings: NamedBytes | NamedBytes[], settings?: FitSettings): Fitted;
-  /** Bakes a block for the player on microcontrollers. */
+  /** Bakes a block for players on microcontrollers. */
   bake(texture: Texture | Bytes, options?: BakeOptions): Baked;
-  /** Licence and author of a texture; `text` has both as lines of SPDX, `riff` as a chunk to append to a WAV file. */
+  /**
+   * Returns licence and author of a texture: `text` has both as SPDX lines, `riff` as a chunk to
+   * append to a WAV file.
+   */
   rights(texture: Texture | Bytes): Rights;
-  /** Packs textures, by their names, to a `.htexlib` file. Each states a licence, unless `unlicensed` allows those that do not. */
+  /**
+   * Packs textures, by name, into a `.htexlib` file. Each must state a licence, unless `unlicensed`
+   * allows textures without one.
+   */
   library(textures: Record<string, Texture | Bytes>, options?: { name?: string; unlicensed?: boolean }): Uint8Array;
 }
 
@@ -347,14 +378,20 @@ export interface Author {
 export function loadAuthor(): Promise<Author>;
 
 export interface FitOptions extends FitSettings {
-  /** Called with the steps that are done, their number, and what begins: "read felt.csv", "fit ar". */
+  /**
+   * Called with the number of finished steps, the total number, and what begins: "read felt.csv",
+   * "fit ar".
+   */
   onProgress?: (progress: { done: number; of: number; text: string }) => void;
-  /** Aborts the fit, which then fails with an HtexError of the code "aborted". */
+  /** Aborts the fit, which then fails with an HtexError with the code "aborted". */
   signal?: SignalLike;
 }
 
 /** Fits models to recordings of a texture, in a worker. */
 export function fit(recordings: NamedBytes | NamedFile | (NamedBytes | NamedFile)[], options?: FitOptions): Promise<Fitted>;
 
-/** Sets where the module is, and how its worker is started where a bundler has it elsewhere. Before the first use. */
+/**
+ * Sets where the module is, and how its worker is started if a bundler has moved it. Call this
+ * before the first use.
+ */
 export function setAuthorLibrary(library: Address | Bytes | object | undefined, options?: { worker?: () => WorkerLike | Promise<WorkerLike> }): void;

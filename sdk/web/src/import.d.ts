@@ -1,40 +1,48 @@
-/** Files of other haptic formats as textures: Apple .ahap, Meta .haptic, MPEG .hjif, Penn HaTT .xml, friction maps .png, glTF. */
+/**
+ * Importing files of other haptic formats as textures: Apple .ahap, Meta .haptic, MPEG .hjif, Penn
+ * HaTT .xml, friction maps .png, glTF.
+ */
 
 import type { FitReport, Metadata, NamedBytes, NamedFile, Notice, RecordedQuantity } from "./author.js";
 import type { Address, Bytes, Texture } from "./index.js";
 import type { SignalLike, WorkerLike } from "./web.js";
 
-/** What a file does not say. */
+/** Something that a file does not state. */
 export interface Asked {
-  /** The setting that says it. */
+  /** The setting that states it. */
   setting: "full_scale" | "speed_mm_s" | "force_n" | "pitch_mm";
-  /** What it is, in words: "at which speed it is felt". */
+  /** Its description: "at which speed it is felt". */
   words: string;
 }
 
-/** A format whose files come in. */
+/** A format that can be imported. */
 export interface ImportFormat {
   /** "hatt", "haptic", "ahap", "hjif", "png", "gltf" and others. */
   name: string;
   title: string;
-  /** Extensions of its files, without the point. */
+  /** Extensions of its files, without the dot. */
   extensions: string[];
-  /** Whether models are fitted to its files; the others become textures as they are. */
+  /** Whether models are fitted to its files. Other formats become textures as they are. */
   fitted: boolean;
-  /** Settings of `importFile` that it takes, beside metadata. */
+  /** Settings of `importFile` that it accepts, apart from metadata. */
   settings: string[];
-  /** What its files do not say; `Importer.asks` tells it of one file, which may say more. */
+  /**
+   * What its files do not state. `Importer.asks` answers this for one file, which may state more.
+   */
   asks: Asked[];
-  /** The actuator in whose range frequencies are positions, unless another is given; null where frequencies are in Hz. */
+  /**
+   * Default actuator for formats that give frequencies as positions in an actuator's range; null if
+   * frequencies are in Hz.
+   */
   profile: string | null;
-  /** What of a texture the format keeps, and what it loses, in words. */
+  /** Which parts of a texture the format keeps, and which it loses, in words. */
   keeps: string;
   loses: string;
-  /** Where its files carry licence and author. */
+  /** Where its files state licence and author. */
   rights: string;
 }
 
-/** The range of frequencies of an actuator. */
+/** The frequency range of an actuator. */
 export interface ActuatorRange {
   name: string;
   title: string;
@@ -42,17 +50,19 @@ export interface ActuatorRange {
   high_hz: number;
 }
 
-/** What a file does not say, how it is fitted, and what is said of the texture: the keywords of the Python package, by the same names. A
- * setting that the format has no use for is refused. */
+/**
+ * What a file does not state, how it is fitted, and the texture's metadata. The names are the
+ * keywords of the Python package. A setting that the format does not use is refused.
+ */
 export interface ImportSettings extends Metadata {
-  /** What the file calls 1, and white, in the quantity's unit. */
+  /** The value of the file's 1, or of white, in the quantity's unit. */
   full_scale?: number;
-  /** What `full_scale` is of. Default "lateral_force". */
+  /** The quantity of `full_scale`. Default "lateral_force". */
   quantity?: RecordedQuantity;
   /** Speed (mm/s) and normal force (N) of the finger at which the file is felt. */
   speed_mm_s?: number;
   force_n?: number;
-  /** Distance of an image's pixels, mm. Default: the one that the file states. */
+  /** Distance between an image's pixels, mm. Default: the distance that the file states. */
   pitch_mm?: number;
   /** The actuator in whose range frequencies are positions. Default: the format's own. */
   profile?: string;
@@ -68,9 +78,9 @@ export interface ImportSettings extends Metadata {
 export interface ImportReport {
   /** Name of the format. */
   format: string;
-  /** Of a file that is not fitted, nothing is felt of the difference from it. */
+  /** If no model was fitted to the file, its difference is not felt. */
   models: Omit<FitReport["models"][number], "fit_ms">[];
-  /** Ids of the models, that of which least is felt first. */
+  /** Ids of the models, starting with the one whose difference is felt least. */
   ranked: string[];
   conditions: Record<string, unknown>[];
   warnings: Notice[];
@@ -82,12 +92,15 @@ export interface Imported {
   report: ImportReport;
 }
 
-/** What reads files of other formats, in the thread that calls. */
+/** Reads files of other formats, in the calling thread. */
 export interface Importer {
   formats(): { formats: ImportFormat[]; profiles: ActuatorRange[] };
-  /** Reads a file for what it does not say, and `importFile` has to be given; nothing of one that states a texture. */
+  /**
+   * Returns what a file does not state, so that `importFile` needs it as a setting; empty for a
+   * file that states a complete texture.
+   */
   asks(file: NamedBytes): Asked[];
-  /** Imports a file; the function `importFile` does it in a worker. */
+  /** Imports a file. The function `importFile` does this in a worker. */
   importFile(file: NamedBytes, settings?: ImportSettings): Imported;
 }
 
@@ -95,14 +108,20 @@ export interface Importer {
 export function loadImporter(): Promise<Importer>;
 
 export interface ImportOptions extends ImportSettings {
-  /** Called with the steps that are done, their number, and what begins: "import buzz.ahap". */
+  /**
+   * Called with the number of finished steps, the total number, and what begins: "import
+   * buzz.ahap".
+   */
   onProgress?: (progress: { done: number; of: number; text: string }) => void;
-  /** Aborts the import, which then fails with an HtexError of the code "aborted". */
+  /** Aborts the import, which then fails with an HtexError with the code "aborted". */
   signal?: SignalLike;
 }
 
 /** Imports a file in a worker. Errors have the code "invalid-file" where the file is not what its format says, and "invalid-argument". */
 export function importFile(file: NamedBytes | NamedFile, options?: ImportOptions): Promise<Imported>;
 
-/** Sets where the module is, and how the worker is started where a bundler has it elsewhere. Before the first use. */
+/**
+ * Sets where the module is, and how the worker is started if a bundler has moved it. Call this
+ * before the first use.
+ */
 export function setImportLibrary(library: Address | Bytes | object | undefined, options?: { worker?: () => WorkerLike | Promise<WorkerLike> }): void;

@@ -1,19 +1,21 @@
-/** The manifest of a texture: what its file states. `spec/htex-1.md` has the meaning of each key. */
+/**
+ * The manifest of a texture: everything that its file states. `spec/htex-1.md` explains each key.
+ */
 
 export type Quantity = string;
 export type Contact = "finger" | "tool" | "unknown";
 
-/** A speed and a force at which the texture was recorded; what is absent is not known. */
+/** A speed and a force at which the texture was recorded. Absent values are unknown. */
 export interface ManifestCondition {
   speed_mm_s?: number;
   force_n?: number;
-  /** By how much two recordings like this one differ, dB. */
+  /** How much two recordings of this kind differ, dB. */
   repeatability_rms_db?: number;
-  /** Number of segments that were averaged; 0 for a condition that was computed. */
+  /** Number of averaged segments; 0 for a computed condition. */
   segments?: number;
 }
 
-/** An exponent of a law, and where it comes from. */
+/** An exponent of a law, and its source. */
 export interface Exponent {
   exponent: number;
   source: "measured" | "given" | "assumed";
@@ -33,7 +35,7 @@ export interface Representation {
   /** Id of the model. */
   model: string;
   model_version: string;
-  /** Level and quality at each of the conditions that it is fitted at. */
+  /** Level and quality at each condition at which it was fitted. */
   at: ({ condition: number; level_rms: number } & Record<string, unknown>)[];
   [key: string]: unknown;
 }
@@ -59,10 +61,10 @@ export interface Manifest {
   law?: Law;
   representations: Representation[];
   reference?: Record<string, unknown>;
-  /** Models that the file brings along. */
+  /** Embedded models. */
   plugins?: { model: string; version: string; file: string; [key: string]: unknown }[];
   extensions?: Record<string, unknown>;
   extensions_required?: string[];
-  /** Keys of a newer minor version. */
+  /** Keys from a newer minor version. */
   [key: string]: unknown;
 }

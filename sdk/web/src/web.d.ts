@@ -1,4 +1,4 @@
-/** Types of the browser, where they are known: programs for Node.js are compiled without them. */
+/** Browser types, if they are known: programs for Node.js are compiled without them. */
 
 type Instance<Name extends string> = typeof globalThis extends { [N in Name]: { prototype: infer T } } ? T : unknown;
 
@@ -9,10 +9,10 @@ export type EventLike = Instance<"Event">;
 export type WorkerLike = Instance<"Worker">;
 export type SignalLike = Instance<"AbortSignal">;
 
-/** What `AudioWorkletNode` is; a class that cannot be made where there is none. */
+/** The type of `AudioWorkletNode`; where it does not exist, a class that cannot be instantiated. */
 export declare const NodeBase: typeof globalThis extends { AudioWorkletNode: infer T extends abstract new (...values: any) => any }
   ? T
   : abstract new () => object;
 
-/** A function such as `fetch`. */
+/** A function like `fetch`. */
 export type Fetch = typeof globalThis extends { fetch: infer T } ? T : (url: any, options?: any) => Promise<any>;

@@ -1,11 +1,11 @@
-//! What functions are given, and what they return.
+//! Arguments and results of the functions.
 
 use serde::Serialize;
 
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// What a function returns: a document, and bytes.
+/// The result of a function: a document, and bytes.
 #[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) json: Vec<u8>,
@@ -19,7 +19,7 @@ impl Answer {
     }
 }
 
-/// The files that a call is given.
+/// The files passed to a call.
 pub(crate) type Files<'a> = &'a [&'a [u8]];
 
 pub(crate) type Function = fn(Document, Files<'_>) -> Result<Answer, Refusal>;

@@ -15,17 +15,17 @@ use crate::refusal::Refusal;
 #[derive(Debug)]
 #[allow(non_camel_case_types)] // As the names of the C header.
 pub struct htex_author_result {
-    /// A document of JSON; of a call that fails, `{ code, message }`.
+    /// A JSON document. If the call fails, it is `{ code, message }`.
     pub json: *mut u8,
-    /// Its bytes.
+    /// Its length, bytes.
     pub json_len: usize,
     /// A file, or numbers; NULL if there are none.
     pub bytes: *mut u8,
-    /// Their number.
+    /// Number of bytes.
     pub bytes_len: usize,
 }
 
-/// The functions of each part that the module has.
+/// The functions of each part that this module contains.
 const FUNCTIONS: &[&[(&str, Function)]] = &[
     #[cfg(feature = "make")]
     crate::making::FUNCTIONS,
@@ -35,8 +35,8 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
     crate::scene::FUNCTIONS,
 ];
 
-/// Calls the function of a name with a document of JSON and the bytes of files. A call that fails
-/// has a result, too.
+/// Calls the function with a given name, passing a JSON document and the bytes of files. A call
+/// that fails also has a result.
 ///
 /// # Safety
 /// The pointers are the caller's: what they point to is there during the call, and `out` is
@@ -82,7 +82,7 @@ fn called(name: &str, json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> 
     function(Document::of_call(json)?, files)
 }
 
-/// Copies bytes to memory that the caller frees; NULL for none.
+/// Copies bytes to memory that the caller frees; NULL if there are no bytes.
 fn handed_over(bytes: &[u8]) -> Result<*mut u8, Failure> {
     if bytes.is_empty() {
         return Ok(std::ptr::null_mut());

@@ -1,7 +1,7 @@
-//! Documents of calls: objects of JSON, whose entries are taken by their names.
+//! Documents of calls: JSON objects whose entries are taken by name.
 //!
-//! They are not read by derived code, which takes a kilobyte and more for each struct. Only the
-//! tables of settings are.
+//! Derived code would take a kilobyte or more for each struct, so only the tables of settings use
+//! it.
 
 #[cfg(feature = "make")]
 use serde::de::DeserializeOwned;
@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use crate::refusal::Refusal;
 
-/// An object whose entries are taken.
+/// An object from which entries are taken.
 pub(crate) struct Document {
     left: Map<String, Value>,
     known: Vec<&'static str>,
@@ -22,7 +22,7 @@ impl Document {
         Self::of(value)
     }
 
-    /// Takes an object; `null` entries are absent.
+    /// Makes a document from an object. `null` entries count as absent.
     pub(crate) fn of(value: Value) -> Result<Self, Refusal> {
         match value {
             Value::Object(mut left) => {
@@ -39,7 +39,7 @@ impl Document {
         self.left.remove(name)
     }
 
-    /// Takes the entries of a table of settings.
+    /// Takes the entries that belong to a table of settings.
     #[cfg(feature = "make")]
     pub(crate) fn table<T: DeserializeOwned>(
         &mut self,
@@ -58,7 +58,7 @@ impl Document {
         Self::of(self.take(name).unwrap_or_default())
     }
 
-    /// Takes a list; an absent one is empty.
+    /// Takes a list. If it is absent, the list is empty.
     pub(crate) fn list(&mut self, name: &'static str) -> Result<Vec<Value>, Refusal> {
         match self.take(name) {
             None => Ok(Vec::new()),
@@ -98,12 +98,12 @@ impl Document {
         }
     }
 
-    /// Takes what is left, by names of the caller.
+    /// Takes the remaining entries, whose names the caller chose.
     pub(crate) fn rest(self) -> Map<String, Value> {
         self.left
     }
 
-    /// Refuses an entry that was not taken.
+    /// Refuses a document that still has entries.
     pub(crate) fn finish(self) -> Result<(), Refusal> {
         match self.left.keys().next() {
             None => Ok(()),

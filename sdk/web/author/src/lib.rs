@@ -1,12 +1,13 @@
-//! Modules of the npm package beside the player: libhtex, and one more C function,
-//! [`htex_author_call`], for what makes textures (the feature `make`, `htex-author.wasm`), of files
-//! of other haptic formats, too (`import`, `htex-import.wasm`), or for what plays scenes (`scene`,
+//! The npm package's modules apart from the player. Each module is libhtex with one more C
+//! function, [`htex_author_call`]. It makes textures (the feature `make`, `htex-author.wasm`), also
+//! from files of other haptic formats (`import`, `htex-import.wasm`), or it plays scenes (`scene`,
 //! `htex-scene.wasm`). JavaScript is its only caller: `sdk/web/src/author.js`, `import.js` and
 //! `scene.js`.
 //!
-//! A call has a name, a document of JSON, and the bytes of files; so has its result. One function
-//! for all keeps the layout of structs out of JavaScript, and costs microseconds beside what the
-//! calls do. Names, documents and results are those of `sdk/web/src/author.d.ts` and `import.d.ts`.
+//! A call has a name, a JSON document and the bytes of files. Its result has the same parts. A
+//! single function keeps struct layouts out of JavaScript, and its overhead is microseconds, little
+//! compared with what the calls do. `sdk/web/src/author.d.ts` and `import.d.ts` define names,
+//! documents and results.
 
 mod answer;
 mod call;
@@ -19,5 +20,5 @@ mod scene;
 
 pub use call::{htex_author_call, htex_author_result};
 
-// All functions of libhtex are exported with this one.
+// Exports all functions of libhtex together with this one.
 pub use htex_c::htex_status;

@@ -1,4 +1,4 @@
-//! Errors of calls: the status of libhtex, a code that says a little more, and the text.
+//! Errors of calls: libhtex's status, a more specific code, and the text.
 
 use htex::host::HostError;
 use htex_c::calls::Failure;
@@ -10,7 +10,7 @@ use serde::Serialize;
 pub(crate) struct Refusal {
     status: htex_status,
     message: String,
-    /// The document that the caller is given.
+    /// The document that the caller receives.
     json: Vec<u8>,
 }
 
@@ -28,7 +28,7 @@ impl Refusal {
         Self { status, json: serde_json::to_vec(&told).unwrap_or_default(), message }
     }
 
-    /// An argument or a setting is wrong.
+    /// An argument or a setting is invalid.
     pub(crate) fn argument(error: impl ToString) -> Self {
         Self::new(HTEX_STATUS_INVALID_ARGUMENT, "invalid-argument", error)
     }
@@ -46,7 +46,7 @@ impl Refusal {
     }
 }
 
-/// The text alone, as an error.
+/// Only the text, as an error.
 #[derive(Debug)]
 struct Text(String);
 

@@ -1,4 +1,5 @@
-//! Scenes played from memory: opened once, then named by a number until they are freed.
+//! Plays scenes from memory. A scene is opened once, and then referred to by a number until it is
+//! freed.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -28,10 +29,10 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("scene-render", render),
 ];
 
-/// The longest scene, s.
+/// Longest duration of a scene, s.
 const MOST_S: f64 = 1e9;
 
-/// A scene that is open.
+/// An open scene.
 struct Open {
     bytes: Vec<u8>,
     files: Named,
@@ -41,11 +42,11 @@ struct Open {
     device: DeviceOverride,
     loaded: LoadedScene,
     able: Capabilities,
-    /// What plays the next samples, once they were asked for.
+    /// Renders the next samples, once they have been requested.
     playing: Option<Renderer>,
 }
 
-/// The files of a scene, by their paths in it.
+/// The files of a scene, by their paths in the scene.
 struct Named(BTreeMap<String, Vec<u8>>);
 
 impl SceneFiles for Named {
@@ -74,7 +75,7 @@ struct Opened<'a> {
     notes: Vec<String>,
 }
 
-/// Opens a scene: the first file is the scene, the others are those that it names.
+/// Opens a scene. The first file is the scene; the others are the files that it names.
 pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.texts("files")?;
     let embedded = call.flag("trusted")?;
@@ -119,14 +120,14 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     Answer::new(&opened, Vec::new())
 }
 
-/// The built-in models; those that textures bring along run if that is allowed.
+/// Returns the built-in models. Models embedded in textures run if that is allowed.
 fn models(embedded: bool) -> Result<Registry, Refusal> {
     let engine = if embedded { WasmEngine::Checked } else { WasmEngine::Off };
     let limits = WasmLimits::default().with_engine(engine);
     Ok(Registry::search(&Search::builtin().with_limits(limits))?)
 }
 
-/// The device that is given in place of the scene's, which is not opened.
+/// Returns the device that is given in place of the scene's. It is not opened.
 fn device(mut given: Document) -> Result<DeviceOverride, Refusal> {
     let device = DeviceOverride {
         adapter: given.text("device")?,
@@ -153,7 +154,7 @@ fn settings(given: Document) -> Result<BTreeMap<String, String>, Refusal> {
     given.rest().into_iter().map(text).collect()
 }
 
-/// Renders a scene from its start, for its own length or that which is given; the bytes are the
+/// Renders a scene from its start, for its own duration or the given one. The bytes are the
 /// samples.
 pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
@@ -179,7 +180,7 @@ pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal
     })
 }
 
-/// Renders the next samples of a scene, fewer at its end; the bytes are the samples.
+/// Renders the next samples of a scene, fewer at its end. The bytes are the samples.
 pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let frames = count(&mut call, "frames")?;
@@ -198,8 +199,8 @@ pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     })
 }
 
-/// Renders a scene at another motion, a block of samples for each line of the file: speed, force
-/// and place; the bytes are the samples.
+/// Renders a scene at another motion, one block of samples for each line of the file: speed, force
+/// and place. The bytes are the samples.
 pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let block = count(&mut call, "block")?;
@@ -245,7 +246,7 @@ fn id(call: &mut Document) -> Result<u64, Refusal> {
     Ok(count(call, "id")? as u64)
 }
 
-/// A number that counts.
+/// A non-negative integer.
 fn count(call: &mut Document, name: &'static str) -> Result<usize, Refusal> {
     let number = call.number(name)?.unwrap_or(-1.0);
     let is_whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
@@ -288,7 +289,7 @@ impl Open {
         Ok(plan(loaded, &self.able, &Costs::embedded())?)
     }
 
-    /// What plays a scene at its own motion.
+    /// Makes a renderer that plays the scene at its own motion.
     fn renderer(&self, loaded: &LoadedScene) -> Result<(Renderer, Plan), Refusal> {
         if loaded.scene.motion == Motion::Live {
             let sentence = "the motion of the scene is live; give it to renderPath";
@@ -298,7 +299,7 @@ impl Open {
         Ok((Renderer::new(loaded, &plan)?, plan))
     }
 
-    /// Loads the scene for a motion that is given while it plays.
+    /// Loads the scene for a motion that is set while it plays.
     fn live(&self) -> Result<LoadedScene, Refusal> {
         let around =
             Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
@@ -312,7 +313,7 @@ impl Open {
 }
 
 impl Refusal {
-    /// A scene that cannot be loaded or played.
+    /// An error for a scene that cannot be loaded or played.
     fn scene(error: impl ToString) -> Self {
         Self::new(HTEX_STATUS_INVALID_SCENE, "invalid-scene", error)
     }

@@ -10,7 +10,7 @@ use crate::answer::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;
 
-/// Rate and accuracy that are taken if none are given: those of the command.
+/// Default rate and accuracy, the same as in the command.
 const RATE_HZ: f64 = 8_000.0;
 const WITHIN_DB: f64 = 0.3;
 
@@ -26,12 +26,12 @@ struct Block<'a> {
     error_at_conditions_db: f64,
     error_between_db: f64,
     error_beyond_db: Option<f64>,
-    /// The block as an array of C and of Rust.
+    /// The block as an array in C and in Rust.
     c: String,
     rust: String,
 }
 
-/// Bakes a texture, the file; the bytes are the block.
+/// Bakes a texture, which is the file. The bytes are the block.
 pub(crate) fn bake(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     let model = call.text("model")?;
@@ -69,7 +69,7 @@ fn block<'a>(baked: &'a Baked, name: &str, rate_hz: f64) -> Block<'a> {
     }
 }
 
-/// The grid of lists of speeds and forces, if it is given.
+/// Returns the grid of speeds and forces, if one is given.
 fn given(mut grid: Document) -> Result<Option<Grid>, Refusal> {
     let (speeds, forces) = (grid.list("speed")?, grid.list("force")?);
     grid.finish()?;

@@ -1,11 +1,11 @@
-//! Findings, notices and spectra as documents, with what helps.
+//! Converts findings, notices and spectra to documents, with settings that would help.
 
 use htex_author::TextureSpectrum;
 use htex_finding::{Finding, Hint, Notice, Severity};
 use htex_format::Quantity;
 use serde::Serialize;
 
-/// The settings that help, by the names of their tables; hints have those of flags.
+/// Returns the settings that help, by the names in their tables. Hints use the names of flags.
 pub(crate) fn settings(hint: Hint) -> Vec<&'static str> {
     let named = |flag: &&'static str| match *flag {
         "rate" => "rate_hz",

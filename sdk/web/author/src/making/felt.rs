@@ -1,4 +1,4 @@
-//! What a fingertip feels of textures: of the difference of two, and from which magnitude on.
+//! What a fingertip feels: the difference between two textures, and the detection threshold.
 
 use htex::{Asset, AssetData};
 use htex_author::by_hand::ByHandError;
@@ -11,7 +11,7 @@ use crate::answer::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;
 
-/// What is felt of a difference: by third-octave band, and in a few numbers.
+/// How much of a difference is felt: per third-octave band, and in a few numbers.
 #[derive(Serialize)]
 struct Told {
     centre_hz: Vec<f64>,
@@ -25,7 +25,7 @@ struct Told {
     below_if_sensitive: bool,
 }
 
-/// Compares a texture, the second file, with a reference, the first one, each at a motion.
+/// Compares a texture, the second file, with a reference, the first file, each at a motion.
 pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let sides = (call.object("reference")?, call.object("other")?);
     call.finish()?;
@@ -61,7 +61,7 @@ fn told(felt: Felt, if_sensitive: &Felt) -> Told {
     }
 }
 
-/// A texture, and its magnitudes at a motion by a model.
+/// Returns a texture, and its magnitudes at a motion according to a model.
 fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refusal> {
     let model = side.text("model")?;
     let mut at = side.object("at")?;
@@ -80,7 +80,7 @@ fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refu
     Ok((asset, magnitude.map_err(ByHandError::from)?))
 }
 
-/// The magnitudes at which sinusoids are at the detection threshold, at frequencies.
+/// Returns the magnitudes at which sinusoids of given frequencies reach the detection threshold.
 pub(crate) fn threshold(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let quantity = quantity(call.text("quantity")?)?;
     let frequencies = call.list("frequencies")?;

@@ -1,4 +1,4 @@
-//! Recordings to a fitted texture.
+//! Fits models to recordings to make a texture.
 
 use htex::host::Registry;
 use htex_author::settings::{FitSettings, Metadata};
@@ -15,7 +15,7 @@ use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Fits models to recordings; the bytes are the asset.
+/// Fits models to recordings. The bytes are the asset.
 pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
     let conditions =
@@ -67,7 +67,7 @@ fn fitted(
     Ok(fitted?)
 }
 
-/// What the file of a fitted texture does not hold, and what ranks its models.
+/// What the file of a fitted texture does not contain, and what ranks its models.
 #[derive(Serialize)]
 struct Report<'a> {
     models: Vec<Model<'a>>,

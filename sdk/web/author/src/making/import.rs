@@ -1,4 +1,4 @@
-//! Files of other haptic formats as textures.
+//! Imports files of other haptic formats as textures.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Settings of formats, and their names here, which are those of recordings and fits.
+/// Settings of formats, and the names they have here, as for recordings and fits.
 const NAMES: [(&str, &str); 5] = [
     ("speed", "speed_mm_s"),
     ("force", "force_n"),
@@ -28,7 +28,7 @@ const NAMES: [(&str, &str); 5] = [
     ("model", "models"),
     ("option", "options"),
 ];
-/// A setting of fits that refuses recordings by their findings, of which a signal has none.
+/// A fit setting that refuses recordings because of their findings. A signal has no findings.
 const STRICT: &str = "strict";
 
 fn named(setting: &str) -> &str {
@@ -42,7 +42,7 @@ struct Formats<'a> {
     profiles: Vec<Range<'a>>,
 }
 
-/// A format whose files come in.
+/// A format that can be imported.
 #[derive(Serialize)]
 struct Described<'a> {
     name: &'a str,
@@ -52,11 +52,11 @@ struct Described<'a> {
     fitted: bool,
     settings: Vec<&'a str>,
     asks: Vec<Asked>,
-    /// The profile that is taken where none is given.
+    /// The profile used if none is given.
     profile: Option<&'a str>,
     keeps: &'a str,
     loses: &'a str,
-    /// Where its files carry licence and author.
+    /// Where its files state licence and author.
     rights: &'a str,
 }
 
@@ -66,7 +66,7 @@ struct Asked {
     words: &'static str,
 }
 
-/// The range of frequencies of an actuator.
+/// The frequency range of an actuator.
 #[derive(Serialize)]
 struct Range<'a> {
     name: &'a str,
@@ -75,7 +75,7 @@ struct Range<'a> {
     high_hz: f64,
 }
 
-/// Tells of the formats whose files come in, and of the actuators.
+/// Describes the formats that can be imported, and the actuators.
 pub(crate) fn formats(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     call.finish()?;
     let range = |profile: &'static Profile| Range {
@@ -117,7 +117,7 @@ fn asked(missing: Vec<Missing>) -> Vec<Asked> {
     missing.into_iter().map(one).collect()
 }
 
-/// Tells what a file does not say, and an import has to be given.
+/// Returns what a file does not state and an import therefore needs as settings.
 pub(crate) fn asks(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let file = call.text("file")?.unwrap_or_default();
     call.finish()?;
@@ -125,7 +125,7 @@ pub(crate) fn asks(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     Answer::new(&asked(missing(&file, bytes)?), Vec::new())
 }
 
-/// Imports a file; the bytes are the asset.
+/// Imports a file. The bytes are the asset.
 pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let file = call.text("file")?.unwrap_or_default();
     let mut settings = call.object("settings")?;
@@ -167,7 +167,7 @@ fn how<'a>(name: &'a str, settings: &mut Document) -> Result<Import<'a>, Refusal
     Ok(how)
 }
 
-/// The bytes of the only file.
+/// Returns the bytes of the only file.
 fn only<'a>(name: &str, files: Files<'a>) -> Result<&'a [u8], Refusal> {
     let [bytes] = files else {
         return Err(Refusal::argument("give one file"));
@@ -181,7 +181,7 @@ fn only<'a>(name: &str, files: Files<'a>) -> Result<&'a [u8], Refusal> {
     Ok(bytes)
 }
 
-/// What the file of an imported texture does not hold.
+/// What the file of an imported texture does not contain.
 #[derive(Serialize)]
 struct Report<'a> {
     format: &'a str,
@@ -207,7 +207,7 @@ impl<'a> Report<'a> {
 }
 
 impl Refusal {
-    /// A file of another format that is not what its format says.
+    /// An error for a file that does not follow its own format.
     fn file(error: impl ToString) -> Self {
         let status = htex_c::htex_status::HTEX_STATUS_INVALID_ARGUMENT;
         Self::new(status, "invalid-file", error)

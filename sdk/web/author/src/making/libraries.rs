@@ -1,10 +1,10 @@
-//! Textures to a library.
+//! Packs textures into a library.
 
 use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Packs textures, the files, whose names are given; the bytes are the library.
+/// Packs textures, which are the files, under the given names. The bytes are the library.
 pub(crate) fn pack(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     let textures = call.texts("textures")?;

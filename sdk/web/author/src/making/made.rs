@@ -1,4 +1,5 @@
-//! Textures without recordings: of parameters, between two others, with other metadata.
+//! Makes textures without recordings: from parameters, between two other textures, or with other
+//! metadata.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +26,7 @@ fn answer(asset: &Asset) -> Result<Answer, Refusal> {
     Answer::new(&(), asset.to_bytes()?)
 }
 
-/// Makes a texture of parameters; the bytes are the asset.
+/// Makes a texture from parameters. The bytes are the asset.
 pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let registry = Registry::builtin();
     let models = call
@@ -74,7 +75,7 @@ fn band(edges: &[Value]) -> Result<Band, Refusal> {
     }
 }
 
-/// A model with its parameters at its conditions.
+/// Reads a model with its parameters at its conditions.
 fn model(value: Value, registry: &Registry) -> Result<ByHandModel, Refusal> {
     let mut given = Document::of(value)?;
     let name = given.text("model")?.unwrap_or_default();
@@ -108,7 +109,7 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
     Ok(ByHandAt { condition, values, level_rms })
 }
 
-/// Makes a texture between two others, the files; the bytes are the asset.
+/// Makes a texture between two others, which are the files. The bytes are the asset.
 pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let weight = call.number("weight")?;
     let weight = weight.ok_or_else(|| Refusal::argument("give a weight from 0 to 1"))?;
@@ -131,13 +132,13 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     answer(&asset)
 }
 
-/// A texture, and its hash.
+/// Opens a texture and computes its hash.
 fn opened(bytes: &[u8]) -> Result<(htex::Asset, String), Refusal> {
     let asset = htex::Asset::new(htex::AssetData::from_bytes(bytes)?);
     Ok((asset, blake3::hash(bytes).to_hex().to_string()))
 }
 
-/// Changes the metadata of a texture, the file; the bytes are the asset.
+/// Changes the metadata of a texture, which is the file. The bytes are the asset.
 pub(crate) fn edit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let metadata = metadata(call.object("metadata")?)?;
     call.finish()?;

@@ -1,4 +1,4 @@
-//! What makes textures, by the names of its functions.
+//! The functions that make textures, by name.
 
 mod bake;
 mod describe;
@@ -38,10 +38,10 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("validate", validate::validate),
 ];
 
-/// What makes textures of files of other formats.
+/// Functions that make textures from files of other formats.
 #[cfg(feature = "import")]
 pub(crate) const IMPORTS: &[(&str, Function)] =
     &[("asks", import::asks), ("formats", import::formats), ("import", import::import)];
 
-/// Program and version, for an asset's provenance: those of the command.
+/// Program and version for an asset's provenance, the same as the command states.
 const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));

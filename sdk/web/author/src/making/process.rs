@@ -1,4 +1,4 @@
-//! A recording as it is read: its columns, its signals, its spectrum, its findings.
+//! Reads a recording: its columns, signals, spectrum and findings.
 
 use htex_author::recording::{Preview, preview};
 use htex_author::{Reading as Read, Recording, TextureSpectrum, read_take};
@@ -10,7 +10,7 @@ use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// Steps of a picture of the signals.
+/// Number of time steps in a picture of the signals.
 const STEPS: usize = 1000;
 
 fn reading<'a>(mut call: Document, files: Files<'a>) -> Result<Reading<'a>, Refusal> {
@@ -22,7 +22,7 @@ fn reading<'a>(mut call: Document, files: Files<'a>) -> Result<Reading<'a>, Refu
     Ok(reading)
 }
 
-/// What the columns of a file are taken to be.
+/// Returns how the columns of a file are interpreted.
 pub(crate) fn columns(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let reading = reading(call, files)?;
     let (name, bytes, options) = reading.only()?;
@@ -65,7 +65,7 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// Reads a recording; the bytes are a picture of its signals, [`Picture`].
+/// Reads a recording. The bytes are a picture of its signals, [`Picture`].
 pub(crate) fn process(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let reading = reading(call, files)?;
     let (name, bytes, options) = reading.only()?;
@@ -137,8 +137,7 @@ impl<'a> Processed<'a> {
     }
 }
 
-/// Signals in at most 1000 steps of time: of each the least and the greatest of each step, in
-/// single precision.
+/// Signals in at most 1000 time steps: the minimum and maximum in each step, in single precision.
 #[derive(Serialize, Default)]
 struct Picture {
     from_s: f64,
@@ -148,7 +147,7 @@ struct Picture {
 }
 
 impl Picture {
-    /// The picture, and its numbers.
+    /// Returns the picture, and its numbers as bytes.
     fn of(recording: &Recording) -> (Self, Vec<u8>) {
         let samples = recording.samples();
         let per_step = samples.div_ceil(STEPS).max(1);

@@ -1,4 +1,4 @@
-//! How far a call is, told to JavaScript (`sdk/web/src/guests.js`).
+//! Reports the progress of a call to JavaScript (`sdk/web/src/guests.js`).
 
 use std::cell::Cell;
 
@@ -6,22 +6,22 @@ use std::cell::Cell;
 mod imported {
     #[link(wasm_import_module = "htex")]
     unsafe extern "C" {
-        /// The step `done` of `of` begins, which is described by a text.
+        /// Step `done` of `of` begins. The text describes it.
         pub(super) fn progress(done: u32, of: u32, text: *const u8, len: usize);
     }
 }
 
 thread_local! {
-    /// Steps that have begun, and all of them.
+    /// Number of steps that have begun, and the total.
     static STEPS: Cell<(u32, u32)> = const { Cell::new((0, 0)) };
 }
 
-/// Begins to count the steps of a call.
+/// Starts counting the steps of a call.
 pub(crate) fn start(steps: usize) {
     STEPS.set((0, steps as u32));
 }
 
-/// Tells that the next step begins: what is done, and with what. Nothing is told of a call that
+/// Reports that the next step begins: what it does, and with what. Reports nothing for a call that
 /// does not count steps.
 pub(crate) fn begin(what: &str, with: &str) {
     let (done, of) = STEPS.get();
@@ -31,7 +31,7 @@ pub(crate) fn begin(what: &str, with: &str) {
     }
 }
 
-/// Ends the count.
+/// Stops counting.
 pub(crate) fn end() {
     STEPS.set((0, 0));
 }

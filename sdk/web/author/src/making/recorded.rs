@@ -28,8 +28,8 @@ struct Condition {
     force: Option<f64>,
 }
 
-/// Makes a loop of each recording; the bytes are their samples in single precision, one loop after
-/// the other.
+/// Makes a loop from each recording. The bytes are their samples in single precision, one loop
+/// after the other.
 pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
     let conditions =

@@ -1,4 +1,4 @@
-//! Recordings from bytes, read as settings say.
+//! Recordings in memory, read according to settings.
 
 use std::path::{Path, PathBuf};
 
@@ -26,12 +26,12 @@ pub(crate) fn given(condition: Value) -> Result<Given, Refusal> {
     Ok(given)
 }
 
-/// Recordings and how they are read.
+/// Recordings, and how to read them.
 pub(crate) struct Reading<'a> {
     pub(crate) settings: ReadingSettings,
     pub(crate) spectrum: SpectrumOptions,
     pub(crate) strict: bool,
-    /// Name of the setup's response, for provenance.
+    /// Name of the setup's response, for the provenance.
     pub(crate) response: Option<String>,
     given: Given,
     recordings: Vec<(String, &'a [u8])>,
@@ -39,8 +39,8 @@ pub(crate) struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    /// Takes the settings of reading. The files are the recordings, then the response, then the
-    /// trackers, as they are named.
+    /// Takes the settings for reading. The files are first the recordings, then the response, then
+    /// the trackers, in the order in which they are named.
     pub(crate) fn new(
         mut names: Document,
         settings: &mut Document,
@@ -75,7 +75,7 @@ impl<'a> Reading<'a> {
         let mut options = settings.read_options(recordings.len())?;
         let tracked = trackers.iter().map(|_| next()).collect::<Result<Vec<_>, _>>()?;
         for (i, own) in options.iter_mut().enumerate() {
-            // One for each recording, or one for all.
+            // There is one tracker for each recording, or one for all.
             let bytes = tracked.get(i).or(tracked.first());
             let tracker = own.tracker.take().zip(bytes);
             own.tracker = tracker.map(|(tracker, bytes)| tracker.with_bytes(*bytes));
@@ -83,13 +83,13 @@ impl<'a> Reading<'a> {
         Ok(Self { settings, spectrum, strict, response, given, recordings, options })
     }
 
-    /// The name of the first recording without its extension.
+    /// Returns the name of the first recording without its extension.
     pub(crate) fn stem(&self) -> Option<String> {
         let (name, _) = self.recordings.first()?;
         Some(Path::new(name).file_stem()?.to_string_lossy().into_owned())
     }
 
-    /// The only recording, and its options.
+    /// Returns the only recording, and its options.
     pub(crate) fn only(&self) -> Result<(&Path, &'a [u8], &ReadOptions), Refusal> {
         match (&self.recordings[..], &self.options[..]) {
             ([(name, bytes)], [options]) => Ok((Path::new(name), bytes, options)),
@@ -97,7 +97,7 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// Reads the recordings. `conditions` has one entry for each of them, or one for all, or none.
+    /// Reads the recordings. `conditions` has one entry for each of them, one for all, or none.
     pub(crate) fn takes(&self, conditions: &[Given]) -> Result<Vec<Take>, Refusal> {
         let (given, wanted) = (conditions.len(), self.recordings.len());
         if given > 1 && given != wanted {
@@ -121,7 +121,7 @@ impl<'a> Reading<'a> {
         takes.map(take).collect()
     }
 
-    /// The number of recordings.
+    /// Returns the number of recordings.
     pub(crate) fn count(&self) -> usize {
         self.recordings.len()
     }

@@ -1,4 +1,4 @@
-//! Errors of what makes textures.
+//! Errors of the functions that make textures.
 
 use htex_author::by_hand::ByHandError;
 use htex_author::recording::{ReadError, ReadProblem};

@@ -1,5 +1,4 @@
-//! The models of a texture that was made, with what is felt of the difference from what they were
-//! fitted to.
+//! The models of a new texture, and how much of their difference from the fitted data is felt.
 
 use htex_author::FeltError;
 use htex_format::{Asset, LeftOut, Quality};
@@ -24,7 +23,7 @@ struct At<'a> {
     felt: Option<FeltError>,
 }
 
-/// The models of an asset; `felt` is of each representation at each condition.
+/// Returns the models of an asset. `felt` has an entry for each representation at each condition.
 pub(super) fn represented<'a>(asset: &'a Asset, felt: &[Vec<Option<FeltError>>]) -> Vec<Model<'a>> {
     let of = |(i, representation): (usize, &'a htex_format::Representation)| {
         let felt = felt.get(i).map_or(&[][..], Vec::as_slice);
@@ -49,7 +48,7 @@ pub(super) fn represented<'a>(asset: &'a Asset, felt: &[Vec<Option<FeltError>>])
     representations.enumerate().map(of).collect()
 }
 
-/// The models, that of which least is felt first.
+/// Returns the models' ids, starting with the one whose difference is felt least.
 pub(super) fn ranked<'a>(models: &[Model<'a>]) -> Vec<&'a str> {
     let mut ranked: Vec<(f64, &str)> = Vec::new();
     for Model { model, felt, .. } in models {

@@ -1,4 +1,4 @@
-//! Licence and author of textures, for what is written of them elsewhere.
+//! Licence and author of textures, for other files made from them.
 
 use htex::AssetData;
 use htex_format::Rights;
@@ -12,11 +12,11 @@ use crate::refusal::Refusal;
 struct Stated<'a> {
     license: Option<&'a str>,
     author: Option<&'a str>,
-    /// Both as lines of SPDX.
+    /// Both as SPDX lines.
     text: String,
 }
 
-/// Tells the rights of a texture, the file; the bytes are their chunk of a WAV file.
+/// Returns the rights of a texture, which is the file. The bytes are their chunk for a WAV file.
 pub(crate) fn rights(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     call.finish()?;
     let [bytes] = files else {

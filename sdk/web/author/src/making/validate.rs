@@ -1,4 +1,4 @@
-//! Checks of files, and what their findings mean.
+//! Checks files, and explains the findings.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ struct Validated<'a> {
     findings: Vec<DescribedFinding<'a>>,
 }
 
-/// Validates a texture, a library or a recording, the file.
+/// Validates a texture, a library or a recording, which is the file.
 pub(crate) fn validate(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     call.finish()?;
@@ -70,7 +70,7 @@ struct Explained {
     settings: Vec<&'static str>,
 }
 
-/// What the code of a finding means; `null` for one that is not known.
+/// Returns what the code of a finding means; `null` for an unknown code.
 pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let code = call.text("code")?.unwrap_or_default();
     call.finish()?;

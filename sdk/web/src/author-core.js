@@ -4,12 +4,12 @@
 import { Core, HtexError } from "./core.js";
 import { Guests } from "./guests.js";
 
-/** Sizes of structs: htex_bytes, htex_author_result. */
+/** Sizes of the structs htex_bytes and htex_author_result. */
 const FILE = 8;
 const ANSWER = 16;
 
 export class AuthorCore {
-  /** Instantiates the compiled module; `onProgress` is called with how far a fit is. */
+  /** Instantiates the compiled module. `onProgress` is called with the progress of a fit. */
   static async make(module, onProgress = null) {
     const guests = Object.assign(new Guests(), { onProgress });
     const instance = await WebAssembly.instantiate(module, { htex: guests.imports() });
@@ -20,7 +20,7 @@ export class AuthorCore {
     this.core = core;
   }
 
-  /** Calls a function of the module. Returns its document, and its bytes, if it has any. */
+  /** Calls a function of the module. Returns its document, and its bytes if it has any. */
   call(name, request, files = []) {
     const { core } = this;
     const memory = () => core.exports.memory.buffer;
@@ -43,7 +43,7 @@ export class AuthorCore {
       } catch (error) {
         failure = error;
       }
-      // After a trap the memory is not read any more.
+      // After a trap the memory must not be read any more.
       if (failure?.code === "internal") throw failure;
       const taken = (at) => {
         const now = core.view();

@@ -1,8 +1,9 @@
-// Fits for a page or a program, in a worker. Each call has an instance of its own, whose memory is free afterwards.
+// Fits for a page or a program, in a worker. Each call has its own instance, whose memory is freed
+// afterwards.
 
 import { AuthorCore } from "./author-core.js";
 
-/** Answers calls that come from `outside`: the scope of a worker, or the port of a thread. */
+/** Answers calls from `outside`: the scope of a worker, or the port of a thread. */
 export function serveAuthor(outside) {
   const answer = async ({ module, name, request, files }) => {
     try {

@@ -7,7 +7,7 @@ let startWorker = null;
 /** A worker that waits for the next call. */
 let idle = null;
 
-/** Sets how the worker is started, where a bundler has it elsewhere. */
+/** Sets how the worker is started, if a bundler has moved it. */
 export function setThread(worker) {
   startWorker = worker;
   idle?.terminate();
@@ -16,7 +16,7 @@ export function setThread(worker) {
 
 /** Starts the worker of a page. */
 function startInPage() {
-  // Bundlers look for this form.
+  // Bundlers recognise this form.
   return new Worker(new URL("./author-worker.js", import.meta.url), { type: "module" });
 }
 
@@ -26,7 +26,7 @@ function takeWorker() {
   return taken ?? (startWorker ?? host.startAuthorThread ?? startInPage)();
 }
 
-/** Keeps a worker for the next call; it does not keep a program of Node.js running. */
+/** Keeps a worker for the next call. It does not keep a Node.js program running. */
 function giveBack(worker) {
   worker.onmessage = null;
   worker.onerror = null;
@@ -47,7 +47,7 @@ export function throwIfAborted(signal, what) {
  * buffers `copies`. */
 export async function inThread(name, loading, call, { copies, onProgress, signal }) {
   loading.catch(() => {});
-  // The worker starts meanwhile.
+  // The worker starts while the module loads.
   const worker = await takeWorker();
   const [module] = await loading.catch((error) => {
     giveBack(worker);

@@ -1,4 +1,4 @@
-// The worker of a page that fits.
+// The worker of a page that fits models.
 
 import { serveAuthor } from "./author-serve.js";
 

@@ -1,4 +1,4 @@
-// The thread of Node.js that fits.
+// The Node.js thread that fits models.
 
 import { parentPort } from "node:worker_threads";
 

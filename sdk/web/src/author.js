@@ -37,13 +37,13 @@ export function loadAuthor() {
   return author;
 }
 
-/** All files of recordings and settings, as they are named. */
+/** Returns all files that recordings and settings name, in order. */
 function filesOf(recordings, { response, tracker }) {
   const list = (one) => (one === undefined || one === null ? [] : Array.isArray(one) ? one : [one]);
   return { recordings: list(recordings), response: list(response), trackers: list(tracker) };
 }
 
-/** A call of the module: its document, and the bytes of the files, whose contents are there. */
+/** Calls the module with a document and the bytes of files, which have been loaded. */
 function callOf({ recordings, response, trackers }, { response: _, tracker: __, conditions, models, grid, ...settings }) {
   if (recordings.length === 0) throw argument("give at least one recording");
   const names = (files) => files.map((file) => file.name);
@@ -54,7 +54,7 @@ function callOf({ recordings, response, trackers }, { response: _, tracker: __, 
   return { request, files: [...recordings, ...response, ...trackers].map((file) => file.bytes) };
 }
 
-/** A grid as the command takes it. */
+/** Converts a grid to the form that the command takes. */
 function linesOf(grid) {
   if (typeof grid === "string" || Array.isArray(grid)) return grid;
   const lines = Object.entries(grid).map(([axis, values]) => `${axis}=${values.join(",")}`);
@@ -65,7 +65,7 @@ function eachOf({ recordings, response, trackers }, read) {
   return { recordings: recordings.map(read), response: response.map(read), trackers: trackers.map(read) };
 }
 
-/** What makes textures, in the thread that calls. */
+/** Makes textures, in the calling thread. */
 export class Author {
   constructor(core, player) {
     this.core = core;
@@ -76,12 +76,12 @@ export class Author {
     return opened(this.player, bytes);
   }
 
-  /** The descriptors of the models. */
+  /** Returns the descriptors of the models. */
   models() {
     return this.core.call("models", {}).document;
   }
 
-  /** Makes a texture of parameters. */
+  /** Makes a texture from parameters. */
   make({ representations, quantity, band, unit, ...metadata }) {
     const { bytes } = this.core.call("make", { representations, quantity, band, metadata });
     const texture = this.texture(bytes);
@@ -92,65 +92,77 @@ export class Author {
     return texture;
   }
 
-  /** Makes a texture between two others; `weight` is the part of the second. */
+  /** Makes a texture between two others. `weight` is the share of the second. */
   mix(a, b, weight, metadata = {}) {
     return this.texture(this.core.call("mix", { weight, metadata }, [a, b].map(bytesOfTexture)).bytes);
   }
 
-  /** A texture with other metadata. */
+  /** Returns the texture with other metadata. */
   edit(texture, metadata) {
     return this.texture(this.core.call("edit", { metadata }, [bytesOfTexture(texture)]).bytes);
   }
 
-  /** Checks a texture, a library or a recording; `name` tells what it is, where its bytes do not. */
+  /** Checks a texture, a library or a recording. `name` tells what it is if its bytes do not. */
   validate(bytes, { name } = {}) {
     return this.core.call("validate", { name }, [bytesOf(bytes)]).document;
   }
 
-  /** What a fingertip feels of the difference of a texture from a reference, each at a motion and by a model. */
+  /**
+   * Returns what a fingertip feels of the difference between a texture and a reference, each at a
+   * motion and by a model.
+   */
   felt(reference, other) {
     const sideOf = ({ model, at }) => ({ model, at });
     const request = { reference: sideOf(reference), other: sideOf(other) };
     return this.core.call("felt", request, [reference, other].map(({ texture }) => bytesOfTexture(texture))).document;
   }
 
-  /** The magnitudes at which sinusoids of frequencies in Hz are at the detection threshold, in the quantity's unit. */
+  /**
+   * Returns the magnitudes at which sinusoids of given frequencies, Hz, reach the detection
+   * threshold, in the quantity's unit.
+   */
   threshold(frequencies, { quantity } = {}) {
     return Float64Array.from(this.core.call("threshold", { frequencies: Array.from(frequencies), quantity }).document);
   }
 
-  /** What the code of a finding means; undefined for one that is not known. */
+  /** Returns what the code of a finding means; undefined for an unknown code. */
   explain(code) {
     return this.core.call("explain", { code }).document ?? undefined;
   }
 
-  /** What the columns of a recording are taken to be. */
+  /** Returns how the columns of a recording are interpreted. */
   columns(recording, settings = {}) {
     const { request, files } = callOf(eachOf(filesOf(recording, settings), named), settings);
     return this.core.call("columns", request, files).document;
   }
 
-  /** Reads a recording: its columns, its signals, its spectrum, what was found. */
+  /** Reads a recording: its columns, signals, spectrum and findings. */
   process(recording, settings = {}) {
     const { request, files } = callOf(eachOf(filesOf(recording, settings), named), settings);
     const { document, bytes } = this.core.call("process", request, files);
     return { ...document, picture: pictureOf(document.picture, bytes) };
   }
 
-  /** What is read of recordings, in the band and at the level of models that are fitted to it, as loops without a seam. */
+  /**
+   * Returns recordings as seamless loops, limited to the band and at the level of models that are
+   * fitted to them.
+   */
   recorded(recordings, { rate, ...settings } = {}) {
     const { request, files } = callOf(eachOf(filesOf(recordings, settings), named), settings);
     const { document, bytes } = this.core.call("recorded", { ...request, rate }, files);
     return loopsOf(document, bytes);
   }
 
-  /** Bakes a block for the player on microcontrollers; `c` and `rust` are its source code. */
+  /** Bakes a block for players on microcontrollers. `c` and `rust` are its source code. */
   bake(texture, { name = "texture", model, rate, within, grid } = {}) {
     const { document, bytes } = this.core.call("bake", { name, model, rate, within, grid }, [bytesOfTexture(texture)]);
     return { ...document, bytes };
   }
 
-  /** Licence and author of a texture: each, as lines of SPDX (`text`), and as a chunk to append to a WAV file (`riff`). */
+  /**
+   * Returns licence and author of a texture: each one, both as SPDX lines (`text`), and as a chunk
+   * to append to a WAV file (`riff`).
+   */
   rights(texture) {
     const { document, bytes } = this.core.call("rights", {}, [bytesOfTexture(texture)]);
     return { ...document, riff: bytes };
@@ -175,7 +187,7 @@ function bytesOfTexture(texture) {
   return bytesOf(texture?.bytes ?? texture);
 }
 
-/** The least and the greatest of each signal in each step. */
+/** The minimum and maximum of each signal in each step. */
 function pictureOf({ signals, steps, ...picture }, bytes) {
   const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, 2 * steps * signals.length);
   const part = (i) => numbers.subarray(i * steps, (i + 1) * steps);
@@ -183,14 +195,17 @@ function pictureOf({ signals, steps, ...picture }, bytes) {
   return { ...picture, steps, signals: Object.fromEntries(drawn) };
 }
 
-/** Loops, whose samples stand one after the other. */
+/** Splits the samples into loops, which follow one after the other. */
 function loopsOf(loops, bytes) {
   const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
   let end = 0;
   return loops.map(({ samples, ...told }) => ({ ...told, samples: numbers.slice(end, (end += samples)) }));
 }
 
-/** Fits models to recordings in a worker. `onProgress` is called with `{ done, of, text }`; `signal` aborts the fit. */
+/**
+ * Fits models to recordings in a worker. `onProgress` is called with `{ done, of, text }`; `signal`
+ * aborts the fit.
+ */
 export async function fit(recordings, { onProgress, signal, ...settings } = {}) {
   throwIfAborted(signal, "fit");
   const given = filesOf(recordings, settings);

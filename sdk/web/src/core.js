@@ -1,7 +1,8 @@
-// The library of `sdk/capi`, compiled to WASM, with its C functions as methods. Structs have the layout of 32-bit WASM.
+// The library of `sdk/capi`, compiled to WASM, with its C functions as methods. Structs have the
+// layout of 32-bit WASM.
 //
-// The C interface is called, not generated bindings: one interface, one set of errors, and no decoder of text, which audio worklets
-// lack.
+// The C interface is called directly, without generated bindings: it keeps one interface and one
+// set of errors, and needs no text decoder, which audio worklets lack.
 
 import { Guests, decode, encode } from "./guests.js";
 
@@ -35,25 +36,25 @@ export class HtexError extends Error {
   }
 }
 
-/** Sizes of structs: htex_open_options, htex_voice_options, htex_bytes, htex_envelope. */
+/** Sizes of the structs htex_open_options, htex_voice_options, htex_bytes and htex_envelope. */
 const OPEN_OPTIONS = 36;
 const VOICE_OPTIONS = 72;
 const BYTES = 8;
 const ENVELOPE = 32;
-/** Most bands of an envelope. */
+/** Largest number of bands in an envelope. */
 const MOST_BANDS = 32;
 /** Size of htex_motion. */
 export const MOTION = 48;
-/** HTEX_ENGINE_CHECKED: the browser itself runs the modules that are given or allowed. */
+/** HTEX_ENGINE_CHECKED: the browser itself runs the modules that are passed in or allowed. */
 const ENGINE = 1;
-/** Bytes for results, at the start of each call. */
+/** Bytes reserved for results at the start of each call. */
 const RESULTS = ENVELOPE + 8 * (MOST_BANDS + 1);
-/** Frames that are rendered at once; longer blocks are rendered in parts. */
+/** Number of frames rendered at once. Longer blocks are rendered in parts. */
 export const BLOCK = 4096;
 
 /**
- * Writes a htex_motion at an address. Its size is written as an integer: as a float, the same bits would be a subnormal number, which an
- * audio thread may round to zero.
+ * Writes a htex_motion to an address. Its size is written as an integer, because the same bits as a
+ * float would be a subnormal number, which an audio thread may round to zero.
  */
 export function writeMotion(view, at, { speed = 0, force = 0, position = NaN, x = NaN, y = NaN }) {
   view.setUint32(at, MOTION, true);
@@ -70,7 +71,7 @@ function fault(error) {
 }
 
 export class Core {
-  /** Instantiates the library at once: compiled, or its bytes. */
+  /** Instantiates the library synchronously, from the compiled module or its bytes. */
   static now(library) {
     const guests = new Guests();
     const module = library instanceof WebAssembly.Module ? library : new WebAssembly.Module(library);
@@ -108,7 +109,10 @@ export class Core {
     if (status !== 0) throw this.error(status);
   }
 
-  /** Renders at most BLOCK frames of a voice. The samples stand in the library's memory until the next call. */
+  /**
+   * Renders at most BLOCK frames of a voice. The samples stay in the library's memory until the
+   * next call.
+   */
   render(id, frames) {
     let status;
     try {
@@ -117,12 +121,15 @@ export class Core {
       throw fault(error);
     }
     if (status !== 0) throw this.error(status);
-    // Views of memory that has grown are empty.
+    // When memory grows, existing views of it become empty.
     if (this.samples.length !== frames) this.samples = new Float32Array(this.exports.memory.buffer, this.rendering, frames);
     return this.samples;
   }
 
-  /** What a voice played since the last call; the mean squares of its bands are written to a Float64Array. */
+  /**
+   * Returns what a voice played since the last call. The mean squares of its bands are written to a
+   * Float64Array.
+   */
   envelope(id, bands) {
     const at = this.results;
     this.view().setUint32(at, ENVELOPE, true);
@@ -168,7 +175,7 @@ export class Core {
     }
   }
 
-  /** Copies bytes to memory of an arena. */
+  /** Copies bytes to memory in an arena. */
   put(take, bytes) {
     const at = take(Math.max(bytes.length, 1));
     new Uint8Array(this.exports.memory.buffer, at, bytes.length).set(bytes);
@@ -180,7 +187,7 @@ export class Core {
     return this.put(take, encode(`${text}\0`));
   }
 
-  /** Numbers of 64 bits, at an address that is a multiple of 8. */
+  /** Copies 64-bit numbers to an address that is a multiple of 8. */
   putNumbers(take, numbers) {
     const at = take(8 * Math.max(numbers.length, 1));
     new Float64Array(this.exports.memory.buffer, at, numbers.length).set(numbers);
@@ -194,7 +201,7 @@ export class Core {
     return at;
   }
 
-  /** The options of opening; see `OpenOptions` in index.d.ts. */
+  /** Writes the options for opening; see `OpenOptions` in index.d.ts. */
   putOpenOptions(take, { modules = [], embedded = true }) {
     const list = take(BYTES * Math.max(modules.length, 1));
     modules.forEach((module, i) => {
@@ -214,7 +221,7 @@ export class Core {
     return at;
   }
 
-  /** The options of a voice; see `VoiceOptions` in index.d.ts. */
+  /** Writes the options of a voice; see `VoiceOptions` in index.d.ts. */
   putVoiceOptions(take, options) {
     const { model, rate = 20_000, seed = 0, motion, synthesis, ceiling = 0 } = options;
     const { frequencyScaling = true, levelScaling = true, contact = true, gain = 0, limit = 0, bands = 0 } = options;
@@ -238,7 +245,7 @@ export class Core {
     return at;
   }
 
-  /** The text that a function writes: asked for its length first. */
+  /** Returns the text that a function writes. It first asks for the length. */
   text(name, ...values) {
     this.call(name, ...values, 0, 0, this.results);
     const len = this.view().getUint32(this.results, true);

@@ -1,13 +1,13 @@
-// Files that callers give: their names, which tell what they are, and their bytes.
+// Files from callers: their bytes and their names, which tell what they are.
 
 import { HtexError, toBytes } from "./core.js";
 
-/** The error of a wrong argument. */
+/** Makes the error for an invalid argument. */
 export function argument(text) {
   return new HtexError(text, "invalid-argument");
 }
 
-/** The bytes and the name of a file: `{ name, bytes }`, a File, or a Blob with a name. */
+/** Returns the bytes and the name of a file: `{ name, bytes }`, a File, or a Blob with a name. */
 export async function loaded(file) {
   if (typeof Blob !== "undefined" && file instanceof Blob) {
     if (typeof file.name !== "string") throw argument("a Blob has no name, which tells what kind of file it is; give { name, bytes }");
@@ -16,7 +16,7 @@ export async function loaded(file) {
   return named(file);
 }
 
-/** The bytes and the name of `{ name, bytes }`. */
+/** Returns the bytes and the name of `{ name, bytes }`. */
 export function named(file) {
   if (typeof file?.name !== "string" || file.bytes === undefined) {
     throw argument('a file is { name: "felt.csv", bytes }; calls that are awaited take a File or a Blob with a name, too');
@@ -32,7 +32,7 @@ export function bytesOf(data) {
   }
 }
 
-/** The buffers of loaded files that nobody else has, and that a worker may take. */
+/** Returns the buffers of loaded files that nobody else uses, so that a worker may take them. */
 export function copiesIn(files) {
   return files.flatMap(({ isCopy, bytes }) => (isCopy ? [bytes.buffer] : []));
 }

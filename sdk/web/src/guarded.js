@@ -1,4 +1,4 @@
-// Voices of models that are not trusted, in a worker that is ended when it does not return.
+// Voices of untrusted models, in a worker that is terminated if it does not return.
 
 import { HtexError } from "./core.js";
 import { host } from "./host.js";
@@ -6,18 +6,20 @@ import { files, libraryBytes } from "./library.js";
 import { VOICE, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
-/** Milliseconds between two questions whether the worker returns. */
+/** Milliseconds between two checks whether the worker still returns. */
 const ASKED_MS = 250;
 
 let keys = 0;
 
-/** What a worklet or a worker needs to make a voice; `rests`: with the finger lifted. */
+/**
+ * Everything that a worklet or a worker needs to make a voice. `rests`: the finger starts lifted.
+ */
 export function describe(texture, voice, rests = false) {
   texture.key ??= `texture ${(keys += 1)}`;
   return { library: texture.core.module, key: texture.key, bytes: texture.bytes, open: texture.options, voice, rests };
 }
 
-/** Refuses what is not a texture of `open`. */
+/** Refuses anything that is not a texture from `open`. */
 export function checkTexture(texture, call) {
   if (texture instanceof Texture && texture.bytes && !texture.isFreed) return;
   const what = texture?.isFreed ? "a texture that was freed" : "no texture";
@@ -26,7 +28,7 @@ export function checkTexture(texture, call) {
 
 /** Starts the worker of a page. */
 function startInPage(receive, failed) {
-  // Bundlers look for this form.
+  // Bundlers recognise this form.
   const worker = files.worker
     ? new Worker(/* @vite-ignore */ files.worker, { type: "module" })
     : new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
@@ -36,7 +38,7 @@ function startInPage(receive, failed) {
 }
 
 export class GuardedWorker {
-  /** `limit`: milliseconds of the longest call. */
+  /** `limit`: longest allowed call, ms. */
   constructor(options = {}) {
     const { limit = 2_000 } = checked(options, { limit: "number" }, "GuardedWorker");
     this.limit = limit;
@@ -60,13 +62,13 @@ export class GuardedWorker {
     }
   }
 
-  /** Sends the library's bytes, where the compiled library cannot be sent. */
+  /** Sends the library's bytes, in case the compiled library cannot be sent. */
   postWithBytes(message, transfer) {
     const send = (library) => this.worker.postMessage({ ...message, description: { ...message.description, library } }, transfer);
     libraryBytes().then(send).catch((error) => this.receive({ id: message.id, error }));
   }
 
-  /** Keeps a program of Node.js running while a result is waited for. */
+  /** Keeps a Node.js program running while it waits for a result. */
   hold() {
     const how = this.waiting.size > 0 ? "ref" : "unref";
     this.worker[how]?.();
@@ -96,7 +98,10 @@ export class GuardedWorker {
     }
   }
 
-  /** Sends a message; the promise is of its result. `failed` is called with an error, and with later ones too. */
+  /**
+   * Sends a message and returns a promise of its result. `failed` is called with an error, also
+   * with later ones.
+   */
   request(message, transfer = [], failed = null) {
     if (this.ended) return Promise.reject(this.ended);
     this.last += 1;
@@ -109,7 +114,10 @@ export class GuardedWorker {
     return done;
   }
 
-  /** Plays a voice through a port; `failed` is called with an error, at any later time too, until `forget` is called. */
+  /**
+   * Plays a voice through a port. `failed` is called with an error, also a later one, until
+   * `forget` is called.
+   */
   play(description, port, failed) {
     const ready = this.request({ description, port }, [port], failed);
     const id = this.last;
@@ -125,7 +133,7 @@ export class GuardedWorker {
     return (await this.request({ description: describe(texture, options), frames })).samples;
   }
 
-  /** Ends the worker; what it was asked for fails with the error. */
+  /** Terminates the worker. Pending requests fail with the error. */
   end(error = new HtexError("the worker was ended", "internal")) {
     if (this.ended) return;
     this.ended = error;

@@ -1,5 +1,5 @@
-// The modules of models, which the core cannot run itself: a *guest* is a module, instantiated here. The core passes
-// addresses in its own memory; handles are numbers above 0.
+// Runs the modules of models, which the core cannot run itself. A *guest* is a module that is
+// instantiated here. The core passes addresses in its own memory; handles are numbers above 0.
 
 const I32 = 0;
 const I64 = 1;
@@ -8,17 +8,20 @@ const F64 = 2;
 export class Guests {
   constructor({ runsModules = true } = {}) {
     this.runsModules = runsModules;
-    /** The core's memory; set once the core is instantiated. */
+    /** The core's memory; set once the core has been instantiated. */
     this.memory = null;
     this.modules = new Map();
     this.instances = new Map();
     this.last = 0;
     this.failure = new Uint8Array(0);
-    /** Called by the author module with how far a call is: steps that are done, their number, and what begins. */
+    /**
+     * The author module calls this with a call's progress: finished steps, total number, and what
+     * begins.
+     */
     this.onProgress = null;
   }
 
-  /** The imports of the core, `sdk/host/src/browser/imports.rs`. */
+  /** The imports of the core; see `sdk/host/src/browser/imports.rs`. */
   imports() {
     return {
       now_ms: () => Date.now(),
@@ -85,7 +88,8 @@ export class Guests {
       );
     }
     const returned = guest.functions[index](...values);
-    // The call may have made the core's memory grow only if the guest could reach it, which it cannot.
+    // The call could have grown the core's memory only if the guest could reach it, which it
+    // cannot.
     if (returns === I32) view.setBigUint64(result >>> 0, BigInt(returned >>> 0), true);
     else if (returns === I64) view.setBigInt64(result >>> 0, BigInt(returned), true);
     else if (returns === F64) view.setFloat64(result >>> 0, Number(returned), true);
@@ -97,7 +101,7 @@ export class Guests {
     return this.last;
   }
 
-  /** A handle, or 0 and the text of the failure. */
+  /** Returns a handle, or 0 and the text of the failure. */
   attempt(make) {
     try {
       return make();
@@ -107,13 +111,13 @@ export class Guests {
     }
   }
 
-  /** 0, or 1 and the text of the failure. */
+  /** Returns 0, or 1 and the text of the failure. */
   status(run) {
     return this.attempt(() => (run(), -1)) === 0 ? 1 : 0;
   }
 }
 
-// UTF-8, which the scope of audio worklets has no functions for.
+// UTF-8 conversion, because audio worklets have no functions for it.
 
 export function encode(text) {
   const bytes = [];
@@ -129,7 +133,7 @@ export function encode(text) {
   return Uint8Array.from(bytes);
 }
 
-/** Of valid UTF-8. */
+/** Decodes valid UTF-8. */
 export function decode(bytes) {
   let text = "";
   for (let i = 0; i < bytes.length; ) {

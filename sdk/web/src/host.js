@@ -1,10 +1,11 @@
-// What Node.js has in place of a page; `index.node.js` sets it. Bundles for pages name no module of Node.js.
+// What Node.js provides in place of a page. `index.node.js` sets it, so that bundles for pages name
+// no Node.js module.
 
 export const host = {
   /** Reads a file of the package. */
   readFile: null,
   /** Starts the thread of a GuardedWorker. */
   startThread: null,
-  /** Starts the thread that fits; it has `onmessage` and `onerror`, as a worker of a page. */
+  /** Starts the thread that fits models. Like a page's worker it has `onmessage` and `onerror`. */
   startAuthorThread: null,
 };

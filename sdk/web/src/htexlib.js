@@ -1,29 +1,31 @@
-// Libraries: files with thousands of textures, of which ranges are fetched. The library in WASM says which.
+// Libraries: files with thousands of textures. Only byte ranges are fetched, and the WASM library
+// says which.
 
 import { HtexError } from "./core.js";
 import { addressOf, bytesOf, isBlob, library, open } from "./library.js";
 import { checked } from "./options.js";
 import { Handle } from "./texture.js";
 
-/** Pages of the index that are kept, at most 40 KiB each. */
+/** Number of index pages that are cached, at most 40 KiB each. */
 const KEPT_PAGES = 16;
 
-/** A file on a server, by HTTP range requests. */
+/** A file on a server, read with HTTP range requests. */
 class Remote {
   constructor(url, fetcher) {
     this.url = url;
     this.fetcher = fetcher;
   }
 
-  /** The bytes from `start` to `end`, fewer at the end of the file. */
+  /** Returns the bytes from `start` to `end`, fewer at the end of the file. */
   async read(start, end) {
     if (this.whole) return this.whole.subarray(start, end);
     const headers = { Range: `bytes=${start}-${end - 1}`, ...this.condition() };
     const response = await this.fetcher(this.url, { headers });
     if (response.status === 200) {
-      // After a range, the whole file is another version, or the server has changed its mind.
+      // If a server sends the whole file after it has sent ranges, the file is another version or
+      // the server changed its mind.
       if (this.size !== undefined) throw this.changed();
-      // A server without ranges sends the file.
+      // A server without range support sends the whole file.
       this.whole = new Uint8Array(await response.arrayBuffer());
       this.size = this.whole.length;
       return this.whole.subarray(start, end);
@@ -46,7 +48,7 @@ class Remote {
     return new HtexError(`${this.url}: the file has changed; open it again`, "io");
   }
 
-  /** Notes the length of the file and its version; both must stay. */
+  /** Records the length and version of the file. Neither may change afterwards. */
   check(response, start) {
     const [, first, size] = /^bytes (\d+)-\d+\/(\d+)$/.exec(response.headers.get("Content-Range") ?? "") ?? [];
     if (size === undefined || Number(first) !== start) {
@@ -73,7 +75,7 @@ class Local {
   }
 }
 
-/** A File or a Blob, of which ranges are read. */
+/** A File or a Blob, read in ranges. */
 class Chosen {
   constructor(blob) {
     this.blob = blob;
@@ -85,7 +87,7 @@ class Chosen {
   }
 }
 
-/** The file of a source. */
+/** Returns the file for a source. */
 async function fileOf(source, fetcher) {
   if (typeof source === "string" || source instanceof URL) return new Remote(addressOf(source, "Library.open"), fetcher);
   return isBlob(source) ? new Chosen(source) : new Local(await bytesOf(source, "Library.open"));
@@ -93,7 +95,7 @@ async function fileOf(source, fetcher) {
 
 /** An opened library. */
 export class Library extends Handle {
-  /** Opens a library: its address, a File or a Blob, or its bytes. */
+  /** Opens a library from its address, its bytes, a File or a Blob. */
   static async open(source, options = {}) {
     const { fetch: fetcher = globalThis.fetch.bind(globalThis) } = checked(options, { fetch: "function" }, "Library.open");
     const file = await fileOf(source, fetcher);
@@ -114,7 +116,7 @@ export class Library extends Handle {
     this.pages = new Map();
   }
 
-  /** Reads the header and the root page: one range, two of a huge library. */
+  /** Reads the header and the root page: one range, or two for a huge library. */
   async start() {
     const { core } = this;
     for (;;) {
@@ -127,7 +129,7 @@ export class Library extends Handle {
     Object.assign(this, { name, count, pageCount: pages });
   }
 
-  /** Start and end of a range that a function writes. */
+  /** Returns the start and end of a range that a function writes. */
   numbers(name, ...values) {
     const { core } = this;
     core.call(name, this.id, ...values, core.results);
@@ -135,7 +137,7 @@ export class Library extends Handle {
     return [view.getFloat64(core.results, true), view.getFloat64(core.results + 8, true)];
   }
 
-  /** The bytes of a page of the index; the ones used last are kept. */
+  /** Returns the bytes of an index page. Recently used pages are cached. */
   page(number) {
     const [start, end] = this.numbers("htex_index_page_range", number);
     const bytes = this.pages.get(number) ?? this.file.read(start, end);
@@ -146,13 +148,13 @@ export class Library extends Handle {
     return bytes;
   }
 
-  /** Makes a page the one whose entries are looked up. */
+  /** Selects the page in which entries are looked up. */
   read(number, bytes) {
     const { core } = this;
     core.scope((take) => core.call("htex_index_read_page", this.id, number, core.put(take, bytes), bytes.length));
   }
 
-  /** The page that has a texture, if any has it. */
+  /** Returns the page that contains a texture, if any does. */
   pageOf(name) {
     const { core } = this;
     return core.scope((take) => {
@@ -161,7 +163,7 @@ export class Library extends Handle {
     });
   }
 
-  /** The entries of all textures, in ascending order of their names. */
+  /** Returns the entries of all textures, in ascending order of their names. */
   async *entries() {
     for (let number = 0; number < this.pageCount; number++) {
       const bytes = await this.page(number);
@@ -170,7 +172,10 @@ export class Library extends Handle {
     }
   }
 
-  /** The entries that have all that is asked for: `words` in the name or a tag, `tags`, a `speed`, a `force`, a `model`. */
+  /**
+   * Returns the entries that match a query: `words` in the name or a tag, `tags`, a `speed`, a
+   * `force`, a `model`.
+   */
   async *find(query) {
     const text = JSON.stringify(query);
     for (let number = 0; number < this.pageCount; number++) {
@@ -180,7 +185,7 @@ export class Library extends Handle {
     }
   }
 
-  /** The entry of a texture; undefined if there is none of this name. */
+  /** Returns the entry of a texture; undefined if there is no texture with this name. */
   async entry(name) {
     if (this.count === 0) return undefined;
     const number = this.pageOf(name);
@@ -188,7 +193,7 @@ export class Library extends Handle {
     return JSON.parse(this.core.text("htex_index_entries_json", this.id)).find((entry) => entry.name === name);
   }
 
-  /** The bytes of a texture's `.htex` file. */
+  /** Returns the bytes of a texture's `.htex` file. */
   async bytes(name) {
     const { core } = this;
     const number = this.pageOf(name);
@@ -198,7 +203,7 @@ export class Library extends Handle {
     const parts = await Promise.all(ranges.map(([start, end]) => (start === end ? new Uint8Array(0) : this.file.read(start, end))));
     const all = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
     parts.reduce((at, part) => (all.set(part, at), at + part.length), 0);
-    // Another call may have read another page meanwhile.
+    // Another call may have selected another page in the meantime.
     this.read(number, page);
     return core.scope((take) => {
       const [given, out] = [core.put(take, all), take(Math.max(all.length, 1))];
@@ -207,7 +212,7 @@ export class Library extends Handle {
     });
   }
 
-  /** The ranges of a texture of the page that was read. */
+  /** Returns the ranges of a texture in the selected page. */
   ranges(name) {
     const { core } = this;
     return core.scope((take) => {

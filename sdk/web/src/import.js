@@ -43,19 +43,22 @@ function callOf({ name, bytes }, { models, ...settings }) {
   return { request: { file: name, settings }, files: [bytes] };
 }
 
-/** What reads files of other formats, in the thread that calls. */
+/** Reads files of other formats, in the calling thread. */
 export class Importer {
   constructor(core, player) {
     this.core = core;
     this.player = player;
   }
 
-  /** The formats whose files come in, and the actuators whose range frequencies may be positions in. */
+  /**
+   * Returns the formats that can be imported, and the actuators in whose ranges frequencies may be
+   * positions.
+   */
   formats() {
     return this.core.call("formats", {}).document;
   }
 
-  /** Reads a file for what it does not say, and `importFile` has to be given. */
+  /** Returns what a file does not state, so that `importFile` needs it as a setting. */
   asks(file) {
     const { name, bytes } = named(file);
     return this.core.call("asks", { file: name }, [bytes]).document;

@@ -7,7 +7,7 @@ import { host } from "./host.js";
 
 host.readFile = readFile;
 
-/** It keeps the program running only while it is asked for something. */
+/** The thread keeps the program running only while a request is pending. */
 host.startThread = (receive, failed) => {
   const thread = new Thread(new URL("./worker.node.js", import.meta.url));
   thread.on("message", receive);

@@ -1,20 +1,23 @@
-// The library: fetched and compiled once.
+// The WASM library, which is fetched and compiled once.
 
 import { Core, HtexError, toBytes } from "./core.js";
 import { host } from "./host.js";
 import { OPEN, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
-/** Where the library is; `setLibrary` says otherwise. */
+/** Where the library is, unless `setLibrary` changes it. */
 let source = () => new URL("./htex.wasm", import.meta.url);
-/** Where the files of the worklet and of the worker are, if not beside this one. */
+/** Where the files of the worklet and the worker are, if not next to this one. */
 export const files = { processor: undefined, worker: undefined };
 
 let module;
-/** The library in this thread, one that runs modules of models and one that runs none. */
+/** The library in this thread: one instance that runs modules of models, and one that runs none. */
 let cores = {};
 
-/** Sets the library: its address, its bytes, or a WebAssembly.Module; and the addresses of `processor.js` and `worker.js`. */
+/**
+ * Sets the library: its address, its bytes, or a WebAssembly.Module; and the addresses of
+ * `processor.js` and `worker.js`.
+ */
 export function setLibrary(library, addresses = {}) {
   checked(addresses, { processor: "any", worker: "any" }, "setLibrary");
   if (library !== undefined) source = () => library;
@@ -22,7 +25,7 @@ export function setLibrary(library, addresses = {}) {
   [module, cores] = [undefined, {}];
 }
 
-/** Downloads a file; `what` it is stands in errors. */
+/** Downloads a file. `what` names it in errors. */
 async function download(url, what) {
   let response;
   try {
@@ -33,7 +36,7 @@ async function download(url, what) {
   return received(response, `${what} ${url}`);
 }
 
-/** A response that has a body to be read. */
+/** Refuses a response that has no body to be read. */
 function received(response, what) {
   if (!response.ok) {
     const advice = response.status >= 500 ? "call again later" : "check the address";
@@ -54,7 +57,7 @@ export function resolved(address) {
 
 const isAddress = (source) => typeof source === "string" || source instanceof URL;
 
-/** The library's bytes, for threads that cannot be given a module. */
+/** Returns the library's bytes, for threads that cannot receive a module. */
 export function libraryBytes() {
   return moduleBytes(source(), "the library");
 }
@@ -81,7 +84,7 @@ export async function compiledFrom(library, what) {
   return WebAssembly.compile(await moduleBytes(library, what));
 }
 
-/** The compiled library. After a failure the next call tries again. */
+/** Returns the compiled library. After a failure the next call tries again. */
 export function compiled() {
   module ??= compiledFrom(source(), "the library").catch((error) => {
     module = undefined;
@@ -90,7 +93,7 @@ export function compiled() {
   return module;
 }
 
-/** The library in this thread; modules of models run in it only if it is `trusted` with them. */
+/** Returns the library in this thread. Modules of models run in it only if `trusted`. */
 export function library({ trusted = false } = {}) {
   cores[trusted] ??= compiled()
     .then(async (compiledModule) => Object.assign(await Core.make(compiledModule, { runsModules: trusted }), { module: compiledModule }))
@@ -101,21 +104,21 @@ export function library({ trusted = false } = {}) {
   return cores[trusted];
 }
 
-/** A texture of its bytes, in a library that is there. */
+/** Makes a texture from its bytes, in a library that has been loaded. */
 export function opened(core, bytes, { modules = [], embedded = true, trusted = false } = {}) {
   const options = { modules: modules.map((module) => toBytes(module).slice()), embedded, trusted };
   return Object.assign(new Texture(core, bytes, options), { bytes });
 }
 
-/** Opens a texture: its bytes, a File, a Blob or a Response, or its address. */
+/** Opens a texture from its bytes, a File, a Blob, a Response, or its address. */
 export async function open(source, options = {}) {
   checked(options, OPEN, "open");
-  // Both are fetched at the same time. Of two failures the first is told.
+  // Both are fetched at the same time. If both fail, the first failure is reported.
   const [core, bytes] = await Promise.all([library(options), bytesOf(source, "open")]);
   return opened(core, bytes, options);
 }
 
-/** A copy of the bytes that a caller gives, in one of the ways of `open`. */
+/** Copies the bytes that a caller passes in, in any of the forms that `open` accepts. */
 export async function bytesOf(source, call) {
   if (isAddress(source)) return new Uint8Array(await (await download(addressOf(source, call), "the texture")).arrayBuffer());
   if (isBytes(source)) return toBytes(source).slice();
@@ -133,7 +136,10 @@ export function isBlob(source) {
   return typeof Blob !== "undefined" && source instanceof Blob;
 }
 
-/** The address that a caller gives; programs have none that others are relative to. */
+/**
+ * Returns the address that a caller passes in. Node.js programs have no address that others are
+ * relative to.
+ */
 export function addressOf(source, call) {
   const base = globalThis.location?.href;
   const url = URL.canParse(source, base) ? new URL(source, base) : null;

@@ -1,16 +1,19 @@
-// Recordings as sound: samples that a node plays again and again.
+// Recordings as sound: samples that a node plays in a loop.
 
 import { HtexError } from "./core.js";
 
-/** Refuses what is not a loop of `author.recorded`. */
+/** Refuses anything that is not a loop from `author.recorded`. */
 export function checkLoop({ samples, rate_hz: rate, level_rms: level }, call) {
   const isLoop = samples instanceof Float32Array && samples.length > 0 && rate > 0 && Number.isFinite(rate) && level >= 0;
   if (!isLoop) throw new HtexError(`${call}: a loop has samples (a Float32Array that is not empty), rate_hz (above 0) and level_rms, such as author.recorded returns`, "invalid-argument");
 }
 
-/** The loops of a node. Its worklet keeps the samples of the last one, which are large. */
+/** The loops of a node. Its worklet keeps the samples of the last one, because they are large. */
 export class Loops {
-  /** What the worklet is told of a loop that plays at a rate of the context, `pitch` times as high. */
+  /**
+   * Returns what the worklet needs to play a loop at a context's sample rate, `pitch` times as
+   * high.
+   */
   describe({ samples, rate_hz: rate }, { contextRate, pitch = 1 }) {
     const step = (rate * pitch) / contextRate;
     if (this.sent === samples) return { step };

@@ -1,9 +1,13 @@
-// The spectrum of samples as a recording is read: segments of 0.2 s, half overlapping, Hann windows, RMS of all.
+// The spectrum of samples, computed as for a recording: segments of 0.2 s that overlap by half,
+// Hann windows, RMS over all segments.
 
-/** Distance of the frequencies at which spectra are read, Hz: one period in a segment. */
+/** Distance between the frequencies of a spectrum, Hz: one period per segment. */
 export const GRID_HZ = 5;
 
-/** Magnitudes of samples of a rate in Hz at whole multiples of 5 Hz, in their unit; a sinusoid has its amplitude. */
+/**
+ * Returns the magnitudes of samples at multiples of 5 Hz, in the samples' unit. A sinusoid's
+ * magnitude is its amplitude. The sample rate is in Hz.
+ */
 export function measured(samples, rate, frequencies) {
   const len = Math.round(rate / GRID_HZ);
   const [cos, sin] = [Math.cos, Math.sin].map((wave) => Float64Array.from({ length: len }, (_, n) => wave((2 * Math.PI * n) / len)));

@@ -7,7 +7,7 @@ import { Loops, checkLoop } from "./loop.js";
 import { VOICE, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
-/** RMS of full scale that a node plays at by default: -20 dB. */
+/** Default RMS at which a node plays, as a fraction of full scale: -20 dB. */
 const LEVEL = 0.1;
 /** Milliseconds between two looks whether a node that was stopped is silent: its context renders no more, or it has rendered so many seconds
  * without an end being told. */
@@ -20,12 +20,15 @@ const NODE = { ...LOAD, worker: "object", limit: "number", pitch: "number" };
 
 const LOOP = { gain: "number" };
 
-/** Whether a node is to play a loop, and not a texture. */
+/** Whether a node plays a loop instead of a texture. */
 function isLoop(given) {
   return given?.samples !== undefined && !(given instanceof Texture);
 }
 
-/** The gain at which a texture or a loop plays at that level: by what the file states, since no model runs here. */
+/**
+ * Returns the gain at which a texture or a loop plays at that level. It uses what the file states,
+ * because no model runs here.
+ */
 export function usualGain(texture, model) {
   if (isLoop(texture)) return texture.level_rms > 0 ? LEVEL / texture.level_rms : 0;
   const chosen = texture.chosenModel(model);
@@ -35,12 +38,12 @@ export function usualGain(texture, model) {
   return level > 0 ? LEVEL / level : 0;
 }
 
-/** Loading the worklet, for each context, and how often that failed. */
+/** The loading of the worklet for each context, and how often it failed. */
 const loading = new WeakMap();
 const failures = new WeakMap();
 const prepared = new WeakSet();
 
-/** Prepares a context for nodes; must have returned before `new HtexNode`. */
+/** Prepares a context for nodes. Await it before `new HtexNode`. */
 export async function prepare(context) {
   checkContext(context, "prepare");
   if (!loading.has(context)) loading.set(context, load(context));
@@ -85,7 +88,7 @@ function checkNode(context, texture, options) {
   checkTexture(texture, "new HtexNode");
 }
 
-/** What makes the voice of a node; without a motion it begins at rest. */
+/** Returns what is needed to make a node's voice. Without a motion it begins at rest. */
 function describeFor(context, texture, { gain, trusted, worker, limit, pitch = 1, ...voice }) {
   return describe(texture, { ...voice, rate: context.sampleRate / pitch }, !voice.motion);
 }
@@ -115,19 +118,22 @@ export class HtexNode extends Base {
     try {
       super(context, "htex", shape(trusted ? voice : null));
     } catch (error) {
-      // Browsers that give no compiled library to a worklet get its bytes below.
+      // Browsers that cannot pass a compiled library to a worklet get its bytes below.
       if (error.name !== "DataCloneError") throw error;
       super(context, "htex", shape(null));
       isSent = false;
     }
     Object.assign(this, { missed: 0, onerror: null, onenvelope: null, limit, sharedWorker: worker, loads: new Map(), lastLoad: 0, loops: new Loops() });
-    /** The options that a later `load` takes over, the gain of the texture's usual level, and the voice in a worker. */
+    /**
+     * The options that a later `load` keeps, the gain for the texture's default level, and the
+     * voice in a worker.
+     */
     Object.assign(this, { bands: options.bands, pitch: options.pitch, usual: usualGain(texture, options.model), playing: null, texture });
     this.port.onmessage = ({ data }) => this.receive(data);
     this.onprocessorerror = (event) => this.workletFailed(event);
-    /** Resolves when the voice is made. */
+    /** Resolves when the voice has been made. */
     this.ready = isSent ? Promise.resolve() : this.send(voice, { trusted });
-    /** The voice that was sent last, and the one that was sent with the library. */
+    /** The voice that was sent last, and the voice that was sent together with the library. */
     Object.assign(this, { sent: voice, withLibrary: isSent ? voice.id : this.withLibrary });
     this.ready.catch(() => {});
   }
@@ -149,7 +155,7 @@ export class HtexNode extends Base {
     this.port.postMessage({ position });
   }
 
-  /** Place on the surface, mm, for models that are maps: `{ x, y }`; null where it is not known. */
+  /** Place on the surface, mm, for models that are maps: `{ x, y }`; null if unknown. */
   set place(place) {
     this.port.postMessage({ place: place ? [place.x, place.y] : [NaN, NaN] });
   }
@@ -176,7 +182,7 @@ export class HtexNode extends Base {
     return this.changing;
   }
 
-  /** Loads the texture that is wanted, and what is wanted meanwhile. */
+  /** Loads the requested texture, and then any texture requested in the meantime. */
   async change() {
     while (this.wanted) {
       const { texture, options, usual } = this.wanted;
@@ -185,7 +191,8 @@ export class HtexNode extends Base {
       const gain = options.gain ?? (this.usual > 0 ? (usual * before) / this.usual : usual);
       await (isLoop(texture) ? this.changeToLoop(texture, gain) : this.changeTo(texture, options, gain));
       this.usual = usual;
-      // Until now the old texture played with the old gain; a gain that was set meanwhile stays.
+      // Until now the old texture played with the old gain. A gain that was set in the meantime is
+      // kept.
       if (this.gain.value === before) this.gain.value = gain;
     }
   }
@@ -211,7 +218,7 @@ export class HtexNode extends Base {
     return this.lastLoad;
   }
 
-  /** Has a voice made and faded to; the promise is of its start. */
+  /** Makes a voice and fades to it. The promise resolves when it starts. */
   async send(voice, { trusted }) {
     const { id, description, gain } = voice;
     let playing = null;
@@ -226,7 +233,7 @@ export class HtexNode extends Base {
     this.playing = playing;
   }
 
-  /** Posts a load; the promise is of its start. */
+  /** Posts a load message. The promise resolves when it starts. */
   async begun(id, post) {
     const started = new Promise((resolve, reject) => this.loads.set(id, { resolve, reject }));
     post();
@@ -259,7 +266,7 @@ export class HtexNode extends Base {
     libraryBytes().then(send).catch((error) => this.receive({ id: voice.id, error }));
   }
 
-  /** The worker of this node, or the one that it shares. */
+  /** Returns this node's worker, or the one it shares. */
   guarded() {
     if (this.worker && !this.worker.ended) return this.worker;
     this.worker = this.sharedWorker ?? new GuardedWorker({ limit: this.limit });
@@ -276,7 +283,7 @@ export class HtexNode extends Base {
     const failure = new HtexError(error.message, error.code ?? "internal");
     const load = this.loads.get(id);
     if (load) load.reject(failure);
-    // Of a load that fails its promise tells; the texture before plays on.
+    // If a load fails, its promise reports it, and the previous texture plays on.
     if (!load || id === 0) this.failed(failure);
   }
 
@@ -292,7 +299,7 @@ export class HtexNode extends Base {
     this.failed(error);
   }
 
-  /** Chromium gives its event the type `error`, that of the events of this node. */
+  /** Chromium's own event has the type `error`, like the events of this node. */
   workletFailed(event) {
     if (event.error instanceof HtexError) return;
     event.stopImmediatePropagation();
@@ -307,7 +314,7 @@ export class HtexNode extends Base {
     this.dispatchEvent(event);
   }
 
-  /** Fades out and ends the voice; the node cannot be used again. */
+  /** Fades out and ends the voice. The node cannot be used again. */
   stop() {
     if (this.isStopped) return;
     this.isStopped = true;
@@ -324,7 +331,7 @@ export class HtexNode extends Base {
     else if (!this.isEnded) setTimeout(() => this.endWhenSilent(until), LOOK_MS);
   }
 
-  /** An offline context is not running between its renderings. */
+  /** An offline context does not run between its renderings. */
   get isOffline() {
     return typeof OfflineAudioContext !== "undefined" && this.context instanceof OfflineAudioContext;
   }

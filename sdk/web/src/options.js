@@ -1,4 +1,4 @@
-// What options there are, and their types. A name that is not known is an error, since it would have no effect.
+// The known options and their types. An unknown name is an error, because it would have no effect.
 
 import { HtexError } from "./core.js";
 
@@ -31,7 +31,7 @@ function typeIs(value, type) {
   return type === "any" || (IS[type] ? IS[type](value) : typeof value === type);
 }
 
-/** Number of letters that differ: added, left out or replaced. */
+/** Returns the number of letters that differ: added, removed or replaced. */
 function distance(a, b) {
   let row = Array.from({ length: b.length + 1 }, (_, i) => i);
   for (let i = 1; i <= a.length; i++) {
@@ -50,7 +50,7 @@ function unknown(name, known, what) {
   return new HtexError(`${what} has no option \`${name}\`; ${advice}`, "invalid-argument");
 }
 
-/** Checks names and types of options; `what` has them. Returns the options. */
+/** Checks names and types of options against `what`. Returns the options. */
 export function checked(options, known, what) {
   if (!IS.object(options)) throw new HtexError(`the options of ${what} are an object, such as { model: "ar" }`, "invalid-argument");
   for (const [name, value] of Object.entries(options)) {
@@ -64,7 +64,7 @@ export function checked(options, known, what) {
   return options;
 }
 
-/** Checks a motion that is given by itself. */
+/** Checks a motion that is passed as its own argument. */
 export function checkedMotion(motion, what) {
   return motion === undefined ? motion : checked(motion, MOTION_OPTIONS, `the motion of ${what}`);
 }

@@ -1,21 +1,22 @@
-// Motors and actuators of gamepads: two strengths of an envelope (`dual-rumble`), or the samples themselves (`playPCM`).
+// Drives the motors and actuators of gamepads: with two strengths from an envelope (`dual-rumble`),
+// or with the samples (`playPCM`).
 
 import { HtexError } from "./core.js";
 import { checkTexture } from "./guarded.js";
 import { usualGain } from "./node.js";
 import { checked } from "./options.js";
 
-/** Strength of a level (RMS) of full scale, of which a motor has at most 1. */
+/** Strength of a level (RMS) of full scale. A motor's strength is at most 1. */
 const STRENGTH = 3;
 /** Mean frequencies up to which the large motor of a gamepad has all, and from which the small one has, Hz; `htex_dsp::reduced` has the same. */
 const LARGE_MOTOR_HZ = 60;
 const SMALL_MOTOR_HZ = 420;
-/** Rate of the samples: the lowest that all browsers have in an AudioBuffer, Hz. */
+/** Sample rate: the lowest that all browsers support in an AudioBuffer, Hz. */
 const RATE = 8000;
 /** Length of what is told at a time: of two strengths, and of samples, between which a browser may leave a gap, s. */
 const RUMBLE_S = 0.05;
 const SAMPLES_S = 0.25;
-/** An effect lasts for two blocks, so that it ends by itself when the page hangs. */
+/** An effect lasts for two blocks, so that it ends by itself if the page hangs. */
 const HELD = 2;
 
 const RUMBLE = { gain: "number", duration: "number" };
@@ -64,7 +65,10 @@ class PadPlayer {
     }
   }
 
-  /** The promise tells when the samples have been played: `false` for an actuator that plays none. */
+  /**
+   * The promise resolves when the samples have been played, with `false` if the actuator cannot
+   * play samples.
+   */
   async playSamples() {
     const samples = this.voice.render(SAMPLES_S * RATE).map((x) => Math.min(Math.max(this.gain * x, -1), 1));
     const buffer = new AudioBuffer({ length: samples.length, sampleRate: RATE, numberOfChannels: 1 });
@@ -76,7 +80,8 @@ class PadPlayer {
   async playRumble() {
     this.voice.render(RUMBLE_S * RATE);
     const effect = dualRumble(this.voice.envelope(), { gain: STRENGTH * this.gain });
-    // The promise is of the end of the effect, and the next one comes before: a failure is seen then.
+    // The promise resolves when the effect ends, but the next effect comes earlier. A failure is
+    // noticed then.
     this.actuator.playEffect("dual-rumble", effect).catch((error) => (this.failure ??= error));
     await Promise.race([new Promise((resolve) => setTimeout(resolve, 1e3 * RUMBLE_S)), this.stopped()]);
     if (this.failure) throw this.failure;

@@ -3,21 +3,30 @@
 import { HtexError } from "./core.js";
 import { checked } from "./options.js";
 
-/** Millimetres of a CSS pixel. */
+/** Millimetres per CSS pixel. */
 const MM_PER_PIXEL = 25.4 / 96;
-/** Seconds over which the speed is averaged, and after which a pointer that sends nothing rests. */
+/**
+ * Seconds over which the speed is averaged. After this time, a pointer that sends nothing is at
+ * rest.
+ */
 const AVERAGED_S = 0.03;
 const RESTS_S = 0.06;
-/** Force of a pointer that tells no pressure, N. */
+/** Force of a pointer that reports no pressure, N. */
 const FORCE_N = 0.4;
 /** Pressures that stand for "pressed" in devices that measure none: that of the specification, and those that some browsers send. */
 const NO_PRESSURE = [0, 0.5, 1];
-/** What counts as a gesture, after which a browser lets sound begin. A touch counts when it is lifted. */
+/**
+ * Events that count as a gesture, after which a browser allows sound. A touch counts when it is
+ * lifted.
+ */
 const GESTURES = ["pointerdown", "pointerup", "touchend", "click", "keydown"];
 
 const OPTIONS = { mmPerPixel: "number", force: "function", defaultForce: "number" };
 
-/** The force of events, in N. A device that has sent nothing but the pressures that stand for "pressed" measures none. */
+/**
+ * The force of events, in N. A device that has sent only the pressures that stand for "pressed"
+ * does not measure any.
+ */
 class Force {
   constructor(map, unknown) {
     this.map = map;
@@ -73,7 +82,7 @@ export function followPointer(element, moved, options = {}) {
     (all.length > 0 ? all : [event]).forEach(one);
   };
   const up = (event) => {
-    // A mouse has `pointerup` when the last of its buttons is lifted.
+    // A mouse sends `pointerup` only when its last pressed button is released.
     if (isOther(event)) return;
     last = null;
     tell({ speed: 0, force: 0 });
@@ -81,7 +90,7 @@ export function followPointer(element, moved, options = {}) {
   const timer = setInterval(() => {
     if (last && motion.speed > 0 && performance.now() - last.timeStamp > 1e3 * RESTS_S) tell({ speed: 0 });
   }, 1e3 * RESTS_S);
-  // The browser would scroll, and end the pointer.
+  // Otherwise the browser would scroll and end the pointer.
   const { touchAction } = element.style;
   element.style.touchAction = "none";
   const listening = listen(element, { pointerdown: down, pointermove: move, pointerup: up, pointercancel: up, lostpointercapture: up });
@@ -117,7 +126,7 @@ function check(element, call) {
   throw new HtexError(`${call} takes an element of the page first${advice}`, "invalid-argument");
 }
 
-/** Adds listeners; returns a function that removes them. */
+/** Adds listeners and returns a function that removes them. */
 function listen(element, listeners) {
   for (const [name, listener] of Object.entries(listeners)) element.addEventListener(name, listener);
   return () => {

@@ -5,11 +5,11 @@ import { Stage } from "./stage.js";
 import { Track } from "./track.js";
 
 const stage = new Stage();
-/** Seconds of the fades of a start, of a stop, and from a texture to another. */
+/** Duration of fades, seconds: at a start, at a stop, and from one texture to another. */
 const START_S = 0.01;
 const STOP_S = 0.01;
 const CHANGE_S = 0.02;
-/** Most sources that sound at a time: one, and those that fade out. */
+/** Largest number of sources that sound at the same time: one, and those that fade out. */
 const MOST_TRACKS = 4;
 /** Seconds between two envelopes. */
 const REPORT_S = 0.02;
@@ -28,7 +28,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     super();
     this.position = NaN;
     this.place = [NaN, NaN];
-    /** The value of the parameter `gain`. */
+    /** The current value of the parameter `gain`. */
     this.gain = gain;
     this.tracks = [];
     this.block = new Float32Array(128);
@@ -36,7 +36,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     /** The samples of the last loop. */
     this.looped = null;
     this.port.onmessage = ({ data }) => this.receive(data);
-    // A page that is a file cannot send a compiled library through a port.
+    // A page opened as a file cannot send a compiled library through a port.
     this.port.onmessageerror = () => this.port.postMessage({ unusable: true });
     if (load) this.load(load);
   }
@@ -48,7 +48,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     if (data.alone) for (const { source } of this.tracks) source.isAlone = true;
     if (data.stop) {
       this.stopping = true;
-      // A context that is suspended renders no fade.
+      // A suspended context renders no fade.
       for (const track of this.tracks) data.isHeard ? track.fadeOut(STOP_S * sampleRate) : this.leave(track);
     }
   }
@@ -74,7 +74,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     }
   }
 
-  /** Fades from the present source, if there is one, to another. */
+  /** Fades from the current source, if there is one, to another. */
   start(source, id, gain) {
     if (this.stopping) return void source.free();
     const frames = (this.tracks.length > 0 ? CHANGE_S : START_S) * sampleRate;
@@ -84,7 +84,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     this.port.postMessage({ id, started: true });
   }
 
-  /** Of too many sources the quietest one fades out within the next block. */
+  /** If there are too many sources, the quietest one fades out within the next block. */
   thin() {
     for (const track of this.tracks) if (track.isOver) this.leave(track);
     const leaving = this.tracks.filter(({ isLeaving }) => isLeaving);
@@ -130,7 +130,7 @@ class HtexProcessor extends AudioWorkletProcessor {
     track.fade(this.block);
   }
 
-  /** Tells the envelope of the source that fades in or plays. */
+  /** Reports the envelope of the source that fades in or plays. */
   report(frames) {
     const source = this.tracks.at(-1)?.source;
     this.unreported += frames;

@@ -8,7 +8,7 @@ import { checked } from "./options.js";
 let source = () => new URL("./htex-scene.wasm", import.meta.url);
 let core;
 
-/** Options of a scene. */
+/** Options for opening a scene. */
 const OPTIONS = { device: "string", profile: "string", settings: "any", quantity_gain: "number", trusted: "boolean" };
 
 /** Frees what its owner did not free. */
@@ -34,7 +34,9 @@ function argument(text) {
   return new HtexError(text, "invalid-argument");
 }
 
-/** Opens a scene: the bytes of its file, and those of the files that it names, by their paths in it. */
+/**
+ * Opens a scene from the bytes of its file and of the files that it names, by their paths in it.
+ */
 export async function scene(bytes, files = {}, options = {}) {
   checked(options, OPTIONS, "scene");
   const named = files instanceof Map ? [...files] : Object.entries(files);
@@ -45,7 +47,7 @@ export async function scene(bytes, files = {}, options = {}) {
   return new Scene(ready, ready.call("scene", request, given).document);
 }
 
-/** A scene that is open. */
+/** An open scene. */
 export class Scene {
   constructor(core, { id, unit, rate, plan, notes }) {
     Object.assign(this, { core, id, unit, rate, plan, notes });
@@ -84,7 +86,7 @@ export class Scene {
     return new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
   }
 
-  /** Frees the memory of the scene, which is not used afterwards. A second call does nothing. */
+  /** Frees the memory of the scene, which cannot be used afterwards. A second call does nothing. */
   free() {
     if (this.isFreed) return;
     this.isFreed = true;

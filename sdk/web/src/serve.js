@@ -1,12 +1,13 @@
-// Renders the voices of models that are not trusted, for another thread, which ends this one when a call takes too long.
+// Renders voices of untrusted models for another thread, which terminates this one if a call takes
+// too long.
 
 import { Stage } from "./stage.js";
 
-/** Frames of a block, and blocks that are rendered ahead: 32 ms at 48 kHz. */
+/** Frames in a block, and number of blocks rendered in advance: 32 ms at 48 kHz. */
 const FRAMES = 256;
 const AHEAD = 6;
 
-/** Answers the messages of the other side. */
+/** Answers messages from the other side. */
 export function serve(outside) {
   const stage = new Stage();
   const report = (id, error) => outside.postMessage({ id, error: { message: error.message, code: error.code } });
@@ -44,7 +45,7 @@ export function serve(outside) {
     });
   };
 
-  /** Renders samples at once. */
+  /** Renders samples immediately. */
   const render = ({ id, description, frames }) => {
     try {
       const voice = stage.voice(description);
@@ -61,6 +62,6 @@ export function serve(outside) {
     else if (data.port) play(data);
     else render(data);
   };
-  // A port of Node.js and a worker of a page both have it; messages wait until it is set.
+  // A Node.js port and a page's worker both have this handler. Messages wait until it is set.
   outside.onmessage = ({ data }) => receive(data);
 }

@@ -1,6 +1,6 @@
-// Where the samples of a worklet come from.
+// Where a worklet gets its samples from.
 
-/** Seconds of the ramp to silence where samples lack, and back. */
+/** Duration of the ramp to silence, seconds, when samples are missing, and of the ramp back. */
 const RAMP_S = 0.005;
 
 /** A voice in this thread. */
@@ -14,7 +14,10 @@ export class Here {
     this.voice.setMotion(...motion);
   }
 
-  /** Renders a block; no sample lacks. After an error, which is thrown, the last sample has faded away in it. */
+  /**
+   * Renders a block; no samples are missing. If rendering fails, the last sample fades away within
+   * the block, and the error is thrown.
+   */
   render(block) {
     try {
       this.voice.render(block);
@@ -26,7 +29,7 @@ export class Here {
     }
   }
 
-  /** What was played since the last call; null for a voice without bands. */
+  /** Returns what was played since the last call; null for a voice without bands. */
   envelope() {
     return this.voice.bands > 0 ? this.voice.envelope() : null;
   }
@@ -40,9 +43,9 @@ export class Here {
   }
 }
 
-/** Samples that are played again and again while a finger slides, as they are at any speed and force. */
+/** Samples that play in a loop while a finger slides, unchanged at any speed and force. */
 export class Loop {
-  /** `step`: the samples that are gone on by in each frame. */
+  /** `step`: how many samples the loop advances per frame. */
   constructor(samples, step) {
     this.samples = samples;
     this.step = step;
@@ -59,7 +62,7 @@ export class Loop {
     this.isTouched = speed > 0 && force > 0;
   }
 
-  /** Renders a block; no sample lacks. The loop stands still while nothing is heard. */
+  /** Renders a block; no samples are missing. The loop stands still while nothing is audible. */
   render(block) {
     const ramp = (this.isTouched ? 1 : -1) / (RAMP_S * sampleRate);
     for (let i = 0; i < block.length; i++) {
@@ -70,7 +73,7 @@ export class Loop {
     return 0;
   }
 
-  /** The sample at the present place, on the line between two. */
+  /** Returns the sample at the current position, interpolated linearly. */
   next() {
     const { samples, at } = this;
     const whole = Math.floor(at);
@@ -87,7 +90,10 @@ export class Loop {
     this.isHigh = isHigh;
   }
 
-  /** What was played since the last call: its level, and, for its centroid, half the rate at which it changes its sign. */
+  /**
+   * Returns what was played since the last call: its level and, as its centroid, half the rate of
+   * its sign changes.
+   */
   envelope() {
     const { power, frames, turns } = this;
     Object.assign(this, { power: 0, frames: 0, turns: 0 });
@@ -102,7 +108,10 @@ export class Loop {
   free() {}
 }
 
-/** A voice in a worker, which renders ahead: blocks that arrive at `port`, asked for as they are used. */
+/**
+ * A voice in a worker, which renders in advance. Blocks arrive at `port`, and are requested as they
+ * are used.
+ */
 export class There {
   /** `started` is called when the first block has arrived. */
   constructor(port, started) {
@@ -111,7 +120,7 @@ export class There {
     this.used = 0;
     this.weight = 0;
     this.motion = null;
-    /** Whether the worker was ended. */
+    /** Whether the worker was terminated. */
     this.isAlone = false;
     port.onmessage = ({ data }) => {
       this.blocks.push(data);
@@ -124,7 +133,7 @@ export class There {
     this.motion = motion;
   }
 
-  /** Renders a block; returns the number of samples that lacked. */
+  /** Renders a block and returns the number of missing samples. */
   render(block) {
     let lacking = 0;
     const step = 1 / (RAMP_S * sampleRate);
@@ -149,12 +158,12 @@ export class There {
     return this.last === undefined || this.isAlone ? 0 : lacking;
   }
 
-  /** Whether the worker was ended, and what it had rendered has faded away. */
+  /** Whether the worker was terminated and everything it had rendered has faded away. */
   get isOver() {
     return this.isAlone && this.blocks.length === 0 && this.weight === 0;
   }
 
-  /** Gives the first block back to be filled again. */
+  /** Returns the first block to the worker to be filled again. */
   ask() {
     const { block, envelope } = this.blocks.shift();
     this.measured = envelope;

@@ -1,9 +1,10 @@
-// The voices of an audio worklet or of a worker: one core for all, and each texture opened once while a voice of it plays.
+// The voices of an audio worklet or of a worker. All share one core, and each texture is opened
+// once while one of its voices plays.
 
 import { Core } from "./core.js";
 import { Texture } from "./texture.js";
 
-/** Seconds after which a voice rests whose finger is lifted: the ramp of the contact, and a little. */
+/** Seconds after which a voice with a lifted finger is silent: the contact ramp plus a margin. */
 const RESTS_S = 0.025;
 
 export class Stage {
@@ -12,7 +13,7 @@ export class Stage {
     this.textures = new Map();
   }
 
-  /** Makes the voice of a description: `{ library, key, bytes, open, voice, rests }`. */
+  /** Makes the voice for a description: `{ library, key, bytes, open, voice, rests }`. */
   voice({ library, key, bytes, open, voice: options, rests }) {
     this.core ??= Core.now(library);
     const kept = this.textures.get(key) ?? { texture: new Texture(this.core, bytes, { ...open, trusted: true }), voices: 0 };
@@ -28,7 +29,7 @@ export class Stage {
     }
   }
 
-  /** The voice; its texture is freed with the last one of it. */
+  /** Frees the voice. Its texture is freed together with its last voice. */
   counted(voice, key, kept) {
     const free = voice.free.bind(voice);
     voice.free = () => {
@@ -46,7 +47,7 @@ export class Stage {
   }
 }
 
-/** Lifts the finger of a new voice and lets the samples until it rests go by. */
+/** Lifts the finger of a new voice, and skips the samples until the voice is silent. */
 function rest(voice, rate) {
   voice.setMotion(0, 0);
   voice.render(Math.ceil(RESTS_S * rate));

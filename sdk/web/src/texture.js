@@ -8,11 +8,14 @@ import { AT, READ, VOICE, checked, checkedMotion } from "./options.js";
 const abandoned =
   typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, free, id }) => core.exports[free](id));
 
-/** Seconds of the samples by which sums of sinusoids are read, and their seed. */
+/**
+ * Duration of the samples from which the spectra of sums of sinusoids are computed, seconds, and
+ * their seed.
+ */
 const READ_S = 20;
 const READ_SEED = 1;
 
-/** What has a handle in the library. */
+/** An object with a handle in the library. */
 export class Handle {
   constructor(core, id, free) {
     this.core = core;
@@ -21,7 +24,9 @@ export class Handle {
     abandoned?.register(this, { core, free, id }, this);
   }
 
-  /** Frees the memory of the object, which is not used afterwards. A second call does nothing. */
+  /**
+   * Frees the memory of the object, which cannot be used afterwards. A second call does nothing.
+   */
   free() {
     if (this.isFreed) return;
     this.isFreed = true;
@@ -36,7 +41,10 @@ if (Symbol.dispose) {
   };
 }
 
-/** Of `open`: whether models of modules may run in this thread, those that are given, and those of the asset. */
+/**
+ * Options from `open`: whether models in modules may run in this thread, the modules that were
+ * passed in, and the asset's own.
+ */
 const ALL_RUN = { trusted: true, modules: [], embedded: true };
 
 /** A texture asset. */
@@ -53,7 +61,7 @@ export class Texture extends Handle {
     this.options = options;
   }
 
-  /** Whether models of modules may run. */
+  /** Whether models in modules may run. */
   get hasModules() {
     const { modules, embedded } = this.options;
     return modules.length > 0 || (embedded && (this.manifest.plugins ?? []).length > 0);
@@ -69,7 +77,7 @@ export class Texture extends Handle {
     throw new HtexError(`${call}: the model ${chosen} comes from a module, which nothing could stop in this thread; ${advice}`, "untrusted");
   }
 
-  /** Id of the model of a representation, or of the one that a voice chooses. */
+  /** Returns the model id of a representation, or of the one that a voice would choose. */
   chosenModel(model) {
     const { core } = this;
     return core.scope((take) => core.text("htex_asset_chosen_model", this.id, core.putText(take, model)));
@@ -80,7 +88,10 @@ export class Texture extends Handle {
     return this.bytes.slice();
   }
 
-  /** The manifest: name, conditions, representations, qualities and all else that the asset states. */
+  /**
+   * The manifest: name, conditions, representations, qualities and everything else that the asset
+   * states.
+   */
   get manifest() {
     this.read ??= JSON.parse(this.core.text("htex_asset_manifest_json", this.id));
     return this.read;
@@ -117,7 +128,7 @@ export class Texture extends Handle {
     return [view.getFloat64(this.core.results, true), view.getFloat64(this.core.results + 8, true)];
   }
 
-  /** The recorded conditions: speed in mm/s and force in N, or NaN where one is not known. */
+  /** The recorded conditions: speed in mm/s and force in N, or NaN where one is unknown. */
   get conditions() {
     const known = (x) => x ?? NaN;
     return this.manifest.conditions.map((c) => ({ speed: known(c.speed_mm_s), force: known(c.force_n) }));
@@ -137,7 +148,7 @@ export class Texture extends Handle {
     });
   }
 
-  /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
+  /** Returns magnitudes of the texture's spectrum, in its unit, at frequencies in Hz. */
   spectrum(frequencies, options = {}) {
     const { core } = this;
     return this.represented(options, "texture.spectrum", (take, name, motion) => {
@@ -147,7 +158,10 @@ export class Texture extends Handle {
     });
   }
 
-  /** Magnitudes at a recorded condition, as a recording of the voice reads them: frequencies, and magnitudes in the unit. */
+  /**
+   * Returns magnitudes at a recorded condition, as a recording of the voice would show them:
+   * frequencies, and magnitudes in the unit.
+   */
   readSpectrum(options = {}) {
     const { model, condition = this.defaultCondition(options.model) } = checked(options, READ, "texture.readSpectrum");
     if (!this.manifest.conditions[condition]) {
@@ -159,7 +173,7 @@ export class Texture extends Handle {
     try {
       return { frequencies, magnitudes: this.readMagnitudes(model, condition, frequencies) };
     } catch (error) {
-      // What is read of a sum of sinusoids, only its samples tell.
+      // The spectrum of a sum of sinusoids can only be computed from its samples.
       if (error.code !== "unsupported") throw error;
       return { frequencies, magnitudes: this.readSamples(model, condition, frequencies) };
     }
@@ -184,13 +198,13 @@ export class Texture extends Handle {
     return measured(samples, rate, frequencies);
   }
 
-  /** The frequencies at which spectra are read, Hz. */
+  /** The frequencies of the spectra, Hz. */
   get grid() {
     const [first, last] = this.band.map((hz, i) => (i === 0 ? Math.ceil(hz / GRID_HZ) : Math.floor(hz / GRID_HZ)));
     return Float64Array.from({ length: last - first + 1 }, (_, i) => GRID_HZ * (first + i));
   }
 
-  /** Level of a representation, RMS in the unit. */
+  /** Returns the level of a representation: RMS in the unit. */
   level(options = {}) {
     const { core } = this;
     return this.represented(options, "texture.level", (take, name, motion) => {
@@ -199,14 +213,14 @@ export class Texture extends Handle {
     });
   }
 
-  /** Parameters of a representation, by their names. */
+  /** Returns the parameters of a representation, by name. */
   parameters(options = {}) {
     const { core } = this;
     const read = (take, name, motion) => JSON.parse(core.text("htex_asset_parameters_json", this.id, name, motion));
     return this.represented(options, "texture.parameters", read);
   }
 
-  /** Runs `read` with the model's name and a motion, in memory of an arena. */
+  /** Runs `read` with the model's name and a motion in an arena's memory. */
   represented(options, call, read) {
     const { model, at } = checked(options, AT, call);
     this.guard(model, call);
@@ -220,7 +234,7 @@ export class Texture extends Handle {
   }
 }
 
-/** A playing texture. */
+/** A voice: a texture that plays. */
 export class Voice extends Handle {
   constructor(texture, options) {
     const { core } = texture;
@@ -239,19 +253,19 @@ export class Voice extends Handle {
     return this.core.text("htex_voice_model", this.id);
   }
 
-  /** Sets the gain, which changes within 10 ms. */
+  /** Sets the gain. The change takes 10 ms. */
   setGain(gain) {
     this.core.call("htex_voice_set_gain", this.id, gain);
   }
 
-  /** Whether the voice rests: its samples are 0 until a motion is felt again. */
+  /** Whether the voice is silent: its samples are 0 until the finger slides again. */
   get isSilent() {
     const { core } = this;
     core.call("htex_voice_is_silent", this.id, core.results);
     return core.view().getUint32(core.results, true) !== 0;
   }
 
-  /** Makes the voice as it was when it was made. */
+  /** Restarts the voice as it was when it was made. */
   reset() {
     this.core.call("htex_voice_reset", this.id, 0);
   }
@@ -261,7 +275,7 @@ export class Voice extends Handle {
     return this.core.envelope(this.id, bands);
   }
 
-  /** Edges of the bands, Hz: one more than bands. */
+  /** Edges of the bands, Hz: one more than there are bands. */
   get envelopeEdges() {
     const { core } = this;
     const count = this.bands > 0 ? this.bands + 1 : 0;
@@ -313,7 +327,10 @@ export class Voice extends Handle {
     });
   }
 
-  /** How the voice plays a motion, or the one that is set, and whether that is within the recorded conditions. */
+  /**
+   * Returns how the voice plays a motion, or its current motion, and whether the motion lies within
+   * the recorded conditions.
+   */
   coverage(motion) {
     const { core } = this;
     checkedMotion(motion, "voice.coverage");
@@ -321,7 +338,10 @@ export class Voice extends Handle {
     return JSON.parse(json);
   }
 
-  /** Magnitudes that a recording of the voice reads at the motion that is set, at frequencies in Hz, in the unit. */
+  /**
+   * Returns the magnitudes that a recording of the voice would show at its current motion, in the
+   * unit, at frequencies in Hz.
+   */
   spectrum(frequencies) {
     const { core } = this;
     return core.scope((take) => {

@@ -1,18 +1,21 @@
 // A source in a worklet, with its gain and its fade.
 
-/** Whether two numbers are the same, as numbers of 32 bits, which the parameters of a node are. */
+/** Whether two numbers are equal as 32-bit floats, which a node's parameters are. */
 function same(a, b) {
   return Math.fround(a) === Math.fround(b);
 }
 
 export class Track {
-  /** Fades in within `frames`. The gain is `gain` until the node's parameter has another value than `parameter`. */
+  /**
+   * Fades in within `frames`. The gain is `gain` until the node's parameter differs from
+   * `parameter`.
+   */
   constructor(source, { gain, parameter, frames }) {
     this.source = source;
     this.given = gain;
     this.parameter = parameter;
     this.gain = null;
-    /** Way of the fade, 0 to 1, and its step for each frame. */
+    /** Progress of the fade, 0 to 1, and its step per frame. */
     this.way = 0;
     this.step = 1 / frames;
     this.motion = [];
@@ -28,7 +31,7 @@ export class Track {
     return (this.isLeaving && this.way <= 0) || this.source.isOver;
   }
 
-  /** Renders a block; returns the number of samples that lacked. */
+  /** Renders a block and returns the number of missing samples. */
   render(block, motion) {
     if (motion.some((x, i) => !Object.is(x, this.motion[i]))) {
       this.motion = motion;
@@ -37,7 +40,9 @@ export class Track {
     return this.source.render(block);
   }
 
-  /** Applies the gain, in a straight line from that of the last block. A track that leaves keeps the gain that it had. */
+  /**
+   * Applies the gain, linearly from the last block's gain. A track that fades out keeps its gain.
+   */
   level(block, parameter) {
     if (!this.isLeaving && !same(parameter, this.parameter)) this.given = null;
     if (!this.isLeaving) this.parameter = parameter;
@@ -49,7 +54,7 @@ export class Track {
     for (let i = 0; i < block.length; i++) block[i] *= from + step * (i + 1);
   }
 
-  /** Fades with equal power: two textures of the same level then have this level at any time. */
+  /** Fades with equal power, so that two textures of the same level have this level at any time. */
   fade(block) {
     if (this.way === 1 && this.step > 0) return;
     for (let i = 0; i < block.length; i++) {

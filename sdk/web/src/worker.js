@@ -1,4 +1,4 @@
-// The worker of a page that renders the voices of models that are not trusted.
+// The worker of a page that renders voices of untrusted models.
 
 import { serve } from "./serve.js";
 

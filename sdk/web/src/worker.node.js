@@ -1,4 +1,4 @@
-// The thread of Node.js that renders the voices of models that are not trusted.
+// The Node.js thread that renders voices of untrusted models.
 
 import { parentPort } from "node:worker_threads";
 

@@ -1,5 +1,5 @@
-// The author module: its one function, called with documents of JSON and the bytes of files. For this thread; `author.js` has it for
-// programs.
+// The author module: calls its one function with JSON documents and the bytes of files. For this
+// thread; `author.js` has it for programs.
 
 import { Core, HtexError } from "./core.js";
 import { Guests } from "./guests.js";

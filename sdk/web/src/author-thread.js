@@ -43,8 +43,10 @@ export function throwIfAborted(signal, what) {
   if (signal?.aborted) throw aborted(signal, what);
 }
 
-/** Calls the function of a name of the module that `loading` promises first. Returns its document and its bytes; the worker takes the
- * buffers `copies`. */
+/**
+ * Calls a function, by name, in the module that `loading` promises. Returns its document and its
+ * bytes. The worker takes over the buffers `copies`.
+ */
 export async function inThread(name, loading, call, { copies, onProgress, signal }) {
   loading.catch(() => {});
   // The worker starts while the module loads.

@@ -1,5 +1,5 @@
-// Textures made: recordings fitted, parameters written, textures mixed and edited. What makes them is a second module, which holds the
-// player, too, and is loaded when it is first needed.
+// Making textures: fit recordings, write parameters, mix and edit textures. A second module does
+// this. It also contains the player, and is loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
 import { inThread, setThread, throwIfAborted } from "./author-thread.js";
@@ -10,8 +10,10 @@ let source = () => new URL("./htex-author.wasm", import.meta.url);
 let module;
 let author;
 
-/** Sets where the module is: its address, its bytes or a WebAssembly.Module; and how its worker is started, where a bundler has it
- * elsewhere. Before the first use. */
+/**
+ * Sets where the module is (its address, its bytes or a WebAssembly.Module), and how its worker is
+ * started if a bundler has moved it. Call this before the first use.
+ */
 export function setAuthorLibrary(library, { worker = null } = {}) {
   if (library !== undefined) source = () => library;
   [module, author] = [undefined, undefined];
@@ -175,7 +177,10 @@ export class Author {
     return { texture: this.texture(bytes), report: document };
   }
 
-  /** Packs textures, by their names in the library, to a `.htexlib` file; each states a licence, unless `unlicensed` allows those that do not. */
+  /**
+   * Packs textures, by their names in the library, into a `.htexlib` file. Each must state a
+   * licence, unless `unlicensed` allows textures without one.
+   */
   library(textures, { name = "", unlicensed = false } = {}) {
     const all = Object.entries(textures);
     const request = { name, unlicensed, textures: all.map(([own]) => own) };

@@ -36,8 +36,10 @@ class Remote {
     return new Uint8Array(await response.arrayBuffer());
   }
 
-  /** The header that asks for a range of the known version only. From another origin it would take a request for permission each time: there
-   * the version is compared afterwards alone. */
+  /**
+   * The header that requests a range of the known version only. Across origins it would require a
+   * permission request each time, so there the version is only compared afterwards.
+   */
   condition() {
     const page = globalThis.location?.origin;
     const isOwn = page === undefined || page === this.url.origin;

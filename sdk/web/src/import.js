@@ -1,5 +1,5 @@
-// Files of other haptic formats as textures. What reads them is a module of its own, which holds the author module, too, and is loaded when
-// it is first needed.
+// Importing files of other haptic formats as textures. A separate module reads them. It also
+// contains the author module, and is loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
 import { inThread, setThread, throwIfAborted } from "./author-thread.js";
@@ -10,8 +10,10 @@ let source = () => new URL("./htex-import.wasm", import.meta.url);
 let module;
 let importer;
 
-/** Sets where the module is: its address, its bytes or a WebAssembly.Module; and how the worker is started, as `setAuthorLibrary` does.
- * Before the first use. */
+/**
+ * Sets where the module is (its address, its bytes or a WebAssembly.Module), and how the worker is
+ * started, as `setAuthorLibrary` does. Call this before the first use.
+ */
 export function setImportLibrary(library, { worker } = {}) {
   if (library !== undefined) source = () => library;
   [module, importer] = [undefined, undefined];

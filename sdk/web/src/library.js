@@ -50,7 +50,10 @@ function isBytes(data) {
   return data instanceof ArrayBuffer || ArrayBuffer.isView(data);
 }
 
-/** An address that a caller gives, or one of this package. Bundlers would take `new URL` with another base for one of their files. */
+/**
+ * Returns the address that a caller passes in, or one in this package. Bundlers would treat `new
+ * URL` with another base as one of their own files.
+ */
 export function resolved(address) {
   return address instanceof URL ? address : new URL(address, globalThis.location?.href);
 }
@@ -72,7 +75,10 @@ async function moduleBytes(library, what) {
   return new Uint8Array(await (await download(url, what)).arrayBuffer());
 }
 
-/** Compiles a module, its address, its bytes or one that is compiled: while it arrives if the server tells its type. `what` stands in errors. */
+/**
+ * Compiles a module from its address or its bytes, or returns it if it is already compiled. It
+ * compiles while the module arrives if the server states its type. `what` names it in errors.
+ */
 export async function compiledFrom(library, what) {
   if (library instanceof WebAssembly.Module) return library;
   const url = isBytes(library) ? null : resolved(library);

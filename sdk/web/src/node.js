@@ -9,8 +9,10 @@ import { Texture } from "./texture.js";
 
 /** Default RMS at which a node plays, as a fraction of full scale: -20 dB. */
 const LEVEL = 0.1;
-/** Milliseconds between two looks whether a node that was stopped is silent: its context renders no more, or it has rendered so many seconds
- * without an end being told. */
+/**
+ * Milliseconds between two checks whether a stopped node is silent: its context no longer renders,
+ * or it has rendered for so many seconds without a reported end.
+ */
 const LOOK_MS = 200;
 const SILENT_S = 1;
 
@@ -99,8 +101,11 @@ const Base = globalThis.AudioWorkletNode ?? class {
   }
 };
 
-/** Plays a texture: parameters `speed` (mm/s), `force` (N) and `gain`. Models that are modules play in a worker, which is
- * ended when a call takes too long; the node then falls silent and has an `error` event. */
+/**
+ * Plays a texture: parameters `speed` (mm/s), `force` (N) and `gain`. Models in modules play in a
+ * worker, which is terminated if a call takes too long; the node then falls silent and fires an
+ * `error` event.
+ */
 export class HtexNode extends Base {
   constructor(context, texture, options = {}) {
     checkNode(context, texture, options);
@@ -166,7 +171,10 @@ export class HtexNode extends Base {
     return this.bands > 0 ? Float64Array.from({ length: this.bands + 1 }, (_, k) => low * (high / low) ** (k / this.bands)) : new Float64Array(0);
   }
 
-  /** Fades to another texture, or to a loop. Of several calls at a time the last one counts. The gain keeps its ratio to the usual one. */
+  /**
+   * Fades to another texture, or to a loop. Of several simultaneous calls the last one counts. The
+   * gain keeps its ratio to the default gain.
+   */
   async load(texture, options = {}) {
     if (isLoop(texture)) {
       checked(options, LOOP, "node.load of a loop");
@@ -244,8 +252,10 @@ export class HtexNode extends Base {
     }
   }
 
-  /** Posts a voice to the worklet, with the library's bytes where the compiled one cannot be sent. A worklet that has played a voice has the
-   * library. */
+  /**
+   * Posts a voice to the worklet, with the library's bytes if the compiled library cannot be sent.
+   * A worklet that has played a voice already has the library.
+   */
   post(voice) {
     this.sent = voice;
     if (this.hasLibrary) {
@@ -324,7 +334,10 @@ export class HtexNode extends Base {
     else if (!this.isOffline) this.endWhenSilent(this.context.currentTime + SILENT_S);
   }
 
-  /** Ends the node where the worklet does not tell that it has faded out. An audio thread that is late fades late: it is not cut off. */
+  /**
+   * Ends the node if the worklet does not report that it has faded out. A late audio thread fades
+   * late; its fade is not cut off.
+   */
   endWhenSilent(until) {
     const { state, currentTime } = this.context;
     if (state !== "running" || currentTime > until) this.end();

@@ -8,12 +8,18 @@ import { checked } from "./options.js";
 
 /** Strength of a level (RMS) of full scale. A motor's strength is at most 1. */
 const STRENGTH = 3;
-/** Mean frequencies up to which the large motor of a gamepad has all, and from which the small one has, Hz; `htex_dsp::reduced` has the same. */
+/**
+ * Mean frequencies, Hz: up to the first, only the large motor runs; from the second on, only the
+ * small one. `htex_dsp::reduced` has the same values.
+ */
 const LARGE_MOTOR_HZ = 60;
 const SMALL_MOTOR_HZ = 420;
 /** Sample rate: the lowest that all browsers support in an AudioBuffer, Hz. */
 const RATE = 8000;
-/** Length of what is told at a time: of two strengths, and of samples, between which a browser may leave a gap, s. */
+/**
+ * Duration of one message to the gamepad, seconds: of two strengths, and of samples, between which
+ * a browser may leave a gap.
+ */
 const RUMBLE_S = 0.05;
 const SAMPLES_S = 0.25;
 /** An effect lasts for two blocks, so that it ends by itself if the page hangs. */
@@ -99,8 +105,10 @@ class PadPlayer {
   }
 }
 
-/** Plays a texture on a gamepad: its samples where the browser has `playPCM` and the gamepad plays them, else the level and the mean frequency on
- * its two motors. */
+/**
+ * Plays a texture on a gamepad. If the browser has `playPCM` and the gamepad supports it, the
+ * samples are played; otherwise the two motors play the level and the mean frequency.
+ */
 export function playOnPad(pad, texture, options = {}) {
   const actuator = pad?.vibrationActuator;
   if (!actuator) throw new HtexError("playOnPad: the gamepad has no vibrationActuator; this browser or this gamepad has no haptics", "unsupported");

@@ -40,8 +40,12 @@ class Force {
   }
 }
 
-/** Calls `moved({ speed, force, position, x, y })`, in mm/s, N, mm along the path and mm from the upper left corner, while a pointer is on
- * the element; the force is 0 when it leaves. One pointer counts at a time, and of a mouse the primary button. Returns a function that ends this. */
+/**
+ * Calls `moved({ speed, force, position, x, y })`, in mm/s, N, mm along the path and mm from the
+ * upper left corner, while a pointer is on the element. The force is 0 when it leaves. Only one
+ * pointer counts at a time; of a mouse, only the primary button counts. Returns a function that
+ * ends this.
+ */
 export function followPointer(element, moved, options = {}) {
   check(element, "followPointer");
   const { mmPerPixel = MM_PER_PIXEL, force: map = (pressure) => 0.8 * pressure, defaultForce = FORCE_N } = checked(options, OPTIONS, "followPointer");

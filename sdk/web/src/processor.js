@@ -53,7 +53,10 @@ class HtexProcessor extends AudioWorkletProcessor {
     }
   }
 
-  /** Starts a voice: of a description, or one whose samples arrive at a port; or a loop, of the last samples unless it brings others. */
+  /**
+   * Starts a source: a voice made from a description, a voice whose samples arrive at a port, or a
+   * loop, which plays the last loop's samples unless it brings its own.
+   */
   load({ id, description, samples, loop, gain }) {
     if (this.stopping) return;
     if (loop) {

@@ -1,4 +1,5 @@
-// Scenes: surfaces, a motion and a device, played from memory. What plays them is a third module, which is loaded when it is first needed.
+// Scenes: surfaces, a motion and a device, played from memory. A third module plays them. It is
+// loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
 import { HtexError, toBytes } from "./core.js";
@@ -14,7 +15,10 @@ const OPTIONS = { device: "string", profile: "string", settings: "any", quantity
 /** Frees what its owner did not free. */
 const abandoned = typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, id }) => core.call("scene-free", { id }));
 
-/** Sets where the module is: its address, its bytes or a WebAssembly.Module. Before the first use. */
+/**
+ * Sets where the module is: its address, its bytes or a WebAssembly.Module. Call this before the
+ * first use.
+ */
 export function setSceneLibrary(library) {
   if (library !== undefined) source = () => library;
   core = undefined;
@@ -54,8 +58,11 @@ export class Scene {
     abandoned?.register(this, { core, id }, this);
   }
 
-  /** Renders the scene from its start, for its own length or `seconds`; or the next samples to a Float32Array, of which the part that
-   * was rendered is returned: less at the end of the scene. */
+  /**
+   * Renders the scene from its start, for its own duration or for `seconds`. If a Float32Array is
+   * passed in, renders the next samples into it and returns the part that was rendered, which is
+   * shorter at the end of the scene.
+   */
   render(given) {
     if (given instanceof Float32Array) {
       const samples = this.samples("scene-next", { frames: given.length });
@@ -66,8 +73,10 @@ export class Scene {
     return this.samples("scene-render", { seconds: given });
   }
 
-  /** Renders the scene at another motion: a speed, a force and, if it is known, a place for each block of samples; a number is that of
-   * all blocks. */
+  /**
+   * Renders the scene at another motion: a speed, a force and, if known, a place for each block of
+   * samples. A single number applies to all blocks.
+   */
   renderPath(speeds, forces, { x, y, block = 64 } = {}) {
     if ((x === undefined) !== (y === undefined)) throw argument("a place has two coordinates; give x and y, or neither");
     const series = [speeds, forces, x ?? NaN, y ?? NaN];

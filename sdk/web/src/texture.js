@@ -139,7 +139,10 @@ export class Texture extends Handle {
     return this.manifest.representations.map((representation) => representation.model);
   }
 
-  /** Index of the condition at which a representation is played where no motion is given: the first, or the strongest if it is silent. */
+  /**
+   * Returns the index of the condition at which a representation is played when no motion is given:
+   * the first, or the strongest if the first is silent.
+   */
   defaultCondition(model) {
     const { core } = this;
     return core.scope((take) => {
@@ -270,7 +273,10 @@ export class Voice extends Handle {
     this.core.call("htex_voice_reset", this.id, 0);
   }
 
-  /** What was rendered since the last call: level (RMS, in the unit), centroid (Hz) and the mean square in each of the voice's `bands`. */
+  /**
+   * Returns what was rendered since the last call: level (RMS, in the unit), centroid (Hz) and the
+   * mean square in each of the voice's `bands`.
+   */
   envelope(bands = new Float64Array(this.bands)) {
     return this.core.envelope(this.id, bands);
   }
@@ -283,16 +289,20 @@ export class Voice extends Handle {
     return new Float64Array(core.exports.memory.buffer, core.results, count).slice();
   }
 
-  /** Sets the motion of the finger: speed in mm/s, force in N, and, in mm, the position along the path and the place on the
-   * surface, if they are known. */
+  /**
+   * Sets the motion of the finger: speed in mm/s, force in N and, if known, the position along the
+   * path and the place on the surface in mm.
+   */
   setMotion(speed, force, position = NaN, x = NaN, y = NaN) {
     const { core } = this;
     writeMotion(core.view(), core.results, { speed, force, position, x, y });
     core.call("htex_voice_set_motion", this.id, core.results);
   }
 
-  /** Renders the next samples, in the texture's unit, to a Float32Array, or to a new one of a length. Does not allocate for
-   * an array that is given. */
+  /**
+   * Renders the next samples, in the texture's unit, into a Float32Array or into a new one of a
+   * given length. Does not allocate if an array is passed in.
+   */
   render(out) {
     if (typeof out === "number") {
       if (!Number.isInteger(out) || out < 0) throw new HtexError(`${out} frames; give a whole number`, "invalid-argument");
@@ -306,8 +316,10 @@ export class Voice extends Handle {
     return out;
   }
 
-  /** Renders a block of `frames` samples at each motion: arrays of speeds, forces and, optionally, positions and places (x and
-   * y). */
+  /**
+   * Renders a block of `frames` samples at each motion, given as arrays of speeds, forces and,
+   * optionally, positions and places (x and y).
+   */
   renderPath(speeds, forces, frames, positions, xs, ys) {
     const { core } = this;
     const count = speeds.length;

@@ -1,4 +1,4 @@
-//! Recordings to spectra and textures, and the agreement of spectra.
+//! Computes spectra and textures from recordings, and the agreement of spectra.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,10 +21,10 @@ use crate::python::{from_json, parsed};
 use crate::reading::{Pair, Reading, ReadingText, Source, unknown};
 use crate::texture::Texture;
 
-/// Program and version, for an asset's provenance: those of the command.
+/// Program and version, for an asset's provenance, the same as the command states.
 pub(crate) const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));
 
-/// Returns the texture spectrum of a recording, with what was read.
+/// Returns the texture spectrum of a recording, and information about how it was read.
 #[pyfunction]
 pub(crate) fn process(
     py: Python<'_>,
@@ -80,7 +80,7 @@ fn described(spectrum: &TextureSpectrum) -> Value {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Fit {
-    /// As JSON, as `metadata`.
+    /// JSON, as is `metadata`.
     settings: PyBackedStr,
     metadata: PyBackedStr,
     conditions: Vec<Pair>,
@@ -88,7 +88,7 @@ pub(crate) struct Fit {
     installed: bool,
 }
 
-/// Fits models to recordings; returns the texture, and what its file does not hold.
+/// Fits models to recordings. Returns the texture, and information that its file does not contain.
 #[pyfunction]
 pub(crate) fn fit<'py>(
     py: Python<'py>,
@@ -114,8 +114,7 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     Ok((texture, rest))
 }
 
-/// Raises the error of a model that is written in Python: others that cannot be fitted are left
-/// out.
+/// Raises the error of a model written in Python. Other models that cannot be fitted are left out.
 fn raise_of_python(registry: &Registry, skipped: &[(String, String)]) -> PyResult<()> {
     for (id, reason) in skipped {
         let model = registry.find(id).or_raise()?;
@@ -157,7 +156,7 @@ impl Fit {
     }
 }
 
-/// Compares magnitudes with those of a reference at the same frequencies.
+/// Compares magnitudes with a reference's magnitudes at the same frequencies.
 #[pyfunction]
 pub(crate) fn agreement<'py>(
     py: Python<'py>,

@@ -1,4 +1,5 @@
-//! Textures without recordings: of parameters, between two others, with other metadata.
+//! Makes textures without recordings: from parameters, between two other textures, or with other
+//! metadata.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -18,7 +19,7 @@ use crate::python::parsed;
 use crate::reading::{Pair, unknown};
 use crate::texture::Texture;
 
-/// What is made of parameters: the keywords of the package's function.
+/// Arguments for making a texture from parameters: the keywords of the package's function.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Made {
@@ -28,19 +29,19 @@ pub(crate) struct Made {
     level_rms: f64,
     at: Pair,
     quantity: String,
-    /// As JSON.
+    /// JSON.
     metadata: PyBackedStr,
     plugins: Vec<PathBuf>,
     installed: bool,
 }
 
-/// Makes a texture of parameters.
+/// Makes a texture from parameters.
 #[pyfunction]
 pub(crate) fn make(py: Python<'_>, made: Made) -> PyResult<Texture> {
     py.detach(|| made.texture())
 }
 
-/// Makes a texture between two others; `weight` is the part of the second.
+/// Makes a texture between two others. `weight` is the share of the second.
 #[pyfunction]
 pub(crate) fn mix(
     py: Python<'_>,
@@ -107,7 +108,7 @@ impl Made {
     }
 }
 
-/// Reads metadata; refuses what would make the asset invalid.
+/// Reads metadata, and refuses metadata that would make the asset invalid.
 fn checked(metadata: &str) -> PyResult<Metadata> {
     let metadata: Metadata = parsed(metadata)?;
     let checked = metadata.check();

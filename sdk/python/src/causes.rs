@@ -1,5 +1,5 @@
-//! Exceptions of models that are written in Python. The host passes their texts on; the exception
-//! that is raised for one gets the original as its cause.
+//! Exceptions from models written in Python. The host passes on only their texts; the exception
+//! that is finally raised gets the original as its cause.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
@@ -8,20 +8,22 @@ use htex_model::{Error, Status};
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 
-/// Exceptions that are kept. One is dropped when it becomes a cause, or after this many others.
+/// Number of exceptions that are stored. An exception is dropped when it becomes a cause, or after
+/// this many others.
 const MOST: usize = 16;
-/// Most characters of an exception's text.
+/// Largest length of an exception's text, characters.
 const LONGEST: usize = 500;
 
 /// Texts and exceptions, the latest first.
 static RAISED: Mutex<VecDeque<(String, PyErr)>> = Mutex::new(VecDeque::new());
 
-/// Keeps an exception; returns its text, in one line.
+/// Stores an exception and returns its text in one line.
 fn keep(py: Python<'_>, error: PyErr) -> String {
     let text = error.to_string();
     let one_line = |c: char| if c.is_control() { ' ' } else { c };
     let text: String = text.chars().take(LONGEST).map(one_line).collect();
-    // An exception is dropped after the lock is released: it may run code of Python.
+    // The old exception is dropped after the lock is released, because dropping it may run Python
+    // code.
     let old = py.detach(|| {
         let mut raised = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
         raised.push_front((text.clone(), error));
@@ -31,13 +33,13 @@ fn keep(py: Python<'_>, error: PyErr) -> String {
     text
 }
 
-/// Keeps the exception of a call, and makes the model's error of it.
+/// Stores the exception of a call, and makes the model's error from it.
 pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
     Error::new(Status::Failed, keep(py, error))
 }
 
-/// Sets the kept exception whose text is part of this one's as its cause. An interrupt is returned
-/// itself.
+/// Sets the stored exception whose text is part of this one's as its cause. An interrupt is
+/// returned itself.
 pub(crate) fn attach(error: PyErr) -> PyErr {
     Python::attach(|py| {
         let text = error.to_string();

@@ -1,4 +1,4 @@
-//! Recordings against textures and other recordings.
+//! Compares recordings with textures and with other recordings.
 
 use htex_author::{CompareError, Difference, compare as compared};
 use pyo3::prelude::*;

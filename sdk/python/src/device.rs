@@ -1,4 +1,4 @@
-//! Devices: what plays samples, by name.
+//! Devices play samples, and are selected by name.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -15,12 +15,12 @@ use serde_json::json;
 use crate::errors::{DeviceError as Failed, option};
 use crate::python::{data, from_json};
 
-/// A device that is open. One that is not finished goes to rest when it is closed.
+/// An open device. If it is closed without `finish`, it goes to rest.
 #[pyclass(module = "htex")]
 pub(crate) struct Device {
     name: String,
-    /// None when it is closed. The lock is for the interpreter alone: each call has the object to
-    /// itself.
+    /// `None` when it is closed. The lock only satisfies the interpreter: each call has the object
+    /// to itself.
     device: Mutex<Option<Box<dyn Opened>>>,
     can: Capabilities,
     rate_hz: f64,
@@ -68,19 +68,20 @@ impl Device {
         })
     }
 
-    /// Rate of the samples, hertz.
+    /// Sample rate, hertz.
     #[getter]
     fn rate_hz(&self) -> f64 {
         self.rate_hz
     }
 
-    /// Unit of the samples; empty for parts of full scale.
+    /// Unit of the samples; empty for fractions of full scale.
     #[getter]
     fn unit(&self) -> &'static str {
         self.can.quantity.unit()
     }
 
-    /// Gives samples to the device, as many as it takes within the time; returns their number.
+    /// Passes samples to the device, as many as it accepts within the time, and returns their
+    /// number.
     #[pyo3(signature = (samples, timeout_s=1.0))]
     fn write(
         &mut self,
@@ -95,7 +96,7 @@ impl Device {
         py.detach(|| device.write(&samples, timeout)).map_err(raised)
     }
 
-    /// What it did so far.
+    /// What the device has done so far.
     #[getter]
     fn status<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let status = self.open()?.status();
@@ -108,7 +109,7 @@ impl Device {
         data(py, "DeviceStatus", &fields)
     }
 
-    /// Plays what was written to its end, and keeps the result.
+    /// Plays everything that was written, and saves the result.
     fn finish(&mut self, py: Python<'_>) -> PyResult<()> {
         let device = self.open()?;
         py.detach(|| device.finish()).map_err(raised)
@@ -156,7 +157,7 @@ impl Device {
     }
 }
 
-/// The devices, as `htex device list --json` has them: what each is, its settings, what is
+/// The devices, as in `htex device list --json`: a description of each, its settings, and what is
 /// connected.
 #[pyfunction(name = "devices")]
 #[pyo3(signature = (*, installed=false))]
@@ -181,7 +182,7 @@ pub(crate) fn devices(installed: bool) -> Result<Devices, DeviceError> {
     Devices::search(htex_device_builtin::devices(), &search)
 }
 
-/// The exception of an error of a device.
+/// Makes the exception for an error of a device.
 fn raised(error: DeviceError) -> PyErr {
     match error {
         DeviceError::Setting { .. } | DeviceError::Rate { .. } | DeviceError::Unknown { .. } => {

@@ -1,4 +1,4 @@
-//! The package's exceptions, and the one that each error becomes.
+//! The package's exceptions, and which error becomes which exception.
 
 use std::io;
 use std::path::Path;
@@ -26,13 +26,14 @@ import_exception!(htex._errors, OptionError);
 import_exception!(htex._errors, RecordingError);
 import_exception!(htex._errors, SceneError);
 
-/// An error that becomes an exception: of this package, or `OSError` when the system reports it.
+/// An error that becomes an exception: one of this package's, or `OSError` if the system reports
+/// it.
 pub(crate) trait IntoPyErr {
     /// Makes the exception.
     fn into_py_err(self) -> PyErr;
 }
 
-/// The conversion of a result's error to an exception.
+/// Converts the error of a result to an exception.
 pub(crate) trait OrRaise<T> {
     /// Converts the error to an exception.
     fn or_raise(self) -> PyResult<T>;
@@ -44,8 +45,8 @@ impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
     }
 }
 
-/// Makes the `OSError` of a file; its subclass, such as `FileNotFoundError`, follows from the
-/// system's number.
+/// Makes the `OSError` for a file. The system's error number determines the subclass, such as
+/// `FileNotFoundError`.
 pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     match error.raw_os_error() {
         Some(number) => {
@@ -58,7 +59,7 @@ pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     }
 }
 
-/// Makes the exception of an invalid argument.
+/// Makes the exception for an invalid argument.
 pub(crate) fn option(text: impl Into<String>) -> PyErr {
     OptionError::new_err(text.into())
 }

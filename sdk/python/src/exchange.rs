@@ -1,4 +1,4 @@
-//! Files of other formats: imported as textures, and exported for what people own.
+//! Files of other formats: imports them as textures, and exports textures to them.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ use crate::python::{from_json, parsed};
 use crate::reading::unknown;
 use crate::texture::Texture;
 
-/// What the file of an import does not say, and how it is fitted.
+/// What the imported file does not state, and how it is fitted.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Importing {
@@ -32,9 +32,9 @@ pub(crate) struct Importing {
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
     profile: Option<String>,
-    /// As JSON.
+    /// JSON.
     settings: PyBackedStr,
-    /// As JSON.
+    /// JSON.
     metadata: PyBackedStr,
     plugins: Vec<PathBuf>,
     installed: bool,
@@ -57,13 +57,13 @@ pub(crate) struct Exporting {
     seed: u64,
 }
 
-/// The formats and the profiles of actuators, as `htex formats --json` has them.
+/// The formats and the actuator profiles, as in `htex formats --json`.
 #[pyfunction]
 pub(crate) fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     from_json(py, &json!({ "formats": FORMATS, "profiles": &*PROFILES }))
 }
 
-/// Imports a file; returns the texture, warnings and notes.
+/// Imports a file, and returns the texture, warnings and notes.
 #[pyfunction]
 pub(crate) fn import_file(
     py: Python<'_>,
@@ -73,7 +73,7 @@ pub(crate) fn import_file(
     py.detach(|| request.import(&file))
 }
 
-/// Exports a texture; returns the file's bytes and what is lost.
+/// Exports a texture, and returns the file's bytes and a description of what is lost.
 #[pyfunction]
 pub(crate) fn export<'py>(
     py: Python<'py>,
@@ -185,7 +185,7 @@ impl IntoPyErr for ExchangeError {
     }
 }
 
-/// The keyword of a setting.
+/// Returns the keyword for a setting.
 fn keyword(setting: &str) -> String {
     let name = match setting {
         "speed" => "speed_mm_s",

@@ -1,5 +1,5 @@
-//! The extension module of the Python package `htex`. The package's Python files hold the data
-//! classes, the exceptions and the command; this module opens, plays, fits and sweeps, and releases
+//! The extension module of the Python package `htex`. The package's Python files contain the data
+//! classes, the exceptions and the command. This module opens, plays, fits and sweeps, and releases
 //! the interpreter while it does.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]

@@ -15,7 +15,7 @@ use crate::errors::{IntoPyErr, LibraryError as Raised, OrRaise, of_file};
 use crate::python::data;
 use crate::texture::{Source, Texture};
 
-/// A library: one file with thousands of textures, each of which is read when it is asked for.
+/// A library: one file with thousands of textures. Each texture is read when it is requested.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Library {
     library: htex::Library<Origin>,
@@ -24,7 +24,7 @@ pub(crate) struct Library {
     installed: bool,
 }
 
-/// The bytes of a library: a file of this machine or elsewhere, or memory.
+/// Where the bytes of a library come from: a local or remote file, or memory.
 enum Origin {
     File(Located),
     Memory(Vec<u8>),
@@ -105,7 +105,7 @@ impl Library {
         entries.iter().map(|entry| entry_data(py, entry)).collect()
     }
 
-    /// Returns the entries of the textures that have all that is asked for.
+    /// Returns the entries of the textures that match a query.
     #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None))]
     fn find<'py>(
         &self,
@@ -198,9 +198,9 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
     data(py, "LibraryEntry", &fields)
 }
 
-/// Packs textures into a library, by their names: paths, bytes, objects with the method `read`, or
-/// `Texture`s. Each states a licence, since a library is passed on; with `unlicensed=True` those
-/// that state none are packed, too.
+/// Packs textures into a library, by name: paths, bytes, objects with the method `read`, or
+/// `Texture`s. Each must state a licence, because libraries are passed on. With `unlicensed=True`,
+/// textures without a licence are also packed.
 #[pyfunction]
 #[pyo3(signature = (path, textures, *, name="", unlicensed=false))]
 pub(crate) fn pack(

@@ -1,4 +1,4 @@
-//! Builds of libraries, and their jobs, which run anywhere.
+//! Builds libraries. The jobs of a build can run anywhere.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use crate::author::TOOL;
 use crate::errors::{BuildError as Raised, of_file, option};
 use crate::python::from_json;
 
-/// A build of a library that is planned.
+/// A planned build of a library.
 #[pyclass(frozen, module = "htex._htex")]
 pub(crate) struct Build(Mutex<Option<htex_build::Build>>, Destination);
 
@@ -43,7 +43,7 @@ impl Build {
         Ok(Self(Mutex::new(Some(build)), to))
     }
 
-    /// The jobs to do: key, job as JSON, bytes of its recordings.
+    /// The pending jobs: key, job as JSON, and size of its recordings in bytes.
     fn pending(&self) -> PyResult<Vec<(String, String, u64)>> {
         let build = self.lock();
         let jobs = open(&build)?.pending().map(|(key, job)| {
@@ -53,13 +53,13 @@ impl Build {
         jobs.collect()
     }
 
-    /// Number of the recipe's textures.
+    /// Number of textures in the recipe.
     #[getter]
     fn textures(&self) -> PyResult<usize> {
         Ok(open(&self.lock())?.plan().textures.len())
     }
 
-    /// Keeps what a job made.
+    /// Stores the result of a job.
     fn store(&self, py: Python<'_>, key: &str, made: PyBackedBytes) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
             Some(build) => build.store(key, &made).map_err(|error| failed_while_open(build, error)),
@@ -67,7 +67,7 @@ impl Build {
         })
     }
 
-    /// Does the pending jobs here.
+    /// Runs the pending jobs here.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
             Some(build) => {
@@ -82,7 +82,7 @@ impl Build {
         })
     }
 
-    /// Writes the results and returns the report.
+    /// Writes the results, and returns the report.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let build = self.lock().take().ok_or_else(finished)?;
         let built = py
@@ -112,14 +112,14 @@ fn finished() -> PyErr {
     option("the build is finished; make another one")
 }
 
-/// The folder of this machine in which results are made.
+/// The folder on this machine in which results are made.
 #[pyfunction]
 pub(crate) fn work_folder(output: OsString, work: Option<PathBuf>) -> PyResult<OsString> {
     let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
     Ok(to.folder().into())
 }
 
-/// The files of a recipe whose hashes are not known: paths and URIs.
+/// The files of a recipe whose hashes are unknown: paths and URIs.
 #[pyfunction]
 pub(crate) fn unhashed(
     py: Python<'_>,
@@ -130,14 +130,14 @@ pub(crate) fn unhashed(
     Ok(files.map_err(raised)?.into_iter().map(OsString::from).collect())
 }
 
-/// Hashes a file of a recipe; returns the hash as JSON.
+/// Hashes a file of a recipe, and returns the hash as JSON.
 #[pyfunction]
 pub(crate) fn hash_file(py: Python<'_>, recipe: PathBuf, file: PathBuf) -> PyResult<String> {
     let hashed = py.detach(|| htex_build::hash_file(&recipe, &file)).map_err(raised)?;
     serde_json::to_string(&hashed).map_err(|error| option(error.to_string()))
 }
 
-/// Keeps hashes of files for the build that follows.
+/// Stores hashes of files for the following build.
 #[pyfunction]
 pub(crate) fn remember(
     py: Python<'_>,
@@ -154,7 +154,7 @@ pub(crate) fn remember(
     py.detach(|| htex_build::remember(&output, hashed)).map_err(raised)
 }
 
-/// Does a job, given as JSON, with the key that it has; returns what it made.
+/// Runs a job that is given as JSON, with its key, and returns the result.
 #[pyfunction]
 pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bound<'py, PyBytes>> {
     let job: Job = serde_json::from_str(job)
@@ -172,17 +172,17 @@ pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bo
     Ok(PyBytes::new(py, &made.map_err(raised)?))
 }
 
-/// Writes an error into the report of the folder, as `htex build` does, and makes its exception.
+/// Writes an error to the report in the folder, as `htex build` does, and makes its exception.
 fn failed(to: &Destination, error: BuildError) -> PyErr {
     if matches!(error, BuildError::Removes { .. }) {
         return raised(error);
     }
-    // A folder in which not even that can be written is what the error is about.
+    // If even the report cannot be written, the error being raised is already about that folder.
     let _ = htex_build::report_failure(to.folder(), TOOL, &lines(&error));
     raised(error)
 }
 
-/// The same for a build that holds its folder.
+/// The same for a build that has opened its folder.
 fn failed_while_open(build: &htex_build::Build, error: BuildError) -> PyErr {
     let _ = build.report_failure(&lines(&error));
     raised(error)

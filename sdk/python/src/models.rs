@@ -1,4 +1,4 @@
-//! The models: where they are searched, and those that are found.
+//! The models: where they are searched for, and which are found.
 
 use std::path::PathBuf;
 
@@ -9,8 +9,8 @@ use crate::errors::OrRaise;
 use crate::python::from_json;
 use crate::python_model;
 
-/// Searches models: plugin files and folders of them, the installed ones if requested, the built-in
-/// ones, and those that are written in Python.
+/// Searches for models: in plugin files and folders, the installed ones if requested, the built-in
+/// ones, and those written in Python.
 pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registry> {
     let (dirs, files) = plugins.iter().cloned().partition(|path| path.is_dir());
     let places = Search::builtin().with_env(installed).with_user_dir(installed);
@@ -19,7 +19,7 @@ pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registr
     Ok(registry)
 }
 
-/// Returns the descriptors of the models that are found.
+/// Returns the descriptors of the models that were found.
 #[pyfunction]
 #[pyo3(signature = (*, plugins=Vec::new(), installed=false))]
 pub(crate) fn models(

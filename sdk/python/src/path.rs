@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::errors::{MotionError, option};
 use crate::python::zeros;
 
-/// A number for all blocks, or one for each.
+/// One number for all blocks, or one for each block.
 pub(crate) enum Series {
     /// One number.
     Constant(f64),
@@ -37,7 +37,7 @@ impl Series {
         }
     }
 
-    /// Returns the number for a block, which exists.
+    /// Returns the number for a block, which must exist.
     pub(crate) fn at(&self, block: usize) -> f64 {
         match self {
             Self::Constant(x) => *x,
@@ -46,10 +46,10 @@ impl Series {
     }
 }
 
-/// A motion with what is known of where the finger is.
+/// Makes a motion, with the position and place of the finger if known.
 ///
 /// # Errors
-/// When of a place only one number is given.
+/// When a place has only one coordinate.
 pub(crate) fn located(
     motion: Motion,
     position_mm: Option<f64>,
@@ -100,7 +100,7 @@ impl Path {
     }
 }
 
-/// Returns the samples of a path with these numbers for its blocks.
+/// Returns the number of samples in a path with these numbers for its blocks.
 ///
 /// # Errors
 /// When a block is empty, or the series differ in length.

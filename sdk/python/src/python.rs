@@ -1,4 +1,4 @@
-//! Values for Python: JSON as dicts, and the package's data classes.
+//! Converts values for Python: JSON to dicts, and the package's data classes.
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::PyMemoryError;
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::errors::option;
 
-/// Converts a value to dicts, lists, texts and numbers by its JSON; NaN becomes `None`.
+/// Converts a value, via its JSON, to dicts, lists, texts and numbers. NaN becomes `None`.
 pub(crate) fn from_json<'py>(
     py: Python<'py>,
     value: &impl Serialize,
@@ -19,7 +19,7 @@ pub(crate) fn from_json<'py>(
     py.import("json")?.call_method1("loads", (text,))
 }
 
-/// Reads a value that the package passes as JSON, such as the settings of a function.
+/// Reads a value that the package passes as JSON, such as a function's settings.
 pub(crate) fn parsed<T: DeserializeOwned>(json: &str) -> PyResult<T> {
     let value: Value = serde_json::from_str(json).map_err(|error| option(error.to_string()))?;
     serde_path_to_error::deserialize(value).map_err(|error| {
@@ -31,7 +31,7 @@ pub(crate) fn parsed<T: DeserializeOwned>(json: &str) -> PyResult<T> {
     })
 }
 
-/// Makes an instance of a data class of the package.
+/// Makes an instance of one of the package's data classes.
 pub(crate) fn data<'py>(
     py: Python<'py>,
     class: &str,
@@ -61,7 +61,7 @@ pub(crate) fn spectrum(
 /// Returns a vector of `n` zeros.
 ///
 /// # Errors
-/// `MemoryError` when there is no memory for them.
+/// `MemoryError` when there is not enough memory.
 pub(crate) fn zeros(n: usize) -> PyResult<Vec<f32>> {
     let mut samples = Vec::new();
     let reserved = samples.try_reserve_exact(n);

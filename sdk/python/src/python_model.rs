@@ -1,8 +1,8 @@
-//! Models that are written in Python. They run under the interpreter's lock, in this process only.
+//! Models written in Python. They run under the interpreter's lock, and only in this process.
 //!
-//! They are objects ([`RuntimeModel`]), whose arguments and results the host checks as for other
-//! models. Exceptions pass the host as texts; the exception that is raised for one gets the
-//! original as its cause.
+//! They are objects ([`RuntimeModel`]). The host checks their arguments and results as it does for
+//! other models. Exceptions pass through the host as texts; the exception that is finally raised
+//! gets the original as its cause.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,18 +18,18 @@ use crate::causes::failed;
 use crate::errors::{OrRaise, option};
 use crate::python_voice::PlayedVoice;
 
-/// The origin of these models in messages and assets.
+/// Where these models come from, in messages and assets.
 const ORIGIN: &str = "Python, this process only";
 
-/// The registered models, in the order of their registration.
+/// The registered models, in the order of registration.
 static REGISTERED: Mutex<Vec<(Descriptor, Arc<PythonModel>)>> = Mutex::new(Vec::new());
 
-/// Waits for a call of another thread; called without the interpreter.
+/// Waits for a call in another thread, so it is called without holding the interpreter.
 fn registered() -> MutexGuard<'static, Vec<(Descriptor, Arc<PythonModel>)>> {
     REGISTERED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Registers a model, or replaces the one of its id. `adapter` converts parameters and checks
+/// Registers a model, or replaces the model with its id. `adapter` converts parameters and checks
 /// results.
 #[pyfunction]
 pub(crate) fn register_model(
@@ -56,7 +56,7 @@ pub(crate) fn register_model(
     Ok(())
 }
 
-/// Removes a model from later searches; returns whether there was one of this id.
+/// Removes a model from later searches. Returns whether a model with this id was registered.
 #[pyfunction]
 pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
     let old = py.detach(|| {
@@ -67,7 +67,7 @@ pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
     old.is_some()
 }
 
-/// Adds the registered models to those of a search.
+/// Adds the registered models to the results of a search.
 pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
     let all = registered().clone();
     for (descriptor, model) in all {
@@ -79,7 +79,7 @@ pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
 /// A model: an object of the package that calls the author's class.
 pub(crate) struct PythonModel {
     adapter: Py<PyAny>,
-    /// Whether the class makes its own voices; else noise is shaped by its magnitudes.
+    /// Whether the class makes its own voices. If not, noise is shaped by its magnitudes.
     plays: bool,
 }
 
@@ -87,7 +87,7 @@ fn array<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArray1<f64>> {
     PyArray1::from_slice(py, numbers)
 }
 
-/// Returns the numbers of an array or a sequence, of which there must be `wanted`.
+/// Returns the numbers of an array or a sequence, which must have `wanted` entries.
 fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
     let numbers: Vec<f64> = value.extract()?;
     if numbers.len() == wanted {
@@ -98,14 +98,16 @@ fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
 }
 
 impl PythonModel {
-    /// Returns the magnitudes of parameters at frequencies in the band, at unit RMS on the grid.
+    /// Returns the magnitudes for parameters, at frequencies in the band. They have unit RMS on the
+    /// grid.
     pub(crate) fn curve(
         &self,
         parameters: &[f64],
         band: Band,
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, Error> {
-        // One call of Python: the grid, which gives the level, and then the frequencies.
+        // A single call to Python gets both: first the grid, which gives the level, then the
+        // frequencies.
         let mut all = band.grid_hz();
         let bins = all.len();
         all.extend(frequency_hz);
@@ -187,7 +189,7 @@ impl RuntimeModel for PythonModel {
     }
 }
 
-/// Noise with the magnitudes of a model. Rendering does not call Python; changing the parameters
+/// Noise with a model's magnitudes. Rendering does not call Python, but changing the parameters
 /// does.
 struct ShapedVoice {
     model: PythonModel,

@@ -1,4 +1,4 @@
-//! Voices that are written in Python: objects with a method `render`.
+//! Voices written in Python: objects with a method `render`.
 
 use htex::host::RuntimeVoice;
 use htex_model::{Error, Values};
@@ -14,7 +14,7 @@ pub(crate) struct PlayedVoice {
 }
 
 impl PlayedVoice {
-    /// Makes a voice of an object with the methods `render` and `retune`.
+    /// Makes a voice from an object with the methods `render` and `retune`.
     pub(crate) fn new(adapter: Py<PyAny>) -> Self {
         Self { adapter }
     }

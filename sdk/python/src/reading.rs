@@ -17,7 +17,7 @@ use serde::Deserialize;
 use crate::errors::{IntoPyErr, OrRaise, of_file, option};
 use crate::python::parsed;
 
-/// A recording: a file, or a name and the bytes of a file.
+/// A recording: a file, or the name and the bytes of a file.
 #[derive(FromPyObject)]
 pub(crate) enum Source {
     /// A name, and bytes.
@@ -29,15 +29,15 @@ pub(crate) enum Source {
 
 /// How recordings are read.
 pub(crate) struct Reading {
-    /// What the command's flags say, too.
+    /// The settings that also exist as flags of the command.
     settings: ReadingSettings,
     besides: Besides,
 }
 
-/// How recordings are read, as the package says it: settings, and what is said besides, as JSON.
+/// How recordings are read, as the package passes it: settings and further keywords, both JSON.
 pub(crate) type ReadingText = (PyBackedStr, PyBackedStr);
 
-/// Keywords of reading beside the settings.
+/// Keywords for reading that are not settings.
 #[derive(Deserialize, Default)]
 #[serde(default, deny_unknown_fields)]
 struct Besides {
@@ -63,7 +63,7 @@ impl Reading {
         &self.settings
     }
 
-    /// Reads recordings. `conditions` has one entry for each of them, or one for all, or none.
+    /// Reads recordings. `conditions` has one entry for each of them, one for all, or none.
     pub(crate) fn takes(&self, sources: &[Source], conditions: &[Pair]) -> PyResult<Vec<Take>> {
         let options =
             self.settings().read_options(sources.len()).map_err(|error| self.raised(error))?;
@@ -87,8 +87,7 @@ impl Reading {
         sources.iter().zip(&options).enumerate().map(take).collect()
     }
 
-    /// Reads one recording; returns it with the segments that were read, and their texture
-    /// spectrum.
+    /// Reads one recording. Returns it with the segments that were read and their texture spectrum.
     pub(crate) fn spectrum(
         &self,
         source: Source,
@@ -101,8 +100,8 @@ impl Reading {
         Ok((take.recording, read, spectrum))
     }
 
-    /// Reads a recording. One of `htex record` or of a study is read as the JSON beside it says,
-    /// unless a setting says what the columns are.
+    /// Reads a recording. A recording from `htex record` or a study is read as the JSON file next
+    /// to it specifies, unless a setting says what the columns are.
     fn read(&self, source: &Source, options: &ReadOptions) -> PyResult<Recording> {
         let path = match source {
             Source::Bytes(name, bytes) => {
@@ -121,13 +120,13 @@ impl Reading {
         read.map_err(|error| raised(&file, error))
     }
 
-    /// Returns the options of computing spectra.
+    /// Returns the options for computing spectra.
     pub(crate) fn spectrum_options(&self) -> PyResult<SpectrumOptions> {
         let options = self.settings().spectrum_options();
         options.map_err(|error| self.raised(error))
     }
 
-    /// Makes the exception of a setting.
+    /// Makes the exception for a setting.
     pub(crate) fn raised(&self, error: SettingsError) -> PyErr {
         match (error, &self.settings().response) {
             (SettingsError::Response(error), Some(file)) => raised(file, *error),
@@ -139,12 +138,12 @@ impl Reading {
     }
 }
 
-/// Makes the exception of a text that is not one of some names.
+/// Makes the exception for a text that is not one of the known names.
 pub(crate) fn unknown(what: &str, got: &str, known: &str) -> PyErr {
     option(format!("{what} is {got:?}; known are {known}"))
 }
 
-/// Makes the exception of a file that cannot be read, with its whole path.
+/// Makes the exception for a file that cannot be read, with its full path.
 fn raised(path: &Path, error: ReadError) -> PyErr {
     match &error.problem {
         ReadProblem::Io(source) => of_file(path, source),

@@ -12,7 +12,7 @@ use serde_json::json;
 use crate::errors::{IntoPyErr, OrRaise, RecordingError, option};
 use crate::python::{from_json, parsed};
 
-/// Measures a response from recordings of an input and an output, each a pair of series.
+/// Measures a response from recordings of an input and an output, each given as a list of series.
 #[pyfunction]
 pub(crate) fn response<'py>(
     py: Python<'py>,
@@ -31,7 +31,7 @@ pub(crate) fn response<'py>(
     from_json(py, &json!({"measured": measured.or_raise()?, "settings": options}))
 }
 
-/// Returns the CSV file of a response.
+/// Returns a response as a CSV file.
 #[pyfunction]
 pub(crate) fn response_csv(
     py: Python<'_>,

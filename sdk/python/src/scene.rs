@@ -68,7 +68,7 @@ impl Scene {
         })
     }
 
-    /// Unit of the samples: that of the device.
+    /// Unit of the samples: the device's unit.
     #[getter]
     fn unit(&self) -> &'static str {
         self.able.quantity.unit()
@@ -80,13 +80,14 @@ impl Scene {
         self.loaded.notes.iter().map(ToString::to_string).collect()
     }
 
-    /// Returns the plan: stages with reasons and costs, effects that are left out, chosen models.
+    /// Returns the plan: stages with reasons and costs, effects that are left out, and the chosen
+    /// models.
     fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let plan = py.detach(|| self.planned(&self.loaded))?;
         from_json(py, &plan)
     }
 
-    /// Rate of the samples, hertz.
+    /// Sample rate, hertz.
     #[getter]
     fn rate_hz(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(py.detach(|| self.planned(&self.loaded))?.rate_hz)
@@ -176,7 +177,7 @@ impl Scene {
         plan(loaded, &self.able, &costs()).or_raise()
     }
 
-    /// Loads the scene for a motion that is given while it plays.
+    /// Loads the scene for a motion that is set while it plays.
     fn live(&self) -> PyResult<LoadedScene> {
         let around =
             Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
@@ -193,7 +194,7 @@ fn failed(renderer: &mut Renderer) -> PyResult<()> {
     renderer.take_failure().map_or(Ok(()), Err).or_raise()
 }
 
-/// Costs that the command measured on this machine, else the built-in ones.
+/// Returns the costs that the command measured on this machine, or the built-in ones.
 fn costs() -> Costs {
     let file = folders::cache().map(|folder| folder.join("costs.json"));
     let kept = file.and_then(|file| Costs::load(&file));

@@ -10,13 +10,13 @@ use pyo3::types::PyBytes;
 
 use crate::errors::{IntoPyErr, OrRaise, option};
 
-/// A column of a recording: its name, and its values.
+/// A column of a recording: its name and its values.
 type Column<'py> = (&'static str, Bound<'py, PyArray1<f64>>);
 
 /// Frequencies (hertz), magnitudes and phases (radians) of a response.
 type Response = [Vec<f64>; 3];
 
-/// Lowest and highest values of a motion.
+/// The lowest and highest value of a motion.
 #[derive(FromPyObject)]
 pub(crate) enum Range {
     Between(f64, f64),
@@ -24,7 +24,7 @@ pub(crate) enum Range {
     One(f64),
 }
 
-/// Simulates a recording; returns its columns, the CSV file of them, and the response of the
+/// Simulates a recording. Returns its columns, the same as a CSV file, and the response of the
 /// simulated setup.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
@@ -61,8 +61,8 @@ pub(crate) fn simulate<'py>(
     Ok((columns.into(), PyBytes::new(py, &csv), response))
 }
 
-/// The exponents of a law as JSON, the drift in decibels per minute, and the part of the time that
-/// the finger is off the surface.
+/// Combines a law's exponents (as JSON), the drift in decibels per minute, and the fraction of the
+/// time that the finger is off the surface.
 fn departing((law, drift_db_per_min, lifted): (&str, f64, f64)) -> PyResult<Departures> {
     let law: GivenLaw =
         serde_json::from_str(law).map_err(|error| option(format!("law: {error}")))?;

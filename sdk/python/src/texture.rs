@@ -24,7 +24,7 @@ pub(crate) struct Texture {
     installed: bool,
 }
 
-/// Opens a texture: a path, bytes, or an object with the method `read`.
+/// Opens a texture from a path, bytes, or an object with the method `read`.
 #[pyfunction]
 #[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false))]
 pub(crate) fn open(
@@ -44,7 +44,7 @@ pub(crate) fn open(
     })
 }
 
-/// A file, or the bytes of one.
+/// A file, or the bytes of a file.
 pub(crate) enum Source {
     File(PathBuf),
     Bytes(Vec<u8>),
@@ -61,7 +61,8 @@ impl Source {
         }
         let read =
             if source.hasattr("read")? { source.call_method0("read")? } else { source.clone() };
-        // `bytes` takes objects with a buffer; a number or a text would be something else.
+        // `bytes` must only accept objects with a buffer: it would turn a number or a text into
+        // something else.
         let is_buffer =
             read.cast::<PyBytes>().is_ok() || is_named(&read, &["bytearray", "memoryview"])?;
         if !is_buffer {
@@ -81,7 +82,7 @@ fn is_named(value: &Bound<'_, PyAny>, names: &[&str]) -> PyResult<bool> {
 }
 
 impl Texture {
-    /// Makes a texture of an asset's data.
+    /// Makes a texture from an asset's data.
     pub(crate) fn new(
         data: AssetData,
         plugins: Vec<PathBuf>,
@@ -97,8 +98,8 @@ impl Texture {
         })
     }
 
-    /// Makes a texture of what the file of a made asset holds: levels and errors have fewer digits
-    /// there.
+    /// Makes a texture from what the file of a new asset contains. Levels and errors have fewer
+    /// digits there than in memory.
     pub(crate) fn of(
         made: &htex::format::Asset,
         plugins: Vec<PathBuf>,
@@ -107,13 +108,13 @@ impl Texture {
         Self::new(stored(made)?, plugins, true, installed)
     }
 
-    /// Makes a texture of an asset's file.
+    /// Makes a texture from an asset's file.
     pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
         Self::new(AssetData::from_bytes(bytes).or_raise()?, plugins, true, installed)
     }
 
-    /// Makes a texture of an asset that was made of this one, and of `others`: models that one of
-    /// them does not run, it does not run either.
+    /// Makes a texture from an asset that was made from this one and `others`. It does not run
+    /// models that one of them does not run.
     pub(crate) fn made_of(&self, made: &htex::format::Asset, others: &[&Self]) -> PyResult<Self> {
         let embedded = self.embedded && others.iter().all(|other| other.embedded);
         Self::new(stored(made)?, self.plugins.clone(), embedded, self.installed)
@@ -123,7 +124,7 @@ impl Texture {
         &self.asset
     }
 
-    /// Returns the motion at a condition; a missing value comes from the default condition.
+    /// Returns the motion at a condition. A missing value comes from the default condition.
     fn motion(&self, model: Option<&str>, at: Option<At>) -> PyResult<Option<Motion>> {
         match at {
             None | Some(At { speed_mm_s: None, force_n: None }) => Ok(None),
@@ -138,7 +139,7 @@ impl Texture {
     }
 }
 
-/// A speed and a force: a `Condition`, or a pair of numbers or `None`.
+/// A speed and a force, given as a `Condition` or as a pair of numbers or `None`.
 #[derive(Clone, Copy)]
 pub(crate) struct At {
     speed_mm_s: Option<f64>,
@@ -178,7 +179,7 @@ impl Texture {
         self.asset.quantity().unit()
     }
 
-    /// Lower and upper edge of the band, hertz.
+    /// Lowest and highest frequency of the band, hertz.
     #[getter]
     fn band_hz(&self) -> (f64, f64) {
         self.asset.band().edges()
@@ -249,8 +250,8 @@ impl Texture {
         spectrum(py, quantity, band, frequency_hz, magnitude.or_raise()?)
     }
 
-    /// Returns the magnitudes of a representation at a recorded condition as a recording of its
-    /// voice reads them.
+    /// Returns the magnitudes of a representation at a recorded condition, as a recording of its
+    /// voice would show them.
     #[pyo3(signature = (model=None, condition=None))]
     fn read_spectrum<'py>(
         &self,
@@ -275,15 +276,15 @@ impl Texture {
         spectrum(py, quantity, band, frequency_hz.clone(), read.or_raise()?)
     }
 
-    /// Returns the level of a representation at a condition: RMS in the band, in the unit of the
-    /// samples.
+    /// Returns the level of a representation at a condition: the RMS in the band, in the unit of
+    /// the samples.
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(model, at)?;
         py.detach(|| self.asset.level_rms(model, motion)).or_raise()
     }
 
-    /// Returns the parameters of a representation at a condition, by their names.
+    /// Returns the parameters of a representation at a condition, by name.
     #[pyo3(signature = (model=None, at=None))]
     fn parameters<'py>(
         &self,
@@ -303,7 +304,7 @@ impl Texture {
         Ok(named)
     }
 
-    /// Writes the asset to a file, which appears complete or not at all.
+    /// Writes the asset to a file. The file appears complete or not at all.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| write(&path, &self.bytes()?))
     }
@@ -394,7 +395,7 @@ impl Texture {
     }
 }
 
-/// What the file of a made asset holds.
+/// Returns what the file of a new asset contains.
 fn stored(made: &htex::format::Asset) -> PyResult<AssetData> {
     AssetData::from_bytes(&made.to_bytes().or_raise()?).or_raise()
 }
@@ -404,7 +405,7 @@ pub(crate) fn short(id: &str) -> &str {
     id.rsplit('.').next().unwrap_or(id)
 }
 
-/// Writes a file, which appears complete or not at all.
+/// Writes a file. It appears complete or not at all.
 #[pyfunction(name = "write_file")]
 pub(crate) fn write_content(py: Python<'_>, path: PathBuf, content: &[u8]) -> PyResult<()> {
     py.detach(|| write(&path, content))
@@ -415,7 +416,7 @@ fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
     write_file(path, bytes).map_err(|error| of_file(path, &error))
 }
 
-/// Refuses rates that the command refuses.
+/// Refuses sample rates that the command refuses.
 fn check_rate(rate_hz: f64) -> PyResult<()> {
     if (100.0..=1e6).contains(&rate_hz) {
         Ok(())

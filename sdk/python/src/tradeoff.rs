@@ -1,4 +1,4 @@
-//! Accuracy against bytes and time.
+//! Measures accuracy against bytes and time.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::models::registry;
 use crate::python::from_json;
 use crate::reading::{Reading, ReadingText, Source, unknown};
 
-/// Options of a sweep: the keywords of the package's function.
+/// Options for a sweep: the keywords of the package's function.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Sweep {
@@ -23,7 +23,7 @@ pub(crate) struct Sweep {
     journal: Option<PathBuf>,
 }
 
-/// Measures models and options on recordings; returns the points, knees and warnings.
+/// Measures models and options on recordings. Returns the points, knees and warnings.
 #[pyfunction]
 pub(crate) fn tradeoff(
     py: Python<'_>,

@@ -34,7 +34,7 @@ impl Voice {
         Self { voice: Mutex::new(voice), model, rate_hz, seed, unit }
     }
 
-    /// Waits for a call of another thread; called without the interpreter.
+    /// Waits for a call in another thread, so it is called without holding the interpreter.
     fn lock(&self) -> MutexGuard<'_, htex::Voice> {
         self.voice.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -48,7 +48,7 @@ impl Voice {
         &self.model
     }
 
-    /// Rate of the samples, hertz.
+    /// Sample rate, hertz.
     #[getter]
     fn rate_hz(&self) -> f64 {
         self.rate_hz
@@ -76,7 +76,7 @@ impl Voice {
         Ok(samples.into_pyarray(py))
     }
 
-    /// Fills an array with the next samples; neither copies nor allocates.
+    /// Fills an array with the next samples. Neither copies nor allocates.
     fn render_into(&self, py: Python<'_>, array: &Bound<'_, PyAny>) -> PyResult<()> {
         let Ok(array) = array.cast::<PyArray1<f32>>() else {
             let text = "expected a one-dimensional NumPy array of float32";
@@ -137,18 +137,18 @@ impl Voice {
         Ok(samples.into_pyarray(py))
     }
 
-    /// Sets the gain, which changes within 10 ms.
+    /// Sets the gain. The change takes 10 ms.
     fn set_gain(&self, py: Python<'_>, gain: f64) -> PyResult<()> {
         py.detach(|| self.lock().set_gain(gain).or_raise())
     }
 
-    /// Whether the voice rests: its samples are 0 until a motion is felt again.
+    /// Whether the voice is silent: its samples are 0 until the finger slides again.
     #[getter]
     fn is_silent(&self, py: Python<'_>) -> bool {
         py.detach(|| self.lock().is_silent())
     }
 
-    /// Edges of the bands of `envelope`, hertz: one more than bands.
+    /// Edges of the bands of `envelope`, hertz: one more than there are bands.
     #[getter]
     fn envelope_edges_hz<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let edges_hz = py.detach(|| self.lock().envelope_edges_hz().to_vec());

@@ -1,4 +1,4 @@
-//! The benchmark beside plain loops in C and Python libraries.
+//! Compares htex with plain loops in C and with Python libraries.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -34,7 +34,7 @@ pub fn bench(json: Option<&Path>) -> Result<()> {
     run(&mut bench)
 }
 
-/// The Python of `target/peers`, else `python3`, if it has NumPy and SciPy.
+/// Returns the Python of `target/peers`, or `python3`, if it has NumPy and SciPy.
 #[must_use]
 pub fn python() -> Option<PathBuf> {
     let own = target().join("peers/bin/python");

@@ -1,4 +1,4 @@
-//! Tests of the bindings to other languages, which need more than Rust: `cargo xtask bindings`.
+//! Tests the bindings to other languages, which need more than Rust: `cargo xtask bindings`.
 
 mod c;
 mod costs;
@@ -28,7 +28,7 @@ struct Binding {
 
 /// A program and how to install it.
 struct Program {
-    /// Its name, or several of which one suffices.
+    /// Its name, or several alternative names.
     names: &'static [&'static str],
     how: &'static str,
 }
@@ -60,16 +60,16 @@ const BINDINGS: [Binding; 5] = [
     Binding { name: "processors", needs: &QEMU_USER, test: processors::sample },
 ];
 
-/// What takes longer than the tests of continuous integration may.
+/// Proofs that take too long for the tests of continuous integration.
 const PROOFS: [Binding; 2] = [
     Binding { name: "processors", needs: &QEMU_USER, test: processors::all },
     Binding { name: "costs", needs: &[CC, MONO, NODE, PYTHON], test: costs::test },
 ];
 
-/// Tests the named bindings, or all.
+/// Tests the named bindings, or all of them.
 ///
 /// # Errors
-/// A message with what is missing, or with the test that failed; its own output has been printed.
+/// A message about what is missing, or which test failed. The test's own output has been printed.
 pub fn test(names: &[String]) -> Result<()> {
     let known = BINDINGS.map(|binding| binding.name);
     if let Some(name) = names.iter().find(|name| !known.contains(&&name[..])) {
@@ -77,12 +77,13 @@ pub fn test(names: &[String]) -> Result<()> {
     }
     let named =
         |binding: &&Binding| names.is_empty() || names.iter().any(|name| name == binding.name);
-    // Most of them wait for browsers and emulated processors, and each for its turn to compile.
+    // Most of the time they wait: for browsers, for emulated processors, and for their turn to
+    // compile.
     let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
     all_of(tested)
 }
 
-/// The errors of all of them as one.
+/// Combines several errors into one.
 fn all_of(tested: Vec<Result<()>>) -> Result<()> {
     let errors = tested.into_iter().filter_map(Result::err);
     let errors: Vec<String> = errors.map(|error| format!("{error:#}")).collect();
@@ -90,7 +91,7 @@ fn all_of(tested: Vec<Result<()>>) -> Result<()> {
     Ok(())
 }
 
-/// Proves what tests only sample.
+/// Proves completely what the tests only sample.
 ///
 /// # Errors
 /// As [`test`].
@@ -112,13 +113,13 @@ impl Binding {
 }
 
 impl Program {
-    /// The first of the names that is installed.
+    /// Returns the first of the names that is installed.
     fn find(&self) -> Option<&'static str> {
         let there = |name: &&&str| Command::new(name).arg("--version").output().is_ok();
         self.names.iter().find(there).copied()
     }
 
-    /// What is missing, and how to install it.
+    /// Returns what is missing, and how to install it.
     fn missing(&self) -> Option<String> {
         let names = self.names.join(" or ");
         match self.find() {
@@ -128,14 +129,14 @@ impl Program {
     }
 }
 
-/// The path of a program.
+/// Returns the path of a program.
 fn which(name: &str) -> std::path::PathBuf {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
     all.find(|file| file.is_file()).unwrap_or_else(|| name.into())
 }
 
-/// Copies a file to a folder under a name.
+/// Copies a file into a folder under a name.
 fn copy(from: &Path, to: &Path) -> Result<()> {
     fs_err::copy(from, to)?;
     Ok(())

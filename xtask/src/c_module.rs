@@ -1,4 +1,4 @@
-//! Models in C, compiled to WASM modules by clang.
+//! Compiles models written in C to WASM modules, with clang.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,10 +8,11 @@ use anyhow::Result;
 use crate::places::workspace;
 use crate::programs::run;
 
-/// Compiles a source of the workspace to a module; the path of the module is absolute.
+/// Compiles a source file of the workspace to a module. The module's path must be absolute.
 ///
 /// # Errors
-/// A message of what is missing or of the compiler's status; its own output has been printed.
+/// A message about what is missing, or the compiler's status. The compiler's own output has been
+/// printed.
 pub fn build(source: &str, module: &Path) -> Result<()> {
     let mut clang = Command::new("clang");
     clang.args(["--target=wasm32", "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno"]);

@@ -1,7 +1,8 @@
 //! Measures the size of the sources: `cargo xtask census`.
 //!
-//! Counts by what the compiler's parser reads, so that layout and comments change no number but their own. A file is a test if it
-//! lies in a folder `tests`, `benches` or `fuzz`, or is named `tests.rs`; the rest of a file after `#[cfg(test)] mod` is one, too.
+//! Counts what the compiler's parser reads, so layout and comments change no number except their
+//! own. A file is a test if it lies in a folder `tests`, `benches` or `fuzz`, or is named
+//! `tests.rs`. The rest of a file after `#[cfg(test)] mod` also counts as a test.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -69,7 +70,7 @@ fn names(all: &[String]) -> impl Iterator<Item = &str> {
     all.iter().map(String::as_str)
 }
 
-/// What one file has.
+/// The contents of one file.
 struct Source {
     path: PathBuf,
     is_test: bool,
@@ -125,7 +126,7 @@ fn is_why(line: &str) -> bool {
     line.starts_with("// ") && !line.starts_with("// SAFETY")
 }
 
-/// Tokens, of which a pair of brackets is two.
+/// Counts tokens. A pair of brackets counts as two.
 fn count(tokens: TokenStream) -> usize {
     let size = |token| match token {
         TokenTree::Group(group) => 2 + count(group.stream()),
@@ -145,7 +146,7 @@ fn collect(tokens: TokenStream, all: &mut BTreeSet<String>) {
         match token {
             TokenTree::Group(group) => collect(group.stream(), all),
             TokenTree::Ident(ident) => drop(all.insert(ident.to_string())),
-            // Examples of the documentation are code, too.
+            // Examples in the documentation are also code.
             TokenTree::Literal(literal) => {
                 let text = literal.to_string();
                 let parts = text.split(|c: char| !c.is_alphanumeric() && c != '_');
@@ -180,7 +181,7 @@ impl VisitMut for WithoutTests {
     }
 
     fn visit_attributes_mut(&mut self, attributes: &mut Vec<syn::Attribute>) {
-        // What a type derives is needed to find the errors.
+        // The derives of a type are needed to find the error types.
         attributes.retain(|attribute| attribute.path().is_ident("derive"));
     }
 }
@@ -273,11 +274,11 @@ struct Packages {
 
 struct Package {
     folder: PathBuf,
-    /// Packages of this workspace that it needs outside of tests.
+    /// Packages of this workspace that it needs outside tests.
     needs: Vec<String>,
 }
 
-/// Crates whose `pub` items are for users.
+/// Crates whose `pub` items are meant for users.
 const FOR_USERS: [&str; 7] = [
     "htex",
     "htex-model",
@@ -308,7 +309,7 @@ impl Packages {
         Ok(Self { ours: list(&all["packages"]).iter().map(package).collect() })
     }
 
-    /// The packages of this workspace that a package needs, and it.
+    /// Returns a package and all packages of this workspace that it needs.
     fn needed(&self, name: &str) -> BTreeSet<String> {
         let mut all = BTreeSet::new();
         let mut left = vec![name.to_owned()];
@@ -321,7 +322,7 @@ impl Packages {
         all
     }
 
-    /// The package in whose folder a file lies.
+    /// Returns the package in whose folder a file lies.
     fn of(&self, path: &Path) -> Option<&str> {
         let path = workspace().join(path);
         let holds = |(_, package): &(&String, &Package)| path.starts_with(&package.folder);
@@ -330,7 +331,7 @@ impl Packages {
     }
 }
 
-/// The `pub` items of internal crates whose name stands in no other crate, as `crate::item`.
+/// Returns `pub` items of internal crates whose name occurs in no other crate, as `crate::item`.
 fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
     let mut words: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for source in sources {
@@ -354,7 +355,8 @@ fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
     unused
 }
 
-/// The names that `use htex::*` brings: of items and of what is used again, a wildcard as the names of the crate behind it.
+/// Counts the names that `use htex::*` brings in: items and re-exports. A wildcard counts as the
+/// names of the crate behind it.
 fn root_names(packages: &Packages) -> Result<usize> {
     let mut names = BTreeSet::new();
     root_names_of("htex", packages, &mut names)?;
@@ -383,7 +385,7 @@ fn root_names_of(package: &str, packages: &Packages, names: &mut BTreeSet<String
     Ok(())
 }
 
-/// Adds the names that a tree of `use` brings, and the crates of its wildcards.
+/// Adds the names that a `use` tree brings in, and the crates of its wildcards.
 fn used(tree: &syn::UseTree, before: &str, found: &mut (Vec<String>, Vec<String>)) {
     match tree {
         syn::UseTree::Path(path) => used(&path.tree, &path.ident.to_string(), found),

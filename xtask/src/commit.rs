@@ -16,7 +16,7 @@ pub(crate) struct Commit {
 }
 
 impl Commit {
-    /// Of sources that are no clone.
+    /// For sources that are not a clone.
     pub(crate) fn unknown() -> Self {
         Self { id: "unknown".to_owned(), seconds: "0".to_owned() }
     }
@@ -29,13 +29,13 @@ impl Commit {
         })
     }
 
-    /// A command that knows the commit and its time.
+    /// Passes the commit and its time to a command.
     pub(crate) fn told_to<'a>(&self, command: &'a mut Command) -> &'a mut Command {
         command.env("HTEX_COMMIT", &self.id).env("SOURCE_DATE_EPOCH", &self.seconds)
     }
 }
 
-/// What git prints, without the last line's end.
+/// Returns git's output without the final line break.
 fn git(words: &[&str]) -> Result<String> {
     let output = Command::new("git")
         .args(words)

@@ -1,4 +1,4 @@
-//! Lays out the player in C for the builds of microcontrollers.
+//! Lays out the C player for microcontroller builds.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use fs_err as fs;
 
 use crate::places::{version, workspace};
 
-/// What stands for the version of the workspace.
+/// Placeholder for the workspace's version.
 const VERSION: &str = "@version@";
 
 /// The folder and the name of a file in the workspace.
@@ -55,7 +55,7 @@ const LAYOUTS: [Layout; 3] = [
 
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 
-/// Writes a library for Arduino, a component for ESP-IDF and a module for Zephyr to a folder.
+/// Writes an Arduino library, an ESP-IDF component and a Zephyr module to a folder.
 ///
 /// # Errors
 /// When a file cannot be read or written.

@@ -1,5 +1,5 @@
-//! Generated files: tests compare them with what the code generates, and write them with
-//! `HTEX_GENERATE=1`, which `cargo xtask generate` sets. The tests that do so are named
+//! Generated files. Tests compare them with what the code generates, or write them if
+//! `HTEX_GENERATE=1` is set, which `cargo xtask generate` does. The names of these tests start with
 //! `generated_…`.
 
 use std::collections::BTreeSet;
@@ -10,10 +10,10 @@ use std::process::Command;
 use anyhow::Result;
 use fs_err as fs;
 
-/// Set to 1, it makes the tests write what they would compare.
+/// If this variable is 1, the tests write what they would otherwise compare.
 const VARIABLE: &str = "HTEX_GENERATE";
 
-/// The test binaries with generated files.
+/// The test programs that have generated files.
 const TESTS: &[&str] = &[
     "abi",
     "command",
@@ -35,8 +35,8 @@ const TESTS: &[&str] = &[
     "unity",
 ];
 
-/// Writes all generated files. The whole workspace is built, with the features that `cargo test`
-/// builds it with.
+/// Writes all generated files. It builds the whole workspace with the same features as `cargo
+/// test`.
 ///
 /// # Errors
 /// When a test of a generated file fails.
@@ -44,13 +44,13 @@ pub fn generate() -> Result<()> {
     let mut cargo = Command::new(crate::places::cargo());
     cargo.args(["test", "--quiet", "--workspace"]);
     cargo.args(TESTS.iter().flat_map(|test| ["--test", test]));
-    // One test after the other: several write parts of one document.
+    // One test at a time, because several write parts of the same document.
     cargo.args(["--", "generated_", "--test-threads=1"]);
     cargo.env(VARIABLE, "1");
     crate::programs::run(cargo.current_dir(crate::places::workspace()))
 }
 
-/// A generated file: its path from the workspace's folder, and its bytes.
+/// A generated file: its path relative to the workspace, and its bytes.
 pub type File = (String, Vec<u8>);
 
 /// Compares a generated file with these bytes, or writes it.
@@ -61,7 +61,7 @@ pub fn file(path: impl AsRef<str>, bytes: &[u8]) {
     file_with(path, bytes, |kept| kept == bytes);
 }
 
-/// As [`file()`]; `is_fresh` compares the bytes of the file.
+/// As [`file()`], but `is_fresh` compares the bytes of the file.
 ///
 /// # Panics
 /// As [`file()`].
@@ -77,7 +77,7 @@ pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8
 }
 
 /// Compares the part of a document between the lines `<!-- NAME, generated -->` and `<!-- end -->`
-/// with this text, or writes it.
+/// with this text, or writes that part.
 ///
 /// # Panics
 /// As [`file()`], and when the document has no such part.
@@ -85,7 +85,7 @@ pub fn section(path: &str, name: &str, text: &str) {
     section_with(path, name, text, |kept| kept == text);
 }
 
-/// As [`section`]; `is_fresh` compares the text that the document has.
+/// As [`section`], but `is_fresh` compares the text in the document.
 ///
 /// # Panics
 /// As [`section`].
@@ -103,7 +103,8 @@ pub fn section_with(path: &str, name: &str, text: &str, is_fresh: impl FnOnce(&s
     file_with(path, bytes.as_bytes(), |_| is_fresh(kept));
 }
 
-/// Compares the files of a folder that has nothing else, or writes them and removes all others.
+/// Compares the files of a folder that contains nothing else, or writes them and removes all
+/// others.
 ///
 /// # Panics
 /// As [`file()`], and when the folder has other files or cannot be read.
@@ -114,7 +115,7 @@ pub fn folder(path: &str, files: &[File]) {
     only(path, files.iter().map(|(path, _)| path.as_str()));
 }
 
-/// Removes all files of a folder but `expected`, paths from the workspace's folder, or fails
+/// Removes all files of a folder except `expected` (paths relative to the workspace), or fails
 /// because of them.
 ///
 /// # Panics
@@ -135,7 +136,7 @@ pub fn only<'a>(path: &str, expected: impl IntoIterator<Item = &'a str>) {
     }
 }
 
-/// Whether generated files are written.
+/// Whether generated files are written instead of compared.
 pub fn is_written() -> bool {
     std::env::var_os(VARIABLE).is_some_and(|value| value == "1")
 }

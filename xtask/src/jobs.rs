@@ -1,10 +1,10 @@
-//! Work of several threads.
+//! Runs work in several threads.
 
 use std::panic::resume_unwind;
 use std::sync::Mutex;
 use std::thread::scope;
 
-/// Calls a function with each item, several at a time.
+/// Calls a function with each item, several at the same time.
 pub(crate) fn at_a_time<T: Send, R: Send>(
     jobs: usize,
     items: Vec<T>,

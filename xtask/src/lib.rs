@@ -1,4 +1,4 @@
-//! Tasks of developers and of tests.
+//! Developer tasks, and helpers for tests.
 
 pub mod bench;
 pub mod bindings;

@@ -112,7 +112,7 @@ fn main() -> Result<()> {
 }
 
 impl Plugins {
-    /// Builds the models, and prints their folder.
+    /// Builds the models and prints their folder.
     fn build(&self) -> Result<()> {
         let mut folder = PathBuf::new();
         if !self.wasm_only {

@@ -1,4 +1,4 @@
-//! Pages in Markdown, as far as tasks and tests read them: fenced blocks, and links.
+//! Reads Markdown pages, as far as tasks and tests need it: fenced blocks and links.
 
 use std::ops::Range;
 
@@ -7,15 +7,15 @@ use std::ops::Range;
 pub struct Block {
     /// The first word after the fence: `sh`, `text`, `c`, …
     pub language: String,
-    /// The lines between the fences, each with its end.
+    /// The lines between the fences, each with its line break.
     pub text: String,
-    /// The number of the first line in the page, from 1.
+    /// The number of the first line in the page, starting at 1.
     pub line: usize,
     /// Where the text is in the page.
     pub range: Range<usize>,
 }
 
-/// The fenced blocks of a page, in order.
+/// Returns the fenced blocks of a page, in order.
 ///
 /// ```
 /// let [block] = &xtask::markdown::blocks("So:\n\n```sh\nls\n```\n")[..] else { panic!() };
@@ -41,7 +41,7 @@ pub fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// The backticks that a line begins with, three or more.
+/// Returns the backticks at the start of a line, if there are three or more.
 fn fence(line: &str) -> Option<&str> {
     let line = line.trim_start();
     let ticks = line.len() - line.trim_start_matches('`').len();
@@ -54,7 +54,7 @@ fn begun(line: &str, fence: &str, number: usize, at: usize) -> Block {
     Block { language: language.to_owned(), text: String::new(), line: number, range: at..at }
 }
 
-/// Where a page's links and pictures lead to, without titles; not those in code.
+/// Returns where a page's links and pictures lead, without titles. Links in code are ignored.
 ///
 /// ```
 /// let page = "[a](b.md#c), ![d](e.svg \"f\")\n\n```c\nx[0](1);\n```\n`[g](h)`\n";
@@ -74,7 +74,7 @@ pub fn links(page: &str) -> Vec<Range<usize>> {
     links
 }
 
-/// Where the links of a line that begins at `start` lead to.
+/// Returns where the links in a line lead. The line begins at `start`.
 fn links_of_line(line: &str, start: usize) -> Vec<Range<usize>> {
     let mut links = Vec::new();
     for (at, _) in line.match_indices("](") {
@@ -88,7 +88,7 @@ fn links_of_line(line: &str, start: usize) -> Vec<Range<usize>> {
     links
 }
 
-/// Whether a link leads out of the pages, to an address.
+/// Whether a link leads to a web address instead of another page.
 ///
 /// ```
 /// assert!(xtask::markdown::is_address("https://example.org"));
@@ -98,7 +98,7 @@ pub fn is_address(link: &str) -> bool {
     link.contains("://") || link.starts_with("mailto:") || link.starts_with("data:")
 }
 
-/// The anchor that a heading has, in the book as on GitHub.
+/// Returns the anchor of a heading, the same in the book as on GitHub.
 ///
 /// ```
 /// assert_eq!(xtask::markdown::anchor("What `htex fit` does, and why"), "what-htex-fit-does-and-why");
@@ -112,7 +112,8 @@ pub fn anchor(heading: &str) -> String {
     kept.collect()
 }
 
-/// The anchors of a page's headings, and those that it states itself by `<a id="…">`.
+/// Returns the anchors of a page's headings, and the anchors that it defines itself with `<a
+/// id="…">`.
 pub fn anchors(page: &str) -> Vec<String> {
     let code = blocks(page);
     let mut anchors: Vec<String> = Vec::new();
@@ -135,14 +136,14 @@ pub fn anchors(page: &str) -> Vec<String> {
     anchors
 }
 
-/// What follows the signs of a heading.
+/// Returns the text after the signs of a heading.
 fn heading(line: &str) -> Option<&str> {
     let text = line.trim_start_matches('#');
     let is_heading = text.len() < line.len() && text.starts_with(' ');
     is_heading.then(|| text.trim())
 }
 
-/// An anchor without the number of a repeated heading.
+/// Removes the number that the anchor of a repeated heading has.
 fn without_number(anchor: &str) -> &str {
     match anchor.rsplit_once('-') {
         Some((before, number)) if number.parse::<usize>().is_ok() => before,
@@ -150,7 +151,7 @@ fn without_number(anchor: &str) -> &str {
     }
 }
 
-/// A text with the words of its links in their place.
+/// Replaces the links in a text by their words.
 fn without_links(text: &str) -> String {
     let mut words = String::new();
     let mut rest = text;

@@ -1,5 +1,5 @@
-//! Software that tests use if it is installed, beyond Rust and a C compiler. No test installs
-//! anything: `.ci/run` does.
+//! Software, apart from Rust and a C compiler, that tests use if it is installed. No test installs
+//! anything; `.ci/run` does.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ pub struct Need {
     pub what: &'static str,
     /// How to install it.
     pub how: &'static str,
-    /// Whether `HTEX_REQUIRE_WASM=1` makes it an error to be without.
+    /// Whether its absence is an error under `HTEX_REQUIRE_WASM=1`.
     pub for_wasm: bool,
 }
 
@@ -132,11 +132,11 @@ pub const GLTF_VALIDATOR: Need = Need {
 };
 
 impl Need {
-    /// Returns `there`, whether the software is installed. If it is not, the running test is listed
-    /// at the end of `cargo test` ([`told`]).
+    /// Returns `there`, which says whether the software is installed. If it is not, the running
+    /// test is listed at the end of `cargo test` ([`told`]).
     ///
     /// # Panics
-    /// When software for WASM is absent and the environment has `HTEX_REQUIRE_WASM=1`.
+    /// When software for WASM is missing and `HTEX_REQUIRE_WASM=1` is set.
     #[must_use]
     #[allow(clippy::panic)] // It fails a test.
     pub fn met(&self, there: bool) -> bool {
@@ -162,7 +162,7 @@ impl Need {
     }
 }
 
-/// Tests skipped since the last call, one sentence each, sorted by name.
+/// Returns the tests skipped since the last call, one sentence each, sorted by name.
 ///
 /// # Errors
 /// When the records cannot be read or removed.
@@ -180,8 +180,8 @@ pub fn told() -> std::io::Result<Vec<String>> {
     Ok(sentences)
 }
 
-/// Writes to standard error directly: the test harness captures the macros' output of a test that
-/// passes.
+/// Writes directly to standard error, because the test harness captures what macros print in a
+/// passing test.
 pub fn say(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// The cargo that runs this, else the one on the path.
+/// Returns the cargo that runs this program, or the cargo on the search path.
 pub(crate) fn cargo() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
@@ -18,12 +18,12 @@ pub(crate) fn target() -> PathBuf {
     workspace().join(own.unwrap_or_else(|| "target".into()))
 }
 
-/// Where what goes into the archives of a release is laid out.
+/// Returns the folder in which the archives of a release are laid out.
 pub(crate) fn release_trees() -> PathBuf {
     target().join("release-trees")
 }
 
-/// The version of the workspace.
+/// Returns the version of the workspace.
 pub(crate) fn version() -> Result<String> {
     let text = fs_err::read_to_string(workspace().join("Cargo.toml"))?;
     let mut lines = text.lines();
@@ -32,7 +32,7 @@ pub(crate) fn version() -> Result<String> {
     Ok(version.trim_matches('"').to_owned())
 }
 
-/// Makes a folder, without what it had.
+/// Makes an empty folder, removing what was there.
 pub(crate) fn emptied(folder: &Path) -> Result<()> {
     if folder.exists() {
         fs_err::remove_dir_all(folder)?;
@@ -40,7 +40,7 @@ pub(crate) fn emptied(folder: &Path) -> Result<()> {
     Ok(fs_err::create_dir_all(folder)?)
 }
 
-/// The files of a folder.
+/// Returns the files in a folder.
 pub(crate) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = fs_err::read_dir(folder)?;
     let paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;

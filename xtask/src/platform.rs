@@ -1,5 +1,5 @@
-//! The systems that htex is built for, and how cargo, the linkers and the compilers of C are called
-//! for each.
+//! The systems for which htex is built, and how to call cargo, the linkers and the C compilers for
+//! each.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -9,30 +9,30 @@ use anyhow::{Result, bail};
 use crate::commit::Commit;
 use crate::places::{cargo, target, workspace};
 
-/// Oldest C library of Linux that what is released runs with.
+/// Oldest Linux C library with which released programs run.
 const GLIBC: &str = "2.31";
 
-/// Oldest macOS that what is released runs with: the first for Apple's processors.
+/// Oldest macOS with which released programs run: the first one for Apple's processors.
 const MACOS: &str = "11.0";
 
 const STRIP: &str = "-Cstrip=symbols";
 
-/// Cargo's profile of tests, whose folder is `debug`.
+/// Cargo's profile for tests, whose folder is named `debug`.
 const TESTS: &str = "dev";
 
-/// A system that htex is released for.
+/// A system for which htex is released.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Platform {
-    /// As in the names of archives.
+    /// Name as it appears in the names of archives.
     pub name: &'static str,
-    /// Cargo's name of the target.
+    /// Cargo's name for the target.
     pub triple: &'static str,
-    /// What the names of the binary utilities begin with.
+    /// Prefix of the names of the binary utilities.
     utilities: &'static str,
     pub system: System,
 }
 
-/// What decides about the names and kinds of libraries.
+/// Determines the names and kinds of libraries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum System {
     Linux,
@@ -40,7 +40,7 @@ pub enum System {
     MacOs,
 }
 
-/// All of them.
+/// All platforms.
 pub const PLATFORMS: [Platform; 4] = [
     Platform {
         name: "x86_64-linux",
@@ -68,21 +68,22 @@ pub const PLATFORMS: [Platform; 4] = [
     },
 ];
 
-/// How something is built: for this machine by its own tools, or for release by zig, whose headers
-/// and libraries of each system are the same everywhere. Windows has mingw-w64 instead: zig's
-/// linker exports all functions of a DLL, of which there may not be more than 65,535.
+/// How something is built. For this machine its own tools are used. For a release zig is used,
+/// because its headers and libraries for each system are the same everywhere. Windows builds use
+/// mingw-w64 instead: zig's linker exports all functions of a DLL, of which there may be at most
+/// 65,535.
 #[derive(Debug, Clone)]
 pub struct Build {
     platform: Platform,
-    /// Of a release.
+    /// The commit, for a release.
     commit: Option<Commit>,
 }
 
 impl Platform {
-    /// The platform of a name: `linux-x86_64` and `x86_64-linux` are the same.
+    /// Returns the platform with a name. `linux-x86_64` and `x86_64-linux` are the same.
     ///
     /// # Errors
-    /// The known names.
+    /// A message with the known names.
     pub fn named(name: &str) -> Result<Self> {
         let turned = name.split_once('-').map(|(a, b)| format!("{b}-{a}"));
         let is_it = |one: &&Self| one.name == name || Some(one.name) == turned.as_deref();
@@ -93,16 +94,16 @@ impl Platform {
         }
     }
 
-    /// Whether a wheel is released. What one for macOS needs of Apple's frameworks, for
-    /// certificates, is not to be had here: pip builds it there of the sources.
+    /// Whether a wheel is released. A wheel for macOS would need Apple's frameworks for
+    /// certificates, which are not available here; on macOS, pip builds it from the sources.
     pub(crate) fn has_wheel(&self) -> bool {
         self.system != System::MacOs
     }
 
-    /// The one that this program runs on.
+    /// Returns the platform on which this program runs.
     ///
     /// # Errors
-    /// On others than those that are known.
+    /// On unknown platforms.
     pub fn here() -> Result<Self> {
         let (cpu, system) = (std::env::consts::ARCH, std::env::consts::OS);
         match system {
@@ -113,7 +114,7 @@ impl Platform {
 }
 
 impl Build {
-    /// For this machine.
+    /// Builds for this machine.
     ///
     /// # Errors
     /// As [`Platform::here`].
@@ -121,7 +122,7 @@ impl Build {
         Ok(Self { platform: Platform::here()?, commit: None })
     }
 
-    /// For release.
+    /// Builds for a release.
     pub(crate) fn release(platform: Platform, commit: &Commit) -> Self {
         Self { platform, commit: Some(commit.clone()) }
     }
@@ -130,7 +131,7 @@ impl Build {
         self.platform
     }
 
-    /// Whether it is for release.
+    /// Whether this is a build for a release.
     pub fn is_release(&self) -> bool {
         self.commit.is_some()
     }
@@ -140,7 +141,7 @@ impl Build {
         self.is_release() && self.platform.system != System::Windows
     }
 
-    /// Cargo with `build` or `rustc`.
+    /// Returns cargo with `build` or `rustc`.
     pub fn cargo(&self, verb: &str) -> Command {
         let mut command = if self.is_by_zig() {
             Command::new(tools().join("cargo-zigbuild"))
@@ -158,7 +159,7 @@ impl Build {
         command
     }
 
-    /// Maturin, which builds wheels, with a verb.
+    /// Returns maturin, which builds wheels, with a subcommand.
     pub fn maturin(&self, verb: &str) -> Command {
         let mut command = Command::new(tools().join("maturin"));
         command.arg(verb).current_dir(workspace().join("sdk/python"));
@@ -173,19 +174,19 @@ impl Build {
         command.env("PATH", tools_first());
         command.env("MACOSX_DEPLOYMENT_TARGET", MACOS);
         command.env("RUSTFLAGS", self.flags());
-        // cargo-zigbuild, and maturin, which has it inside, name their compilers of C after the
-        // program that runs. With one name, and one version (requirements.txt), the wheel shall
-        // take what the archive has compiled.
+        // cargo-zigbuild, and maturin, which contains it, name their C compilers after the running
+        // program. With the same name and the same version (requirements.txt), the wheel reuses
+        // what was compiled for the archive.
         command.env("CARGO_BIN_EXE_cargo-zigbuild", tools().join("cargo-zigbuild"));
     }
 
-    /// Flags of the compiler: no path of this machine and no name of a function is in what is
-    /// released; and where zig finds the names of Apple's functions that it has none of, in files
-    /// of our own.
+    /// Returns compiler flags that keep this machine's paths and the names of functions out of
+    /// released files. They also tell zig where to find the names of Apple's functions that it
+    /// lacks, in files of this project.
     fn flags(&self) -> String {
         let mut flags = vec![without_places()];
         match self.platform.system {
-            // Zig leaves the names of functions out.
+            // Zig already leaves out the names of functions.
             System::Linux => {}
             System::MacOs => {
                 let apple = workspace().join("xtask/src/release/apple");
@@ -200,9 +201,9 @@ impl Build {
         flags.join(" ")
     }
 
-    /// Cargo as it builds the command and libhtex, whole: both at once, so that each has the
-    /// features of the other. By the profile of the tests all of the workspace is built, which has
-    /// the features of the tests.
+    /// Returns cargo for building the command and the whole libhtex together, so that each has the
+    /// features of the other. With the tests' profile it builds the entire workspace, which has the
+    /// tests' features.
     pub(crate) fn cargo_of_both(&self) -> Command {
         let mut command = self.cargo("build");
         command.arg("--locked").args(self.profile());
@@ -212,9 +213,8 @@ impl Build {
         command
     }
 
-    /// The arguments of cargo that name the profile of what is installed: `release`, or the one of
-    /// `HTEX_PROFILE` where nothing is released, such as that of the tests, which then take what
-    /// was compiled.
+    /// Returns cargo's arguments that select the profile: `release` or, outside releases, the
+    /// profile in `HTEX_PROFILE`. The profile of the tests reuses what was compiled for them.
     pub(crate) fn profile(&self) -> [String; 2] {
         ["--profile".to_owned(), self.profile_name()]
     }
@@ -226,7 +226,7 @@ impl Build {
         named.unwrap_or_else(|| "release".to_owned())
     }
 
-    /// Where cargo puts what it builds by [`Self::profile`].
+    /// Returns where cargo puts what it builds with [`Self::profile`].
     pub(crate) fn built(&self) -> PathBuf {
         match &*self.profile_name() {
             TESTS => self.output("debug"),
@@ -234,7 +234,7 @@ impl Build {
         }
     }
 
-    /// Where cargo puts what it builds by a profile.
+    /// Returns where cargo puts what it builds with a profile.
     pub fn output(&self, profile: &str) -> PathBuf {
         if self.is_release() {
             target().join(self.platform.triple).join(profile)
@@ -243,7 +243,7 @@ impl Build {
         }
     }
 
-    /// The compiler of C, which links, too.
+    /// Returns the C compiler, which also links.
     pub fn cc(&self) -> Command {
         if !self.is_release() {
             return Command::new("cc");
@@ -253,14 +253,14 @@ impl Build {
         command
     }
 
-    /// A program of the binary utilities of the platform, such as `ld`.
+    /// Returns one of the platform's binary utilities, such as `ld`.
     pub fn utility(&self, name: &str) -> Command {
         let prefix = if self.is_release() { self.platform.utilities } else { "" };
         Command::new(format!("{prefix}{name}"))
     }
 }
 
-/// Flags of the compiler by which no path of this machine is in what it writes.
+/// Returns compiler flags that keep this machine's paths out of its output.
 pub(crate) fn without_places() -> String {
     let home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
@@ -272,20 +272,20 @@ pub(crate) fn without_places() -> String {
     all.map(flag).collect::<Vec<_>>().join(" ")
 }
 
-/// Where the tools of releases are installed: zig, and what cargo calls it by.
+/// Returns the folder of the release tools: zig, and the programs through which cargo calls it.
 pub fn tools() -> PathBuf {
     let tools = target().join("release-tools/bin");
     std::path::absolute(&tools).unwrap_or(tools)
 }
 
-/// The search path with the tools before all others.
+/// Returns the search path with the release tools first.
 pub fn tools_first() -> std::ffi::OsString {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let folders = std::iter::once(tools()).chain(std::env::split_paths(&path));
     std::env::join_paths(folders).unwrap_or(path)
 }
 
-/// The target as cargo-zigbuild takes it.
+/// Returns the target in the form that cargo-zigbuild expects.
 fn with_glibc(platform: &Platform) -> String {
     match platform.system {
         System::Linux => format!("{}.{GLIBC}", platform.triple),
@@ -293,7 +293,7 @@ fn with_glibc(platform: &Platform) -> String {
     }
 }
 
-/// The target as zig takes it.
+/// Returns the target in the form that zig expects.
 fn zig_target(platform: &Platform) -> String {
     let cpu = platform.triple.split('-').next().unwrap_or_default();
     match platform.system {

@@ -1,4 +1,4 @@
-//! The models as plugins: native libraries and WASM modules.
+//! Builds the models as plugins: native libraries and WASM modules.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,8 +12,8 @@ use crate::programs::run;
 pub use crate::wasm::Way;
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
-/// The models' short names, which are those of the folders of `plugins`, in the order of the
-/// alphabet.
+/// Returns the short names of the models in alphabetical order. They are the names of the folders
+/// in `plugins`.
 ///
 /// # Errors
 /// When the folder cannot be read.
@@ -25,11 +25,11 @@ pub fn models() -> Result<Vec<String>> {
     Ok(models)
 }
 
-/// Builds every model as a native library; returns their folder, `htex-plugins` in the
-/// target folder. A library newer than its sources is not built again.
+/// Builds every model as a native library, and returns their folder, `htex-plugins` in the target
+/// folder. A library that is newer than its sources is not rebuilt.
 ///
 /// # Errors
-/// The model that could not be built; the compiler has printed the reason.
+/// Which model could not be built. The compiler has printed the reason.
 pub fn native() -> Result<PathBuf> {
     let target = target();
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
@@ -41,16 +41,16 @@ pub fn native() -> Result<PathBuf> {
     Ok(folder())
 }
 
-/// Builds every model as a WASM module, with the toolchain that `HTEX_WASM_TOOLCHAIN` names;
+/// Builds every model as a WASM module, with the toolchain that `HTEX_WASM_TOOLCHAIN` names, and
 /// returns their folder, as [`native`] does.
 ///
 /// # Errors
-/// When no toolchain is found, with instructions; or the model that could not be built.
+/// Instructions if no toolchain is found, or which model could not be built.
 pub fn wasm() -> Result<PathBuf> {
     wasm_by(way()?)
 }
 
-/// The toolchain that `HTEX_WASM_TOOLCHAIN` names.
+/// Returns the toolchain that `HTEX_WASM_TOOLCHAIN` names.
 fn way() -> Result<Way> {
     const NAME: &str = "HTEX_WASM_TOOLCHAIN";
     let way = std::env::var(NAME).ok().filter(|way| !way.is_empty());
@@ -58,7 +58,7 @@ fn way() -> Result<Way> {
     way.unwrap_or(Ok(Way::Auto))
 }
 
-/// As [`wasm`], with a toolchain that is chosen in this way.
+/// As [`wasm`], with a given way of choosing the toolchain.
 ///
 /// # Errors
 /// As [`wasm`].
@@ -79,8 +79,8 @@ pub fn wasm_is_installed() -> bool {
     Toolchain::find(Way::Installed).is_ok()
 }
 
-/// The folder of the models as WASM modules, for a test; `None`, and listed at the end, where no
-/// toolchain for them is installed.
+/// Returns the folder of the WASM modules for a test. If no toolchain for them is installed, it
+/// returns `None`, and the test is listed at the end.
 ///
 /// # Panics
 /// When a model cannot be built, and as [`Need::met`](crate::needs::Need::met).
@@ -93,11 +93,11 @@ pub fn wasm_if_there() -> Option<PathBuf> {
     Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))
 }
 
-/// Models that a program fits only where they are named, as `htex_host` has them; a test holds the
-/// two to each other.
+/// Models that are only fitted if a program names them, the same as in `htex_host`. A test compares
+/// the two lists.
 const NAMED: [&str; 2] = ["arma", "map"];
 
-/// The short names of the models that are fitted where none is named, in the order of the alphabet.
+/// Returns the short names of the models that are fitted if none is named, in alphabetical order.
 ///
 /// # Errors
 /// As [`models`].
@@ -116,7 +116,7 @@ fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Resul
         .current_dir(workspace()))
 }
 
-/// Copies a built file to the folder of plugins, by a temporary name and a rename.
+/// Copies a built file to the plugin folder, through a temporary name and a rename.
 fn place(built: &Path, name: &str) -> Result<()> {
     let (folder, beside) = (folder(), format!("{name}.{}", std::process::id()));
     fs_err::create_dir_all(&folder)?;

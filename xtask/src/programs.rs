@@ -1,4 +1,4 @@
-//! Programs that are run to their end.
+//! Runs programs and waits for their end.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -6,24 +6,24 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use anyhow::{Context, Result, bail};
 
-/// A program, its folder and its environment; arguments are added.
+/// Returns a program with its folder and environment. Arguments can be added.
 pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
     let mut command = Command::new(name);
     command.current_dir(folder);
     command
 }
 
-/// Runs a program to its end.
+/// Runs a program and waits for its end.
 ///
 /// # Errors
-/// When it cannot be run or fails; its own output has been printed.
+/// When it cannot be run or fails. Its own output has been printed.
 pub fn run(command: &mut Command) -> Result<()> {
     forget_package(command);
     let status = command.status();
     check(command, status.with_context(|| name(command))?)
 }
 
-/// Runs a program to its end; returns what it wrote to standard output.
+/// Runs a program, waits for its end, and returns what it wrote to standard output.
 ///
 /// # Errors
 /// As [`run`].
@@ -45,8 +45,8 @@ fn check(command: &Command, status: ExitStatus) -> Result<()> {
     bail!("{} {}: {status}", name(command), arguments.join(" "))
 }
 
-/// Removes what cargo tells of the package that it runs. Build scripts that watch it (`ring`'s
-/// does) would run again, and all that is built upon them.
+/// Removes the variables that cargo sets for the package it runs. Build scripts that watch them
+/// (such as `ring`'s) would run again, and everything that depends on them would be rebuilt.
 fn forget_package(command: &mut Command) {
     for (name, _) in std::env::vars_os() {
         if name.to_string_lossy().starts_with("CARGO_PKG_") {

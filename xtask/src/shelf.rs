@@ -1,10 +1,10 @@
-//! Makes the textures that come with the studio, `sdk/studio/shelf/shelf.htexlib`, anew.
+//! Remakes the textures that come with the studio, `sdk/studio/shelf/shelf.htexlib`.
 
 use anyhow::Result;
 
 use crate::programs::{program, run};
 
-/// Makes the library of the studio's shelf by the `htex` command.
+/// Makes the library on the studio's shelf with the `htex` command.
 ///
 /// # Errors
 /// A message with the file or the program.

@@ -1,8 +1,8 @@
-//! Lines of a shell, as far as pages have them: words, quotes, comments, continued lines, pipes,
+//! Parses shell scripts, as far as pages use them: words, quotes, comments, continued lines, pipes,
 //! loops.
 
-/// The simple commands of a script, each as its words. What is redirected is left out, and of a
-/// loop's variable the first value stands for all.
+/// Returns the simple commands of a script, each as its words. Redirections are left out. A loop's
+/// variable is replaced only by its first value.
 ///
 /// ```
 /// let script = "# a loop\nfor s in vinyl sand; do\n  htex fit $s.csv \\\n    --name 'A b' | tail -n 1 >log   # fits\ndone\n";
@@ -36,13 +36,13 @@ pub fn commands(script: &str) -> Vec<Vec<String>> {
     with_loops(reader.commands)
 }
 
-/// What is read so far.
+/// The state of the parser.
 #[derive(Default)]
 struct Reader {
     commands: Vec<Vec<String>>,
     words: Vec<String>,
     word: Option<String>,
-    /// The next word names a file that is written or read.
+    /// Whether the next word names a file that is written or read.
     is_redirected: bool,
 }
 
@@ -60,7 +60,7 @@ impl Reader {
         }
     }
 
-    /// A digit before the sign is the number of a stream, as in `2>log`.
+    /// A digit before the sign is a stream number, as in `2>log`.
     fn redirect(&mut self) {
         if self.word.as_deref().is_some_and(|word| word.parse::<u8>().is_ok()) {
             self.word = None;
@@ -78,7 +78,7 @@ impl Reader {
     }
 }
 
-/// The rest of `$(…)`, as a word of a command that gets it.
+/// Returns the rest of `$(…)`, as one word of the command that contains it.
 fn substituted(rest: &mut std::iter::Peekable<std::str::Chars>) -> String {
     let mut depth = 0;
     let inner = rest.take_while(|c| {
@@ -88,7 +88,7 @@ fn substituted(rest: &mut std::iter::Peekable<std::str::Chars>) -> String {
     format!("${}", inner.filter(|c| c.is_alphanumeric()).collect::<String>())
 }
 
-/// The commands without the words of loops, and with a value for their variables.
+/// Returns the commands without the words of loops, and with values for their variables.
 fn with_loops(commands: Vec<Vec<String>>) -> Vec<Vec<String>> {
     let mut values: Vec<(String, String)> = Vec::new();
     let mut filled = Vec::new();

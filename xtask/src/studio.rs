@@ -8,7 +8,7 @@ use fs_err as fs;
 use crate::places::workspace;
 use crate::programs::{program, run};
 
-/// Where the page's build finds the npm package of this workspace.
+/// Where the page's build finds this workspace's npm package.
 const PACKAGE: &str = ".htex";
 
 /// Builds `studio.html` and the folder `static` into a folder. Needs Rust, Node.js and npm.
@@ -26,13 +26,13 @@ pub fn studio(out: &Path) -> Result<()> {
     build(&source, out)
 }
 
-/// Builds the page with the npm package that is there.
+/// Builds the page with the existing npm package.
 pub(crate) fn build(source: &Path, out: &Path) -> Result<()> {
     fs::create_dir_all(out)?;
     run(program("npm", source).args(["run", "--silent", "build", "--"]).arg(fs::canonicalize(out)?))
 }
 
-/// Installs what the lock file names.
+/// Installs what the lock file lists.
 pub(crate) fn install(folder: &Path) -> Result<()> {
     run(program("npm", folder).args(["ci", "--silent", "--no-audit", "--no-fund"]))
         .context("Node.js from version 20 and npm build the studio")

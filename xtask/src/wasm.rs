@@ -9,12 +9,12 @@ use clap::ValueEnum;
 /// The target of modules.
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The profile of modules in the workspace's manifest, and the name of their build folder.
+/// The profile of modules in the workspace's manifest, and the name of its build folder.
 pub(crate) const PROFILE: &str = "module";
 
-/// Vectors of 128 bits, which every engine has. Calls of larger functions stay calls, and loops
-/// whose number of rounds is not known stay one loop: without copies for several rounds, for the
-/// first one, and for vectors. Loops that are to use vectors work on arrays.
+/// Enables 128-bit vectors, which every engine supports. Larger functions are not inlined. Loops
+/// with an unknown number of rounds stay a single loop, without extra copies for several rounds,
+/// for the first round, or for vectors. Loops that should use vectors work on arrays.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
     "-Ctarget-feature=+simd128 -Cno-vectorize-loops -Cllvm-args=-inline-threshold=75 \
@@ -27,7 +27,7 @@ const NO_TOOLCHAIN: &str = "no toolchain for WASM modules was found: `rustup tar
 /// How a toolchain for WASM modules is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Way {
-    /// The first that is there.
+    /// The first toolchain that is found.
     Auto,
     /// The toolchain in use.
     Installed,
@@ -44,7 +44,7 @@ pub(crate) enum Toolchain {
 }
 
 impl Toolchain {
-    /// Finds a toolchain. Nothing is installed.
+    /// Finds a toolchain. Installs nothing.
     pub(crate) fn find(way: Way) -> Result<Self> {
         let found = match way {
             Way::Installed => installed(),
@@ -54,7 +54,7 @@ impl Toolchain {
         found.context(NO_TOOLCHAIN)
     }
 
-    /// The command to which `rustc --profile …` can be added, and the folder to build in.
+    /// Returns the command to which `rustc --profile …` can be added, and the build folder.
     pub(crate) fn cargo(&self, target: &Path) -> (Command, PathBuf) {
         let (mut command, folder) = self.plain_cargo(target);
         command.env(FLAGS.0, FLAGS.1);
@@ -71,13 +71,14 @@ impl Toolchain {
                     .env("RUSTC_BOOTSTRAP", "1")
                     .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker)
                     .env_remove("RUSTUP_TOOLCHAIN");
-                // A folder of its own: files of two compilers would displace each other.
+                // A separate folder, because the files of the two compilers would overwrite each
+                // other.
                 (command, target.join("debian"))
             }
         }
     }
 
-    /// Arguments behind `rustc`.
+    /// Returns arguments for use after `rustc`.
     pub(crate) fn arguments(&self) -> &'static [&'static str] {
         match self {
             Self::Ready => &["--target", TARGET],
@@ -108,7 +109,7 @@ fn is_debian_ready() -> bool {
     Path::new("/usr/bin/cargo").exists() && Path::new("/usr/bin/rustc").exists() && std.exists()
 }
 
-/// The linker of the compiler in use, which comes with every one from rustup.
+/// Returns the linker of the current compiler. Every compiler from rustup includes one.
 fn linker() -> Option<PathBuf> {
     let sysroot = answer("rustc", &["--print", "sysroot"])?;
     let host = answer("rustc", &["--print", "host-tuple"])?;
@@ -116,7 +117,7 @@ fn linker() -> Option<PathBuf> {
     [own, PathBuf::from("/usr/bin/wasm-ld")].into_iter().find(|linker| linker.exists())
 }
 
-/// What a program prints, if it succeeds.
+/// Returns what a program prints, if it succeeds.
 fn answer(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

@@ -12,7 +12,7 @@ use crate::programs::run;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Files that are copied as they are.
+/// Files that are copied unchanged.
 const COPIED: [&str; 34] = [
     "author-core.js",
     "author-serve.js",
@@ -50,8 +50,8 @@ const COPIED: [&str; 34] = [
     "worker.node.js",
 ];
 
-/// What the file of the audio worklet is made of. It has no imports: bundlers copy the file of a
-/// worklet alone.
+/// The parts of the audio worklet's file. It has no imports, because bundlers copy a worklet's file
+/// alone.
 const PROCESSOR: [&str; 9] = [
     "guests.js",
     "core.js",
@@ -64,7 +64,7 @@ const PROCESSOR: [&str; 9] = [
     "processor.js",
 ];
 
-/// What the file of the worker of pages is made of, for bundlers that copy it alone, too.
+/// The parts of the page worker's file, which bundlers also copy alone.
 const WORKER: [&str; 8] = [
     "guests.js",
     "core.js",
@@ -76,11 +76,11 @@ const WORKER: [&str; 8] = [
     "worker.js",
 ];
 
-/// The same of the worker that fits.
+/// The parts of the file of the worker that fits models.
 const AUTHOR_WORKER: [&str; 5] =
     ["guests.js", "core.js", "author-core.js", "author-serve.js", "author-worker.js"];
 
-/// Features of `sdk/web/author`, and the modules that are built with them.
+/// Features of `sdk/web/author`, and the modules built with them.
 const MODULES: [(&str, &str); 3] =
     [("make", "htex-author.wasm"), ("import", "htex-import.wasm"), ("scene", "htex-scene.wasm")];
 
@@ -92,7 +92,7 @@ pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
     let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
     fs::create_dir_all(out)?;
-    // Each is built to the file of the others.
+    // Each feature is built to the same file name, so it is copied before the next one is built.
     for (feature, name) in MODULES {
         let built = module("htex-web-author", "author", &["--features", feature])?;
         fs::copy(built.join("htex_author_c.wasm"), out.join(name))?;
@@ -113,7 +113,7 @@ pub fn web(out: &Path) -> Result<()> {
     join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
 }
 
-/// Writes a script of the files of a folder.
+/// Writes a script from the files of a folder.
 fn join(folder: &Path, names: &[&str], out: &Path) -> Result<()> {
     let mut script = String::new();
     for name in names {
@@ -122,7 +122,7 @@ fn join(folder: &Path, names: &[&str], out: &Path) -> Result<()> {
     Ok(fs::write(out, script)?)
 }
 
-/// Builds a package for WASM by a profile; returns the folder of its file.
+/// Builds a package for WASM with a profile, and returns the folder of its file.
 fn module(package: &str, profile: &str, features: &[&str]) -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build
@@ -139,7 +139,7 @@ fn module(package: &str, profile: &str, features: &[&str]) -> Result<PathBuf> {
     Ok(target().join(TARGET).join(profile))
 }
 
-/// A file's text without its imports and with its exports as plain declarations.
+/// Returns a file's text without its imports and with its exports as plain declarations.
 fn without_modules(text: &str) -> String {
     let lines = text.lines().filter(|line| !line.starts_with("import "));
     lines

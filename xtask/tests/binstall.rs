@@ -1,4 +1,5 @@
-//! What `cargo binstall` reads of the command's package leads to the archives that a release has.
+//! The metadata that `cargo binstall` reads from the command's package leads to the archives of a
+//! release.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::path::Path;

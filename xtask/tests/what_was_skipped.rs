@@ -1,10 +1,10 @@
-//! Lists what the suites before this one skipped. Cargo runs packages in the order of their names,
-//! and the suites of a package likewise: this one is the last.
+//! Lists what the suites before this one skipped. Cargo runs packages, and the suites in a package,
+//! in the order of their names, so this one is the last.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use xtask::needs;
 
-/// Absent software is listed by the test's name; installed software is not.
+/// Missing software is listed with the test's name; installed software is not.
 #[test]
 fn what_was_skipped() {
     let before = needs::told().unwrap();

@@ -51,8 +51,8 @@ function isBytes(data) {
 }
 
 /**
- * Returns the address that a caller passes in, or one in this package. Bundlers would treat `new
- * URL` with another base as one of their own files.
+ * Returns the address that a caller passes in, or one in this package. Bundlers would treat
+ * `new URL` with another base as one of their own files.
  */
 export function resolved(address) {
   return address instanceof URL ? address : new URL(address, globalThis.location?.href);

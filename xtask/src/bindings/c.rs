@@ -1,5 +1,5 @@
-//! libhtex as it is installed: pkg-config, CMake, the static libraries, SDL2, the plugin for FMOD,
-//! and the sizes.
+//! Tests the installed libhtex: pkg-config, CMake, the static libraries, SDL2, the FMOD plugin, and
+//! the sizes.
 
 use std::path::{Path, PathBuf};
 
@@ -10,11 +10,11 @@ use crate::places::{cargo, workspace};
 use crate::platform::Build;
 use crate::programs::{program, run};
 
-/// Most bytes of the small shared library; the goal is 1.5 MB (docs/languages.md says what takes
-/// the rest).
+/// Largest size of the small shared library, bytes. The goal is 1.5 MB; docs/languages.md says what
+/// takes up the rest.
 const SMALL: u64 = 2_500_000;
 
-/// Most bytes of the static libraries, small and whole.
+/// Largest size of the static libraries, small and whole, bytes.
 const STATIC: u64 = 25_000_000;
 const WHOLE_STATIC: u64 = 45_000_000;
 
@@ -23,15 +23,14 @@ const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_
                      foreach(library htex static whole whole_static)\n    add_executable(app_${library} main.c)\n    \
                      target_link_libraries(app_${library} PRIVATE htex::${library} m)\nendforeach()\n";
 
-/// How the player of an asset is built, as users type it: its name, and the end of the line of the
-/// compiler.
+/// How users build a player of assets: its name, and the end of the compiler's command line.
 const LINES: [(&str, &str); 7] = [
     ("small", "main.c $(pkg-config --cflags --libs htex) -lm"),
     ("whole", "main.c $(pkg-config --cflags --libs htex-whole) -lm"),
     ("static", "main.c -static $(pkg-config --static --cflags --libs htex)"),
     ("whole-static", "main.c -static $(pkg-config --static --cflags --libs htex-whole)"),
     ("two", "two.c libother.a -static $(pkg-config --static --cflags --libs htex)"),
-    // Of what both libraries have, a linker takes that of the first.
+    // If both libraries contain something, the linker takes it from the first one.
     ("two-after", "two.c -I prefix/include prefix/lib/libhtex.a libother.a -lpthread -ldl -lm"),
     (
         "two-whole-after",
@@ -39,7 +38,7 @@ const LINES: [(&str, &str); 7] = [
     ),
 ];
 
-/// The player, which calls another static library of Rust, too.
+/// The player that also calls another static Rust library.
 const TWO: &str = "\
 #define main play
 #include \"main.c\"
@@ -54,7 +53,7 @@ int main(int argc, char **argv)
 }
 ";
 
-/// A library of Rust that is none of htex. It catches its panic for no numbers.
+/// A Rust library without htex. It catches its own panic if it gets no numbers.
 const OTHER: &str = "\
 #[unsafe(no_mangle)]
 pub extern \"C\" fn other_sum(numbers: *const f64, count: usize) -> f64 {
@@ -119,7 +118,7 @@ fn other(folder: &Path) -> Result<()> {
     run(program(rustc, folder).args(["--crate-type", "staticlib", "-O", "other.rs"]))
 }
 
-/// The library as it is installed allocates nothing in real-time calls; SDL 2 plays it.
+/// The installed library allocates nothing in real-time calls, and SDL 2 plays it.
 fn examples(installed: &Installed, capi: &Path) -> Result<()> {
     let real_time = capi.join("tests/hosts/real_time.c");
     let flags = "$(pkg-config --cflags --libs htex-whole) -lm";
@@ -138,8 +137,8 @@ fn examples(installed: &Installed, capi: &Path) -> Result<()> {
     run(play.env("SDL_AUDIODRIVER", "dummy"))
 }
 
-/// The plugin for FMOD, with the static library in it and no names but its own, is played by the
-/// host of its tests, which stands for FMOD.
+/// The FMOD plugin contains the static library and exports only its own names. The host of its
+/// tests, which stands in for FMOD, plays it.
 fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
     let tests = capi.join("tests");
     let (prefix, headers) = (installed.prefix.display(), tests.join("fmod"));
@@ -161,7 +160,7 @@ fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
     run(&mut installed.shell(names))
 }
 
-/// The libraries have no names but those of the header, and those of the shared ones have a
+/// The libraries export only the names in the header. In the shared libraries, these names have a
 /// version.
 fn names(installed: &Installed) -> Result<()> {
     for folder in ["lib", "lib/whole"] {
@@ -212,7 +211,7 @@ fn sizes(lib: &Path) -> Result<()> {
 }
 
 impl Installed {
-    /// A line of the shell, which finds the library by pkg-config.
+    /// Returns a shell command that finds the library through pkg-config.
     fn shell(&self, line: &str) -> std::process::Command {
         let mut shell = program("sh", &self.folder);
         shell.args(["-c", line]);
@@ -220,7 +219,8 @@ impl Installed {
         shell
     }
 
-    /// A program that was built, which finds the whole library where its name has `whole`.
+    /// Returns a command for a built program. It finds the whole library if its name contains
+    /// `whole`.
     fn program(&self, name: &str) -> std::process::Command {
         let is_small = ["play-small", "built/app_htex"].contains(&name);
         let lib = if is_small { "lib" } else { "lib/whole" };
@@ -229,7 +229,7 @@ impl Installed {
         program
     }
 
-    /// The samples that a built player writes.
+    /// Returns the samples that a built player writes.
     fn played(&self, name: &str) -> Result<Vec<u8>> {
         let out = self.folder.join("played.f32");
         run(self.program(name).arg(&self.asset).arg(&out))?;

@@ -1,5 +1,5 @@
-//! What a sample costs in each language, against Rust with blocks of the same length, in one run
-//! turn about.
+//! Measures what a sample costs in each language, compared with Rust in blocks of the same length.
+//! All languages take turns in one run.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -16,13 +16,13 @@ use crate::programs::{program, run};
 const ROUNDS: usize = 15;
 const MODELS: [&str; 2] = ["ar", "sbeta"];
 
-/// Samples of a block of an audio thread.
+/// Samples in a block of an audio thread.
 const BLOCK: usize = 64;
-/// Samples of a second, which scripts ask for at once.
+/// Samples in a second, which scripts request at once.
 const SECOND: usize = 20_000;
 
-/// A language, the program that prints its time, the samples of a call, and the most that it may
-/// cost.
+/// A language, the program that prints its time, the number of samples per call, and the largest
+/// allowed cost.
 struct Cost {
     language: &'static str,
     command: Vec<OsString>,
@@ -39,7 +39,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         for cost in &all {
             let mut ratios = Vec::new();
             let mut least_ns = f64::INFINITY;
-            // Turn about: the clock of the processor changes from second to second.
+            // They take turns, because the processor's clock changes from second to second.
             for _ in 0..ROUNDS {
                 let rust_ns = time_ns(&rust, cost.samples, model, &asset, &folder)?;
                 let ns = time_ns(&cost.command, cost.samples, model, &asset, &folder)?;
@@ -58,7 +58,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The time of a sample that a program prints.
+/// Returns the time per sample that a program prints.
 fn time_ns(
     command: &[OsString],
     samples: usize,
@@ -78,7 +78,7 @@ fn time_ns(
     time.with_context(|| format!("{command:?}: {printed}{errors}"))
 }
 
-/// Builds the programs: the command in Rust, and the other languages.
+/// Builds the programs: the command in Rust, and the programs in other languages.
 fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>)> {
     let mut build = Command::new(cargo());
     build.args([
@@ -89,7 +89,8 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
         "htex",
         "--example",
         "block",
-        // Without the engine of modules, whose link takes minutes: built-in models are measured.
+        // The WASM engine is left out: linking it takes minutes, and only built-in models are
+        // measured.
         "--no-default-features",
     ]);
     run(build.current_dir(workspace))?;

@@ -1,5 +1,5 @@
-//! Files of other haptic formats that the command writes of a texture, and the textures that it
-//! makes of them again.
+//! Files of other haptic formats that the command writes from a texture, and the textures that it
+//! makes from them again.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use anyhow::Result;
 use super::copy;
 use crate::places::workspace;
 
-/// A model file of the Penn Haptic Texture Toolkit, which nothing writes.
+/// A model file of the Penn Haptic Texture Toolkit. Nothing can write this format.
 const HATT: &str = "sdk/exchange/tests/felt.xml";
-/// What no signal says.
+/// Settings that no signal states.
 const GIVEN: [&str; 6] = ["--full-scale", "0.2", "--speed", "80", "--force", "0.4"];
 
-/// The files that are imported, each with its settings.
+/// The imported files, each with its settings.
 const IMPORTS: [(&str, &[&str]); 6] = [
     ("felt.xml", &["--license", "CC-BY-4.0"]),
     ("vinyl.glb", &[]),
@@ -45,8 +45,8 @@ pub(super) fn copy_model_file(folder: &Path) -> Result<()> {
     copy(&workspace().join(HATT), &folder.join("felt.xml"))
 }
 
-/// Writes the files of `vinyl.htex`, and what the command makes of each: `imported/taps.htex` of
-/// `taps.ahap`.
+/// Writes files from `vinyl.htex`, and the texture that the command makes from each:
+/// `imported/taps.htex` from `taps.ahap`.
 pub(super) fn write(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     copy_model_file(folder)?;
     let formats = [

@@ -1,4 +1,4 @@
-//! Assets and samples that the `htex` command writes, which the bindings are compared with.
+//! Assets and samples that the `htex` command writes. The bindings are compared with them.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -11,14 +11,14 @@ use crate::platform::Build;
 use crate::programs::{program, run};
 use crate::{c_module, plugins};
 
-/// Length, rate and seed of the samples, and their motion, which single precision represents.
+/// Length, rate and seed of the samples, and their motion, which is exact in single precision.
 const SECONDS: &str = "2";
 const RATE: &str = "48000";
 const SEED: &str = "7";
 const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
-/// The `htex` command as it is installed, which libhtex and the Python package are built beside.
+/// Returns the installed `htex` command. libhtex and the Python package are built together with it.
 pub(crate) fn command() -> Result<PathBuf> {
     let build = Build::here()?;
     run(&mut build.cargo_of_both())?;
@@ -26,17 +26,17 @@ pub(crate) fn command() -> Result<PathBuf> {
     Ok(build.built().join(name))
 }
 
-/// Scenes of examples/scenes that are rendered and planned.
+/// Scenes from examples/scenes that are rendered and planned.
 const SCENES: [&str; 2] = ["two-swatches", "electrovibration"];
 
-/// Textures of the library beside those of the fixtures: more than a page of its index holds.
+/// Additional textures in the library, more than a page of its index holds.
 const COPIES: usize = 999;
 
-/// Writes an asset of six models (`vinyl.htex`), a mesh that carries it (`vinyl.glb`), an asset
-/// that brings its model along (`bursts.htex`), their samples at 48 kHz, the spectrum of Bands,
-/// what the command tells of the asset, a library (`many.htexlib`) and its list, scenes with their
-/// samples and plans, the models as modules, a module that does not return, and files of other
-/// haptic formats with what is imported of them.
+/// Writes the fixtures: an asset with six models (`vinyl.htex`), a mesh that carries it
+/// (`vinyl.glb`), an asset with an embedded model (`bursts.htex`), their samples at 48 kHz, the
+/// spectrum of Bands, the command's output about the asset, a library (`many.htexlib`) and its
+/// list, scenes with their samples and plans, the models as modules, a module that does not return,
+/// and files of other haptic formats with the textures imported from them.
 pub(super) fn write(folder: &Path) -> Result<()> {
     fs_err::create_dir_all(folder)?;
     let command = command()?;
@@ -109,9 +109,9 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     printed(&["lib", "ls", "many.htexlib", "--json"], "many.json")
 }
 
-/// What the command makes of the same as the author module of the npm package: textures of a part
-/// of a recording, of samples, by hand, mixed and edited, baked blocks, a library of two, and what
-/// is read of a recording (`process.json`).
+/// Writes what the npm package's author module also makes: textures from part of a recording, from
+/// samples, by hand, mixed and edited; baked blocks; a library of two; and what is read from a
+/// recording (`process.json`).
 fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     for name in ["pcm16.flac", "pcm16.wav"] {
         let source = workspace().join("sdk/recording/tests/lab").join(name);
@@ -150,8 +150,8 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
 }
 
-/// Textures of the recording with the setup's response, of its forces (`sensors.csv`) with a
-/// tracker of 60 Hz (`tracker.csv`), and of a free motion on grids.
+/// Makes textures from the recording with the setup's response, from its forces (`sensors.csv`)
+/// with a 60 Hz tracker (`tracker.csv`), and from a free motion on grids.
 fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     let models = ["--model", "ar,bands"];
     let compensated = ["--frf", "response.csv", "-o", "compensated.htex"];
@@ -184,7 +184,7 @@ fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Resul
     htex(&[&bands[..], &lines, &["-o", "lines.htex"]].concat())
 }
 
-/// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library
+/// Copies the assets to the folder `many`. The library then contains the module of `bursts.htex`
 /// twice.
 fn copy_many(folder: &Path) -> Result<()> {
     let floor = folder.join("many/floor");

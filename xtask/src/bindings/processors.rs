@@ -1,4 +1,4 @@
-//! The command on other processors, emulated: the same files, byte for byte.
+//! Runs the command on other, emulated processors: it writes the same files, byte for byte.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,15 +12,15 @@ use crate::places::{cargo, files, target, workspace};
 use crate::plugins::models;
 use crate::programs::{program, run};
 
-/// Another architecture that the command is built for.
+/// Another architecture for which the command is built.
 const AARCH64: &str = "aarch64-unknown-linux-musl";
 
-/// Emulated processors of this machine's architecture: with AVX2, with AVX, and with neither.
+/// Emulated processors of this machine's architecture: with AVX2, with AVX, and without either.
 const X86: [&str; 3] = ["Haswell-noTSX", "SandyBridge", "Nehalem"];
 
 const SURFACES: [&str; 3] = ["vinyl", "corrugated-paper", "coarse-fabric"];
 
-/// With one surface.
+/// Compares the files for one surface.
 pub(super) fn sample(folder: &Path) -> Result<()> {
     same(folder, &SURFACES[..1])
 }
@@ -53,9 +53,10 @@ fn same(folder: &Path, surfaces: &[&str]) -> Result<()> {
     all_of(compared)
 }
 
-/// Builds the command for another architecture, with the linker of the Rust toolchain.
+/// Builds the command for another architecture with the Rust toolchain's own linker.
 fn aarch64(folder: &Path) -> Result<PathBuf> {
-    // musl has all of libdl in libc, and the target comes without the empty library of that name.
+    // In musl, libc contains all of libdl, and the target lacks the usual empty library with that
+    // name.
     let empty = folder.join("libdl.a");
     fs_err::write(&empty, "!<arch>\n")?;
     let mut build = Command::new(cargo());
@@ -74,8 +75,8 @@ fn aarch64(folder: &Path) -> Result<PathBuf> {
     Ok(fs_err::canonicalize(built)?)
 }
 
-/// All files that a command writes: recordings, spectra, assets, samples of all models at several
-/// motions, and of a scene.
+/// Returns all files that a command writes: recordings, spectra, assets, samples of all models at
+/// several motions, and samples of a scene.
 fn written(
     folder: &Path,
     command: &[PathBuf],
@@ -103,7 +104,7 @@ fn written(
             )?;
         }
     }
-    // Another rate, whose segments have a prime length, and a fit to signals.
+    // Another sample rate, whose segments have a prime length, and a fit to signals.
     htex(&["simulate", "--surface", "sandpaper", "--rate", "10015", "-o", "sandpaper.csv"], None)?;
     let burg = ["fit", "sandpaper.csv", "--model", "ar", "--option", "ar.method=burg"];
     htex(&[&burg[..], &["-o", "sandpaper.htex"]].concat(), None)?;

@@ -1,4 +1,5 @@
-//! The Python package: its wheel in an empty environment, its tests against the installed package.
+//! Tests the Python package: builds its wheel, installs it into an empty environment, and runs its
+//! tests there.
 
 use std::path::{Path, PathBuf};
 
@@ -12,8 +13,8 @@ use crate::programs::{program, run};
 pub(super) fn test(folder: &Path) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let python = environment(&folder, "test,lab")?;
-    // Outside the sources, so that the installed package is imported; its README's examples are
-    // among the tests.
+    // Run outside the sources, so that the installed package is imported. The tests include the
+    // examples in the README.
     let tests = package()?.join("tests");
     run(program(python, &folder)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
@@ -21,8 +22,8 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Builds the wheel and installs it, with the dependencies of an extra, into an empty environment;
-/// returns its interpreter.
+/// Builds the wheel and installs it, with an extra's dependencies, into an empty environment.
+/// Returns its interpreter.
 pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     let venv = folder.join("venv");
     run(program("python3", folder).args(["-m", "venv"]).arg(&venv))?;
@@ -32,7 +33,7 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
         pip.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
         pip
     };
-    // What the command and libhtex have built is not built again.
+    // Reuses what building the command and libhtex has already built.
     let built = std::path::absolute(target())?;
     run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
         .arg(package()?)

@@ -52,7 +52,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .env("HTEX_CHROMIUM", which(chromium)))
 }
 
-/// Builds a library whose catalogue plays textures by the package.
+/// Builds a library whose catalogue plays textures with the package.
 fn catalogue(fixtures: &Path, package: &Path) -> Result<()> {
     let recipe = "[library]\nname = \"surfaces\"\n[[textures]]\nrecordings = \"vinyl.csv\"\nmodels = [\"bands\"]\n\
                   license = \"CC0-1.0\"\nat = { speed_mm_s = 80, force_n = 0.5 }\n";

@@ -1,4 +1,4 @@
-//! Follows the links of the built pages.
+//! Checks the links in the built pages.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use fs_err as fs;
 
 use crate::markdown::is_address;
 
-/// Follows every link, and asks that nothing is loaded from a network. Returns the number of links.
+/// Checks every link, and that nothing is loaded from a network. Returns the number of links.
 pub(super) fn follow(html: &Path) -> Result<usize> {
     let mut pages = BTreeMap::new();
     collect(html, &mut pages)?;
@@ -37,7 +37,7 @@ pub(super) fn follow(html: &Path) -> Result<usize> {
     Ok(followed)
 }
 
-/// The pages of a folder and of those below, with their texts.
+/// Collects the pages in a folder and its subfolders, with their texts.
 fn collect(folder: &Path, pages: &mut BTreeMap<PathBuf, String>) -> Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -51,13 +51,13 @@ fn collect(folder: &Path, pages: &mut BTreeMap<PathBuf, String>) -> Result<()> {
     Ok(())
 }
 
-/// Whether a page's link leads to a file, and to a place in it.
+/// Whether a page's link leads to an existing file, and to an existing anchor in it.
 fn leads(page: &Path, link: &str, anchors: &BTreeMap<&Path, BTreeSet<String>>) -> bool {
     let (path, fragment) = link.split_once('#').unwrap_or((link, ""));
     let path = path.split('?').next().unwrap_or_default();
     let file = match path {
         "" => page.to_owned(),
-        // mdBook's own page of what is not found is opened at any address.
+        // mdBook's own "not found" page is opened at any address.
         _ => page.parent().unwrap_or(Path::new("")).join(unquoted(path)),
     };
     let Ok(file) = fs::canonicalize(&file) else {
@@ -68,14 +68,14 @@ fn leads(page: &Path, link: &str, anchors: &BTreeMap<&Path, BTreeSet<String>>) -
         && (fragment.is_empty() || known.is_none_or(|known| known.contains(&unquoted(fragment))))
 }
 
-/// The values of an attribute.
+/// Returns the values of an attribute.
 fn values<'a>(text: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
     let begin = format!(" {attribute}=\"");
     let ends = text.match_indices(&begin).map(|(at, begin)| at + begin.len()).collect::<Vec<_>>();
     ends.into_iter().filter_map(|at| Some(text[at..].split_once('"')?.0))
 }
 
-/// What a page loads: scripts, pictures, style sheets.
+/// Returns what a page loads: scripts, pictures, style sheets.
 fn loaded(text: &str) -> impl Iterator<Item = &str> {
     let sheets = text.split("<link ").skip(1).filter_map(|rest| rest.split_once('>'));
     values(text, "src").chain(sheets.flat_map(|(tag, _)| {
@@ -88,13 +88,13 @@ fn is_network(address: &str) -> bool {
     address.starts_with("//") || (address.contains("://") && !address.starts_with("data:"))
 }
 
-/// A text without the entities of HTML.
+/// Replaces the HTML entities in a text.
 fn unescaped(text: &str) -> String {
     let text = text.replace("&quot;", "\"").replace("&#39;", "'").replace("&#x27;", "'");
     text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
 }
 
-/// A path or fragment without `%20` and its like.
+/// Decodes `%20` and similar codes in a path or fragment.
 fn unquoted(text: &str) -> String {
     let mut bytes = Vec::new();
     let mut rest = text.as_bytes();

@@ -1,8 +1,8 @@
-//! `cargo xtask book`: the pages of the repository as a book of HTML.
+//! `cargo xtask book`: makes an HTML book from the pages of the repository.
 //!
-//! The pages are copied with the repository's folders, so that their links lead where they lead on
-//! the web. Every page that one of them links to is a page of the book; other files that are linked
-//! to are copied as they are. mdBook makes the HTML, in which every link is then followed.
+//! The pages are copied together with the repository's folders, so that their links work as they do
+//! on the web. Every page that a page links to becomes part of the book; other linked files are
+//! copied unchanged. mdBook makes the HTML, and then every link in it is checked.
 
 mod links;
 mod pages;
@@ -16,11 +16,10 @@ use fs_err as fs;
 use crate::places::{target, version};
 use crate::programs::run;
 
-/// The version that the book was made with, and how it is installed.
+/// How to install mdBook, with the version that the book was made with.
 const INSTALL: &str = "cargo install mdbook --version 0.5.4 --locked --root target/release-tools";
 
-/// What mdBook is told. Pages have no `{{#include}}`, and a README is a page of that name, since
-/// links say so.
+/// mdBook's settings. Pages have no `{{#include}}`. A README keeps its name, because links use it.
 const SETTINGS: &str = r#"[book]
 title = "htex @version@"
 description = "Textures of touch: a file format, models, players, devices, studies"
@@ -45,8 +44,8 @@ enable = true
 level = 1
 "#;
 
-/// mdBook copies the first page to the top of the book, where its links lead elsewhere: the top
-/// leads to the page instead.
+/// mdBook would copy the first page to the top of the book, where its relative links would break.
+/// The top redirects to the page instead.
 const TOP: &str = r#"<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -58,11 +57,11 @@ const TOP: &str = r#"<!DOCTYPE html>
 </html>
 "#;
 
-/// Makes the book in a folder: `source` has its pages, `html` what is read.
+/// Makes the book in a folder: `source` contains its pages, `html` the result.
 ///
 /// # Errors
-/// When mdBook is not installed or fails, and when a link leads nowhere: with the page and the
-/// link.
+/// When mdBook is not installed or fails, or when a link is broken; the message names the page and
+/// the link.
 pub fn book(out: &Path) -> Result<()> {
     let out = std::path::absolute(out)?;
     for part in ["source", "html"] {

@@ -1,4 +1,4 @@
-//! The pages of the book: those of `docs/SUMMARY.md`, and what they link to.
+//! The pages of the book: those listed in `docs/SUMMARY.md`, and the pages that they link to.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Component, Path, PathBuf};
@@ -9,11 +9,11 @@ use fs_err as fs;
 use crate::markdown::{is_address, links};
 use crate::places::workspace;
 
-/// Where the order of the pages stands.
+/// The file that defines the order of the pages.
 const SUMMARY: &str = "docs/SUMMARY.md";
 
-/// Copies the pages and what they link to into a folder, with the repository's paths, and returns
-/// the number of pages.
+/// Copies the pages and the files that they link to into a folder, with the repository's paths.
+/// Returns the number of pages.
 pub(super) fn assemble(source: &Path) -> Result<usize> {
     let root = fs::canonicalize(workspace())?;
     let summary = fs::read_to_string(root.join(SUMMARY))?;
@@ -36,9 +36,9 @@ struct Assembly {
     source: PathBuf,
     /// The pages in the order in which they were found.
     pages: Vec<PathBuf>,
-    /// Those of them that are not yet copied.
+    /// Pages that have not been copied yet.
     waiting: VecDeque<PathBuf>,
-    /// Folders without a page of their own, which have a list of their files.
+    /// Folders without a page of their own. Each gets a list of its files.
     folders: BTreeSet<PathBuf>,
 }
 
@@ -56,8 +56,8 @@ impl Assembly {
         self.write(page, text.as_bytes())
     }
 
-    /// Takes in what a page links to. Returns the page with its links from the top of the book, and
-    /// as it stands in its folder.
+    /// Adds the files that a page links to. Returns the page twice: with links relative to the top
+    /// of the book, and with links relative to its own folder.
     fn with_links(&mut self, page: &Path, text: &str) -> Result<(String, String)> {
         let mut found = Vec::new();
         for range in links(text) {
@@ -79,7 +79,8 @@ impl Assembly {
         Ok((from_top, in_folder))
     }
 
-    /// Takes in the file that a page links to, and returns its path; of a folder that of its page.
+    /// Adds the file that a page links to, and returns its path. For a folder it returns the
+    /// folder's page.
     fn found(&mut self, page: &Path, link: &str) -> Result<PathBuf> {
         let place = || format!("{}: {link}", page.display());
         let mut linked =
@@ -105,7 +106,7 @@ impl Assembly {
         Ok(linked)
     }
 
-    /// A page with the files of a folder.
+    /// Returns a page that lists the files in a folder.
     fn list(&self, folder: &Path) -> Result<String> {
         let mut names = Vec::new();
         for entry in fs::read_dir(self.root.join(folder))? {
@@ -119,7 +120,7 @@ impl Assembly {
         Ok(format!("# {}\n\n{}", folder.display(), lines.collect::<String>()))
     }
 
-    /// The line of the summary for a page that it does not list.
+    /// Returns the summary line for a page that the summary does not list.
     fn entry(&self, page: &Path) -> Result<String> {
         let text = fs::read_to_string(self.source.join(page))?;
         let title = text.lines().find_map(|line| line.strip_prefix("# "));
@@ -139,7 +140,7 @@ fn parent(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// A path without `.` and `..`; an error above the repository.
+/// Resolves `.` and `..` in a path. A path outside the repository is an error.
 fn normal(path: &Path) -> Result<PathBuf> {
     let mut normal = PathBuf::new();
     for part in path.components() {

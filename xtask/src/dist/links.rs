@@ -1,10 +1,10 @@
-//! The libraries themselves, which have no names but those of the header.
+//! Links the libraries so that they export only the names in the header.
 //!
-//! Cargo's static library has the names of the standard library of Rust and of all dependencies,
-//! and no two such libraries link in one program ("multiple definition of rust_eh_personality"). So
-//! its objects are linked to one, what no function of the header reaches is dropped, and all other
-//! names are made local. The shared library is linked of the same objects, with a version of its
-//! names.
+//! Cargo's static library exports the names of Rust's standard library and of all dependencies. Two
+//! such libraries cannot be linked in one program ("multiple definition of rust_eh_personality").
+//! Therefore its objects are linked into one, everything that no function of the header reaches is
+//! dropped, and all other names are made local. The shared library is linked from the same objects,
+//! and its names get a version.
 
 use std::path::Path;
 
@@ -16,13 +16,13 @@ use crate::places::workspace;
 use crate::platform::{Build, System};
 use crate::programs::run;
 
-/// The version of the interface, `HTEX_API_VERSION`: its major number is that of the shared
-/// library, both are the version of its names.
+/// The version of the interface, `HTEX_API_VERSION`. Its major number is the shared library's
+/// version; both numbers are the version of its names.
 const API: (&str, &str) = ("1", "1.0");
 
-/// Puts the libraries of a built folder into `lib`. `is_merged`: the static library has one section
-/// of each kind, half the bytes where there are a hundred thousand functions; a program then links
-/// all of it or nothing.
+/// Puts the libraries from a build folder into `lib`. With `is_merged`, the static library has a
+/// single section of each kind. That halves its size if there are a hundred thousand functions, but
+/// a program then links either all of it or nothing.
 pub(super) fn put(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Result<()> {
     fs::create_dir_all(lib)?;
     match build.platform().system {
@@ -35,12 +35,12 @@ pub(super) fn put(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> R
     }
 }
 
-/// The static library of one object.
+/// Makes the static library from a single object.
 fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Result<()> {
     let object = built.join("htex.o");
     let mut link = build.utility("ld");
-    // Without groups: a linker keeps one of each name, and what refers to another library's would
-    // have a name that is local here.
+    // Section groups are dissolved: a linker keeps only one group of each name, and references to
+    // another library's group would then refer to a name that is local here.
     link.args(["-r", "--gc-sections", "--force-group-allocation"]);
     for name in functions()?.iter().filter(|name| !name.ends_with("_wide")) {
         link.args(["-u", name]);
@@ -55,7 +55,8 @@ fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Resul
         run(link.args(["-r", "-T"]).arg(script).arg(&object).arg("-o").arg(&merged))?;
         fs::rename(merged, &object)?;
     }
-    // What a compiler embeds for link-time optimisation, where it is not dropped already.
+    // Removes what a compiler embeds for link-time optimisation, if it has not been dropped
+    // already.
     let mut localise = build.utility("objcopy");
     localise.args(["--wildcard", "--keep-global-symbol=htex_*"]);
     localise.args(["--strip-debug", "-R", ".llvmbc", "-R", ".llvmcmd"]);
@@ -69,7 +70,7 @@ fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Resul
     Ok(fs::remove_file(object)?)
 }
 
-/// Sections of a kind in one; those for unwinding are found by their names.
+/// Merges the sections of each kind into one. Unwinding sections are found by their names.
 const SECTIONS: &str = "\
 SECTIONS {
     .text : { *(.text .text.*) }
@@ -83,7 +84,7 @@ SECTIONS {
 }
 ";
 
-/// The shared library under its full name, with links of the shorter ones.
+/// Makes the shared library under its full name, and links with the shorter names.
 fn put_shared(build: &Build, built: &Path, lib: &Path) -> Result<()> {
     let (major, api) = API;
     let map = built.join("htex.map");
@@ -111,7 +112,8 @@ fn put_dylib(built: &Path, lib: &Path) -> Result<()> {
     link_to(&short, &lib.join("libhtex.dylib"))
 }
 
-/// The library of Windows beside the programs that load it, and what compilers link against.
+/// Puts the Windows library next to the programs that load it, and the import library for
+/// compilers.
 fn put_dll(build: &Build, built: &Path, lib: &Path) -> Result<()> {
     copy(&built.join("htex_c.dll"), &lib.join("htex.dll"))?;
     let definitions = built.join("htex.def");
@@ -130,7 +132,7 @@ fn functions() -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// The function that a line of the header declares.
+/// Returns the function that a line of the header declares.
 fn function(line: &str) -> Option<&str> {
     let declares = line.starts_with(|first: char| first.is_ascii_lowercase());
     let (before, _) = line.split_once('(').filter(|_| declares)?;
@@ -138,7 +140,7 @@ fn function(line: &str) -> Option<&str> {
     name.starts_with("htex_").then_some(name)
 }
 
-/// A symbolic link in place of whatever is there.
+/// Makes a symbolic link, replacing whatever is there.
 #[cfg(unix)]
 fn link_to(to: &str, at: &Path) -> Result<()> {
     match fs::remove_file(at) {

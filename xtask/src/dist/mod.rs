@@ -1,8 +1,8 @@
 //! Installs libhtex: libraries, headers, C#, pkg-config and CMake files.
 //!
-//! The library in `lib` is small: without scenes, without libraries of textures and without the
-//! engine of WASM modules. `lib/whole` has the one with all of it, under the same names: the
-//! functions are the same, and those that the small one lacks say so.
+//! The library in `lib` is small: it has no scenes, no libraries of textures and no WASM engine.
+//! `lib/whole` has the library with all of these, under the same names. Both have the same
+//! functions; those that the small one does not support return an error that says so.
 
 mod links;
 mod packages;
@@ -21,12 +21,12 @@ use crate::programs::run;
 pub struct Dist {
     /// The folder that gets `lib`, `include` and `share`.
     pub prefix: PathBuf,
-    /// With the whole library beside the small one.
+    /// Whether to install the whole library next to the small one.
     pub whole: bool,
     pub build: Build,
 }
 
-/// Files of the header's folder.
+/// Files in the header's folder.
 const HEADERS: [&str; 2] = ["htex.h", "htex.hpp"];
 
 /// Builds and installs.
@@ -52,7 +52,7 @@ pub fn dist(options: &Dist) -> Result<()> {
     packages::write(&lib, &version()?, build.platform().system, options.whole)
 }
 
-/// Builds the small library; returns the folder of its files.
+/// Builds the small library, and returns the folder of its files.
 fn build_small(build: &Build) -> Result<PathBuf> {
     let mut command = build.cargo("build");
     command.args(["--locked", "--package", "htex-capi"]);
@@ -60,17 +60,18 @@ fn build_small(build: &Build) -> Result<PathBuf> {
     Ok(build.output("small"))
 }
 
-/// Builds the whole library; returns the folder of its files.
+/// Builds the whole library, and returns the folder of its files.
 ///
-/// With the command, whose features it then has: what both need is built once. Readers of
-/// recordings are built, too, and as nothing here calls them, not linked.
+/// It is built together with the command and therefore has the command's features, so that shared
+/// dependencies are built only once. The readers of recordings are also built, but they are not
+/// linked because nothing in the library calls them.
 fn build_whole(build: &Build) -> Result<PathBuf> {
     run(build.cargo_of_both().args(of_command(build)))?;
     Ok(build.built())
 }
 
-/// Features of the command on a platform. What checks certificates by the system needs frameworks
-/// of Apple, which only an SDK of theirs has.
+/// Returns the command's features on a platform. Checking certificates through the system needs
+/// Apple's frameworks, which only Apple's SDK contains.
 pub(crate) fn of_command(build: &Build) -> &'static [&'static str] {
     const ALL_BUT_CLOUD: [&str; 3] = [
         "--no-default-features",
@@ -83,14 +84,14 @@ pub(crate) fn of_command(build: &Build) -> &'static [&'static str] {
     }
 }
 
-/// Copies a file to a folder that is made.
+/// Copies a file into a folder, which is created.
 pub(crate) fn copy(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to.parent().context("a file has a folder")?)?;
     fs::copy(from, to)?;
     Ok(())
 }
 
-/// Copies what a folder has, with its folders.
+/// Copies the contents of a folder, with its subfolders.
 fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     for entry in fs::read_dir(from)? {
         let entry = entry?;

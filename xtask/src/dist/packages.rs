@@ -1,4 +1,4 @@
-//! What pkg-config and CMake find the libraries by.
+//! Writes the files through which pkg-config and CMake find the libraries.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use fs_err as fs;
 
 use crate::platform::System;
 
-/// Writes the files of both into `lib`.
+/// Writes the files for both into `lib`.
 pub(super) fn write(lib: &Path, version: &str, system: System, whole: bool) -> Result<()> {
     let (pkg_config, cmake) = (lib.join("pkgconfig"), lib.join("cmake/htex"));
     fs::create_dir_all(&pkg_config)?;
@@ -28,7 +28,7 @@ pub(super) fn write(lib: &Path, version: &str, system: System, whole: bool) -> R
     Ok(())
 }
 
-/// The line of versions that programs of this one may use: of 0.2.1 it is 0.2, of 1.2.3 it is 1.
+/// Returns the compatible version prefix: for 0.2.1 it is 0.2, for 1.2.3 it is 1.
 fn line(version: &str) -> String {
     let parts: Vec<&str> = version.split('.').collect();
     let length = if parts[0] == "0" { 2 } else { 1 };
@@ -42,7 +42,7 @@ fn htex_pc(name: &str, folder: &str, version: &str) -> String {
     )
 }
 
-/// The shared target and, where there is one, the static.
+/// Returns the shared target and, if available, the static one.
 fn cmake_targets(shared: &str, fixed: &str, folder: &str, system: System) -> String {
     let location = match system {
         System::Linux => "IMPORTED_LOCATION \"${htex_prefix}/lib@/libhtex.so\"",

@@ -1,4 +1,4 @@
-//! The Unity package with the libraries that are there.
+//! Makes the Unity package, with all libraries that have been built.
 
 use std::path::{Path, PathBuf};
 
@@ -9,8 +9,8 @@ use super::{copy, copy_folder};
 use crate::places::workspace;
 use crate::platform::{Platform, System};
 
-/// The folder with what Unity imports as libraries, and the one, which Unity ignores, with the
-/// settings of imports of those that are not there.
+/// The folder whose contents Unity imports as libraries. A folder that Unity ignores holds the
+/// import settings of libraries that are not there.
 const PLUGINS: &str = "Plugins";
 const SET_ASIDE: &str = "Plugins~";
 
@@ -26,8 +26,8 @@ pub(crate) fn package(libraries: &[(Platform, PathBuf)], to: &Path) -> Result<()
     set_aside(&plugins, to)
 }
 
-/// Folder and name of the library of a platform. Unity has no editor and no player for Linux on
-/// ARM.
+/// Returns the folder and the name of a platform's library. Unity has neither an editor nor a
+/// player for Linux on ARM.
 fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
     match platform.name {
         "x86_64-linux" => Some(("Linux/x86_64", "libhtex.so")),
@@ -37,8 +37,8 @@ fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Moves each `NAME.meta` whose NAME is not there, of which Unity would say that it is missing, and
-/// removes empty folders.
+/// Moves each `NAME.meta` whose NAME does not exist, because Unity would report it as missing.
+/// Removes empty folders.
 fn set_aside(folder: &Path, package: &Path) -> Result<()> {
     for folder in entries(folder)?.iter().filter(|entry| entry.is_dir()) {
         set_aside(folder, package)?;

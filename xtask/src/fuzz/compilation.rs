@@ -9,13 +9,13 @@ use crate::programs::run;
 
 use super::{Options, folder};
 
-/// Coverage counters, as cargo-fuzz has them.
+/// Coverage counters, the same as in cargo-fuzz.
 const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
     -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Ccodegen-units=1";
 
-/// Builds the programs of targets; returns their folder.
+/// Builds the programs of targets, and returns their folder.
 pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     let host = host()?;
     let (flags, place) = if options.address {
@@ -25,7 +25,7 @@ pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     };
     let place = target_folder().join(place);
     let mut cargo = cargo(options.address);
-    // `--target` keeps the flags from build scripts and macros.
+    // `--target` keeps these flags away from build scripts and macros.
     cargo
         .args(["build", "--release", "--locked", "--target", &host])
         .args(targets.iter().flat_map(|target| ["--bin", target]))
@@ -42,11 +42,12 @@ pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     Ok(place.join(host).join("release"))
 }
 
-/// The cargo that runs this task, or the nightly one.
+/// Returns the cargo that runs this task, or the nightly one.
 fn cargo(nightly: bool) -> Command {
     if nightly {
         let mut cargo = Command::new("cargo");
-        // Variables that the current toolchain set would override the choice of another.
+        // Variables that the current toolchain has set would override the choice of another
+        // toolchain.
         cargo.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").env_remove("RUSTC");
         cargo.arg("+nightly");
         return cargo;
@@ -54,7 +55,7 @@ fn cargo(nightly: bool) -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// A folder apart from that of `cargo fuzz`, whose flags differ.
+/// A separate folder, because the flags differ from those of `cargo fuzz`.
 fn target_folder() -> PathBuf {
     match std::env::var_os("CARGO_TARGET_DIR") {
         Some(place) => PathBuf::from(place).join("fuzz"),

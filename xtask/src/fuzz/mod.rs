@@ -1,11 +1,11 @@
 //! `cargo xtask fuzz`: builds the fuzz targets and runs each for a time.
 //!
-//! The programs are built as `cargo fuzz build --sanitizer none` builds them, and with the
-//! toolchain that is installed: nothing here needs a nightly one or cargo-fuzz. The address
-//! sanitizer does.
+//! The programs are built as `cargo fuzz build --sanitizer none` builds them, but with the
+//! installed toolchain: neither a nightly toolchain nor cargo-fuzz is needed. The address sanitizer
+//! does need a nightly toolchain.
 //!
-//! It is an option: unsafe code is in the shims of the ABIs alone. Coverage counters are a pass of
-//! the stable compiler.
+//! The sanitizer is optional, because only the shims of the ABIs contain unsafe code. Coverage
+//! counters are a pass of the stable compiler.
 
 mod compilation;
 mod options;
@@ -23,7 +23,7 @@ use report::Outcome;
 /// Builds and runs the chosen targets.
 ///
 /// # Errors
-/// When the programs cannot be built or run, or something was found.
+/// When the programs cannot be built or run, or when fuzzing has found something.
 pub fn fuzz(options: &Options) -> Result<()> {
     let options = &options.bounded();
     let targets = chosen(&options.targets)?;
@@ -47,7 +47,7 @@ fn folder() -> PathBuf {
     here.parent().unwrap_or(here).join("fuzz")
 }
 
-/// The targets of these names, or all: the files in `fuzz/fuzz_targets`.
+/// Returns the targets with these names, or all: the files in `fuzz/fuzz_targets`.
 fn chosen(wanted: &[String]) -> Result<Vec<String>> {
     let files = fs_err::read_dir(folder().join("fuzz_targets"))?;
     let name = |path: PathBuf| Some(path.file_stem()?.to_str()?.to_owned());

@@ -26,13 +26,13 @@ pub struct Options {
 const SECONDS: u64 = 60;
 
 impl Options {
-    /// The same options with the time of a proof, ten minutes, where no bound is given.
+    /// Returns the same options, with the time of a proof (ten minutes) if no bound is given.
     pub(crate) fn of_a_proof(&self) -> Self {
         let is_bounded = self.seconds.is_some() || self.executions.is_some();
         Self { seconds: self.seconds.or((!is_bounded).then_some(600)), ..self.clone() }
     }
 
-    /// The same options with the default time, where no bound is given.
+    /// Returns the same options, with the default time if no bound is given.
     pub(super) fn bounded(&self) -> Self {
         let is_bounded = self.seconds.is_some() || self.executions.is_some();
         let seconds = self.seconds.or((!is_bounded).then_some(SECONDS));

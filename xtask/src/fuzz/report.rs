@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Lines of a log that are shown with a finding.
+/// Number of log lines that are shown with a finding.
 const TOLD: usize = 12;
 
 /// The head of the table.
@@ -15,10 +15,10 @@ pub(super) struct Outcome {
     target: String,
     executions: u64,
     per_second: u64,
-    /// Edges of the program that were reached.
+    /// Number of edges of the program that were reached.
     coverage: u64,
     corpus: u64,
-    /// The input that fails, or the log when there is none.
+    /// The failing input, or the log if there is none.
     pub(super) finding: Option<PathBuf>,
     /// The last lines of the log.
     tail: String,
@@ -55,7 +55,7 @@ impl Outcome {
     }
 }
 
-/// The totals, and each finding with instructions.
+/// Returns the totals, and each finding with instructions.
 pub(super) fn end(outcomes: &[Outcome]) -> String {
     let executions: u64 = outcomes.iter().map(|outcome| outcome.executions).sum();
     let found: Vec<&Outcome> = outcomes.iter().filter(|o| o.finding.is_some()).collect();
@@ -77,7 +77,7 @@ fn after(text: &str, word: &str) -> Option<u64> {
     number(text.rsplit_once(word)?.1.trim_start())
 }
 
-/// The whole number that a text begins with.
+/// Returns the integer at the start of a text.
 fn number(text: &str) -> Option<u64> {
     let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     text[..end].parse().ok()

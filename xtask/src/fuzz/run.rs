@@ -1,4 +1,4 @@
-//! Running one fuzz target.
+//! Runs one fuzz target.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,14 +9,14 @@ use fs_err::{self as fs, File};
 use super::report::Outcome;
 use super::{Options, folder};
 
-/// Longest input, bytes: short, so that mutations are likely to reach parsed fields.
+/// Longest input, bytes. It is short, so that mutations are likely to reach parsed fields.
 const LONGEST: u32 = 4096;
-/// Longest time of one input, seconds.
+/// Longest time for one input, seconds.
 const TIMEOUT_S: u32 = 10;
-/// Most memory, MiB.
+/// Memory limit, MiB.
 const MEMORY_MIB: u32 = 1024;
 
-/// Runs a target; its output goes to `fuzz/logs`.
+/// Runs a target. Its output goes to `fuzz/logs`.
 pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Outcome> {
     let at = |kind: &str| folder().join(kind).join(target);
     let (corpus, artifacts) = (at("corpus"), at("artifacts"));
@@ -53,7 +53,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
     Ok(Outcome::read(target, &text, finding))
 }
 
-/// Folders of initial inputs, besides the corpus of earlier runs.
+/// Returns the folders of initial inputs, apart from the corpus of earlier runs.
 fn inputs(target: &str) -> Vec<PathBuf> {
     let mut places = vec![
         folder().join("seeds").join(target),

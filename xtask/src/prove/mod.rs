@@ -85,7 +85,7 @@ pub enum Proof {
     Costs,
 }
 
-/// Without the rest of the workspace, so that it takes minutes.
+/// Without the rest of the workspace, so that it takes only minutes.
 const ZERO: [&str; 8] =
     ["test", "--locked", "-p", "htex-device-guardian", "--test", "zero", "--", "--nocapture"];
 
@@ -100,10 +100,10 @@ const DAYS: [&str; 8] = [
     "--",
 ];
 
-/// Tests that take a sample take all with this variable.
+/// With this variable, tests that take a sample take everything.
 const WHOLE: &str = "HTEX_WHOLE";
 
-/// Whether tests take all of what they else take a sample of.
+/// Whether tests take everything instead of a sample.
 pub fn whole() -> bool {
     std::env::var_os(WHOLE).is_some()
 }
@@ -112,7 +112,7 @@ impl Proof {
     /// Runs the proof.
     ///
     /// # Errors
-    /// What does not hold.
+    /// Which property does not hold.
     pub fn run(&self) -> Result<()> {
         match self {
             Self::Outputs(options) => outputs::prove(options),
@@ -148,7 +148,7 @@ impl Proof {
     }
 }
 
-/// A test with all of what it takes a sample of, of the same build as `cargo test`.
+/// Runs a test on everything that it normally samples, in the same build as `cargo test`.
 fn whole_test(test: &[&str]) -> Result<()> {
     let test = [&["test", "--locked", "--workspace"], test, &["--", "--nocapture"]].concat();
     cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")])

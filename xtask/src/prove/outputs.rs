@@ -1,4 +1,4 @@
-//! Hashes of what the command writes and prints, one a line, of the same inputs every time.
+//! Hashes of what the command writes and prints, one per line, always from the same inputs.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,7 +10,7 @@ use fs_err as fs;
 use crate::places::{cargo, target, workspace};
 use crate::programs::{program, run};
 
-/// Command lines, in their order. `{WORD}` stands for each of several words.
+/// Command lines, in order. `{WORD}` stands for each of several words.
 const LINES: &str = include_str!("outputs.txt");
 
 /// Folders and files of the workspace that the commands read.
@@ -25,7 +25,7 @@ const INPUTS: [&str; 8] = [
     "xtask/src/prove/study.toml",
 ];
 
-/// The ends of the keys of measured times: no two runs agree on them.
+/// Endings of the keys of measured times, which differ between runs.
 const TIMED: [&str; 6] =
     ["_ms\":", "_us\":", "ns_per_sample\":", "seconds\":", "spread\":", "on_time_front\":"];
 
@@ -52,7 +52,7 @@ pub(super) fn prove(options: &Options) -> Result<()> {
     hash(&folder)
 }
 
-/// The command as it is installed.
+/// Returns the installed command.
 fn built() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build.args(["build", "--release", "--locked", "--package", "htex-cli"]);
@@ -60,7 +60,7 @@ fn built() -> Result<PathBuf> {
     Ok(std::path::absolute(target().join("release/htex"))?)
 }
 
-/// An empty folder with the inputs and a folder for what is printed.
+/// Makes an empty folder with the inputs, and a folder for printed output.
 fn prepare(folder: &Path) -> Result<()> {
     crate::places::emptied(folder)?;
     fs::create_dir_all(folder.join("printed"))?;
@@ -68,7 +68,7 @@ fn prepare(folder: &Path) -> Result<()> {
     run(Command::new("cp").arg("-R").args(inputs).arg(folder))
 }
 
-/// The command in the folder, which knows of no model, device or setting of the user.
+/// Runs the command in the folder, without any of the user's models, devices or settings.
 fn htex(htex: &Path, folder: &Path, line: &str) -> Result<Output> {
     let mut command = program(htex, folder);
     command.args(line.split_whitespace()).env_clear();
@@ -76,7 +76,7 @@ fn htex(htex: &Path, folder: &Path, line: &str) -> Result<Output> {
     output.with_context(|| htex.display().to_string())
 }
 
-/// Runs a command and keeps what it prints, with its status, in a file of its name.
+/// Runs a command and stores its output, with its status, in a file named after it.
 fn print(command: &Path, folder: &Path, line: &str) -> Result<()> {
     let output = htex(command, folder, line)?;
     let text = [output.stdout, output.stderr].concat();
@@ -86,7 +86,7 @@ fn print(command: &Path, folder: &Path, line: &str) -> Result<()> {
     Ok(fs::write(&file, text)?)
 }
 
-/// A text but for measured times, and for what they decide in a sweep.
+/// Removes measured times from a text, and what they determine in a sweep.
 fn without_times(text: &str) -> String {
     let decided = text.split("\"knees\"").next().unwrap_or(text);
     let timed = |value: &&str| TIMED.iter().any(|key| value.contains(key));
@@ -94,7 +94,7 @@ fn without_times(text: &str) -> String {
     kept.collect::<Vec<_>>().join(",")
 }
 
-/// Prints the hash of each file that is no input, in the order of names.
+/// Prints the hash of each file that is not an input, in the order of names.
 fn hash(folder: &Path) -> Result<()> {
     let skipped = INPUTS.map(|input| input.rsplit('/').next().unwrap_or(input));
     let mut find = program("find", folder);
@@ -102,7 +102,7 @@ fn hash(folder: &Path) -> Result<()> {
     for name in skipped {
         find.args(["-not", "-path", &format!("./{name}*")]);
     }
-    // The cache of builds holds times of files, and a sweep's page its measured times.
+    // The cache of builds contains file times, and a sweep's page contains its measured times.
     find.args(["-not", "-path", "*/.htex-build/*", "-not", "-path", "./home/*"]);
     find.args(["-not", "-name", "tradeoff.*", "-print"]);
     let found = find.output().context("find")?;
@@ -115,7 +115,7 @@ fn hash(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What the words in braces stand for.
+/// The values for the words in braces.
 struct Texts(Vec<(&'static str, Vec<String>)>);
 
 impl Texts {
@@ -140,7 +140,7 @@ impl Texts {
         ]))
     }
 
-    /// The line with every combination of words.
+    /// Returns the line with every combination of words.
     fn expand(&self, line: &str) -> Vec<String> {
         let mut lines = vec![line.to_owned()];
         for (place, words) in &self.0 {
@@ -155,13 +155,14 @@ impl Texts {
     }
 }
 
-/// The first words of the lines that the command prints, of its help those of the list of commands.
+/// Returns the first word of each line that the command prints. From its help it takes only the
+/// list of commands.
 fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>> {
     let printed = htex(command, folder, line)?.stdout;
     let printed = String::from_utf8_lossy(&printed);
     let list = printed.rsplit("Commands:\n").next().unwrap_or_default();
     let lines = list.lines().take_while(|line| !line.is_empty());
-    // A third space begins the rest of a description.
+    // A third space begins the continuation of a description.
     let lines = lines.filter(|line| !line.starts_with("   "));
     let first = |line: &str| line.split_whitespace().next().map(str::to_owned);
     Ok(lines.filter_map(first).collect())

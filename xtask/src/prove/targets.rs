@@ -1,4 +1,5 @@
-//! libhtex for systems whose linkers are not to be had here: the code is checked, not linked.
+//! Checks libhtex for systems whose linkers are not available here: the code is compiled, not
+//! linked.
 
 use std::process::Command;
 
@@ -14,10 +15,10 @@ const TARGETS: [&str; 4] = [
     "aarch64-apple-darwin",
 ];
 
-/// Of the small library, and of one with scenes and libraries of textures.
+/// Features of the small library, and of one with scenes and libraries of textures.
 const FEATURES: [&str; 2] = ["", "library,scene"];
 
-/// Checks each for each.
+/// Checks each set of features for each system.
 pub(super) fn prove() -> Result<()> {
     for target in TARGETS {
         for features in FEATURES {

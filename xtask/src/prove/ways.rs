@@ -1,11 +1,11 @@
-//! The ways in: every command of `docs/ways` is run as a reader runs it, on the files of a release,
-//! and prints what the page says.
+//! Runs every command in `docs/ways` as a reader would, with the files of a release, and compares
+//! the output with what the page says.
 //!
-//! A page's blocks are taken in order. `sh` is run in one folder, and what it exports lasts. `text`
-//! is what the block before it prints; `…` stands for any lines, and within a line for any text. A
-//! block of another language begins with a comment that names the file it is saved as; `js` is one
-//! of the examples of the npm package, whose tests run them. A picture of `docs/figures/ways` is
-//! one that the commands make.
+//! A page's blocks are processed in order. `sh` blocks run in one folder, and variables that they
+//! export last. A `text` block is the output of the block before it; `…` stands for any lines, and
+//! within a line for any text. A block in another language begins with a comment that names the
+//! file to which it is saved. `js` blocks are examples of the npm package, whose tests run them.
+//! Pictures in `docs/figures/ways` are made by the commands.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -18,13 +18,13 @@ use fs_err as fs;
 use crate::markdown::{Block, blocks, links};
 use crate::places::{files, target, workspace};
 
-/// What a reader may take for a page.
+/// Longest time that a page may take a reader.
 const MOST_SECONDS: f64 = 600.0;
 
-/// What links to pictures of these pages begin with.
+/// How links to pictures of these pages begin.
 const PICTURES: &str = "../figures/ways/";
 
-/// What is in the names of files for other machines, which a reader leaves where they are.
+/// Parts of the names of files for other machines. A reader ignores those files.
 const OTHERS: [&str; 4] = ["aarch64", "arm64", "win", "macos"];
 
 /// A page, and whether it uses the sources of htex.
@@ -44,7 +44,7 @@ pub struct Options {
     write: bool,
 }
 
-/// Runs the pages, or the one of `--only`.
+/// Runs the pages, or the page given by `--only`.
 pub(super) fn prove(options: &Options) -> Result<()> {
     let release = fs::canonicalize(&options.release)?;
     let chosen = |name: &str| options.only.as_deref().is_none_or(|only| only == name);
@@ -66,7 +66,7 @@ pub(super) fn prove(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// A folder with the files of the release, for one page.
+/// Makes a folder with the files of the release for one page.
 fn prepare(name: &str, release: &Path, with_sources: bool) -> Result<PathBuf> {
     let place = std::path::absolute(target().join("ways").join(name))?;
     crate::places::emptied(&place)?;
@@ -97,7 +97,7 @@ fn link(_: &Path, at: &Path) -> Result<()> {
     bail!("{}: the commands of the pages are those of a shell of Unix", at.display())
 }
 
-/// Takes the blocks of a page in order.
+/// Processes the blocks of a page in order.
 fn follow(name: &str, folder: &Path, write: bool) -> Result<()> {
     let page = workspace().join(format!("docs/ways/{name}.md"));
     let text = fs::read_to_string(&page)?;
@@ -141,15 +141,15 @@ fn follow(name: &str, folder: &Path, write: bool) -> Result<()> {
     Ok(fs::write(&page, text)?)
 }
 
-/// Whether a block stands in the README of the npm package, too.
+/// Whether the README of the npm package contains the same block.
 fn is_example_of_npm(block: &Block) -> Result<bool> {
     let readme = fs::read_to_string(workspace().join("sdk/web/README.md"))?;
     Ok(blocks(&readme).iter().any(|example| example.language == "js" && example.text == block.text))
 }
 
-/// Holds the pictures of a page against those that its commands made in their folder. Of those that
-/// Python made, in folders below, the bytes depend on the version of matplotlib: they only have to
-/// be there.
+/// Compares a page's pictures with those that its commands made in their folder. The bytes of
+/// pictures that Python made, in subfolders, depend on the version of matplotlib, so those only
+/// have to exist.
 fn pictures(name: &str, folder: &Path, write: bool) -> Result<()> {
     let text = fs::read_to_string(workspace().join(format!("docs/ways/{name}.md")))?;
     let shown = links(&text).into_iter().filter_map(|link| text[link].strip_prefix(PICTURES));
@@ -172,7 +172,7 @@ fn pictures(name: &str, folder: &Path, write: bool) -> Result<()> {
     Ok(())
 }
 
-/// The file that the first line of a block names: `/* play.c */`, `// play.c` or `# play.py`.
+/// Returns the file that a block's first line names: `/* play.c */`, `// play.c` or `# play.py`.
 fn saved_as(block: &Block) -> Option<&str> {
     let line = block.text.lines().next()?;
     let name = line.trim_start_matches(['/', '*', '#', ' ']).trim_end_matches(['/', '*', ' ']);
@@ -180,8 +180,8 @@ fn saved_as(block: &Block) -> Option<&str> {
     (is_file && name.len() < line.len()).then_some(name)
 }
 
-/// Runs the commands of a block in a shell, which ends at the first that fails, and returns what
-/// they print.
+/// Runs the commands of a block in a shell, which stops at the first failure, and returns what they
+/// print.
 fn run(block: &Block, folder: &Path) -> Result<String> {
     let exported = folder.with_file_name("exported");
     let exported = exported.display();
@@ -193,8 +193,7 @@ fn run(block: &Block, folder: &Path) -> Result<String> {
     shell.stdout(out.try_clone()?).stderr(out);
     let home = folder.with_file_name("home");
     fs::create_dir_all(&home)?;
-    // Neither models nor devices nor settings of the person who runs this; cargo's and pip's
-    // folders stay.
+    // No models, devices or settings of the person who runs this; cargo's and pip's folders stay.
     shell.env("HTEX_CONFIG_DIR", &home).env("XDG_DATA_HOME", &home);
     shell.env("LC_ALL", "C.UTF-8").env("MPLCONFIGDIR", &home);
     for name in ["HTEX_PLUGIN_PATH", "HTEX_DEVICE_PATH", "HTEX_SOURCE_PATH", "CARGO_TARGET_DIR"] {
@@ -207,7 +206,7 @@ fn run(block: &Block, folder: &Path) -> Result<String> {
     Ok(printed)
 }
 
-/// The first line of the expected text that what is printed does not have; `None` where both agree.
+/// Returns the first expected line that is missing in the output; `None` if both agree.
 fn difference(expected: &str, printed: &str) -> Option<usize> {
     let expected: Vec<&str> = expected.lines().collect();
     let printed: Vec<&str> = printed.lines().collect();
@@ -216,8 +215,8 @@ fn difference(expected: &str, printed: &str) -> Option<usize> {
     (!is_same).then_some(furthest)
 }
 
-/// Whether the lines agree, where a line `…` stands for any lines; `at` counts those before, and
-/// `furthest` the most that agreed.
+/// Whether the lines agree. A line `…` stands for any lines. `at` is the number of lines so far,
+/// and `furthest` the largest number that agreed.
 fn agree(expected: &[&str], printed: &[&str], at: usize, furthest: &mut usize) -> bool {
     *furthest = at.max(*furthest);
     match (expected.split_first(), printed.split_first()) {
@@ -232,7 +231,7 @@ fn agree(expected: &[&str], printed: &[&str], at: usize, furthest: &mut usize) -
     }
 }
 
-/// Whether a line is the expected one, in which `…` stands for any text.
+/// Whether a line is the expected one. In the expected line, `…` stands for any text.
 fn is_line(expected: &str, printed: &str) -> bool {
     let Some((before, after)) = expected.trim_end().split_once('…') else {
         return expected.trim_end() == printed;

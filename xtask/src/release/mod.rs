@@ -1,10 +1,10 @@
-//! What is released: archives for each platform, wheels, the npm package, lists of what they are
-//! made of, and checksums.
+//! Makes the files of a release: archives for each platform, wheels, the npm package, lists of
+//! their parts, and checksums.
 //!
-//! Everything is built by zig against the C library of each platform, that of Windows by mingw-w64,
-//! so that one machine builds all. The same sources shall give the same bytes: times are those of
-//! the commit, and no path of this machine is in what is built (`Build::cargo`; `tree` looks for
-//! them).
+//! zig builds everything against the C library of each platform (mingw-w64 for Windows), so that
+//! one machine builds all. The same sources must give the same bytes: file times are the commit's
+//! time, and no path of this machine is in the result (`Build::cargo`; `tree` searches for such
+//! paths).
 
 mod packages;
 mod parts;
@@ -37,7 +37,7 @@ pub struct Release {
 }
 
 impl Release {
-    /// The platforms that are built for.
+    /// Returns the platforms to build for.
     fn platforms(&self) -> Result<Vec<Platform>> {
         if self.only.is_empty() {
             return Ok(PLATFORMS.to_vec());
@@ -51,10 +51,10 @@ impl Release {
     }
 }
 
-/// Builds and writes it.
+/// Builds and writes the release.
 ///
 /// # Errors
-/// A message with the file or the program, and what is missing with how to install it.
+/// A message with the file or the program, or what is missing and how to install it.
 pub fn release(release: &Release) -> Result<()> {
     let platforms = release.platforms()?;
     let here = Platform::here()?;
@@ -100,7 +100,7 @@ pub fn release(release: &Release) -> Result<()> {
     checksums(&out)
 }
 
-/// Writes `SHA256SUMS` of the files of a folder.
+/// Writes `SHA256SUMS` for the files of a folder.
 fn checksums(out: &Path) -> Result<()> {
     let mut names = Vec::new();
     for file in crate::places::files(out)? {

@@ -13,7 +13,7 @@ use crate::places::{cargo, emptied, release_trees, target, workspace};
 use crate::platform::{Build, Platform, System, tools};
 use crate::programs::{program, run};
 
-/// What a release needs besides Rust, Node.js and the linkers of the platforms.
+/// Tools that a release needs, apart from Rust, Node.js and the platforms' linkers.
 const TOOLS: [(&str, &str); 5] = [
     ("cargo-zigbuild", PYTHON_TOOLS),
     ("python-zig", PYTHON_TOOLS),
@@ -31,7 +31,7 @@ const TOOLS: [(&str, &str); 5] = [
 const PYTHON_TOOLS: &str = "python3 -m venv target/release-tools && target/release-tools/bin/pip install -r xtask/src/release/requirements.txt";
 
 /// # Errors
-/// What is missing, with how to install it. A trial needs maturin alone.
+/// What is missing, with how to install it. A trial needs only maturin.
 pub(super) fn check_tools(is_trial: bool) -> Result<()> {
     for (name, how) in TOOLS.iter().filter(|(name, _)| !is_trial || *name == "maturin") {
         let there = tools().join(name).is_file();
@@ -40,19 +40,19 @@ pub(super) fn check_tools(is_trial: bool) -> Result<()> {
     Ok(())
 }
 
-/// Writes the archive of a folder.
+/// Writes a folder as an archive.
 pub(super) fn archive(build: &Build, folder: &Path, out: &Path, commit: &Commit) -> Result<()> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     if build.platform().system == System::Windows {
         return zip(folder, out, commit);
     }
-    // One thread: the bytes of several depend on how many there are. A trial, which nobody
-    // downloads, is written in a sixth of the time.
+    // A single thread is used because otherwise the bytes depend on the number of threads. A trial,
+    // which nobody downloads, is compressed less and takes a sixth of the time.
     let compressor = if build.is_release() { "xz -9 -T1" } else { "xz -1 -T1" };
     tar(folder, &out.join(format!("{name}.tar.xz")), compressor, commit)
 }
 
-/// Writes a folder as a compressed tar file: names in their order, and the time of the commit.
+/// Writes a folder as a compressed tar file, with sorted names and the commit's time.
 fn tar(folder: &Path, to: &Path, compressor: &str, commit: &Commit) -> Result<()> {
     let mut tar = program("tar", folder.parent().unwrap_or(folder));
     tar.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--format=gnu"]);
@@ -66,7 +66,7 @@ fn tar(folder: &Path, to: &Path, compressor: &str, commit: &Commit) -> Result<()
     run(tar.arg(to).arg(folder.file_name().unwrap_or_default()))
 }
 
-/// Writes a folder as a zip file of its name.
+/// Writes a folder as a zip file with the same name.
 pub(super) fn zip(folder: &Path, out: &Path, commit: &Commit) -> Result<()> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     run(program("python3", folder.parent().unwrap_or(folder))
@@ -76,7 +76,7 @@ pub(super) fn zip(folder: &Path, out: &Path, commit: &Commit) -> Result<()> {
         .arg(&commit.seconds))
 }
 
-/// Writes a folder as a zip file: names in their order, and the time of the commit.
+/// Writes a folder as a zip file, with sorted names and the commit's time.
 const ZIP: &str = "\
 import pathlib, sys, time, zipfile
 to, name, seconds = sys.argv[1:]
@@ -90,7 +90,7 @@ with zipfile.ZipFile(to, 'w', zipfile.ZIP_DEFLATED, compresslevel=9) as out:
             out.writestr(entry, path.read_bytes())
 ";
 
-/// Writes the wheel of a platform.
+/// Writes a platform's wheel.
 pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result<()> {
     let platform = build.platform();
     let mut maturin = build.maturin("build");
@@ -108,7 +108,7 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
     let Some(notices) = notices else {
         return run(maturin.arg("--out").arg(out));
     };
-    // Beside the modules of Python, whose folder is packed as it is.
+    // Next to the Python modules, because that folder is packed as it is.
     let package = workspace().join("sdk/python/python/htex");
     put_notices(notices, &package)?;
     let folder = anew("wheel")?;
@@ -124,17 +124,17 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
     Ok(())
 }
 
-/// An empty folder of a name for what is on its way.
+/// Makes an empty folder, with a name, for intermediate files.
 fn anew(name: &str) -> Result<PathBuf> {
     let folder = release_trees().join(name);
     emptied(&folder)?;
     Ok(fs::canonicalize(folder)?)
 }
 
-/// Writes the sources of the Python package, which pip builds where there is no wheel.
+/// Writes the sources of the Python package. pip builds them where no wheel is available.
 ///
-/// Maturin leaves packages of the workspace out, but not their lines in `Cargo.lock`, which a build
-/// by `--locked` refuses: cargo takes them out here.
+/// Maturin leaves out packages of the workspace, but not their lines in `Cargo.lock`, and a
+/// `--locked` build refuses those lines. Cargo removes them here.
 pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let trees = release_trees();
     let (folder, packed) = (anew(&format!("htex-{version}"))?, anew("sdist")?);

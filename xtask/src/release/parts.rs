@@ -1,4 +1,4 @@
-//! What the released programs are made of: licences of others' code, and the bill of materials.
+//! Lists the parts of the released programs: third-party licences, and the bill of materials.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,11 +11,11 @@ use crate::places::{cargo, emptied, release_trees, workspace};
 use crate::platform::{Platform, tools_first};
 use crate::programs::{program, run};
 
-/// The name of the file with others' licences.
+/// Name of the file with third-party licences.
 const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
 
-/// Writes the licences of all packages that anything of the release is made of, with their texts;
-/// returns the file. It is one for all: finding the texts takes minutes.
+/// Writes the licences, with their texts, of all packages in any part of the release, and returns
+/// the file. All parts share one file, because finding the texts takes minutes.
 pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     let release = workspace().join("xtask/src/release");
     let to = std::path::absolute(release_trees().join(NOTICES))?;
@@ -23,7 +23,7 @@ pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     let mut about = Command::new(cargo());
     about.args(["about", "generate", "--workspace", "--locked", "--offline"]);
     about.arg("--fail");
-    // The modules of the npm package are made of packages that a machine's own programs have, too.
+    // The modules of the npm package use packages that this machine's programs also use.
     let here = [Platform::here()?];
     let platforms = if platforms.is_empty() { &here } else { platforms };
     for platform in platforms {
@@ -36,13 +36,13 @@ pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     Ok(to)
 }
 
-/// Copies them into a folder.
+/// Copies the licences into a folder.
 pub(super) fn put_notices(notices: &Path, folder: &Path) -> Result<()> {
     crate::dist::copy(notices, &folder.join(NOTICES))
 }
 
-/// Writes the bills of materials of the command and of the wheel in the format of CycloneDX. The
-/// program for it writes beside the manifests, so it has a copy of the sources.
+/// Writes the bills of materials for the command and for the wheel, in CycloneDX format. The tool
+/// writes next to the manifests, so it works on a copy of the sources.
 pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let sources = sources()?;
     let mut billed = vec![("cli", "")];
@@ -65,7 +65,7 @@ pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Com
     Ok(())
 }
 
-/// A copy of what is committed.
+/// Makes a copy of the committed sources.
 fn sources() -> Result<PathBuf> {
     let folder = release_trees().join("sources");
     emptied(&folder)?;

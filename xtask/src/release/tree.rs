@@ -1,4 +1,4 @@
-//! The folder of an archive: the command, libhtex, models as plugins, texts.
+//! Lays out the folder of an archive: the command, libhtex, models as plugins, texts.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,7 +13,7 @@ use crate::platform::{Build, Platform, System};
 use crate::plugins::models;
 use crate::programs::{output, run};
 
-/// Files of the workspace that are in every archive, and where.
+/// Files of the workspace that are in every archive, and where they go.
 const TEXTS: [(&str, &str); 4] = [
     ("LICENSE-MIT", "share/doc/htex/LICENSE-MIT"),
     ("LICENSE-APACHE", "share/doc/htex/LICENSE-APACHE"),
@@ -21,7 +21,7 @@ const TEXTS: [(&str, &str); 4] = [
     ("xtask/src/release/README.md", "README.md"),
 ];
 
-/// Where each shell looks for completions below a prefix.
+/// Where each shell looks for completions, relative to a prefix.
 const COMPLETIONS: [(&str, &str); 4] = [
     ("bash", "share/bash-completion/completions/htex"),
     ("zsh", "share/zsh/site-functions/_htex"),
@@ -29,12 +29,13 @@ const COMPLETIONS: [(&str, &str); 4] = [
     ("powershell", "share/powershell/htex.ps1"),
 ];
 
-/// The folder of a platform, whose name is that of the archive.
+/// Returns a platform's folder, which has the same name as the archive.
 pub(super) fn folder(platform: &Platform, version: &str) -> PathBuf {
     release_trees().join(format!("htex-{version}-{}", platform.name))
 }
 
-/// Builds all of it for a platform; returns the folder, whose name is that of the archive.
+/// Builds everything for a platform, and returns the folder, which has the same name as the
+/// archive.
 pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> Result<PathBuf> {
     let platform = &build.platform();
     let folder = folder(platform, version);
@@ -53,7 +54,7 @@ pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> R
     Ok(folder)
 }
 
-/// The command, with which the whole library is built.
+/// Builds the command, together with the whole library.
 fn command(build: &Build, folder: &Path) -> Result<()> {
     run(build.cargo_of_both().args(of_command(build)))?;
     let name = executable(build.platform().system);
@@ -67,7 +68,7 @@ fn executable(system: System) -> &'static str {
     }
 }
 
-/// The models as native libraries and as modules.
+/// Builds the models as native libraries and as modules.
 fn plugins(build: &Build, folder: &Path) -> Result<()> {
     let (prefix, suffix) = match build.platform().system {
         System::Linux => ("lib", "so"),
@@ -77,15 +78,15 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
     let to = folder.join("lib/htex/plugins");
     let modules = crate::plugins::wasm()?;
     for model in models()? {
-        // Like the command, so that what models share is built once; the modules have one model
-        // each.
+        // They have the same settings as the command, so that shared code of the models is built
+        // once. Each module contains one model.
         let mut cargo = build.cargo("rustc");
         cargo.args(["--quiet", "--locked", "--lib", "--package", &format!("htex-{model}")]);
         cargo.args(build.profile());
         cargo.args(["--features", "plugin", "--crate-type", "cdylib"]);
         let native = format!("{prefix}htex_{model}.{suffix}");
         if build.platform().system == System::MacOs {
-            // Else its name is the path where it was built.
+            // Otherwise the library's name would be the path where it was built.
             let name = format!("-Clink-arg=-Wl,-install_name,@rpath/{native}");
             cargo.args(["--", &name]);
         }
@@ -97,8 +98,8 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Manual pages and completions, which the command writes; where it does not run here, the one for
-/// this machine, whose arguments are the same.
+/// Adds manual pages and completions, which the command writes. If the command cannot run here,
+/// this machine's command writes them, because it has the same arguments.
 fn help(platform: &Platform, folder: &Path) -> Result<()> {
     let own = folder.join("bin").join(executable(platform.system));
     let htex = |words: &[&str]| {
@@ -122,7 +123,7 @@ fn help(platform: &Platform, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// No file tells where it was built.
+/// Checks that no file reveals where it was built.
 pub(super) fn check_paths(folder: &Path) -> Result<()> {
     let workspace = fs::canonicalize(workspace())?;
     let home = std::env::var_os("HOME").map(PathBuf::from);

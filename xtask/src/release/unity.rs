@@ -1,4 +1,4 @@
-//! The Unity package with the libraries of all platforms that are built.
+//! Makes the Unity package with the libraries of all built platforms.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::dist::unity;
 use crate::places::release_trees;
 use crate::platform::Platform;
 
-/// Writes it as a zip file, with the licences of what the libraries are made of.
+/// Writes the package as a zip file, with the licences of the libraries' parts.
 pub(super) fn package(
     platforms: &[Platform],
     version: &str,
@@ -29,7 +29,7 @@ pub(super) fn package(
     unity::package(&libraries, &folder)?;
     if let Some(all) = notices {
         let notices = folder.join("Third Party Notices.md");
-        // A block of code: what is in it is no Markdown.
+        // In a code block, so that the text is not read as Markdown.
         let all = fs::read_to_string(all)?;
         let text = fs::read_to_string(&notices)?;
         fs::write(notices, format!("{text}\n~~~~~~text\n{all}~~~~~~\n"))?;

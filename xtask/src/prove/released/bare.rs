@@ -1,4 +1,5 @@
-//! In a root of Debian without compilers, of this machine's processor or of one that QEMU runs.
+//! Tests a release in a Debian root without compilers, on this machine's processor or one that QEMU
+//! emulates.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,11 +12,11 @@ use super::{Compiler, Folder, archive};
 use crate::places::{emptied, target};
 use crate::programs::{program, run};
 
-/// A processor that a root is made for.
+/// A processor for which a root is made.
 struct Processor {
-    /// As in the names of archives and wheels.
+    /// Name as it appears in the names of archives and wheels.
     name: &'static str,
-    /// Debian's name.
+    /// Debian's name for it.
     debian: &'static str,
     compiler: Compiler,
 }
@@ -47,7 +48,7 @@ const PROCESSORS: [Processor; 2] = [
     },
 ];
 
-/// What is done in the root: first what must not be there.
+/// What runs in the root. It first checks for what must not be there.
 const SCRIPT: &str = "\
 set -eu
 for compiler in cc gcc clang rustc cargo; do
@@ -82,7 +83,7 @@ begin files
 sha256sum rec.csv vinyl.htex built-in.wav play_pkg_config.f32
 ";
 
-/// A page for a user of Python.
+/// A page for Python users.
 const PAGE: &str = "\
 import htex
 fit = htex.fit('rec.csv', name='Vinyl', license='CC0-1.0')
@@ -107,7 +108,7 @@ pub struct Bare {
     processor: String,
 }
 
-/// Uses what is released on an empty root of Debian.
+/// Uses the release in an empty Debian root.
 pub(in crate::prove) fn bare(options: &Bare) -> Result<()> {
     let released = options.folder.released()?;
     let processor = PROCESSORS.iter().find(|one| one.name == options.processor);
@@ -129,7 +130,7 @@ pub(in crate::prove) fn bare(options: &Bare) -> Result<()> {
     run(chroot.env("PATH", "/usr/sbin:/usr/bin:/bin").env("HOME", "/root").env("LC_ALL", "C.UTF-8"))
 }
 
-/// The wheel for the root, and what it takes, for the Python that the root has.
+/// Collects the wheel and its dependencies, for the root's Python.
 fn wheels(released: &Path, processor: &Processor, work: &Path) -> Result<()> {
     let is_it = |file: &PathBuf| {
         let file = file.to_string_lossy();
@@ -153,7 +154,7 @@ pub(in crate::prove) fn bare_root() -> Result<()> {
     root(&PROCESSORS[0]).map(drop)
 }
 
-/// A root of Debian 12 with Python and without compilers, made once.
+/// Makes a Debian 12 root with Python and without compilers, unless it already exists.
 fn root(processor: &Processor) -> Result<PathBuf> {
     let folder = match processor.debian {
         "amd64" => "bare-root".to_owned(),

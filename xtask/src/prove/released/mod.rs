@@ -1,4 +1,4 @@
-//! What is released, where nothing of Rust is: in an empty root of Debian, and under Wine.
+//! Tests a release where no Rust is installed: in an empty Debian root, and under Wine.
 
 mod bare;
 mod wine;
@@ -29,7 +29,7 @@ impl Folder {
     }
 }
 
-/// The file of a folder with an ending, and its name without that.
+/// Returns the file in a folder that has an ending, and its name without the ending.
 fn archive(folder: &Path, ending: &str) -> Result<(PathBuf, String)> {
     for file in crate::places::files(folder)? {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -43,14 +43,14 @@ fn archive(folder: &Path, ending: &str) -> Result<(PathBuf, String)> {
     )
 }
 
-/// A compiler of C, and what CMake calls its system.
+/// A C compiler, and CMake's name for its system.
 struct Compiler {
     gcc: &'static str,
-    /// Of Debian.
+    /// Debian's package.
     package: &'static str,
     system: &'static str,
     processor: &'static str,
-    /// The libraries that CMake is asked for.
+    /// The libraries that CMake should find.
     libraries: &'static str,
 }
 
@@ -65,7 +65,7 @@ endforeach()
 ";
 
 impl Compiler {
-    /// Builds the player in C against the unpacked archive, by pkg-config and by CMake, into a
+    /// Builds the C player against the unpacked archive, with pkg-config and with CMake, into a
     /// folder.
     fn players(&self, prefix: &Path, work: &Path) -> Result<()> {
         let source = workspace().join("sdk/capi/examples/play.c");

@@ -1,4 +1,4 @@
-//! Under Wine.
+//! Tests the Windows release under Wine.
 
 use std::path::Path;
 use std::process::Command;
@@ -18,7 +18,7 @@ const COMPILER: Compiler = Compiler {
     libraries: "htex whole",
 };
 
-/// A library that Wine 8 lacks, of which the standard library of Rust takes random bytes.
+/// A library that Wine 8 lacks. Rust's standard library gets random bytes from it.
 const PRIMITIVES: &str = "\
 #include <windows.h>
 #include <ntsecapi.h>
@@ -28,18 +28,18 @@ __declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE bytes, SIZE_T count)
 }
 ";
 
-/// Lines of the command that write the same files under Wine and here.
+/// Command lines that write the same files under Wine and here.
 const SAME: [&str; 3] = [
     "simulate --surface vinyl --seconds 4 -o rec.csv",
     "fit rec.csv -o vinyl.htex --name Vinyl --license CC0-1.0",
     "synth vinyl.htex --seconds 1 -o built-in.wav",
 ];
 
-/// The players in C, and the folder of the library that each finds beside it.
+/// The C players, and the folder of the library that each finds next to it.
 const PLAYERS: [(&str, &str); 3] =
     [("play_pkg_config", "lib"), ("play_htex", "lib"), ("play_whole", "lib/whole")];
 
-/// Uses what is released for Windows under Wine.
+/// Uses the Windows release under Wine.
 pub(in crate::prove) fn wine(options: &Folder) -> Result<()> {
     let released = options.released()?;
     let (archive, stem) = archive(&released, "-x86_64-windows.zip")?;
@@ -47,7 +47,7 @@ pub(in crate::prove) fn wine(options: &Folder) -> Result<()> {
     emptied(&work)?;
     run(program("python3", &work).args(["-m", "zipfile", "-e"]).arg(archive).arg("."))?;
     let prefix = work.join(format!("{stem}-x86_64-windows"));
-    // In the working folder, which Windows looks through for libraries, too.
+    // In the working folder, where Windows also looks for libraries.
     fs::write(work.join("primitives.c"), PRIMITIVES)?;
     run(program(COMPILER.gcc, &work).args([
         "-shared",
@@ -89,7 +89,7 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>> {
     Ok(fs::read(folder.join(name))?)
 }
 
-/// Runs a program for Windows.
+/// Runs a Windows program.
 fn wine_runs(work: &Path, exe: &Path, line: &str) -> Result<()> {
     let mut wine = program("wine", work);
     wine.arg(exe).args(line.split_whitespace());
@@ -97,7 +97,7 @@ fn wine_runs(work: &Path, exe: &Path, line: &str) -> Result<()> {
         .context("the package wine64")
 }
 
-/// The command of this machine writes the same recording, asset and samples.
+/// This machine's command writes the same recording, asset and samples.
 fn same_here(work: &Path) -> Result<()> {
     let here = work.join("here");
     fs::create_dir_all(&here)?;

@@ -112,7 +112,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import what most programs do not use."""
+    """Import a module that most programs do not use."""
     if name == "study":
         return importlib.import_module("htex.study")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

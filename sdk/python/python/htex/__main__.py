@@ -14,7 +14,8 @@ def main() -> int:
     answered = cli.run(words)
     if answered is not None:
         return answered
-    # Without -P the current folder would precede the installed packages in processes that the command starts.
+    # Without -P, processes that the command starts would search the current folder before the
+    # installed packages.
     safe = ["-P"] if sys.version_info >= (3, 11) else []
     again = [sys.executable, *safe, "-m", "htex"] if sys.executable else []
     status = _htex.run(["htex", *words], again)

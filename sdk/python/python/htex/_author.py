@@ -1,6 +1,6 @@
 """From recordings to spectra, textures and tables.
 
-A texture that was fitted is read back from its bytes, so that it is what its file holds.
+A fitted texture is read back from its bytes, so that it is exactly what its file contains.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ from ._sources import Recording, source, sources, stem
 def process(recording: Recording, **settings: Unpack[Reading]) -> Processed:
     """Compute the texture spectrum of a recording, as ``htex process`` does.
 
-    ``recording`` is a file (CSV, WAV, FLAC, NPY, MATLAB, HDF5, TDMS, Parquet, Arrow), the bytes of one, or an array: one row per sample;
-    one column is the lateral force, two are its axes, three are its axes and the normal force. An array needs ``rate_hz``.
-    Columns of a data frame or of a mapping are known by their names, as those of a CSV file. A recording of ``htex record`` or of a
-    study is read as the JSON beside it says, and may be named by that JSON.
+    ``recording`` is a file (CSV, WAV, FLAC, NPY, MATLAB, HDF5, TDMS, Parquet, Arrow), the bytes of
+    a file, or an array. An array has one row per sample: one column is the lateral force, two are
+    its axes, three are its axes and the normal force. It needs ``rate_hz``. The columns of a data
+    frame or a mapping are recognised by name, as in a CSV file. A recording from ``htex record`` or
+    from a study is read as the JSON file next to it specifies; you may also pass that JSON file.
     """
     with _reading("process", settings) as (reading, _):
         found = _htex.process(source(recording), reading)
@@ -54,11 +55,14 @@ def fit(
 ) -> Fit:
     """Fit models to recordings of one texture, as ``htex fit`` does.
 
-    ``recordings`` is one recording or a list of them, each as ``process`` takes it. ``conditions`` are pairs of speed (mm/s) and force (N),
-    one for each recording or one for all. ``plugins`` are files of further models, or folders of them; ``installed`` adds those of the
-    user. ``models`` are short names or ids, or ``"all"``. ``options`` are those of the models: ``{"ar": {"order": 6}}``. ``name`` is the
-    name of the texture; by default that of the first file. ``grid`` gathers recordings of a free motion in many conditions: ``"auto"``,
-    or the lines of one or both axes, ``{"speed_mm_s": [40, 80, 160], "force_n": [0.3, 0.6]}``.
+    ``recordings`` is one recording or a list of them, in the forms that ``process`` accepts.
+    ``conditions`` are pairs of speed (mm/s) and force (N): one for each recording, or one for all.
+    ``models`` are short names or ids, or ``"all"``. ``options`` are options of the models: ``{"ar":
+    {"order": 6}}``. ``plugins`` are files of further models, or folders of such files;
+    ``installed`` adds the user's models. ``name`` is the name of the texture; the default is the
+    name of the first file. ``grid`` groups recordings of a free motion into conditions: ``"auto"``,
+    or the grid lines for one or both axes, ``{"speed_mm_s": [40, 80, 160], "force_n": [0.3,
+    0.6]}``.
     """
     files = sources(recordings)
     with _reading("fit", settings, FitSettings, Metadata) as (reading, (fitting, metadata)):
@@ -82,7 +86,8 @@ def fit(
 
 
 def _grid(grid: str | Mapping[Any, Iterable[float]] | None) -> list[str]:
-    """Return the lines of a grid as the command takes them; an empty list without a grid."""
+    """Return the lines of a grid in the form that the command takes; an empty list without a grid.
+    """
     if grid is None:
         return []
     if isinstance(grid, str):
@@ -104,11 +109,14 @@ def tradeoff(
     journal: str | os.PathLike[str] | None = None,
     **settings: Unpack[Reading],
 ) -> Tradeoff:
-    """Measure accuracy against bytes and time over models and their options, as ``htex tradeoff`` does.
+    """Measure accuracy against bytes and time over models and their options, as ``htex tradeoff``
+    does.
 
-    ``error`` is the error of fronts and knees: ``held_out``, in units of a second recording, or one of what was fitted to, in decibels. By
-    default it is ``held_out``, and ``third_octave`` if a recording is too short to hold anything out of it.
-    ``journal`` is a file from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are those of ``fit``.
+    ``error`` selects the error for fronts and knees: ``held_out``, in units of the difference to a
+    second recording, or an error against the fitted data, in decibels. The default is ``held_out``,
+    or ``third_octave`` if a recording is too short to hold any part of it out. ``journal`` is a
+    file from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are as
+    in ``fit``.
     """
     request = {
         "models": model_list(models),
@@ -133,10 +141,12 @@ def tradeoff(
 
 @keywords(Reading)
 def compare(recording: Recording, other: _htex.Texture | Recording, **settings: Unpack[Reading]) -> Comparison:
-    """Measure each representation of a texture, or another recording, against a recording, as ``htex compare`` does.
+    """Measure each representation of a texture, or another recording, against a recording, as
+    ``htex compare`` does.
 
-    ``other`` is a texture, an ``.htex`` file, or a recording as ``process`` takes it. A texture plays at the recording's speed and force
-    where both are known, else at its default condition (the first, or the strongest if the first is silent).
+    ``other`` is a texture, an ``.htex`` file, or a recording in a form that ``process`` accepts. A
+    texture plays at the recording's speed and force if both are known; otherwise at its default
+    condition (the first, or the strongest if the first is silent).
     """
     if isinstance(other, (str, os.PathLike)) and os.fspath(other).lower().endswith(".htex"):
         other = _htex.open(other)
@@ -155,9 +165,10 @@ def agreement(
     frequency_hz: npt.ArrayLike | None = None,
     band_hz: tuple[float, float] | None = None,
 ) -> Agreement:
-    """Compare magnitudes with those of a reference at the same frequencies.
+    """Compare magnitudes with a reference at the same frequencies.
 
-    Frequencies and band are those of the reference if it is a ``Spectrum``, else 20 to 1000 Hz in steps of 5 Hz.
+    If the reference is a ``Spectrum``, it states frequencies and band. Otherwise they are 20 to
+    1000 Hz in steps of 5 Hz.
     """
     if isinstance(reference, Spectrum):
         frequency_hz = reference.frequency_hz if frequency_hz is None else frequency_hz
@@ -180,7 +191,10 @@ def agreement(
 
 @contextlib.contextmanager
 def _reading(function: str, settings: Mapping[str, object], *others: type) -> Iterator[tuple[tuple[str, str], list[dict[str, Any]]]]:
-    """Give the settings of reading for the extension, and those of other kinds; a response is the file that it would be."""
+    """Return the reading settings for the extension, and the other settings.
+
+    A response is converted to its file.
+    """
     reading, *rest, besides = split(function, settings, ReadingSettings, *others, Reading)
     response = besides.pop("response", None)
     with tempfile.TemporaryDirectory() as folder:
@@ -194,7 +208,7 @@ def _reading(function: str, settings: Mapping[str, object], *others: type) -> It
 
 
 def model_list(models: str | Iterable[str]) -> list[str]:
-    """Return the names of models; none stands for all of them."""
+    """Return the names of models. No names stand for all models."""
     names = [models] if isinstance(models, str) else list(models)
     if not names:
         raise _errors.OptionError('no models; name at least one, or give "all"')

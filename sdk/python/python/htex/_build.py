@@ -1,4 +1,4 @@
-"""Libraries from recipes."""
+"""Build libraries from recipes."""
 
 from __future__ import annotations
 
@@ -22,21 +22,22 @@ def build(
 ) -> dict[str, Any]:
     """Build a library of textures from a recipe, as ``htex build`` does.
 
-    What has been fitted stays in ``output``: a build that was ended goes on where it was, and one that is run again fits what
-    changed.
+    Fitted results stay in ``output``: an interrupted build continues where it stopped, and a
+    repeated build fits only what has changed.
 
     Args:
-        recipe: The recipe, ``library.toml``, a path or URI; its recordings may be URIs, too.
-        output: The folder of the results, or the URI of one (``s3://``, ``gs://``, ``az://``).
+        recipe: The recipe, ``library.toml``, as a path or URI. Its recordings may also be URIs.
+        output: The folder for the results, or its URI (``s3://``, ``gs://``, ``az://``).
         keep_going: Leave out a texture that cannot be made instead of raising.
-        work: The folder in which results for a URI are made; one of the user's cache when absent.
-        plugins: Plugins to fit with: WASM modules (sandboxed), or native libraries, which run with all your rights. A recipe names WASM
-            modules alone.
-        no_removals: Raise and change nothing if the library would lose textures, e.g. because a folder of recordings was moved.
+        work: The folder in which results for a URI are made. Default: one in the user's cache.
+        plugins: Plugins to fit with: WASM modules (sandboxed), or native libraries, which run with
+            all your rights. A recipe can name only WASM modules.
+        no_removals: Raise and change nothing if the library would lose textures, e.g. because a
+            folder of recordings was moved.
 
     Returns:
-        The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``; ``report["removed"]``, if textures
-        of the library before are gone.
+        The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``;
+        ``report["removed"]`` if textures of the previous library are gone.
 
     Raises:
         BuildError: The recipe is wrong, a texture cannot be made, or the library would lose textures.

@@ -1,4 +1,5 @@
-"""Textures without recordings: of parameters, between two others, with other metadata."""
+"""Textures without recordings: from parameters, between two other textures, or with other metadata.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +25,14 @@ def make(
     installed: bool = False,
     **metadata: Unpack[Metadata],
 ) -> _htex.Texture:
-    """Make a texture of a model's parameters, as ``htex make`` does; it states that it was made by hand.
+    """Make a texture from a model's parameters, as ``htex make`` does.
 
-    ``parameters`` are those of the model by name (``htex.models()`` lists them with units and ranges); a list has all its values.
-    ``level_rms`` is the RMS of the texture in the unit of ``quantity`` (newtons). ``at`` is the speed (mm/s) and the force (N) at which it
-    is this texture.
+    It states that it was made by hand.
+
+    ``parameters`` are the model's parameters by name (``htex.models()`` lists them with units and
+    ranges). A list needs all its values. ``level_rms`` is the RMS of the texture in the unit of
+    ``quantity`` (newtons). ``at`` is the speed (mm/s) and the force (N) for which these parameters
+    hold.
     """
     (given,) = split("make", metadata, Metadata)
     values = {name: _values(value) for name, value in parameters.items()}
@@ -48,10 +52,12 @@ def make(
 
 @keywords(Metadata)
 def mix(a: _htex.Texture, b: _htex.Texture, weight: float, **metadata: Unpack[Metadata]) -> _htex.Texture:
-    """Make a texture between two others, as ``htex mix`` does; ``weight`` is the part of ``b``, 0 to 1.
+    """Make a texture between two others, as ``htex mix`` does.
 
-    Each model that describes both interpolates between their parameters, as between the conditions of one texture. The result states what
-    it was mixed of.
+    ``weight`` is the share of ``b``, 0 to 1.
+
+    Each model that describes both textures interpolates between their parameters, as it does
+    between the conditions of one texture. The result states from which textures it was mixed.
     """
     (given,) = split("mix", metadata, Metadata)
     return _htex.mix(a, b, weight, as_json(given))
@@ -61,7 +67,8 @@ def mix(a: _htex.Texture, b: _htex.Texture, weight: float, **metadata: Unpack[Me
 def edit(texture: _htex.Texture, **metadata: Unpack[Metadata]) -> _htex.Texture:
     """Return a texture with other metadata, without a new fit, as ``htex edit`` does.
 
-    What is not given is kept; an empty text removes an entry, and ``tags`` replaces all tags.
+    Metadata that is not given is kept. An empty text removes an entry, and ``tags`` replaces all
+    tags.
     """
     (given,) = split("edit", metadata, Metadata)
     return _htex.edit(texture, as_json(given))

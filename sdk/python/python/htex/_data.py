@@ -32,7 +32,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class LibraryEntry:
-    """What a library states of a texture."""
+    """What a library states about a texture."""
 
     name: str
     """Name in the library, with ``/`` between its parts."""
@@ -56,7 +56,7 @@ class LibraryEntry:
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """A texture spectrum: a sinusoid of amplitude A on the grid has magnitude A."""
+    """A texture spectrum. A sinusoid of amplitude A on the grid has magnitude A."""
 
     frequency_hz: npt.NDArray[np.float64]
     """Frequencies, hertz."""
@@ -76,7 +76,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class Reach:
-    """The relation of a speed or force to the recorded ones."""
+    """How a speed or force relates to the recorded values."""
 
     kind: Literal["inside", "unknown", "followed", "outside"]
     """Where it lies. Outside the recorded values the texture follows its law from the nearest one."""
@@ -88,7 +88,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class Exponent:
-    """An exponent of a texture's law, and where it comes from."""
+    """An exponent of a texture's law, and its source."""
 
     exponent: float
     """The exponent that is played."""
@@ -102,9 +102,9 @@ class Exponent:
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """What a voice played since it was last asked, for devices that are driven by level and frequency.
+    """What a voice played since the last call, for devices that are driven by level and frequency.
 
-    The level is exact; the other numbers are those of windows that lag by some 20 ms.
+    The level is exact. The other numbers are computed from windows that lag by some 20 ms.
     """
 
     level_rms: float
@@ -119,7 +119,7 @@ class Envelope:
 
 @dataclass(frozen=True)
 class DeviceStatus:
-    """What a device did since it was opened."""
+    """What a device has done since it was opened."""
 
     frames_written: int
     """Samples that it took."""
@@ -135,7 +135,7 @@ class DeviceStatus:
 
 @dataclass(frozen=True)
 class Coverage:
-    """The relation of a motion to the recorded conditions, and how a voice plays it."""
+    """How a motion relates to the recorded conditions, and how a voice plays it."""
 
     inside: bool
     """Whether the texture is played as recorded or interpolated between recordings."""
@@ -157,7 +157,7 @@ class Coverage:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Processed:
-    """The texture spectrum of a recording, with what was read."""
+    """The texture spectrum of a recording, with information about how it was read."""
 
     spectrum: Spectrum
     """The spectrum."""
@@ -190,7 +190,7 @@ class Processed:
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """A texture that was read from a file of another format."""
+    """A texture imported from a file of another format."""
 
     texture: _htex.Texture
     """The texture."""
@@ -224,12 +224,12 @@ class Fit:
 
     @property
     def warnings(self) -> list[str]:
-        """The warnings that the asset holds, as sentences."""
+        """The warnings stored in the asset, as sentences."""
         found: list[str] = self.texture.manifest.get("provenance", {}).get("warnings", [])
         return found
 
     def table(self) -> dict[str, list[Any]]:
-        """Return the error of each model at each condition, as columns that pandas and polars take."""
+        """Return the error of each model at each condition, as columns for pandas or polars."""
         return quality_table(self.texture)
 
     def __repr__(self) -> str:
@@ -258,7 +258,7 @@ class Tradeoff:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
-    """A recording against a texture, or against another recording."""
+    """A recording compared with a texture, or with another recording."""
 
     condition: Condition
     """Speed and force of the recording, and how far it repeats."""
@@ -272,7 +272,7 @@ class Comparison:
     """Warnings about the recordings, as sentences."""
 
     def table(self) -> dict[str, list[Any]]:
-        """Return the measures as columns that pandas and polars take."""
+        """Return the measures as columns for pandas or polars."""
         rows = [self.other] if self.other else self.representations
         names = list(dict.fromkeys(name for row in rows for name in row if name not in ("felt", "band_error_db")))
         columns = {name: [row.get(name) for row in rows] for name in names}
@@ -301,11 +301,11 @@ class Response:
     """Settings, hits or windows with the reasons why some were thrown out, peak and warnings."""
 
     def to_csv(self) -> bytes:
-        """Return the CSV file that ``process``, ``fit`` and scenes take as a response."""
+        """Return the CSV file that ``process``, ``fit`` and scenes accept as a response."""
         return _htex.response_csv(self.frequency_hz.tolist(), self.magnitude.tolist(), self.phase_rad.tolist())
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the CSV file, which appears complete or not at all."""
+        """Write the CSV file. It appears complete or not at all."""
         _htex.write_file(path, self.to_csv())
 
     def __repr__(self) -> str:
@@ -314,7 +314,10 @@ class Response:
 
 
 class Simulation(dict[str, npt.NDArray[np.float64]]):
-    """A simulated recording: its columns by name. ``process`` and ``fit`` take it, and pandas makes a data frame of it."""
+    """A simulated recording: its columns by name.
+
+    ``process`` and ``fit`` accept it, and pandas converts it to a data frame.
+    """
 
     csv: bytes
     """The CSV file of it, which says that it is simulated."""
@@ -328,7 +331,7 @@ class Simulation(dict[str, npt.NDArray[np.float64]]):
         self.csv, self.rate_hz, self.response = csv, rate_hz, response
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the CSV file, which appears complete or not at all."""
+        """Write the CSV file. It appears complete or not at all."""
         _htex.write_file(path, self.csv)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -339,7 +342,7 @@ class Simulation(dict[str, npt.NDArray[np.float64]]):
 
 
 def _simulation(columns: Any, csv: bytes, rate_hz: float, response: Response) -> Simulation:
-    """Make a simulation that was pickled."""
+    """Restore a pickled simulation."""
     return Simulation(columns, csv=csv, rate_hz=rate_hz, response=response)
 
 
@@ -370,6 +373,7 @@ def _reopen(
 
 
 for _class in (Condition, Exponent, Spectrum, Reach, Coverage, Envelope, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
-    # Evaluated here: `typing.get_type_hints` would look for the names in the module that is stated below.
+    # Evaluated here, because `typing.get_type_hints` would look for the names in the module that is
+    # set below.
     _class.__annotations__ = get_type_hints(_class)
     _class.__module__ = "htex"

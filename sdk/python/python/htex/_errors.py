@@ -1,6 +1,6 @@
 """The exceptions of the package.
 
-An error that the system reports for a file is an ``OSError``, such as ``FileNotFoundError``.
+If the system reports an error for a file, it is an ``OSError`` such as ``FileNotFoundError``.
 """
 
 
@@ -17,11 +17,11 @@ class BuildError(Error):
 
 
 class DeviceError(Error):
-    """A device or its driver is missing, in use, or failed; it is at rest."""
+    """A device or its driver is missing, in use, or failed. The device is at rest."""
 
 
 class ExchangeError(Error):
-    """A file of another format is not what its format says."""
+    """A file of another format does not follow its format."""
 
 
 class LibraryError(Error):
@@ -41,7 +41,7 @@ class OptionError(Error, ValueError):
 
 
 class RecordingError(Error):
-    """A recording cannot be read, or holds no texture."""
+    """A recording cannot be read, or contains no texture."""
 
 
 class SceneError(Error):

@@ -1,4 +1,4 @@
-"""Files of other formats: imported as textures, and exported for what people own."""
+"""Files of other formats: import them as textures, and export textures to them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ formats = _htex.formats
 
 
 class Importing(FitSettings, Metadata, total=False):
-    """How a signal is fitted, and what is said of the texture."""
+    """How a signal is fitted, and the texture's metadata."""
 
 
 @keywords(Importing)
@@ -35,12 +35,17 @@ def import_file(
     installed: bool = False,
     **settings: Unpack[Importing],
 ) -> Imported:
-    """Read a file of another format as a texture, as ``htex import`` does; ``formats()`` lists what is read, kept and lost.
+    """Read a file of another format as a texture, as ``htex import`` does.
 
-    Files that state units, speeds and forces (Penn's HaTT), or that have a texture in them (glTF), take no further settings but metadata.
-    The others are signals within ±1, to which models are fitted: they need ``full_scale`` (what 1 is, in the unit of ``quantity``),
-    ``speed_mm_s`` and ``force_n``. An image of a friction map (``.png``) needs the same three, where 1 is white, and ``pitch_mm``, the distance
-    of its pixels, unless it states one; it is not fitted. ``profile`` names the actuator whose range their frequencies are positions in.
+    ``formats()`` lists what is read, kept and lost.
+
+    Files that state units, speeds and forces (Penn's HaTT), or that contain a texture (glTF), take
+    no settings except metadata. All other files are signals within ±1, to which models are fitted.
+    They need ``full_scale`` (the value of 1, in the unit of ``quantity``), ``speed_mm_s`` and
+    ``force_n``. An image of a friction map (``.png``) needs the same three settings, where 1 is
+    white, and ``pitch_mm``, the distance between its pixels, unless it states one; it is not
+    fitted. If a file gives frequencies as positions in an actuator's range, ``profile`` names that
+    actuator.
     """
     fitting, metadata = split("import_file", settings, FitSettings, Metadata)
     if "models" in fitting:
@@ -80,12 +85,15 @@ def export(
     coding: Literal["vectorial", "wavelet"] | None = None,
     seed: int = 0,
 ) -> dict[str, Any]:
-    """Write a texture at a condition, or along a stroke, as a file that phones, controllers and engines play, as ``htex export`` does.
+    """Write a texture at a condition, or along a stroke, as a file for phones, controllers and
+    engines, as ``htex export`` does.
 
-    ``to`` is a format's name. ``stroke`` is a CSV of time, speed and force (``t_s``, ``speed_mm_s``, ``force_n``), in place of a condition.
-    ``profile`` names the actuator, which decides what of the spectrum it can do; by default the format's own. ``rate_hz`` is for WAV,
-    ``coding`` for ``hjif``. The result has what is lost, as the command's JSON: the file is read again, played through the profile, and compared
-    with the texture's own samples.
+    ``to`` is the name of a format. ``stroke`` is a CSV file with time, speed and force (``t_s``,
+    ``speed_mm_s``, ``force_n``), to use instead of a condition. ``profile`` names the actuator,
+    which determines how much of the spectrum can be played; the default is the format's own.
+    ``rate_hz`` is for WAV, ``coding`` for ``hjif``. The result states what is lost, as in the
+    command's JSON: the file is read again, played through the profile, and compared with the
+    texture's own samples.
     """
     path = Path(file)
     if stroke is not None and (speed_mm_s is not None or force_n is not None):

@@ -110,7 +110,7 @@ class Texture:
 
 @final
 class Library:
-    """A library: one file with thousands of textures, each of which is read when it is asked for."""
+    """A library: one file with thousands of textures. Each texture is read when it is requested."""
 
     def __new__(
         cls,
@@ -217,10 +217,13 @@ class Scene:
 
 @final
 class Device:
-    """A device that is open: what plays samples, by name, such as ``sdl``. One that is not finished goes to rest when it is closed.
+    """An open device, which plays samples.
 
-    In a ``with`` block it is finished at the end, and closed after an exception. ``settings`` are those of the device (``devices()`` lists them); ``rate_hz`` is by default
-    the device's own. A display that is driven by a voltage is not opened here: use ``htex play``.
+    Its name selects it, such as ``sdl``. If it is closed without ``finish``, it goes to rest.
+
+    A ``with`` block finishes the device at its end; after an exception it only closes the device.
+    ``settings`` are the device's settings (``devices()`` lists them). ``rate_hz`` defaults to the
+    device's own. A display that is driven by a voltage cannot be opened here: use ``htex play``.
     """
 
     def __new__(
@@ -246,7 +249,7 @@ class Device:
 
 @final
 class Build:
-    """A build of a library that is planned."""
+    """A planned build of a library."""
 
     def __new__(
         cls, recipe: str, output: str, keep_going: bool, work: _Path | None, plugins: Sequence[_Path], no_removals: bool

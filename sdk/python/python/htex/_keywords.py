@@ -1,4 +1,6 @@
-"""Keywords that functions share: the settings of the command, from its definitions (``_settings.py`` is generated)."""
+"""Keywords that functions share: the settings of the command, taken from its definitions
+(``_settings.py`` is generated).
+"""
 
 from __future__ import annotations
 
@@ -37,11 +39,13 @@ class Reading(ReadingSettings, total=False):
 
 
 class Fitting(Reading, FitSettings, Metadata, total=False):
-    """How recordings are read and fitted, and what is said of the texture."""
+    """How recordings are read and fitted, and the texture's metadata."""
 
 
 def keywords(kind: type) -> Callable[[F], F]:
-    """Show the keywords of ``kind`` in the signature and the description of a function that takes them as ``**settings``."""
+    """Show the keywords of ``kind`` in the signature and the docstring of a function that takes
+    them as ``**settings``.
+    """
 
     def described(function: F) -> F:
         hints = typing.get_type_hints(kind, include_extras=True)
@@ -60,7 +64,10 @@ def keywords(kind: type) -> Callable[[F], F]:
 
 
 def split(function: str, settings: Mapping[str, object], *kinds: type) -> list[dict[str, Any]]:
-    """Return the settings of each kind; a keyword of none of them is refused, and ``None`` stands for the default."""
+    """Return the settings of each kind.
+
+    Refuse a keyword that belongs to none of them; ``None`` stands for the default.
+    """
     left = dict(settings)
     parts = [{name: left.pop(name) for name in typing.get_type_hints(kind) if name in left} for kind in kinds]
     if left:
@@ -69,7 +76,7 @@ def split(function: str, settings: Mapping[str, object], *kinds: type) -> list[d
 
 
 def as_json(settings: Mapping[str, Any]) -> str:
-    """Return settings for the extension."""
+    """Return settings in the form that the extension takes."""
     for name, value in settings.items():
         if isinstance(value, float) and not math.isfinite(value):
             raise _errors.OptionError(f"{name} is {value}; give a finite number")
@@ -77,7 +84,8 @@ def as_json(settings: Mapping[str, Any]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON has for a path, for numbers and arrays of NumPy, and for other sequences."""
+    """Convert paths, numbers and arrays of NumPy, and other sequences to what JSON can represent.
+    """
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "tolist"):

@@ -1,4 +1,4 @@
-"""Models that are written in Python."""
+"""Models written in Python."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Parameters = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Field:
-    """A parameter of a model that is written in Python."""
+    """A parameter of a model written in Python."""
 
     name: str
     """Name, units included, such as ``peak_hz``."""
@@ -50,7 +50,7 @@ class Field:
 
 
 class Model(Protocol):
-    """What a class has that ``register_model`` takes."""
+    """What a class must have for ``register_model``."""
 
     id: str
     fields: Sequence[Field]
@@ -63,23 +63,25 @@ _Class = TypeVar("_Class", bound="type[Model]")
 
 
 def register_model(model: _Class) -> _Class:
-    """Register a model that is written in Python, for prototypes; usable as a decorator.
+    """Register a model written in Python, for prototypes. Also usable as a decorator.
 
-    ``model`` is a class that is made without arguments. It has ``id`` (reverse-DNS, such as ``org.example.plateau``),
-    ``fields`` (a list of ``Field``), and these methods:
+    ``model`` is a class that is instantiated without arguments. It has ``id`` (reverse-DNS, such as
+    ``org.example.plateau``), ``fields`` (a list of ``Field``), and these methods:
 
-    - ``fit(frequency_hz, magnitude)`` returns the parameters of a spectrum, by name;
-    - ``magnitude(parameters, frequency_hz)`` returns a magnitude for each frequency, in any scale; a voice plays noise
-      with these magnitudes;
-    - ``voice(parameters, rate_hz, seed)``, if there is one, returns an object that plays instead. Its ``render(n)``
-      returns the next ``n`` samples, of unit RMS; its ``retune(parameters)`` changes the parameters, for textures with
-      several conditions.
+    - ``fit(frequency_hz, magnitude)`` returns the parameters for a spectrum, by name;
+    - ``magnitude(parameters, frequency_hz)`` returns a magnitude for each frequency, in any scale.
+      A voice plays noise with these magnitudes;
+    - ``voice(parameters, rate_hz, seed)``, which is optional, returns an object that plays instead.
+      Its ``render(n)`` returns the next ``n`` samples, with unit RMS. Its ``retune(parameters)``
+      changes the parameters, for textures with several conditions.
 
-    ``name``, ``version`` and the first line of the class's documentation describe the model in ``htex.models()``.
+    ``name``, ``version`` and the first line of the class's docstring describe the model in
+    ``htex.models()``.
 
-    The model is known to this process only: to all later calls of ``fit``, ``open``, ``tradeoff``, ``models`` and ``Scene``,
-    not to the command. It replaces a registered model of the same id. Its methods run under the interpreter's lock and are
-    slow; a model for others to use is written in Rust or C. An exception in them becomes a ``ModelError`` with the exception
+    Only this process knows the model: all later calls of ``fit``, ``open``, ``tradeoff``,
+    ``models`` and ``Scene`` can use it, the command cannot. It replaces a registered model with the
+    same id. Its methods run under the interpreter's lock and are slow; write a model that others
+    will use in Rust or C. If a method raises, the caller gets a ``ModelError`` with that exception
     as its cause.
     """
     if not inspect.isclass(model):
@@ -105,7 +107,7 @@ def register_model(model: _Class) -> _Class:
 
 
 class _Adapter:
-    """A model with arrays for parameters, whose results are checked."""
+    """A model whose parameters are arrays. It checks the results of the author's class."""
 
     def __init__(self, model: Any, fields: list[Field]) -> None:
         self.model = model
@@ -159,7 +161,7 @@ class _Adapter:
 
 
 class _Voice:
-    """A voice whose samples are checked."""
+    """A voice that checks the samples of the author's voice."""
 
     def __init__(self, adapter: _Adapter, voice: Any) -> None:
         if not hasattr(voice, "render"):

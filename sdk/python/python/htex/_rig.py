@@ -31,12 +31,14 @@ def simulate(
 ) -> Simulation:
     """Simulate a recording of a finger that slides over a surface, as ``htex simulate`` does.
 
-    It is not a measurement, and what is fitted to it says so. ``motion`` is to-and-fro sweeps at one speed (80 mm/s) and force (0.4 N), or
-    strokes of random speed and force between two values (36 to 280 mm/s, 0.15 to 3.8 N). The same seed gives the same samples.
+    It is not a measurement, and textures fitted to it say so. ``motion`` is either back-and-forth
+    sweeps at one speed (80 mm/s) and force (0.4 N), or strokes of random speed and force between
+    two values (36 to 280 mm/s, 0.15 to 3.8 N). The same seed gives the same samples.
 
-    ``law`` says how the texture follows the motion: ``frequency_speed``, ``level_speed`` and ``level_force``, exponents relative to 80 mm/s
-    and 0.4 N; those of a relief are 1, 0 and 1. ``drift_db_per_min`` changes the texture's level in the course of the recording, and
-    ``lifted`` is the part of the time that the finger is off the surface, 0 to 0.8.
+    ``law`` states how the texture follows the motion: the exponents ``frequency_speed``,
+    ``level_speed`` and ``level_force``, relative to 80 mm/s and 0.4 N. For a relief they are 1, 0
+    and 1. ``drift_db_per_min`` changes the texture's level during the recording. ``lifted`` is the
+    fraction of the time that the finger is off the surface, 0 to 0.8.
     """
     if motion not in ("sweeps", "free"):
         raise _errors.OptionError(f"motion is {motion!r}; known are sweeps, free")
@@ -54,10 +56,12 @@ def response(
     rate_hz: float,
     **settings: Unpack[ResponseSettings],
 ) -> Response:
-    """Measure the frequency response of a recording rig or a finger display, as ``htex response`` does.
+    """Measure the frequency response of a recording rig or a finger display, as ``htex response``
+    does.
 
-    ``input`` is the force of an impact hammer, or with ``continuous=True`` a drive such as noise; ``output`` is what the rig or the display
-    makes of it. Both are series at ``rate_hz``, or lists of series, one for each recording.
+    ``input`` is the force of an impact hammer or, with ``continuous=True``, a drive such as noise.
+    ``output`` is the response of the rig or the display. Both are series at ``rate_hz``, or lists
+    of series, one for each recording.
     """
     (given,) = split("response", settings, ResponseSettings)
     inputs, outputs = _series(input), _series(output)
@@ -71,7 +75,7 @@ def response(
 
 
 def _series(series: Any) -> list[list[float]]:
-    """Return one series, or several, as lists of numbers."""
+    """Return one or several series as lists of numbers."""
     several = isinstance(series, (list, tuple)) and len(series) > 0 and np.ndim(series[0]) > 0
     arrays = [np.ma.filled(np.ma.asarray(one, dtype=np.float64), np.nan) for one in (series if several else [series])]
     for array in arrays:

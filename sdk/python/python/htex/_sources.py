@@ -1,6 +1,6 @@
-"""Recordings as files: an array is what an NPY file of it would be, a data frame what a CSV file of it would be.
+"""Recordings as files: an array is passed as an NPY file, and a data frame as a CSV file.
 
-Channels, scale and limits are then those of the readers.
+Channels, scale and limits are then the same as for such files.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Recording = Union[str, os.PathLike[str], bytes, BinaryIO, npt.ArrayLike]
 
 
 def sources(recordings: Any) -> list[Any]:
-    """Return the sources of recordings; a list of numbers is one recording."""
+    """Return the sources of recordings. A list of numbers is one recording."""
     several = isinstance(recordings, (list, tuple))
     if several and not recordings:
         raise _errors.OptionError("no recordings; give at least one")
@@ -30,7 +30,7 @@ def sources(recordings: Any) -> list[Any]:
 
 
 def source(recording: Any) -> Any:
-    """Return a path, or a name and the bytes of a file; an array is what an NPY file of it would be."""
+    """Return a path, or the name and the bytes of a file. An array becomes an NPY file."""
     if isinstance(recording, (str, os.PathLike)):
         return recording
     if isinstance(recording, Simulation):
@@ -57,7 +57,9 @@ def source(recording: Any) -> Any:
 
 
 def _columns(recording: Any) -> dict[str, Any] | None:
-    """Return the columns of a data frame or a mapping by their names; ``None`` for what has no names."""
+    """Return the columns of a data frame or a mapping by name; ``None`` for objects without column
+    names.
+    """
     if not (isinstance(recording, Mapping) or hasattr(recording, "columns")):
         return None
     names = list(getattr(recording, "columns", recording))
@@ -67,14 +69,14 @@ def _columns(recording: Any) -> dict[str, Any] | None:
 
 
 def _unmasked(what: str, values: Any) -> Any:
-    """Return values as an array; numpy would read what is under a mask as samples."""
+    """Return values as an array. Numpy would read masked values as samples."""
     if np.ma.is_masked(values):
         raise _errors.OptionError(f"{what} has masked values; leave their rows out, or fill them with filled()")
     return np.asarray(values)
 
 
 def _csv(columns: Mapping[str, Any]) -> bytes:
-    """Return columns as a CSV file of all digits, whose reader knows their names."""
+    """Return columns as a CSV file with all digits, with names that the reader knows."""
     for name, values in columns.items():
         if values.ndim != 1 or values.dtype.kind not in "biuf":
             raise TypeError(f"column {name!r} is of {values.dtype} in {values.ndim} dimensions; give numbers, one for each sample")

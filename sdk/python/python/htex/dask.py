@@ -1,10 +1,11 @@
-"""Libraries from recipes, built by a Dask cluster.
+"""Build libraries from recipes on a Dask cluster.
 
-The recipe and the results are those of :func:`htex.build`; only the fits are done by the workers of the cluster. Every worker needs
-this package, in the same version, and the recordings under the same paths, or URIs of recordings and the variables with which they are
-read.
+The recipe and the results are the same as for :func:`htex.build`; only the fits run on the workers
+of the cluster. Every worker needs this package, in the same version, and the recordings: under the
+same paths, or as URIs with the environment variables for reading them.
 
-There is no engine for clusters beside Dask. The process that called :func:`build` writes the results, so that each is written once.
+Dask is the only supported engine for clusters. The process that called :func:`build` writes the
+results, so that each is written once.
 
 >>> from distributed import Client
 >>> import htex.dask
@@ -34,9 +35,9 @@ else:
 
 __all__ = ["build"]
 
-# Key of a job, the job as JSON, bytes of its recordings.
+# Key of a job, the job as JSON, size of its recordings in bytes.
 Job = tuple[str, str, int]
-# Files that a worker hashes at a time.
+# Number of files that a worker hashes at a time.
 _FILES = 32
 # Pause between two attempts to reach the scheduler, seconds.
 _PAUSE_S = 2.0
@@ -57,21 +58,25 @@ def build(
 ) -> dict[str, Any]:
     """Build a library of textures from a recipe on a Dask cluster.
 
-    The results are the same bytes as those of :func:`htex.build`. A worker that is lost has its work done by others, and each
-    result is written once, here. When the scheduler is lost, the build goes on when it is there again. When the build itself is
-    ended, what has been fitted stays in ``output``.
+    The results are byte-identical to those of :func:`htex.build`. If a worker is lost, other
+    workers do its work; each result is written only once, here. If the scheduler is lost, the build
+    continues when it is back. If the build itself is interrupted, fitted results stay in
+    ``output``.
 
     Args:
-        recipe: The recipe, ``library.toml``, a path or URI; its recordings may be URIs, too, which the workers read.
+        recipe: The recipe, ``library.toml``, as a path or URI. Its recordings may also be URIs,
+            which the workers read.
         client: The cluster.
-        output: The folder of the results, or the URI of one.
+        output: The folder for the results, or its URI.
         keep_going: Leave out a texture that cannot be made instead of raising.
-        work: The folder in which results for a URI are made; one of the user's cache when absent.
+        work: The folder in which results for a URI are made. Default: one in the user's cache.
         plugins: Plugins to fit with, as for :func:`htex.build`, under the same paths on every worker.
-        no_removals: Raise and change nothing if the library would lose textures, as for :func:`htex.build`.
-        shard_bytes: Bytes of recordings that a worker gets at a time; a texture with more is given alone.
+        no_removals: Raise and change nothing if the library would lose textures, as for
+            :func:`htex.build`.
+        shard_bytes: Bytes of recordings that a worker gets at a time. A larger texture is sent
+            alone.
         patience_s: Longest time without scheduler or workers, seconds.
-        done: Called with the key of each job that is done.
+        done: Called with the key of each finished job.
 
     Returns:
         The report, as in ``build-report.json``.
@@ -111,14 +116,14 @@ def build(
 
 
 class _Patience:
-    """Waits when the cluster is away, for a time at most."""
+    """Wait when the cluster is away, but only for a limited time."""
 
     def __init__(self, longest_s: float) -> None:
         self.longest_s = longest_s
         self.renew()
 
     def renew(self) -> None:
-        """Note that the cluster is there."""
+        """Note that the cluster is reachable."""
         self.seen = time.monotonic()
 
     def __enter__(self) -> None:
@@ -135,7 +140,7 @@ class _Patience:
 
 
 def _shards(pending: Iterable[Job], shard_bytes: int) -> Iterator[list[tuple[str, str]]]:
-    """Gather jobs, in the order of their keys, which are content hashes."""
+    """Group jobs, in the order of their keys, which are content hashes."""
     shard: list[tuple[str, str]] = []
     size = 0
     for key, job, recording_bytes in sorted(pending):
@@ -149,7 +154,7 @@ def _shards(pending: Iterable[Job], shard_bytes: int) -> Iterator[list[tuple[str
 
 
 def _results(client: Client, work: Callable[[Any], Any], parts: Sequence[Any]) -> Iterator[Any]:
-    """Do parts of work on the cluster; yield what they give as they end."""
+    """Run parts of the work on the cluster, and yield their results as they finish."""
     from distributed import as_completed
 
     names = [_name(work, part) for part in parts]
@@ -159,13 +164,13 @@ def _results(client: Client, work: Callable[[Any], Any], parts: Sequence[Any]) -
             yield future.result(timeout=60)
             future.release()
     finally:
-        # What is not needed any more is not done: after an error, or when the caller stops.
+        # Cancels the remaining work after an error, or when the caller stops.
         for future in futures:
             future.release()  # type: ignore[no-untyped-call]
 
 
 def _name(work: Callable[[Any], Any], part: Any) -> str:
-    """Name a part of work by its contents, so that equal parts are done once."""
+    """Name a part of the work by its contents, so that equal parts run only once."""
     digest = hashlib.blake2b(repr(part).encode(), digest_size=16).hexdigest()
     return f"htex{work.__name__}-{digest}"
 
@@ -177,12 +182,12 @@ def _hash(of_recipe: tuple[str, Sequence[str]]) -> list[tuple[str, str]]:
 
 
 def _run(shard: list[tuple[str, str]]) -> list[tuple[str, bytes]]:
-    """Do jobs on a worker."""
+    """Run jobs on a worker."""
     return [(key, _htex.run_job(key, job)) for key, job in shard]
 
 
 def _lost() -> tuple[type[BaseException], ...]:
-    """Exceptions of a scheduler or of workers that are away."""
+    """Return the exceptions raised when the scheduler or the workers are away."""
     from distributed import CancelledError, KilledWorker
     from distributed.comm.core import CommClosedError
 

@@ -1,4 +1,4 @@
-"""Plots of spectra and of trade-offs; they need matplotlib (``pip install htex[plot]``)."""
+"""Plots of spectra and trade-offs. They need matplotlib (``pip install htex[plot]``)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ def spectrum(spectrum: Spectrum | Processed, *, ax: Axes | None = None, label: s
 
 
 def frequencies(ax: Axes) -> None:
-    """Make the horizontal axis one of frequencies: logarithmic, with ticks at 20, 50, 100 Hz and so on."""
+    """Make the horizontal axis a frequency axis: logarithmic, with ticks at 20, 50, 100 Hz and so
+    on.
+    """
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     ax.set_xscale("log")
@@ -48,7 +50,7 @@ def texture(
     reference: Spectrum | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the spectra of a texture's models, and a recorded spectrum over them."""
+    """Draw the spectra of a texture's models, with a recorded spectrum on top."""
     ax = _axes(ax)
     if reference is not None:
         spectrum(reference, ax=ax, label="recording")
@@ -61,7 +63,7 @@ def texture(
 def tradeoff(
     tradeoff: Tradeoff, *, x: str = "bytes", y: str = "held_out_error", ax: Axes | None = None
 ) -> Axes:
-    """Draw one column of a trade-off over another, a colour for each model."""
+    """Draw one column of a trade-off over another, with a colour for each model."""
     ax = _axes(ax)
     columns = tradeoff.columns
     for model in dict.fromkeys(columns["model"]):

@@ -1,4 +1,4 @@
-"""The analysis as a whole: the simplest comparisons first."""
+"""The whole analysis, with the simplest comparisons first."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .spectra import Spectra
 
 #: Name and version of the form.
 FORM = "htex-study-analysis/1"
-#: A medium effect (Cohen 1988), which the paper plans for.
+#: A medium effect (Cohen 1988), for which the paper plans.
 _MEDIUM_F = 0.25
 
 
 def compute(ratings: Ratings, spectra: Spectra | None, bound: float, program: str) -> AnalysisDict:
-    """Every test of the study, or a note that says why there is none."""
+    """Run every test of the study, or add a note that says why a test is missing."""
     notes = Notes()
     result = _about(ratings, program)
     _of_factor(result, ratings, bound, notes)
@@ -115,7 +115,7 @@ def _in_texture(result: AnalysisDict, ratings: Ratings, index: int, name: str, b
 
 
 def _with_method(test: AnovaResult | None, group: str, normality: Normality) -> AnovaResult | None:
-    """Say the method beside the result, and that its residuals are not normal."""
+    """State the method next to the result, and whether its residuals are not normal."""
     if test is None:
         return None
     p = normality.get("shapiro_p", 1.0)
@@ -130,7 +130,9 @@ def _normality(values: np.ndarray, group: str, notes: Notes, on: str = tests.CEL
 
 
 def _means(table: np.ndarray, *, model: list[str] | None = None, texture: Any = None) -> list[Mean]:
-    """Means over participants of each column that has a value, named by a model, a texture, or both."""
+    """Compute means over participants for each column with a value, named by a model, a texture, or
+    both.
+    """
     results = []
     for index, name in enumerate(model or texture):
         values = table[:, index][~np.isnan(table[:, index])]
@@ -160,7 +162,7 @@ def _correlation(ratings: Ratings, spectra: Spectra, notes: Notes) -> SpectralCo
 
 
 def _power(ratings: Ratings) -> list[PowerRow]:
-    """Power from 4 participants, or from 2 in smaller studies, to those of the study."""
+    """Compute the power for 4 participants (2 in smaller studies) up to the number in the study."""
     people, measurements = len(ratings.participants), len(ratings.textures) * len(ratings.models)
     first = 2 if people < 4 else 4
     rows = []
@@ -172,7 +174,7 @@ def _power(ratings: Ratings) -> list[PowerRow]:
 
 
 def _without_absent(result: AnalysisDict) -> AnalysisDict:
-    """Leave out what is not defined."""
+    """Leave out undefined results."""
     for effect in result["anova_two_way"].values():
         effect["method"] = METHODS["anova_two_way"]
     empty = ("anova_two_way", "bands", "nemenyi")

@@ -1,6 +1,8 @@
-"""Repeated-measures ANOVA by orthonormal contrasts, with sphericity: Mauchly, Greenhouse and Geisser, Huynh and Feldt.
+"""Repeated-measures ANOVA by orthonormal contrasts, with sphericity: Mauchly, Greenhouse and
+Geisser, Huynh and Feldt.
 
-pingouin has the same tests under the GPL; it is the oracle of the tests, and not used here.
+pingouin has the same tests under the GPL. It is not used here, but the unit tests compare against
+it.
 """
 
 from __future__ import annotations
@@ -12,17 +14,23 @@ from .notes import Notes, Undefined, complete, need_levels, need_participants, n
 from .results import AnovaResult
 
 _TEST = "a repeated-measures ANOVA"
-#: p-values of tests of assumptions below this are said beside the result.
+#: If the test of an assumption has a p-value below this, it is reported next to the result.
 LEVEL = 0.05
 
 
 def one_way(table: np.ndarray, group: str, notes: Notes) -> AnovaResult | None:
-    """Test the columns of a table, a row for each participant; rows with a missing value are left out."""
+    """Test the columns of a table with a row for each participant.
+
+    Rows with a missing value are left out.
+    """
     return notes.take(group, lambda: _one_way(complete(table), group, notes))
 
 
 def two_way(means: np.ndarray, group: str, notes: Notes) -> dict[str, AnovaResult]:
-    """Test textures, models and their interaction; means are by participant, texture, model."""
+    """Test textures, models and their interaction.
+
+    The means are indexed by participant, texture, model.
+    """
     return notes.take(group, lambda: _two_way(means, group, notes)) or {}
 
 
@@ -51,13 +59,15 @@ def _check(participants: int, levels: int) -> None:
 
 
 def helmert(levels: int) -> np.ndarray:
-    """Orthonormal contrasts: each condition against the mean of those before it."""
+    """Return orthonormal contrasts: each condition against the mean of the conditions before it."""
     rows = np.tril(np.ones((levels, levels)), -1) - np.diag(np.arange(levels))
     return np.asarray(rows[1:] / np.linalg.norm(rows[1:], axis=1, keepdims=True))
 
 
 def _effect(scores: np.ndarray, largest: float, averaged: int, group: str, notes: Notes) -> AnovaResult:
-    """Test the effect whose contrasts have ``scores``, which are made of means of ``averaged`` values."""
+    """Test the effect whose contrasts have ``scores``, which were computed from means of
+    ``averaged`` values.
+    """
     people, size = scores.shape
     centred = scores - scores.mean(axis=0)
     products = centred.T @ centred
@@ -97,8 +107,8 @@ def huynh_feldt(gg: float, size: int, people: int) -> float:
 def mauchly(products: np.ndarray, people: int) -> tuple[float, float, float, float]:
     """Mauchly's W (1940), its statistic, and its p-value as pingouin and as R compute it.
 
-    By two terms of Box's expansion (Anderson 2003, section 10.7.4); pingouin 0.7 has the number of conditions in place of
-    the contrasts in one of them.
+    The p-value uses two terms of Box's expansion (Anderson 2003, section 10.7.4). In one of them,
+    pingouin 0.7 uses the number of conditions instead of the number of contrasts.
     """
     d, n = len(products), people - 1
     if d < 2:

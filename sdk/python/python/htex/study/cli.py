@@ -1,4 +1,5 @@
-"""``htex study analyse`` and ``htex study power``, which the command of the Python package answers."""
+"""``htex study analyse`` and ``htex study power``, which the Python package's command implements.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ G*Power 3.1, for one group."""
 
 
 def run(words: list[str]) -> int | None:
-    """Run the command if it is one of those that Python answers, and return its exit status; else None."""
+    """Run the command if Python implements it, and return its exit status; otherwise return None.
+    """
     command = _command(words)
     if command is None:
         return None
@@ -202,7 +204,7 @@ def _power_parser() -> argparse.ArgumentParser:
 
 
 def _joined(words: list[str]) -> list[str]:
-    """The words with ``--scale`` and its value in one, since a value may begin with a dash."""
+    """Join ``--scale`` and its value into one word, because the value may begin with a dash."""
     joined: list[str] = []
     for word in words:
         if joined and joined[-1] == "--scale":
@@ -213,7 +215,7 @@ def _joined(words: list[str]) -> list[str]:
 
 
 def _scale(text: str) -> tuple[float, float]:
-    """``0-6``; the lower end may be negative."""
+    """Parse ``0-6``. The lower end may be negative."""
     dash = text.find("-", 1)
     try:
         low, high = float(text[:dash]), float(text[dash + 1 :])
@@ -239,7 +241,7 @@ def _pairs(text: str) -> list[tuple[str, str]]:
 
 
 def _overwritten(folder: pathlib.Path, inputs: list[str]) -> str | None:
-    """What is wrong when the results would overwrite an input."""
+    """Return what is wrong if the results would overwrite an input."""
     for path in map(pathlib.Path, inputs):
         if path.resolve().parent == folder.resolve() and path.name in _NAMES:
             return f"{path} is an input, and the results would overwrite it; choose another folder"
@@ -253,7 +255,7 @@ _NAMES = {
 
 
 def _again(arguments: argparse.Namespace) -> str:
-    """The command that makes the report again."""
+    """Return the command that makes the report again."""
     words = ["htex study analyse --ratings", arguments.ratings]
     words += ["--spectra", arguments.spectra] if arguments.spectra else []
     words += ["--map " + ",".join(f"{ours}={theirs}" for ours, theirs in pairs) for pairs in arguments.map]
@@ -284,5 +286,5 @@ def _say_json(value: object) -> int:
 
 
 def _plain(line: str) -> str:
-    """A line with control characters escaped, since it may quote untrusted tables."""
+    """Return a line with control characters escaped, because it may quote untrusted tables."""
     return "".join(f"\\u{{{ord(c):x}}}" if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in line)

@@ -1,4 +1,6 @@
-"""Whether two conditions are as good as each other: "no difference found" does not say so, two one-sided tests do."""
+"""Whether two conditions are equally good: "no difference found" does not show this, but two
+one-sided tests do.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +13,13 @@ from .notes import Notes, complete, need_participants, negligible, no_error_vari
 from .results import Equivalence, EquivalencePair
 from .tests import exact_ties
 
-#: Half a step of a scale of whole numbers. A study states its own bound before it looks.
+#: Half a step on a scale of whole numbers. A study should state its own bound before it looks.
 BOUND = 0.5
 
 
 def equivalence(table: np.ndarray, names: list[str], bound: float, group: str, notes: Notes) -> Equivalence:
-    """Two one-sided tests of every two columns, and Wilcoxon's test of the same differences."""
+    """Run two one-sided tests for every two columns, and Wilcoxon's test on the same differences.
+    """
     results = []
     for i, j in combinations(range(len(names)), 2):
         a, b = complete(table[:, [i, j]]).T
@@ -30,7 +33,9 @@ def equivalence(table: np.ndarray, names: list[str], bound: float, group: str, n
 
 
 def tost(a: np.ndarray, b: np.ndarray, bound: float) -> EquivalencePair:
-    """The larger p-value of two one-sided paired t-tests (Schuirmann 1987), and the 90 % interval that says the same."""
+    """Return the larger p-value of two one-sided paired t-tests (Schuirmann 1987), and the
+    equivalent 90 % interval.
+    """
     differences = a - b
     n, test = len(differences), "an equivalence test"
     need_participants(test, n)
@@ -44,9 +49,10 @@ def tost(a: np.ndarray, b: np.ndarray, bound: float) -> EquivalencePair:
 
 
 def wilcoxon(differences: np.ndarray) -> tuple[float, float]:
-    """Wilcoxon's W and its two-sided p-value, as SciPy's ``wilcoxon``.
+    """Wilcoxon's W and its two-sided p-value, as SciPy's ``wilcoxon`` computes them.
 
-    That takes seconds for the permutations of up to 13 differences with ties; here they are all signs at once.
+    SciPy takes seconds for the permutations of up to 13 differences with ties. Here all signs are
+    computed at once.
     """
     kept = differences[differences != 0]
     ranks = stats.rankdata(np.abs(kept))

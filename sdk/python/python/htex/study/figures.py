@@ -1,4 +1,4 @@
-"""The figures of the paper, of an analysis: SVG for pages, PDF for papers."""
+"""The paper's figures, drawn from an analysis: SVG for pages, PDF for papers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .text import level_names, stars
 
 #: Colours of models (Okabe and Ito's, which all readers can tell apart).
 _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a200")
-#: Files are the same for the same numbers: ids by a constant, no date, text as text.
+#: Makes files reproducible for the same numbers: ids from a constant, no date, text as text.
 _STYLE: Any = {
     "svg.hashsalt": "htex",
     "svg.fonttype": "none",
@@ -26,7 +26,7 @@ _STYLE: Any = {
 
 
 def figures(result: AnalysisDict) -> dict[str, Figure]:
-    """Every figure by the name of its file."""
+    """Return every figure by its file name."""
     with matplotlib.rc_context({**_STYLE, "axes.spines.right": False}):
         found = _ratings(result)
         if result["equivalence"]["pairs"]:
@@ -39,13 +39,13 @@ def figures(result: AnalysisDict) -> dict[str, Figure]:
 
 
 def to_svg(figure: Figure, title: str) -> str:
-    """The figure as an element of a page."""
+    """Return the figure as an element of a page."""
     svg = _saved(figure, "svg", {"Date": None, "Creator": None}).decode()
     return f'<svg role="img" aria-label="{title}"' + svg[svg.index("<svg") + 4 :]
 
 
 def to_pdf(figure: Figure) -> bytes:
-    """The figure as a PDF."""
+    """Return the figure as a PDF."""
     return _saved(figure, "pdf", {"CreationDate": None})
 
 
@@ -62,7 +62,9 @@ def _new(rows: int = 1, columns: int = 1, width: float = 4.6, height: float = 3.
 
 
 def _ratings(result: AnalysisDict) -> dict[str, Figure]:
-    """Figure 3B and S5: ratings by model, for all textures and for each; by texture in a study of one model."""
+    """Draw figures 3B and S5: ratings by model, for all textures and for each; by texture in a
+    study with one model.
+    """
     name, levels, key = level_names(result)
     overall: Any = result.get("means_texture", result["means_model"])
     groups = {"": (overall, result[key])}  # type: ignore[literal-required]
@@ -78,7 +80,7 @@ def _ratings(result: AnalysisDict) -> dict[str, Figure]:
 
 
 def _correlations(result: AnalysisDict) -> dict[str, Figure]:
-    """Figure 3A: correlation of felt with recorded spectra."""
+    """Draw figure 3A: the correlation of felt with recorded spectra."""
     found = result["spectral_correlation"]
     axis = _limits(value for mean in [*found["means"], *found["means_model"]] for value in mean["by_participant"])
     groups = {"": found["means_model"]}
@@ -92,14 +94,16 @@ def _correlations(result: AnalysisDict) -> dict[str, Figure]:
 
 
 def _limits(values: Any) -> tuple[float, float]:
-    """The range of an axis that all plots of a figure share."""
+    """Return the axis range that all plots of a figure share."""
     numbers = list(values) or [0.0, 1.0]
     margin = 0.05 * max(max(numbers) - min(numbers), 1e-9)
     return min(numbers) - margin, max(numbers) + margin
 
 
 def _strips(means: Any, pairs: Any, levels: list[str], texture: str, label: str, limits: tuple[float, float]) -> Figure:
-    """A dot for each participant, a diamond for their mean, the distribution behind them, brackets over levels that differ."""
+    """Draw a dot for each participant, a diamond for their mean, the distribution behind them, and
+    brackets over levels that differ.
+    """
     figure, (ax,) = _new(width=max(4.6, 0.42 * len(levels) + 1.4))
     key = "model" if means and means[0].get("model") in levels else "texture"
     for mean in means:
@@ -119,7 +123,10 @@ def _strips(means: Any, pairs: Any, levels: list[str], texture: str, label: str,
 
 
 def _brackets(ax: Any, pairs: Any, levels: list[str], limits: tuple[float, float]) -> None:
-    """Brackets over the levels that differ by Holm's correction, the nearest first; of many only the stars would be seen."""
+    """Draw brackets over levels that differ by Holm's correction, the nearest first.
+
+    With more than 8 levels it draws none, because only their stars would be visible.
+    """
     low, high = limits
     found = [(levels.index(p["a"]), levels.index(p["b"]), p["p_holm"]) for p in pairs if p.get("p_holm", 1) < 0.05]
     step = 0.09 * (high - low)
@@ -134,7 +141,10 @@ def _brackets(ax: Any, pairs: Any, levels: list[str], limits: tuple[float, float
 
 
 def _equivalence(result: AnalysisDict) -> Figure:
-    """The 90 % interval of every difference against the bound: inside it two levels are as good as each other."""
+    """Draw the 90 % interval of every difference against the bound.
+
+    Inside the bound, two levels are equally good.
+    """
     tested = result["equivalence"]
     pairs = tested["pairs"][:60]
     figure, (ax,) = _new(width=6.4, height=0.9 + 0.22 * len(pairs))
@@ -154,7 +164,9 @@ def _equivalence(result: AnalysisDict) -> Figure:
 
 
 def _bands(result: AnalysisDict) -> Figure:
-    """Figure 3C: the metrics of the regressions over the number of bands, with what shows overfitting, and the best bank."""
+    """Draw figure 3C: the regressions' metrics over the number of bands, with signs of overfitting,
+    and the best bank.
+    """
     figure, axes = _new(2, 3, width=4.1)
     panels: list[tuple[str, str, dict[str, Any]]] = [
         # p-values below the smallest double are 0, which a logarithmic axis cannot show.
@@ -187,7 +199,7 @@ def _of(name: str) -> Any:
 
 
 def _bank(ax: Any, count: int) -> None:
-    """The triangles of a bank."""
+    """Draw the triangles of a bank."""
     edges = bank(count)[1]
     for index in range(count):
         ax.plot(edges[index : index + 3], [0, 1, 0], color=_COLORS[index % len(_COLORS)])

@@ -1,4 +1,4 @@
-"""An analysis as data frames, which are also its tables in CSV."""
+"""An analysis as data frames, which are also its CSV tables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _BANDS = (
 
 
 def frames(result: AnalysisDict) -> dict[str, pd.DataFrame]:
-    """Every table by its name; what is not defined is NaN."""
+    """Return every table by name. Undefined values are NaN."""
     means = [*result["means"], *result["means_model"], *result.get("means_texture", [])]
     found = {
         "cell-means": pd.DataFrame(result["cell_means"], columns="participant texture model repetitions mean".split()),
@@ -45,7 +45,8 @@ def _frame(rows: Iterable[Mapping[str, Any]], columns: list[str]) -> pd.DataFram
 
 
 def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A result with its intervals, degrees of freedom and sentences as values of columns."""
+    """Return a result, with its intervals, degrees of freedom and sentences, as values of columns.
+    """
     flat: dict[str, Any] = {}
     for key, value in row.items():
         if key in ("ci95", "ci90"):

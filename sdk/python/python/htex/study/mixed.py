@@ -1,4 +1,5 @@
-"""A linear mixed model of all cell means: it uses participants who have not rated everything, too."""
+"""A linear mixed model of all cell means. It also uses participants who have not rated everything.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +17,9 @@ _TEST = "a mixed model"
 
 
 def mixed_model(ratings: Ratings) -> MixedModel:
-    """Fixed effects of texture, model and their interaction; random ones of participants and of their taste in each factor."""
+    """Fit fixed effects of texture, model and their interaction, and random effects of participants
+    and of their taste in each factor.
+    """
     factors = [factor for factor in FACTORS if len(ratings.levels(factor)) > 1]
     need_levels(_TEST, len(ratings.levels(ratings.factor)))
     need_participants(_TEST, len(ratings.participants))
@@ -40,12 +43,14 @@ def _fit(ratings: Ratings, factors: list[str]) -> Any:
     from statsmodels.regression.mixed_linear_model import MixedLM
 
     formula = "mean ~ " + " * ".join(f"C({factor}, Sum)" for factor in factors)
-    # All as components, which may be 0: a random intercept of no variance has no solution in statsmodels 0.14.
+    # All are variance components, because those may be 0: in statsmodels 0.14, a random intercept
+    # without variance has no solution.
     components = {"participant": "1"}
     if len(factors) > 1:
         components.update({f"participant * {factor}": f"0 + C({factor})" for factor in factors})
     model = MixedLM.from_formula(formula, ratings.cells, groups="participant", vc_formula=components)
-    # L-BFGS, the default, ends far from the optimum where a component is small; the likelihood says which of the others is better.
+    # L-BFGS, the default, stops far from the optimum if a component is small. The likelihood decides
+    # between the two other methods.
     found = [fit for method in ("bfgs", "powell") if (fit := _fitted(model, method)) is not None]
     if not found:
         raise Undefined("NOT_CONVERGED", f"{_TEST} has no solution for these ratings")
@@ -53,9 +58,9 @@ def _fit(ratings: Ratings, factors: list[str]) -> Any:
 
 
 def _fitted(model: Any, method: str) -> Any:
-    """The fit by a method of optimisation, or None if it has no finite solution."""
+    """Return the fit with an optimisation method, or None if it has no finite solution."""
     with warnings.catch_warnings():
-        # A variance at its bound of 0 is a result and not an error.
+        # A variance at its bound of 0 is a result, not an error.
         warnings.simplefilter("ignore")
         try:
             fit = model.fit(reml=True, method=method)
@@ -67,7 +72,10 @@ def _fitted(model: Any, method: str) -> Any:
 
 
 def _effect(fit: Any, factors: list[str], sizes: dict[str, int], people: int, cells: int) -> MixedEffect:
-    """Wald's test; the degrees of freedom of its error are those of the effect's interaction with participants."""
+    """Run Wald's test.
+
+    The error's degrees of freedom are those of the effect's interaction with participants.
+    """
     names = [f"C({factor}, Sum)" for factor in factors]
     parts = [set(part.split("[")[0] for part in name.split(":")) for name in fit.model.exog_names]
     chosen = [index for index, part in enumerate(parts) if part == set(names)]
@@ -83,7 +91,8 @@ def _effect(fit: Any, factors: list[str], sizes: dict[str, int], people: int, ce
 
 
 def _means(ratings: Ratings, fit: Any, factors: list[str]) -> dict[str, float]:
-    """The mean of each level, averaged over the other factor as if every cell were there."""
+    """Return the mean of each level, averaged over the other factor as if every cell were filled.
+    """
     coefficients = dict(zip(fit.model.exog_names, map(float, fit.fe_params), strict=True))
     levels = ratings.levels(ratings.factor)
     effects = [coefficients[f"C({ratings.factor}, Sum)[S.{level}]"] for level in levels[:-1]]

@@ -1,4 +1,6 @@
-"""Why a number is missing: every test says what the data do not allow, and the analysis collects it."""
+"""Why a number is missing: every test reports what the data do not allow, and the analysis collects
+these reports.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ T = TypeVar("T")
 
 
 class Undefined(Exception):
-    """A test that the data do not allow, with a code that never changes its meaning."""
+    """A test that the data do not allow. Its code never changes its meaning."""
 
     def __init__(self, code: str, message: str) -> None:
         super().__init__(message)
@@ -23,7 +25,7 @@ class Undefined(Exception):
 
 @dataclass
 class Notes:
-    """What is not computed or needs care, by the key of its group."""
+    """Results that are missing or need care, by the key of their group."""
 
     all: list[Note] = field(default_factory=list)
 
@@ -32,7 +34,7 @@ class Notes:
         self.all.append(Note(group=group, code=code, message=message))
 
     def take(self, group: str, test: Callable[[], T]) -> T | None:
-        """The result of a test, or None and a note that says why."""
+        """Return the result of a test, or None and add a note that says why."""
         try:
             return test()
         except Undefined as reason:
@@ -59,21 +61,23 @@ def need_values(test: str, found: int, needed: int) -> None:
 
 
 def no_error_variance(test: str) -> Undefined:
-    """All participants have the same differences."""
+    """Refuse a table in which all participants have the same differences."""
     same = "every participant has the same differences between the conditions: there is no error variance"
     return Undefined("NO_ERROR_VARIANCE", f"{same}, so {test} is not defined")
 
 
 def complete(table: np.ndarray) -> np.ndarray:
-    """The rows of a table without a missing value."""
+    """Return the rows of a table that have no missing value."""
     return np.asarray(table[~np.isnan(table).any(axis=1)])
 
 
 def negligible(squares: float, largest: float, count: int) -> bool:
-    """Whether a sum of squares is no more than the rounding of ``count`` values up to ``largest``."""
+    """Return whether a sum of squares is no more than the rounding of ``count`` values up to
+    ``largest``.
+    """
     return squares <= (largest * 1e-13) ** 2 * count
 
 
 def is_constant(values: np.ndarray) -> bool:
-    """Whether values differ by no more than rounding."""
+    """Return whether values differ by no more than rounding."""
     return negligible(float(((values - values.mean()) ** 2).sum()), float(np.abs(values).max()), len(values))

@@ -1,4 +1,6 @@
-"""Power of repeated measures within factors, one group, as G*Power 3.1: how many participants a study needs."""
+"""Power of a repeated-measures design (within factors, one group), as in G*Power 3.1: how many
+participants a study needs.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +12,13 @@ METHOD = (
     "F-test of repeated measures within factors, one group, as G*Power 3.1: lambda = f^2 N m epsilon / (1 - rho), degrees of "
     "freedom (m - 1) epsilon and (N - 1) (m - 1) epsilon"
 )
-#: Most participants that are tried.
+#: Largest number of participants that is tried.
 _MOST = 100_000
 
 
 @dataclass(frozen=True)
 class Power:
-    """The power of a study with a number of participants."""
+    """The power of a study with a given number of participants."""
 
     participants: int
     power: float
@@ -33,11 +35,11 @@ class Power:
     method: str = METHOD
 
     def to_dict(self) -> dict[str, object]:
-        """As ``htex study power --json`` prints it."""
+        """Return what ``htex study power --json`` prints."""
         return {key.rstrip("_"): value for key, value in asdict(self).items()}
 
     def __str__(self) -> str:
-        """As ``htex study power`` prints it."""
+        """Return what ``htex study power`` prints."""
         df1, df2 = (f"{df:g}" for df in self.df)
         return (
             f"{self.participants} participants: power {self.power:.4f}\n"
@@ -55,10 +57,12 @@ def power(
     correlation: float = 0.5,
     epsilon: float = 1.0,
 ) -> Power:
-    """The least number of participants that reaches ``power`` (0.8), or the power of ``participants``.
+    """Return the smallest number of participants that reaches ``power`` (0.8), or the power for
+    ``participants``.
 
-    ``effect`` is Cohen's f: 0.1 is small, 0.25 medium, 0.4 large; ``measurements`` are those of each participant, textures
-    times models; ``correlation`` is among them, and ``epsilon`` corrects for nonsphericity.
+    ``effect`` is Cohen's f: 0.1 is small, 0.25 medium, 0.4 large. ``measurements`` is the number
+    per participant, textures times models. ``correlation`` is the correlation among them, and
+    ``epsilon`` corrects for nonsphericity.
 
     >>> power(0.25, 25).participants
     8

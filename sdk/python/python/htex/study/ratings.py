@@ -1,4 +1,4 @@
-"""The table of ratings: long or wide, with one factor or two, complete or not."""
+"""Tables of ratings: long or wide, with one factor or two, complete or incomplete."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from .rules import Finding, Findings
 from .tables import Row, Sheet, is_missing, number, read_sheet, require
 
 FACTORS = ("texture", "model")
-#: The name of the level of a factor that a table does not have.
+#: Level name used for a factor that is missing in a table.
 ONLY = "all"
 _KEYS = ["participant", "texture", "model"]
 _KNOWN = {*_KEYS, "repetition", "rating", "simulated", "hidden_reference", "attribute"}
-#: Columns that studies export and no analysis needs.
+#: Columns that studies export but the analysis ignores.
 _UNUSED = {"response_ms", "gain_db"}
 _MOST_CONDITIONS = 1000
-#: Largest size of a rating; sums of squares of larger ones lose their digits.
+#: Largest absolute rating. Sums of squares of larger ratings would lose digits.
 _LARGEST = 1e9
-#: What separates a texture from a model in the names of columns.
+#: Separates a texture from a model in column names.
 _SEPARATORS = ("/", ":", "|")
 
 
 class Ratings:
-    """Checked ratings: each answer, and the mean of each participant, texture and model."""
+    """Checked ratings: each answer, and the mean for each participant, texture and model."""
 
     def __init__(self, answers: pd.DataFrame, simulated: set[str], findings: list[Finding]) -> None:
         self.answers = answers
@@ -47,11 +47,15 @@ class Ratings:
 
     @property
     def factor(self) -> str:
-        """The factor that the simplest comparisons are about: the models, or the textures where there is one model."""
+        """Return the factor of the simplest comparisons: the models, or the textures if there is
+        only one model.
+        """
         return "texture" if len(self.models) == 1 and len(self.textures) > 1 else "model"
 
     def marginal(self, factor: str) -> np.ndarray:
-        """Participants by levels of a factor, averaged over the other one; NaN where one of the averaged is missing."""
+        """Return participants by levels of a factor, averaged over the other factor; NaN if any
+        averaged value is missing.
+        """
         return np.asarray(self.means.mean(axis=2 if factor == "texture" else 1))
 
     def name_missing(self, leave_out: bool, findings: Findings) -> set[str]:
@@ -108,7 +112,10 @@ def read_ratings(
 
 
 def _long(sheet: Sheet) -> Sheet:
-    """A wide table, whose columns are conditions, as a long one; a table of one factor with the other one named."""
+    """Convert a wide table, whose columns are conditions, to a long one.
+
+    In a table with one factor, name the other factor.
+    """
     absent = [factor for factor in FACTORS if factor not in sheet.names]
     if "rating" in sheet.names:
         return _with_only(sheet, absent) if len(absent) == 1 else sheet
@@ -130,7 +137,9 @@ def _long(sheet: Sheet) -> Sheet:
 
 
 def _condition(name: str, absent: list[str]) -> tuple[str, ...]:
-    """The levels that the name of a column stands for: ``vinyl/ar`` where both factors are absent, else one."""
+    """Return the levels that a column's name stands for: ``vinyl/ar`` if both factors are absent,
+    otherwise one level.
+    """
     if len(absent) == 2:
         for separator in _SEPARATORS:
             if name.count(separator) == 1:
@@ -160,7 +169,7 @@ def _name_columns(sheet: Sheet) -> None:
 
 
 def _answers(sheet: Sheet, scale: tuple[float, float] | None) -> tuple[pd.DataFrame, set[str]]:
-    """The answers, one a line, and the participants whose answers are simulated."""
+    """Return the answers, one per line, and the participants whose answers are simulated."""
     answers: dict[tuple[str, ...], float] = {}
     counts: dict[tuple[str, ...], int] = {}
     simulated, hidden, missing = set(), 0, 0
@@ -209,7 +218,7 @@ def _rating(sheet: Sheet, row: Row, text: str, scale: tuple[float, float] | None
 
 
 def _judge(ratings: Ratings, findings: Findings) -> None:
-    """Find what does not forbid the analysis."""
+    """Find problems that do not prevent the analysis."""
     fewest = int(ratings.cells["repetitions"].min())
     if fewest < ratings.repetitions:
         findings.add("RATINGS_UNBALANCED", "", f"conditions have {fewest} to {ratings.repetitions} repetitions")

@@ -1,4 +1,6 @@
-"""What of felt spectra predicts ratings: correlation with the recorded spectrum, and regression on energy in bands."""
+"""Which properties of felt spectra predict ratings: correlation with the recorded spectrum, and
+regression on energy in bands.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +14,15 @@ from .ratings import Ratings
 from .results import BandResult, BestBanks, Correlation, Within
 from .spectra import GRID_HZ, Spectra
 
-#: Largest number of bands: that of the paper.
+#: Largest number of bands, as in the paper.
 MOST = 20
 
 
 def correlations(ratings: Ratings, spectra: Spectra, notes: Notes) -> tuple[np.ndarray, list[Correlation]]:
-    """Pearson's correlation of every felt spectrum with the recorded one of its texture: an array as the means, and cells."""
+    """Correlate every felt spectrum with its texture's recorded spectrum (Pearson).
+
+    Return an array like the means, and cells.
+    """
     values, cells = np.full(ratings.means.shape, np.nan), []
     for index in map(tuple, np.argwhere(~np.isnan(spectra.felt[..., 0]))):
         participant, texture, model = index
@@ -38,7 +43,7 @@ def correlations(ratings: Ratings, spectra: Spectra, notes: Notes) -> tuple[np.n
 
 @dataclass
 class Rows:
-    """What regressions are made of: a row for each condition that a participant rated and felt."""
+    """The data of the regressions: a row for each condition that a participant rated and felt."""
 
     #: z-scores of the differences of energy, by row, then bin.
     differences: np.ndarray
@@ -46,12 +51,16 @@ class Rows:
     ratings: np.ndarray
     #: The participant of each row.
     groups: np.ndarray
-    #: Degrees of freedom of the ratings: those of a cell are one less than its conditions, since its z-scores sum to 0.
+    #: Degrees of freedom of the ratings. A cell has one less than it has conditions, because its
+    #: z-scores sum to 0.
     df: int
 
 
 def rows_of(ratings: Ratings, spectra: Spectra) -> Rows:
-    """Standardise within cells: over the models of a participant and texture, or over the textures of a participant in a study of one model."""
+    """Standardise within cells: over the models for each participant and texture.
+
+    If a study has one model, over the textures for each participant.
+    """
     differences = np.abs(spectra.felt**2 - spectra.recorded[None, :, None, :] ** 2)
     known = ~np.isnan(ratings.means) & ~np.isnan(differences[..., 0])
     features, values, groups, df = [], [], [], 0
@@ -72,7 +81,7 @@ def rows_of(ratings: Ratings, spectra: Spectra) -> Rows:
 
 
 def _standardised(columns: np.ndarray) -> np.ndarray:
-    """z-scores (n - 1) of each column; zeros where all values are equal."""
+    """Return z-scores (n - 1) of each column; zeros if all values are equal."""
     centred = columns - columns.mean(axis=0)
     squares, largest = (centred**2).sum(axis=0), np.abs(columns).max(axis=0)
     constant = squares <= (largest * 1e-13) ** 2 * len(columns)
@@ -80,7 +89,9 @@ def _standardised(columns: np.ndarray) -> np.ndarray:
 
 
 def bank(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Triangular bands over log frequency that overlap by half: weights by bin and band, and the edges in hertz."""
+    """Return triangular bands over log frequency that overlap by half: weights by bin and band, and
+    the edges in hertz.
+    """
     edges = np.arange(count + 2)
     axis = np.log(GRID_HZ / GRID_HZ[0]) / np.log(GRID_HZ[-1] / GRID_HZ[0]) * (count + 1)
     weights = np.clip(1 - np.abs(axis[:, None] - edges[None, 1:-1]), 0, None)
@@ -88,7 +99,7 @@ def bank(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bands(rows: Rows, notes: Notes) -> tuple[list[BandResult], BestBanks | None]:
-    """Regress ratings on the differences of energy in 1 to 20 bands."""
+    """Regress ratings on the energy differences in 1 to 20 bands."""
     results = []
     for count in range(1, MOST + 1):
         weights, edges = bank(count)
@@ -112,7 +123,9 @@ def bands(rows: Rows, notes: Notes) -> tuple[list[BandResult], BestBanks | None]
 
 
 def regression(predictors: np.ndarray, rows: Rows) -> BandResult:
-    """Least squares with an intercept, and the test with the degrees of freedom that z-scores within cells leave."""
+    """Fit least squares with an intercept, and test with the degrees of freedom that remain after
+    z-scoring within cells.
+    """
     from statsmodels.regression.linear_model import OLS
 
     values = rows.ratings
@@ -150,13 +163,13 @@ def regression(predictors: np.ndarray, rows: Rows) -> BandResult:
 
 
 def within(explained: float, residual: float, size: int, df: int) -> Within:
-    """The F-test of ``size`` predictors whose residual has ``df`` degrees of freedom."""
+    """Return the F-test for ``size`` predictors with a residual of ``df`` degrees of freedom."""
     f = (explained / size) / (residual / df)
     return Within(f=f, df=(size, df), p=float(stats.f.sf(f, size, df)))
 
 
 def _independent(design: np.ndarray) -> list[int]:
-    """The columns that do not depend on those before them, by Gram and Schmidt."""
+    """Return the columns that do not depend on the columns before them (Gram and Schmidt)."""
     basis, kept = np.empty((len(design), 0)), []
     for index, column in enumerate(design.T):
         rest = column - basis @ (basis.T @ column)
@@ -169,10 +182,12 @@ def _independent(design: np.ndarray) -> list[int]:
 
 
 def cross_validated_r2(predictors: np.ndarray, values: np.ndarray, groups: np.ndarray) -> float:
-    """1 less the squared errors of predictions for each group from the others, by those of the others' mean.
+    """Return the cross-validated R²: 1 minus the squared errors of predicting each group from the
+    others, relative to predicting the mean.
 
-    Unlike r2 it falls, also below 0, when predictors fit noise. Triangles of all groups before and after each one make the
-    time of all folds grow with the rows, and not with the rows times the groups.
+    Unlike r2, it falls when predictors fit noise, even below 0. Accumulated triangles of all groups
+    before and after each group keep the time for all folds proportional to the number of rows,
+    instead of rows times groups.
     """
     table = np.column_stack([np.ones(len(values)), predictors, values])
     blocks = [table[groups == group] for group in np.unique(groups)]
@@ -194,7 +209,10 @@ def cross_validated_r2(predictors: np.ndarray, values: np.ndarray, groups: np.nd
 
 
 def _triangles(blocks: list[np.ndarray]) -> list[np.ndarray]:
-    """The upper triangle of all blocks before the n-th: least squares on it have the same solution."""
+    """Return the upper triangle of all blocks before the n-th.
+
+    Least squares on it has the same solution.
+    """
     triangles = [np.empty((0, blocks[0].shape[1]))]
     for block in blocks:
         triangles.append(np.asarray(np.linalg.qr(np.vstack([triangles[-1], block]), mode="r")))

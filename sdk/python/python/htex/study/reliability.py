@@ -1,4 +1,6 @@
-"""Intraclass correlations: whether participants agree, and whether repetitions do (McGraw and Wong 1996)."""
+"""Intraclass correlations: whether participants agree, and whether repetitions do (McGraw and Wong
+1996).
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ def reliability(ratings: Ratings, notes: Notes) -> Reliability:
 
 
 def icc(table: np.ndarray) -> Icc:
-    """The intraclass correlations of a table: a row for each thing rated, a column for each rater."""
+    """Return the intraclass correlations of a table with a row for each rated thing and a column
+    for each rater.
+    """
     n, k = table.shape
     need_levels("an intraclass correlation", n)
     if k < 2:

@@ -58,7 +58,7 @@ def picture(name: str, figure: Figure) -> Picture:
 
 
 def to_html(result: AnalysisDict, figures: dict[str, Picture], command: str) -> str:
-    """The page; ``command`` is what makes it again."""
+    """Return the page. ``command`` is the command that makes it again."""
     parts = [f"<h1>Analysis of a rating study</h1>{_paragraph(text.heading(result) + '.')}"]
     if result["simulated"]:
         said = "Simulated participants are among those analysed: these numbers say nothing about people."
@@ -153,13 +153,13 @@ def _paragraph(sentence: str) -> str:
 
 
 def _method(result: AnalysisDict, *keys: str) -> str:
-    """The method of the first of the groups that is there, below its numbers."""
+    """Return the method of the first group that exists, to show below its numbers."""
     found = [key for key in keys if result.get(key)]
     return f'<p class="method">Method: {escape(result["methods"][found[0]])}</p>' if found else ""
 
 
 def _list(lines: Iterable[str]) -> str:
-    """Sentences, with the assumptions that fail set apart."""
+    """Return sentences as a list, with failed assumptions highlighted."""
     items = (line.partition("; BUT ") for line in lines)
     texts = [f"<li>{escape(said)}{_fails(fails)}</li>" for said, _, fails in items]
     return f"<ul>{''.join(texts)}</ul>" if texts else ""
@@ -181,7 +181,7 @@ def _figures(figures: dict[str, Picture], *prefixes: str) -> str:
 
 
 def _table(caption: str, rows: Table, names: int = 1) -> str:
-    """A table whose first ``names`` columns name the row."""
+    """Return a table whose first ``names`` columns name the row."""
     if not rows:
         return ""
     head = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in rows[0])

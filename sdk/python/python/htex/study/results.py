@@ -1,16 +1,16 @@
-"""The analysis as it is written to JSON: the types, and the JSON Schema that is made of them."""
+"""The analysis as it is written to JSON: the types, and the JSON Schema generated from them."""
 
 from __future__ import annotations
 
 import inspect
 from typing import Annotated, Any, TypedDict, get_args, get_origin, get_type_hints, is_typeddict
 
-#: Marks what is absent where it is not defined; everything else is there.
+#: Marks entries that are absent if they are undefined. All other entries are always present.
 MAYBE = object()
 
 
 class Note(TypedDict, total=False):
-    """What is not computed, and why."""
+    """A result that is missing, and why."""
 
     group: Annotated[str, "Key of the group that it belongs to, such as `anova_model` or `pairs_by_texture.vinyl`."]
     code: Annotated[str, "Stable code: `TOO_FEW_PARTICIPANTS`."]
@@ -90,7 +90,7 @@ class RankPair(TypedDict, total=False):
 
 
 class PairResult(TypedDict, total=False):
-    """A paired comparison of two models. Where the differences of all participants are equal there is only their mean."""
+    """A paired comparison of two models. It has only the mean if all differences are equal."""
 
     a: Annotated[str, "First model."]
     b: Annotated[str, "Second model."]
@@ -109,7 +109,7 @@ class PairResult(TypedDict, total=False):
 
 
 class EquivalencePair(TypedDict, total=False):
-    """Whether two models are rated alike within the bound."""
+    """Whether two models are rated equally within the bound."""
 
     a: Annotated[str, "First model."]
     b: Annotated[str, "Second model."]
@@ -136,7 +136,7 @@ class MixedEffect(TypedDict, total=False):
 
 
 class MixedModel(TypedDict, total=False):
-    """A linear mixed model of all cell means, also of participants who have not rated everything."""
+    """A linear mixed model of all cell means, also of participants with missing ratings."""
 
     effects: Annotated[dict[str, MixedEffect], "Fixed effects, by name."]
     variances: Annotated[dict[str, float], "Variances of the random effects, and of what is left (`residual`)."]
@@ -160,7 +160,7 @@ class Icc(TypedDict, total=False):
 
 
 class Reliability(TypedDict, total=False):
-    """How far ratings would come out again."""
+    """How well repeated ratings would agree."""
 
     participants: Annotated[Icc, "Conditions rated by participants.", MAYBE]
     repetitions: Annotated[Icc, "Cells rated in each repetition.", MAYBE]
@@ -189,7 +189,7 @@ class Correlation(TypedDict, total=False):
 
 
 class SpectralCorrelation(TypedDict, total=False):
-    """Correlation of felt spectra with the recorded one of their texture."""
+    """Correlation of felt spectra with their texture's recorded spectrum."""
 
     cells: Annotated[list[Correlation], "Of each participant, texture and model."]
     means: Annotated[list[Mean], "Means over participants of each model in each texture."]
@@ -198,7 +198,7 @@ class SpectralCorrelation(TypedDict, total=False):
 
 
 class Within(TypedDict, total=False):
-    """The F-test with the degrees of freedom that z-scores within cells leave."""
+    """The F-test with the degrees of freedom that remain after z-scoring within cells."""
 
     f: Annotated[float, "F ratio of all bands."]
     df: Annotated[tuple[int, int], "Its degrees of freedom."]
@@ -206,7 +206,7 @@ class Within(TypedDict, total=False):
 
 
 class BandResult(TypedDict, total=False):
-    """A regression of ratings on differences of energy in bands."""
+    """A regression of ratings on energy differences in bands."""
 
     filters: Annotated[int, "Number of bands."]
     r2: Annotated[float, "Explained part of the variance."]
@@ -231,7 +231,7 @@ class BandResult(TypedDict, total=False):
 
 
 class BestBanks(TypedDict, total=False):
-    """The numbers of bands that criteria prefer."""
+    """The numbers of bands that the criteria prefer."""
 
     bic: Annotated[int, "Lowest BIC."]
     aic: Annotated[int, "Lowest AIC."]
@@ -243,7 +243,7 @@ class BestBanks(TypedDict, total=False):
 
 
 class AnalysisDict(TypedDict, total=False):
-    """The analysis of a study. What the data do not allow is absent, and `notes` say why; every number is finite."""
+    """The analysis of a study. `notes` say why a result is missing. Every number is finite."""
 
     analysis: Annotated[str, "`htex-study-analysis/1`."]
     program: Annotated[str, "Program and version that analysed."]
@@ -299,7 +299,7 @@ class AnalysisDict(TypedDict, total=False):
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of analyses: ``spec/schemas/study-analysis-1.json``."""
+    """Return the JSON Schema of analyses: ``spec/schemas/study-analysis-1.json``."""
     definitions: dict[str, Any] = {}
     root = _object(AnalysisDict, definitions)
     return {

@@ -1,16 +1,18 @@
-"""What is found in tables of ratings and of spectra: all rules in one table, and the findings that a table has of them."""
+"""Findings in tables of ratings and spectra: all rules in one table, and the findings of each
+table.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-#: Findings that are kept of one table; further ones are counted.
+#: Number of findings kept for one table. Further ones are only counted.
 MOST = 100
 
 
 class Rule(NamedTuple):
-    """What a code means. Codes never change their meaning."""
+    """What a code means. A code never changes its meaning."""
 
     code: str
     #: ``error``, ``warning`` or ``info``: a table with an error is not analysed.
@@ -21,11 +23,12 @@ class Rule(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """One thing that was found in a table."""
+    """A problem found in a table."""
 
     code: str
     severity: str
-    #: The line, counted from 1 with the header, and the column: ``/12/rating``; empty for the table as a whole.
+    #: The line, counted from 1 including the header, and the column: ``/12/rating``; empty for the
+    #: whole table.
     pointer: str
     message: str
 
@@ -36,7 +39,7 @@ class Finding(NamedTuple):
 
 
 class TableError(ValueError):
-    """A table that cannot be analysed, with all that was found in it."""
+    """A table that cannot be analysed, with all its findings."""
 
     def __init__(self, table: str, findings: list[Finding]) -> None:
         self.table = table
@@ -47,7 +50,7 @@ class TableError(ValueError):
 
 @dataclass
 class Findings:
-    """The findings of one table, the first hundred of them."""
+    """The findings of one table. Only the first hundred are kept."""
 
     table: str
     kept: list[Finding] = field(default_factory=list)
@@ -64,12 +67,12 @@ class Findings:
             self.dropped += 1
 
     def at(self, code: str, line: int, column: int, name: str, message: str) -> None:
-        """Add a finding about a field; columns count from 0."""
+        """Add a finding about a field. Columns count from 0."""
         pointer = f"/{line}/{name.replace('~', '~0').replace('/', '~1')}"
         self.add(code, pointer, f"line {line}, column {column + 1} (`{name}`): {message}")
 
     def list(self) -> list[Finding]:
-        """All findings that were kept, and how many were not."""
+        """Return all findings that were kept, and how many were dropped."""
         if not self.dropped:
             return self.kept
         message = f"{self.dropped} more findings are not shown"
@@ -82,13 +85,13 @@ class Findings:
 
 
 def explain(code: str) -> str | None:
-    """What a code means and what to do, or None if it is not of tables."""
+    """Return what a code means and what to do, or None if the code does not belong to tables."""
     rule = _BY_CODE.get(code.upper())
     return rule and f"{rule.code}: {rule.summary}\n\n{rule.explanation}\n\nWhat to do: {rule.fix}\n"
 
 
 def findings_page() -> str:
-    """The page with all rules: ``spec/analysis-findings.md``."""
+    """Return the page with all rules: ``spec/analysis-findings.md``."""
     rows = [f"| [{r.code}](#{r.code.lower()}) | {r.severity} | {r.summary} |\n" for r in RULES]
     texts = [
         f"\n## {r.code}\n\n{r.severity}: {r.summary}\n\n{r.explanation}\n\n**What to do:** {r.fix}\n" for r in RULES

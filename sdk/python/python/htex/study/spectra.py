@@ -1,4 +1,4 @@
-"""The table of spectra: participant, texture, model, then a magnitude at 20, 25, ..., 1000 Hz."""
+"""Tables of spectra: participant, texture, model, then a magnitude at 20, 25, ..., 1000 Hz."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from .tables import Row, Sheet, is_missing, number, read_sheet, require
 
 #: The frequencies of spectra, hertz.
 GRID_HZ = np.arange(20.0, 1001.0, 5.0)
-#: The participant and the model of lines with the spectrum of a real texture.
+#: Participant and model in lines with the spectrum of a real texture.
 RECORDED = "recorded"
 _KEYS = ("participant", "texture", "model")
 _LARGEST = 1e9
 
 
 class Spectra:
-    """The spectra of the rated conditions, and the recorded one of each texture."""
+    """The spectra of the rated conditions, and each texture's recorded spectrum."""
 
     def __init__(self, recorded: np.ndarray, felt: np.ndarray, findings: list[Finding]) -> None:
         #: By texture, then bin.
         self.recorded = recorded
-        #: By participant, texture, model, then bin; NaN where there is none.
+        #: By participant, texture, model, then bin; NaN where it is missing.
         self.felt = felt
         self.findings = findings
 
@@ -34,9 +34,11 @@ class Spectra:
 def read_spectra(
     table: Any, ratings: Ratings, name: str = "spectra", *, renamed: Mapping[str, str] | None = None
 ) -> Spectra:
-    """Read and check a table of spectra for the conditions of ``ratings``: a file, its bytes, or a data frame.
+    """Read and check a table of spectra for the conditions of ``ratings``: a file, its bytes, or a
+    data frame.
 
-    Several lines of a condition need a column ``repetition``; their magnitudes are averaged.
+    If a condition has several lines, they need a column ``repetition``. Their magnitudes are
+    averaged.
     """
     sheet = read_sheet(table, name, renamed, all_there=False)
     for factor in ("texture", "model"):
@@ -58,7 +60,7 @@ def read_spectra(
 
 
 def _grid_columns(sheet: Sheet) -> list[int]:
-    """The columns of the grid, in its order."""
+    """Return the columns of the grid, in the grid's order."""
     found: dict[float, int] = {}
     for index, name in enumerate(sheet.names):
         if name in _KEYS or name == "repetition":

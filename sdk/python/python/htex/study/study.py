@@ -1,4 +1,4 @@
-"""A study's analysis: tables in, data frames, figures, text, JSON and a page out."""
+"""The analysis of a study: takes tables, returns data frames, figures, text, JSON and a page."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Analysis:
 
     @property
     def findings(self) -> list[Finding]:
-        """What was found in the tables, without errors."""
+        """The findings in the tables, without errors."""
         return [*self.ratings.findings, *(self.spectra.findings if self.spectra else [])]
 
     @cached_property
@@ -60,7 +60,7 @@ class Analysis:
         return {name: picture(name, figure) for name, figure in self.figures.items()}
 
     def to_dict(self) -> AnalysisDict:
-        """The analysis by its JSON Schema, ``htex schema study-analysis``."""
+        """Return the analysis in the form of its JSON Schema, ``htex schema study-analysis``."""
         return self.result
 
     def to_json(self, indent: int | None = None) -> str:
@@ -69,11 +69,11 @@ class Analysis:
         return json.dumps(self.result, ensure_ascii=False, allow_nan=False, indent=indent, separators=separators)
 
     def to_html(self, command: str = "") -> str:
-        """The report, a page of one file; ``command`` is what made it."""
+        """Return the report as a single-file page. ``command`` is the command that made it."""
         return to_html(self.result, self._pictures, command)
 
     def files(self, command: str = "") -> dict[str, bytes]:
-        """The files of :meth:`save`."""
+        """Return the files that :meth:`save` writes."""
         texts = {"report.html": self.to_html(command), "analysis.json": self.to_json(indent=2) + "\n"}
         texts.update(
             {
@@ -94,7 +94,8 @@ class Analysis:
         """Write report.html, analysis.json, the tables as CSV, and the figures as SVG and PDF."""
         for name, data in self.files(command).items():
             path = pathlib.Path(folder, name)
-            # The folder is the user's word; what is in it may be somebody else's, and no link in it is followed.
+            # The user chose the folder, but its contents may come from somebody else, so no link in it
+            # is followed.
             if path.parent != pathlib.Path(folder) and path.parent.is_symlink():
                 problem = "it is a symbolic link, and nothing is written through one here; remove it"
                 raise PermissionError(errno.EPERM, problem, str(path.parent))
@@ -106,7 +107,7 @@ class Analysis:
 
 
 def _marked(frame: pd.DataFrame) -> pd.DataFrame:
-    """Mark as text what a spreadsheet would take for a formula."""
+    """Mark as text whatever a spreadsheet would take for a formula."""
 
     def mark(cell: object) -> object:
         is_formula = isinstance(cell, str) and cell.startswith(("=", "+", "-", "@", "\t", "\r"))
@@ -124,12 +125,15 @@ def analyse(
     columns: Mapping[str, str] | None = None,
     leave_out_incomplete: bool = False,
 ) -> Analysis:
-    """Analyse ratings, and felt spectra if there are some: data frames, paths of CSV or .xlsx, or their bytes.
+    """Analyse ratings and, optionally, felt spectra: data frames, paths of CSV or .xlsx files, or
+    their bytes.
 
-    Ratings have the columns ``participant``, ``texture``, ``model`` and ``rating``, and ``repetition`` if there are several;
-    or a column for each condition (``vinyl/ar``), or for each model. ``columns`` gives the names that columns have, by ours.
-    Spectra have ``participant``, ``texture``, ``model``, and magnitudes at 20, 25, ..., 1000; lines of the model ``recorded``
-    have the spectra of the real textures. Ratings outside of ``scale`` are errors; differences up to ``bound`` do not matter.
+    Ratings have the columns ``participant``, ``texture``, ``model`` and ``rating``, and
+    ``repetition`` if there are several. Instead they may have a column for each condition
+    (``vinyl/ar``), or for each model. ``columns`` maps these names to the names in your table.
+    Spectra have ``participant``, ``texture``, ``model``, and magnitudes at 20, 25, ..., 1000; lines
+    with the model ``recorded`` contain the spectra of the real textures. Ratings outside ``scale``
+    are errors. Differences up to ``bound`` do not matter.
     """
     if not 0 < bound < float("inf"):
         raise ValueError(f"the bound is {bound:g}; it is above 0")
@@ -146,6 +150,6 @@ def analyse(
 
 
 def _file_name(name: str) -> str:
-    """A name of a file on every system; textures may be called anything."""
+    """Return a file name that is valid on every system, because textures may have any name."""
     kept = "".join(c if c.isalnum() or c in "-_ ." else "_" for c in name)
     return kept.strip(" .")[:80] or "_"

@@ -1,4 +1,7 @@
-"""Tables as laboratories have them: CSV with ``,``, ``;`` or tabs, decimal commas, workbooks, data frames; all become text with places."""
+"""Tables as laboratories store them: CSV files, workbooks, data frames.
+
+CSV may use ``,``, ``;`` or tabs, and decimal commas. All tables become text with positions.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +19,14 @@ from .rules import Findings
 
 #: Largest file that is read, bytes.
 LARGEST = 256 << 20
-#: Texts that say that there is no value.
+#: Texts that mark a missing value.
 MISSING = {"", "na", "n/a", "nan", "null", "none", "missing", "-", "."}
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 
 
 @dataclass
 class Row:
-    """A line of a table: its number in the file, counted from 1, and its fields."""
+    """A line of a table: its number in the file, starting at 1, and its fields."""
 
     line: int
     fields: list[str]
@@ -31,18 +34,18 @@ class Row:
 
 @dataclass
 class Sheet:
-    """A table as text, with the names of its columns in lower case."""
+    """A table as text, with column names in lower case."""
 
     names: list[str]
     rows: list[Row]
     findings: Findings
 
     def column(self, name: str) -> int | None:
-        """The index of a column, if there is one."""
+        """Return the index of a column, if it exists."""
         return self.names.index(name) if name in self.names else None
 
     def text(self, row: Row, name: str) -> str:
-        """A name out of a line; an empty one is a finding."""
+        """Return a name from a line. An empty name is a finding."""
         column = self.names.index(name)
         text = row.fields[column]
         if not text:
@@ -51,7 +54,10 @@ class Sheet:
 
 
 def read_sheet(table: Any, name: str, renamed: Mapping[str, str] | None = None, *, all_there: bool = True) -> Sheet:
-    """Read a file or a data frame. ``renamed`` gives the names that columns have in it, by ours; all must be there unless told."""
+    """Read a file or a data frame.
+
+    ``renamed`` maps our column names to its names. All must exist unless stated otherwise.
+    """
     findings = Findings(name)
     rows = [row for row in _rows(table, findings) if any(row.fields)]
     findings.check()
@@ -69,7 +75,7 @@ def read_sheet(table: Any, name: str, renamed: Mapping[str, str] | None = None, 
 
 
 def require(sheet: Sheet, needed: tuple[str, ...]) -> None:
-    """Refuse a table without the columns that it needs."""
+    """Refuse a table that lacks required columns."""
     for name in needed:
         if name not in sheet.names:
             found = ", ".join(sheet.names)[:200]
@@ -79,12 +85,12 @@ def require(sheet: Sheet, needed: tuple[str, ...]) -> None:
 
 
 def is_missing(text: str) -> bool:
-    """Whether a field says that there is no value."""
+    """Return whether a field states that there is no value."""
     return text.lower() in MISSING
 
 
 def number(text: str) -> float | None:
-    """A finite number, with a decimal point or a decimal comma, or None."""
+    """Return a finite number, with a decimal point or a decimal comma, or None."""
     if _DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
     try:
@@ -146,14 +152,16 @@ def _csv_rows(data: bytes, findings: Findings) -> Iterator[Row]:
 
 
 def _delimiter(text: str) -> str:
-    """What separates the fields of the first line that has some: it is there most often, outside of quotation marks."""
+    """Return the delimiter: the one that occurs most often outside quotation marks, in the first
+    line that has any.
+    """
     header = next((line for line in text.splitlines() if line.strip()), "")
     plain = re.sub(r'"[^"]*"', "", header)
     return max(",;\t", key=plain.count)
 
 
 def _workbook_rows(data: bytes, findings: Findings) -> Iterator[Row]:
-    """The rows of the first sheet of a workbook."""
+    """Return the rows of the first sheet of a workbook."""
     from openpyxl import load_workbook
 
     try:
@@ -181,7 +189,9 @@ def _frame_rows(frame: Any) -> Iterator[Row]:
 
 
 def _shown(value: Any) -> str:
-    """A value of a workbook or a data frame as a table has it; a missing one is empty."""
+    """Return a value from a workbook or a data frame as a table would show it; a missing value is
+    empty.
+    """
     if value is None or value != value or type(value).__name__ in ("NAType", "NaTType"):
         return ""
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:

@@ -1,4 +1,4 @@
-"""Tests of normality, of pairs and of ranks."""
+"""Tests of normality, pairs and ranks."""
 
 from __future__ import annotations
 
@@ -24,12 +24,15 @@ from .notes import (
 )
 from .results import FriedmanResult, Normality, PairResult, RankPair
 
-#: The values of `normality`, which is kept beside the residuals for those who compare with the paper.
+#: Note on the values in `normality`, reported next to the residuals for comparison with the paper.
 CELL_MEANS = "cell means, z-scored with n-1"
 
 
 def pairs(table: np.ndarray, names: list[str], group: str, notes: Notes) -> list[PairResult]:
-    """Compare every two columns of a table; participants without one of the two values are left out."""
+    """Compare every two columns of a table.
+
+    Participants who lack one of the two values are left out.
+    """
     results = []
     for i, j in combinations(range(len(names)), 2):
         both = complete(table[:, [i, j]])
@@ -70,7 +73,8 @@ def paired_t(a: np.ndarray, b: np.ndarray) -> PairResult:
 
 
 def corrections(p: list[float]) -> tuple[list[float], list[float]]:
-    """p-values by Bonferroni's correction and by Holm's (1979), which is never larger and has the same guarantee.
+    """Return p-values corrected by Bonferroni and by Holm (1979), whose p-values are never larger
+    and have the same guarantee.
 
     >>> corrections([0.01, 0.04, 0.03])[1]
     [0.03, 0.06, 0.06]
@@ -107,7 +111,7 @@ def nemenyi(table: np.ndarray, names: list[str]) -> list[RankPair]:
 
 
 def exact_ties(means: np.ndarray) -> np.ndarray:
-    """Means without the rounding of their sums, so that equal ones tie."""
+    """Return means without the rounding of their sums, so that equal means tie."""
     return means.round(9)
 
 
@@ -126,13 +130,13 @@ def normality(values: np.ndarray, on: str, group: str, notes: Notes) -> Normalit
 
 
 def residuals(table: np.ndarray) -> np.ndarray:
-    """What is left of participants by conditions when both effects are taken away."""
+    """Return the residuals of participants by conditions after removing both effects."""
     rows = complete(table)
     return rows - rows.mean(axis=0) - rows.mean(axis=1, keepdims=True) + rows.mean() if len(rows) else rows
 
 
 def z_scores(values: np.ndarray) -> np.ndarray:
-    """Values less their mean, by their standard deviation (n - 1)."""
+    """Return values minus their mean, divided by their standard deviation (n - 1)."""
     need_values("a z-score", len(values), 2)
     if is_constant(values):
         raise Undefined("CONSTANT", "all values are equal, so a z-score is not defined")

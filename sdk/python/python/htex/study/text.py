@@ -1,4 +1,6 @@
-"""An analysis as text: tables and sentences, the simplest comparisons first, then methods and notes."""
+"""An analysis as text: tables and sentences, with the simplest comparisons first, then methods and
+notes.
+"""
 
 from __future__ import annotations
 
@@ -57,21 +59,21 @@ def _sections(result: AnalysisDict) -> Iterable[tuple[str, str]]:
 
 
 def heading(result: AnalysisDict) -> str:
-    """What was rated."""
+    """Return what was rated."""
     simulated = f" ({len(result['simulated'])} SIMULATED)" if result["simulated"] else ""
     counts = f"{len(result['textures'])} textures, {len(result['models'])} models, {result['repetitions']} repetitions"
     return f"{len(result['participants'])} participants{simulated}, {counts}"
 
 
 def level_names(result: AnalysisDict) -> tuple[str, list[str], str]:
-    """What the study's first factor is called, its levels, and the key of its comparisons."""
+    """Return the name of the study's first factor, its levels, and the key of its comparisons."""
     if "pairs_texture" in result:
         return "Textures", result["textures"], "pairs_texture"
     return "Models", result["models"], "pairs_model"
 
 
 def methods(result: AnalysisDict) -> dict[str, list[str]]:
-    """The methods of the groups that are there, by their text."""
+    """Return the methods of the groups that exist, by their text."""
     groups: dict[str, list[str]] = defaultdict(list)
     for key, text in result["methods"].items():
         if result.get(key):
@@ -97,12 +99,12 @@ def stars(value: float) -> str:
 
 
 def effect_name(texture: str, effect: str) -> str:
-    """An effect, and the texture that it is in."""
+    """Return the name of an effect, and the texture it belongs to."""
     return f"{effect} in {texture}" if texture else effect
 
 
 def anova(test: Any) -> str:
-    """An ANOVA in a sentence, with the assumptions that fail."""
+    """Describe an ANOVA in a sentence, with the assumptions that fail."""
     mauchly = f"; Mauchly W = {test['mauchly_w']:.3f}, {p_value(test['mauchly_p'])}" if "mauchly_w" in test else ""
     return (
         f"F({test['df'][0]:g}, {test['df'][1]:g}) = {test['f']:.3f}, {p_value(test['p'])}; Greenhouse–Geisser "
@@ -112,7 +114,7 @@ def anova(test: Any) -> str:
 
 
 def failed(test: Mapping[str, Any]) -> str:
-    """The assumptions of a test that fail."""
+    """Return the assumptions of a test that fail."""
     return "".join(f"; BUT {sentence}" for sentence in test.get("assumptions", []))
 
 
@@ -138,7 +140,7 @@ def normality(test: Any) -> str:
 
 
 def mixed(result: AnalysisDict) -> list[str]:
-    """The effects of the mixed model, and its variances."""
+    """Describe the effects of the mixed model, and its variances."""
     if "mixed_model" not in result:
         return []
     model = result["mixed_model"]
@@ -150,7 +152,7 @@ def mixed(result: AnalysisDict) -> list[str]:
 
 
 def best_sentence(result: AnalysisDict) -> str:
-    """What the criteria prefer, in a sentence."""
+    """State in a sentence what the criteria prefer."""
     best = result["best_bands"]
     checked = f", {best['cross_validated_r2']} by cross-validated r2" if "cross_validated_r2" in best else ""
     none = "" if best["better_than_none"] else "; but the mean alone has a lower BIC, so that the bands explain nothing"
@@ -158,7 +160,7 @@ def best_sentence(result: AnalysisDict) -> str:
 
 
 def means_table(result: AnalysisDict, by_texture: Any, overall: Any, form: str = "{mean:.3f} ({sd:.3f})") -> Table:
-    """Means of each model in each texture and in all."""
+    """Return the means of each model, in each texture and over all textures."""
     cells = {(mean.get("texture"), mean["model"]): form.format(**mean) for mean in [*by_texture, *overall]}
     rows = [["", *result["models"]]]
     for texture in [*result["textures"], None]:
@@ -167,7 +169,7 @@ def means_table(result: AnalysisDict, by_texture: Any, overall: Any, form: str =
 
 
 def pair_table(pairs: Any) -> Table:
-    """Comparisons of pairs; what fails is said at the end of its line."""
+    """Return the paired comparisons. Failed assumptions are named at the end of the line."""
     rows = [["a", "b", *PAIR_HEADS]]
     for pair in pairs:
         row = [pair["a"], pair["b"], f"{pair['mean_difference']:.3f}"]
@@ -183,7 +185,7 @@ def pair_table(pairs: Any) -> Table:
 
 
 def equivalence_table(result: AnalysisDict) -> Table:
-    """Which pairs are equivalent, and what the tests of ranks say of them."""
+    """Return which pairs are equivalent, and what the rank tests say about them."""
     ranked = {(pair["a"], pair["b"]): pair["p"] for pair in result.get("nemenyi", [])}
     rows = [["a", "b", *EQUIVALENCE_HEADS]]
     for pair in result["equivalence"]["pairs"]:
@@ -214,7 +216,7 @@ def reliability_table(result: AnalysisDict) -> Table:
 
 
 def band_table(result: AnalysisDict) -> Table:
-    """The regressions by number of bands, with the tests that count what z-scores take."""
+    """Return the regressions by number of bands, with the tests that account for z-scoring."""
     rows = [["bands", *BAND_HEADS]]
     for band in result["bands"]:
         within: Any = band.get("within", {})
@@ -233,7 +235,7 @@ def _maybe(value: float | None, form: str) -> str:
 
 
 def _significant(result: AnalysisDict) -> str:
-    """The pairs that differ in each texture."""
+    """Return the pairs that differ in each texture."""
     lines = []
     for texture, pairs in result["pairs_by_texture"].items() if len(result["textures"]) > 1 else ():
         found = [f"{pair['a']}–{pair['b']}" for pair in pairs if pair.get("p_holm", 1) < 0.05]
@@ -246,7 +248,7 @@ def _lines(lines: Iterable[str]) -> str:
 
 
 def aligned(rows: Table) -> str:
-    """Columns in line: the first to the left, others to the right."""
+    """Align columns: the first to the left, all others to the right."""
     count = max((len(row) for row in rows), default=0)
     lengths = [[len(row[i]) for row in rows if i < len(row) and not row[i].startswith("BUT")] for i in range(count)]
     widths = [max(column, default=0) for column in lengths]

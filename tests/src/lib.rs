@@ -1,4 +1,4 @@
-//! Shared by several suites: golden vectors and their tolerances.
+//! Code shared by several suites: golden vectors and their tolerances.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 pub mod measure;
@@ -22,7 +22,7 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Size of data as a zlib stream of level 9, bytes.
+/// Size of data as a zlib stream at level 9, bytes.
 pub fn deflated_bytes(data: &[u8]) -> usize {
     let mut stream = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     stream.write_all(data).unwrap();
@@ -33,7 +33,7 @@ pub fn deflated_bytes(data: &[u8]) -> usize {
 pub struct Golden(Value);
 
 impl Golden {
-    /// The case `name` of `golden/FILE.json`.
+    /// Returns the case `name` in `golden/FILE.json`.
     pub fn case(file: &str, name: &str) -> Self {
         Self::all(file)
             .into_iter()
@@ -53,12 +53,12 @@ impl Golden {
         self.0["name"].as_str().unwrap()
     }
 
-    /// A number or numbers of the input.
+    /// A number, or several, in the input.
     pub fn input(&self, key: &str) -> Vec<f64> {
         numbers(&self.0["input"][key])
     }
 
-    /// A number or a word of the input, as text.
+    /// A number or a word in the input, as text.
     pub fn input_text(&self, key: &str) -> String {
         match &self.0["input"][key] {
             Value::String(text) => text.clone(),
@@ -71,7 +71,7 @@ impl Golden {
         !self.0["input"][key].is_null()
     }
 
-    /// The expected values at a JSON pointer below `expected`; null is NaN.
+    /// The expected values at a JSON pointer below `expected`. null is NaN.
     pub fn expected(&self, pointer: &str) -> Vec<f64> {
         numbers(self.0["expected"].pointer(pointer).unwrap_or(&Value::Null))
     }

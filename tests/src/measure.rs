@@ -1,11 +1,11 @@
-//! Measurements of a voice's samples, for comparison with its model's magnitude.
+//! Measures a voice's samples, for comparison with its model's magnitude.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::SegmentAnalyzer;
 
-/// The rate of samples that are measured, hertz.
+/// The sample rate of measured samples, hertz.
 pub const RATE_HZ: f64 = 20_000.0;
-/// Samples of one segment: bins of 5 Hz.
+/// Samples in one segment: bins of 5 Hz.
 const SEGMENT: usize = 4_000;
 
 /// RMS-averaged texture spectrum of samples at [`RATE_HZ`], on the grid of the tactile band.
@@ -26,8 +26,8 @@ pub fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
     power.iter().map(|p| (p / count).sqrt() * analyzer.amplitude_scale()).collect()
 }
 
-/// RMS of the decibels between two spectra over the reference's strongest bins that hold 99 % of
-/// its energy.
+/// RMS difference of two spectra in decibels, over the reference's strongest bins, which contain 99
+/// % of its energy.
 pub fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     let mut order: Vec<usize> = (0..reference.len()).collect();
     order.sort_by(|&a, &b| reference[b].total_cmp(&reference[a]));

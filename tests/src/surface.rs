@@ -1,4 +1,4 @@
-//! The frozen surfaces of the ABIs, and of two extensions, as canonical text: a line for each
+//! The frozen surfaces of the ABIs, and of two extensions, as canonical text: one line for each
 //! constant, status and function, read from the Rust side and from the C header.
 
 use std::collections::BTreeMap;
@@ -8,18 +8,18 @@ use std::process::Command;
 
 use crate::workspace;
 
-/// Functions in the words of C, by name.
+/// C declarations of functions, by name.
 pub type Prototypes = BTreeMap<String, String>;
-/// Constants and statuses by their C name; values as C text without brackets.
+/// Constants and statuses by their C name. Values are C text without brackets.
 pub type Constants = BTreeMap<String, String>;
 
-/// Where an ABI is stated, and by which names.
+/// Where an ABI is defined, and how its names begin.
 pub struct Surface {
     /// The header's file name.
     pub header: &'static str,
-    /// What functions begin with.
+    /// Prefix of functions.
     pub function: &'static str,
-    /// What constants begin with.
+    /// Prefix of constants.
     pub constant: &'static str,
     /// The macro that marks a function as exported.
     pub export: &'static str,
@@ -29,9 +29,9 @@ pub struct Surface {
     pub shared: Option<&'static str>,
     /// The table of functions.
     pub table: &'static str,
-    /// Functions beside those of the table, and their types.
+    /// Functions outside the table, and their types.
     pub more: &'static [(&'static str, &'static str)],
-    /// The source with the statuses, and their type; none where they are another surface's.
+    /// The source with the statuses, and their type; `None` if they belong to another surface.
     pub statuses: Option<(&'static str, &'static str)>,
 }
 
@@ -48,7 +48,7 @@ pub const MODEL: Surface = Surface {
     statuses: Some(("sdk/model/src/error.rs", "Status")),
 };
 
-/// The extension of the model ABI by which several voices are rendered in one call.
+/// The extension of the model ABI that renders several voices in one call.
 pub const VOICES: Surface = Surface {
     header: "htex_voices_1.h",
     function: "htex_voices_1_",
@@ -61,7 +61,7 @@ pub const VOICES: Surface = Surface {
     statuses: None,
 };
 
-/// The extension of the model ABI by which voices and fits are told the motion.
+/// The extension of the model ABI that passes the motion to voices and fits.
 pub const MOTION: Surface = Surface {
     header: "htex_motion_1.h",
     function: "htex_motion_1_",
@@ -113,7 +113,7 @@ impl Surface {
         code
     }
 
-    /// Functions the header declares.
+    /// Functions that the header declares.
     pub fn header_prototypes(&self) -> Prototypes {
         let header = self.header();
         let mark = format!("{}{}", self.export, self.function);
@@ -126,7 +126,7 @@ impl Surface {
         declarations.map(prototype).collect()
     }
 
-    /// Constants the header defines.
+    /// Constants that the header defines.
     pub fn header_constants(&self) -> Constants {
         let define = |line: &str| {
             let (name, value) = line.strip_prefix("#define ")?.split_once(' ')?;
@@ -137,7 +137,7 @@ impl Surface {
         self.header().lines().filter_map(define).collect()
     }
 
-    /// Functions the Rust side states, in the words of C.
+    /// Functions of the Rust side, as C declarations.
     pub fn rust_prototypes(&self) -> Prototypes {
         let code = rust_code(self.code);
         let mark = format!("pub struct {} {{", self.table);
@@ -157,7 +157,7 @@ impl Surface {
         fields.chain(more).map(prototype).collect()
     }
 
-    /// Names of the constants that the Rust side states, as C has them.
+    /// Names of the Rust side's constants, in C form.
     pub fn rust_constant_names(&self) -> Vec<String> {
         let code = rust_code(self.code);
         let constants = code.lines().filter_map(|line| {
@@ -167,7 +167,7 @@ impl Surface {
         constants.chain(self.rust_statuses().into_keys()).collect()
     }
 
-    /// Statuses that the Rust side states, as C has them.
+    /// Statuses of the Rust side, in C form.
     pub fn rust_statuses(&self) -> Constants {
         let Some((file, name)) = self.statuses else {
             return Constants::new();
@@ -183,7 +183,8 @@ impl Surface {
         variants.split(',').filter_map(status).collect()
     }
 
-    /// The surface by these constants: a line for each constant and function, in order of name.
+    /// Returns the surface with these constants: one line for each constant and function, sorted by
+    /// name.
     pub fn listing(&self, constants: &Constants) -> String {
         let constants = constants.iter().map(|(name, value)| format!("{name} {value}\n"));
         let prototypes = self.rust_prototypes();
@@ -191,8 +192,8 @@ impl Surface {
         constants.chain(functions).collect()
     }
 
-    /// Holds the listing to those that were frozen, the newest being the one in use: each a
-    /// version, and the hash of `spec/abi/KIND-VERSION.txt`, from which lines never go.
+    /// Compares the listing with the frozen ones, the newest of which is in use. Each has a version
+    /// and the hash of `spec/abi/KIND-VERSION.txt`. Lines are never removed from it.
     pub fn hold_frozen(&self, kind: &str, frozen: &[(&str, u64)], now: &str, thaw: &str) {
         let (newest, hash) = frozen.last().unwrap();
         let found = fnv1a(now);
@@ -208,7 +209,7 @@ impl Surface {
         }
     }
 
-    /// Header and Rust side say the same.
+    /// Checks that the header and the Rust side agree.
     pub fn hold_header(&self, constants: &Constants) {
         assert_eq!(self.header_prototypes(), self.rust_prototypes());
         assert_eq!(self.header_constants(), *constants);
@@ -218,8 +219,8 @@ impl Surface {
         }
     }
 
-    /// The compilers hold the header to the Rust side: constants, all whole, by assertion,
-    /// functions by being declared again, which is an error for another type.
+    /// Lets the compilers compare the header with the Rust side: constants, which are all integers,
+    /// by assertion, and functions by declaring them again, which is an error for another type.
     pub fn compile(&self, constants: &Constants) {
         let folder = tempfile::tempdir().unwrap();
         for (compiler, standard, file, assertion) in [
@@ -247,7 +248,7 @@ impl Surface {
     }
 }
 
-/// FNV-1a of a text.
+/// FNV-1a hash of a text.
 fn fnv1a(text: &str) -> u64 {
     let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
@@ -268,7 +269,7 @@ fn compile(compiler: &str, standard: &str, source: &Path) {
     );
 }
 
-/// What stands behind `pub type KIND =` without `unsafe extern "C" fn`.
+/// Returns what follows `pub type KIND =`, without `unsafe extern "C" fn`.
 fn function_type<'a>(code: &'a str, kind: &str) -> &'a str {
     let (_, text) = code.split_once(&format!("pub type {kind} =")).unwrap();
     let text = text.split_once(';').unwrap().0;
@@ -308,7 +309,7 @@ fn c_declaration(kind: &str, name: &str) -> String {
     format!("{constant}{c} {star}{name}")
 }
 
-/// `BadHandle` as `BAD_HANDLE`.
+/// Converts `BadHandle` to `BAD_HANDLE`.
 fn upper_case(name: &str) -> String {
     let mut text = String::new();
     for (i, letter) in name.chars().enumerate() {
@@ -320,7 +321,7 @@ fn upper_case(name: &str) -> String {
     text
 }
 
-/// A source of the workspace without comment lines.
+/// Returns a source of the workspace without comment lines.
 fn rust_code(file: &str) -> String {
     let text = fs::read_to_string(workspace().join(file)).unwrap();
     let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));

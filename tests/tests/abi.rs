@@ -10,7 +10,8 @@ use htex_model::voices_1::MAX_VOICES;
 use htex_tests::surface::{Constants, MODEL, MOTION, Surface, VOICES};
 use xtask::generated::file_with;
 
-/// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
+/// FNV-1a hash of the listing of each minor version of this major version, oldest first. New
+/// versions only add lines.
 const FROZEN: &[(&str, u64)] = &[("1.0", 0x0ec5_8ff7_62de_0303)];
 
 const THAW: &str = "The surface of the model ABI is frozen: plugins that exist were built against it. \
@@ -68,7 +69,7 @@ fn the_extension_for_motion_is_frozen() {
     hold_extension(&MOTION, "motion", 0xeb11_2834_3004_91ce, constants);
 }
 
-/// Revision 1 of an extension: its listing by the hash, header and Rust side alike.
+/// Checks revision 1 of an extension: its listing has the hash, and header and Rust side agree.
 fn hold_extension<const N: usize>(
     surface: &Surface,
     kind: &str,

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand};
 use htex_tests::workspace;
 
-/// A crate, and the crates of the workspace that it may depend on. The models are `plugin`, the
-/// device families `adapter`.
+/// A crate, and the workspace crates that it may depend on. `plugin` stands for the models,
+/// `adapter` for the device families.
 const ARROWS: &[(&str, &[&str])] = &[
     ("htex-dsp", &[]),
     ("htex-model", &["htex-dsp", "htex-schema"]),
@@ -244,7 +244,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
-/// The packages of the workspace, without those of others.
+/// The packages of the workspace, without third-party ones.
 fn metadata() -> Metadata {
     let mut command = MetadataCommand::new();
     command.manifest_path(workspace().join("Cargo.toml")).no_deps();
@@ -286,7 +286,7 @@ fn dependencies_follow_the_arrows() {
     }
 }
 
-/// The packages that a build of these compiles, with their versions and features.
+/// The packages that building these compiles, with their versions and features.
 fn compiled(packages: &[&str]) -> BTreeSet<String> {
     let mut tree = std::process::Command::new(env!("CARGO"));
     tree.args(["tree", "--locked", "--edges", "normal,build"]);
@@ -299,7 +299,7 @@ fn compiled(packages: &[&str]) -> BTreeSet<String> {
     lines.map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
 }
 
-/// The parser of TOML recurses on what a file holds; `htex_files::toml` bounds it.
+/// The TOML parser recurses as deeply as a file nests, and `htex_files::toml` bounds that.
 #[test]
 fn only_one_crate_parses_toml() {
     let metadata = metadata();
@@ -312,7 +312,8 @@ fn only_one_crate_parses_toml() {
     assert_eq!(names, ["htex-files"]);
 }
 
-/// The engine of WASM modules, which takes minutes, is compiled once for all that is installed.
+/// The WASM engine, which takes minutes to compile, is compiled once for everything that is
+/// installed.
 #[test]
 fn what_the_command_compiles_is_not_compiled_again() {
     let command = compiled(&["htex-cli"]);
@@ -323,8 +324,8 @@ fn what_the_command_compiles_is_not_compiled_again() {
     }
 }
 
-/// The README's first command takes no default features, and Cargo unites those of all default
-/// members for it: none of them turns on what takes minutes to build.
+/// The README's first command uses no default features, but Cargo unites the features of all
+/// default members for it. None of them may turn on what takes minutes to build.
 #[test]
 fn the_short_build_stays_short() {
     let metadata = metadata();
@@ -347,7 +348,7 @@ fn the_short_build_stays_short() {
     assert_eq!(found, [""; 0]);
 }
 
-/// An application that only opens and plays assets links no validator of JSON Schemas.
+/// An application that only opens and plays assets does not link a JSON Schema validator.
 #[test]
 fn only_the_command_and_tests_hold_documents_to_schemas() {
     let metadata = metadata();
@@ -381,8 +382,8 @@ fn only_authoring_reads_other_files_than_text() {
     assert_eq!(holders, BTreeSet::from(["htex-author"]));
 }
 
-/// An application that only opens and plays assets links no network library, and a short build of
-/// the command neither.
+/// An application that only opens and plays assets does not link a network library, and neither
+/// does a short build of the command.
 #[test]
 fn only_the_default_command_reaches_the_network() {
     let metadata = metadata();
@@ -408,6 +409,6 @@ fn only_the_default_command_reaches_the_network() {
         let may = ["htex", "htex-cli"].contains(&package.name.as_str());
         assert_eq!(turns_on("cloud"), may);
     }
-    // The pages of experiments are served on this machine; the player has no experiments.
+    // The pages of experiments are served locally. The player has no experiments.
     assert_eq!(always, BTreeSet::from(["htex-lab", "htex-object-server"]));
 }

@@ -88,7 +88,7 @@ fn third_octaves_of_unseen_recordings_in_24_and_48_bytes() {
         assert!(kept.iter().all(|k| k.bytes <= bytes));
         assert!(third_octave_db <= most_db, "{third_octave_db} dB");
         for Kept { quality, .. } in &kept {
-            // Twenty seconds of noise scatter by 0.2 dB themselves, and lines play a little wider.
+            // Twenty seconds of noise scatter by 0.2 dB themselves, and lines play slightly wider.
             let played_db = quality.samples(Measure::NineBand).unwrap();
             assert!(played_db <= 0.8, "{quality:?}");
             // The file keeps the fitted values.
@@ -103,7 +103,7 @@ fn nine_bands_are_kept_to_half_a_step() {
         let take = take(&SimulationOptions::new(surface));
         let kept = keep(&take, &[("bands", "9"), ("step_db", "0.5")]);
         let played_db = kept.quality.samples(Measure::NineBand).unwrap();
-        // Half a step, and what the window blurs next to steep flanks.
+        // Half a step, plus what the window blurs next to steep flanks.
         assert!(nine_band_db(&kept.quality) <= 0.3, "{surface}: {:?}", kept.quality);
         assert!(played_db <= 0.5, "{surface}: played within {played_db} dB");
         assert!(kept.bytes <= 12, "{surface}: {} bytes", kept.bytes);

@@ -8,7 +8,8 @@ use htex_device::abi::{
 };
 use htex_tests::surface::{Constants, DEVICE};
 
-/// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
+/// FNV-1a hash of the listing of each minor version of this major version, oldest first. New
+/// versions only add lines.
 const FROZEN: &[(&str, u64)] = &[("1.0", 0x3dd6_c205_19fb_de1f)];
 
 const THAW: &str = "The surface of the device ABI is frozen: devices that exist were built against it. \
@@ -56,7 +57,7 @@ fn the_header_compiles_as_c11_and_cxx17() {
     DEVICE.compile(&rust_constants());
 }
 
-/// A host must tell the two ABIs apart by their markers alone.
+/// A host must be able to tell the two ABIs apart only by their markers.
 #[test]
 fn no_marker_of_a_model_is_one_of_a_device() {
     assert_ne!(ABI_MARKER >> 16, htex_model::abi::ABI_MARKER >> 16);

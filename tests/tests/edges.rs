@@ -1,6 +1,6 @@
-//! The fuzz targets on all inputs that differ from their seeds in an extreme value, cell or byte.
-//! Modules and signatures are left to the fuzzer: an execution of those takes too long. A test
-//! takes a sample of them, `cargo xtask prove edges` all.
+//! Runs the fuzz targets on all inputs that differ from their seeds in an extreme value, cell or
+//! byte. The fuzzer covers modules and signatures, because running one takes too long. A test takes
+//! a sample of the inputs, `cargo xtask prove edges` takes all.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use std::path::Path;
@@ -11,7 +11,8 @@ use htex_tests::workspace;
 /// Calls the function with each input made of a document.
 type Edges = fn(&[u8], &mut dyn FnMut(&[u8]));
 
-/// A sample takes each input of this number; no kind of input has a multiple of it at a place.
+/// A sample takes every input with an index divisible by this number. No kind of input has a
+/// multiple of it per place, so that the sample does not always hit the same kind.
 const EACH: u64 = 11;
 
 /// Runs the target on the inputs made of its seeds.
@@ -40,7 +41,7 @@ fn all_edges(target: &str, edges: Edges) {
     assert!(taken > 0 && taken < runs, "{target}: {taken} of {runs}");
 }
 
-/// Keeps the input of a failure, and prints how to add it to the regressions.
+/// Stores the input of a failure, and prints how to add it to the regressions.
 fn kept(target: &str, input: &[u8]) -> String {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("edge-of-{target}"));
     std::fs::write(&file, input).unwrap();

@@ -1,4 +1,4 @@
-//! Stored fields are matched by their names.
+//! Stored fields are matched by name.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use htex::{Asset, Band, Error, Registry, VoiceOptions};

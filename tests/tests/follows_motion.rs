@@ -1,6 +1,6 @@
-//! Models that follow the motion themselves, from their sources to a scene: bursts that come with
-//! the way, and a surface that feels the same at the same place. As native libraries and as WASM
-//! modules.
+//! Models that follow the motion themselves, from their sources to a scene: bursts that occur along
+//! the way, and a surface that feels the same at the same place. Tested as native libraries and as
+//! WASM modules.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 #![allow(dead_code)] // Not all of `builds` is used here.
 
@@ -19,14 +19,14 @@ use htex_scene::file::{Budget, DeviceChoice, Motion, Scene, Surface};
 use htex_scene::{Costs, Finger, LoadedScene, Plan, Renderer, Trace, plan};
 
 const RATE_HZ: f64 = 20_000.0;
-/// Speed and force that the recordings are said to be of.
+/// Speed and force stated for the recordings.
 const SPEED_MM_S: f64 = 50.0;
 const FORCE_N: f64 = 0.5;
-/// Samples between two motions, those of a scene at this rate.
+/// Samples between two motions, the same as in a scene at this rate.
 const CONTROL: usize = 64;
-/// Twice the time, samples, by which what stands behind a voice reads ahead at most.
+/// Twice the longest time, in samples, by which the stages after a voice read ahead.
 const MOST_SHIFT: usize = 200;
-/// A finger that goes 40 mm and back, four seconds.
+/// Duration of a finger's way, 40 mm and back: four seconds.
 const WAY_S: f64 = 4.0;
 
 // ---- bursts a millimetre ----
@@ -40,7 +40,7 @@ fn bursts_come_with_the_way_of_the_finger() {
     }
 }
 
-/// A recording of ten bursts a second at 50 mm/s has a burst each 5 mm, at any speed.
+/// A recording with ten bursts per second at 50 mm/s has a burst every 5 mm, at any speed.
 fn bursts_follow(file: &Path) {
     let asset = fitted(file, &ten_bursts_a_second(file));
     let (parameters, _) = asset.parameters(None, None).unwrap();
@@ -54,14 +54,14 @@ fn bursts_follow(file: &Path) {
         assert!((a_second / speed_mm_s - 0.2).abs() < 0.02, "{speed_mm_s} mm/s: {a_second}");
         assert!(matches!(voice.coverage(htex::Motion::new(100.0, FORCE_N)).speed, Reach::Followed));
     }
-    // The force is the level's, as the model has it.
+    // The force determines the level, as the model specifies.
     let loudness = |force_n| rms(&played(&mut voice(&asset), 4.0, |_| (SPEED_MM_S, force_n, None)));
     let gain = loudness(2.0 * FORCE_N) / loudness(FORCE_N);
     assert!((gain - 2.0).abs() < 0.1, "twice the force: {gain}");
 
     one_bad_reading_is_not_felt(&asset);
 
-    // 25 mm/s, and from the middle on 100 mm/s.
+    // 25 mm/s in the first half, 100 mm/s in the second.
     let path = |t: f64| 25.0 * t + 75.0 * (t - 10.0).max(0.0);
     let scene = traced(&asset, trace(20.0, path));
     let plan = planned(&scene);
@@ -72,7 +72,7 @@ fn bursts_follow(file: &Path) {
     assert!((ratio - 4.0).abs() < 0.5, "four times the speed: {ratio}");
 }
 
-/// A live scene: a reading of a force or a speed that no finger has does not reach the model.
+/// In a live scene, a reading with an impossible force or speed does not reach the model.
 fn one_bad_reading_is_not_felt(asset: &Asset) {
     let mut scene = traced(asset, trace(1.0, |t| 50.0 * t));
     (scene.scene.motion, scene.trace) = (Motion::Live, None);
@@ -104,7 +104,7 @@ fn ten_bursts_a_second(file: &Path) -> Vec<f64> {
     out.into_iter().map(f64::from).collect()
 }
 
-/// How often the power over 10 ms rises through a fifth of its largest value, once it was below a
+/// How often the power over 10 ms rises through a fifth of its largest value, after it was below a
 /// twentieth.
 fn bursts_a_second(samples: &[f32]) -> f64 {
     let power: Vec<f64> = samples.chunks_exact(200).map(|block| rms(block).powi(2)).collect();
@@ -150,15 +150,15 @@ fn place_is_kept(file: &Path) {
     let scene = traced(&asset, trace(WAY_S, there_and_back));
     let plan = planned(&scene);
     the_plan_leaves_the_motion_to_the_model(&plan);
-    // A scene turns the force round with the finger.
+    // A scene reverses the force when the finger turns round.
     let mut played = rendered(&scene, &plan);
     let back = played.len() / 2;
     played[back..].iter_mut().for_each(|x| *x = -*x);
     is_the_same_on_the_way_back("scene", &played);
 }
 
-/// The way there and the way back reversed correlate, but for the time by which what stands behind
-/// the voice reads ahead; the way back as it is does not.
+/// The way there and the reversed way back correlate, apart from the time by which the stages after
+/// the voice read ahead. The way back, not reversed, does not correlate.
 fn is_the_same_on_the_way_back(name: &str, samples: &[f32]) {
     let (there, back) = samples.split_at(samples.len() / 2);
     let reversed: Vec<f32> = back.iter().rev().copied().collect();
@@ -201,7 +201,7 @@ fn comb() -> Vec<f64> {
 
 // ---- ways and means ----
 
-/// An asset of a recording at 50 mm/s and 0.5 N, fitted by a model in a file.
+/// An asset of a recording at 50 mm/s and 0.5 N, fitted by a model from a file.
 fn fitted(file: &Path, recording: &[f64]) -> Asset {
     let search = Search::builtin().with_files(vec![file.to_owned()]);
     let registry = Registry::search(&search).unwrap();
@@ -223,7 +223,7 @@ fn voice(asset: &Asset) -> Voice {
     voice
 }
 
-/// Samples of a voice that is moved: to a speed, a force and a position, by the time.
+/// Samples of a voice that moves: speed, force and position are functions of time.
 fn played(
     voice: &mut Voice,
     seconds: f64,
@@ -252,7 +252,7 @@ fn trace(seconds: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
     })
 }
 
-/// A scene of one surface that lies everywhere, and a finger that follows a trace.
+/// A scene with one surface that covers everything, and a finger that follows a trace.
 fn traced(asset: &Asset, trace: Trace) -> LoadedScene {
     LoadedScene {
         scene: Scene {
@@ -294,7 +294,7 @@ fn planned(scene: &LoadedScene) -> Plan {
     plan(scene, &file, &Costs::embedded()).unwrap()
 }
 
-/// Neither frequencies nor levels are scaled, and the plan says why.
+/// The plan scales neither frequencies nor levels, and says why.
 fn the_plan_leaves_the_motion_to_the_model(plan: &Plan) {
     for name in ["frequency_scaling", "level_scaling"] {
         let left_out = plan.left_out.iter().find(|out| out.name == name);

@@ -1,5 +1,5 @@
-//! glTF files that carry an asset, by the validator of Khronos, and by the schema of the extension
-//! with two validators, where Node and the packages are installed.
+//! glTF files that carry an asset, checked by the Khronos validator and, with two validators,
+//! against the extension's schema, if Node and the packages are installed.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use htex_schema::Schema;
 use htex_tests::workspace;
 use serde_json::{Value, json};
 
-/// The folder of packages of Node; this test is target/debug/deps/NAME.
+/// The folder of Node packages. This test is target/debug/deps/NAME.
 fn packages() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     test.ancestors().nth(3).unwrap().join("node/node_modules")
 }
 
-/// What a script of this folder prints.
+/// Returns what a script in this folder prints.
 fn ran(script: &str, files: &[PathBuf]) -> Value {
     let ran = Command::new("node")
         .arg(workspace().join("tests").join(script))
@@ -40,7 +40,7 @@ fn written(extension: &str) -> Vec<u8> {
     export(&Asset::from_bytes(&file).unwrap(), &how).unwrap().bytes
 }
 
-/// The text of the files is the same but for the place of the buffer.
+/// The files have the same text except for the place of the buffer.
 fn document() -> Value {
     serde_json::from_slice(&written("gltf")).unwrap()
 }
@@ -55,8 +55,8 @@ fn save(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// The validator knows no extension of others, and calls unused what only they use; it finds
-/// nothing else, and does find what is wrong.
+/// The validator knows no third-party extensions, and reports objects that only they use as unused.
+/// It finds nothing else, and it does find errors.
 #[test]
 fn the_validator_of_khronos_finds_nothing() {
     if !xtask::needs::GLTF_VALIDATOR.met(packages().join("gltf-validator").exists()) {
@@ -87,7 +87,7 @@ fn the_validator_of_khronos_finds_nothing() {
     assert_ne!(reports[2]["issues"]["numErrors"], 0, "{reports:#}");
 }
 
-/// Properties of the extension, and whether they are valid.
+/// Properties of the extension, and whether each is valid.
 fn textures() -> Vec<(String, Value, bool)> {
     let changed = |key: &str, value: Value, is_valid: bool| {
         let mut texture = texture();

@@ -4,9 +4,9 @@
 use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
 use htex_tests::{Golden, smooth_spectrum};
 
-/// The paper's reading of sPeak.
+/// The paper's variant of sPeak.
 const PAPER_SPEAK: [(&str, &str); 2] = [("frequency", "bin"), ("phase", "zero")];
-/// The paper's reading of sBeta.
+/// The paper's variant of sBeta.
 const PAPER_SBETA: [(&str, &str); 3] =
     [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0")];
 
@@ -43,8 +43,8 @@ fn mfcc_of_a_smooth_spectrum() {
         case.hold("/mfcc", &fit.parameters[1..11]);
         let mut magnitude = fitted_magnitude(&mfcc, &fit);
         if inverse == "pinv" {
-            // At the outermost edges the triangles weigh exactly nothing; the reference computation
-            // has the square root of a rounding error there.
+            // At the outermost edges the triangles have exactly zero weight; the reference
+            // computation has the square root of a rounding error there.
             for i in [0, 196] {
                 assert_eq!(magnitude[i], 0.0);
                 magnitude[i] = case.expected(key)[i];
@@ -65,7 +65,7 @@ fn speak_peaks_and_samples() {
         case.hold("/f_hz", &fit.parameters[1..=n]);
         let amplitudes = &fit.parameters[n + 2..2 * n + 2];
         let newtons: Vec<f64> = amplitudes.iter().map(|a| a * fit.level_rms).collect();
-        // Shape and level multiply back to within one rounding each.
+        // Shape times level gives the original back within one rounding each.
         for (got, expected) in newtons.iter().zip(case.expected("/amp")) {
             assert!((got / expected - 1.0).abs() < 1e-14);
         }
@@ -80,14 +80,15 @@ fn speak_peaks_and_samples() {
     let mut out = vec![0.0f32; 200_000];
     voice.render(&mut out).unwrap();
     for (n, y) in case.input("n").iter().zip(case.expected("/y")) {
-        // The sum's rounding to 32-bit float: the tolerance is that of samples near 5 level.
+        // The sum is rounded to a 32-bit float, so the tolerance is for samples near 5 times the
+        // level.
         let got = f64::from(out[*n as usize]) * level;
         assert!((got - y).abs() < 5.0 * level * f64::from(f32::EPSILON), "sample {n}: {got} {y}");
     }
 }
 
-/// A spectrum whose peaks are just the given points: each on its own bin between zeros, as far as
-/// the points lie on the grid.
+/// A spectrum whose peaks are exactly the given points: each on its own bin between zeros, if the
+/// points lie on the grid.
 fn spectrum_of_points(f_hz: &[f64], amp: &[f64]) -> Option<Vec<f64>> {
     let mut magnitude = vec![0.0; Band::TACTILE.bins()];
     for (f, a) in f_hz.iter().zip(amp) {
@@ -111,7 +112,7 @@ fn sbeta_fits_of_ten_points() {
         let fit = fit(&sbeta, &spectrum, &PAPER_SBETA);
         case.hold("/alpha", &fit.parameters[..1]);
         case.hold("/beta", &fit.parameters[1..]);
-        // The scale is in the level: newtons at a frequency over the density there.
+        // The scale is part of the level: newtons at a frequency divided by the density there.
         let magnitude = fitted_magnitude(&sbeta, &fit);
         let u = htex_dsp::beta::log_unit(150.0, Band::TACTILE);
         let [alpha, beta] = [fit.parameters[0], fit.parameters[1]];
@@ -201,7 +202,7 @@ fn arma_is_the_filter_of_its_lines() {
     }
 }
 
-/// The spectrum of a known filter is described by as many poles and zeros to half a decibel.
+/// The spectrum of a known filter is described to half a decibel with as many poles and zeros.
 #[test]
 fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
     let arma = model("arma");
@@ -235,7 +236,8 @@ fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
 
 #[test]
 fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
-    // Yule–Walker on the exact one-sided spectrum of an AR(2) process at 2 kHz, whole band.
+    // Yule–Walker on the exact one-sided spectrum of an AR(2) process at 2 kHz, over the whole
+    // band.
     let band = Band { low_hz: 5.0, high_hz: 1000.0 };
     let truth = [1.2, -0.8];
     let (rate_hz, error): (f64, f64) = (2_000.0, 0.03);
@@ -255,7 +257,7 @@ fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
         options: &ar.options(&[("order", "2")]).unwrap(),
     };
     let fit = ar.fit(&request).unwrap();
-    // The bin at 0 Hz and half of the one at 1 kHz are not the process's: 1 % of the power.
+    // The bin at 0 Hz and half of the bin at 1 kHz do not belong to the process: 1 % of the power.
     assert!((fit.parameters[1] - truth[0]).abs() < 0.01, "{:?}", fit.parameters);
     assert!((fit.parameters[2] - truth[1]).abs() < 0.01, "{:?}", fit.parameters);
 }

@@ -10,7 +10,7 @@ use htex_tests::Golden;
 
 const RATE_HZ: f64 = 20_000.0;
 
-/// Back-and-forth sweeps with four sinusoids, as the case's formula says.
+/// Back-and-forth sweeps with four sinusoids, by the case's formula.
 fn closed_form() -> Recording {
     let lines = [(50.0, 0.01, 0.3), (137.5, 0.006, 1.1), (400.0, 0.004, 2.0), (905.0, 0.002, 0.7)];
     let raised_cosine = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * t).cos());
@@ -102,14 +102,15 @@ fn compensated() {
 
 #[test]
 fn overlap_added_segments_keep_the_spectrum() {
-    // What the segments' signal reads at the lines, relative to the texture spectrum: windowed
-    // segments added with half overlap are the segments in step, up to their differing phases.
+    // Spectrum of the segments' signal at the lines, relative to the texture spectrum. Windowed
+    // segments added with half overlap give the segments in step, up to their differing phases.
     let part = segment_spectra(&closed_form(), &SpectrumOptions::default()).unwrap();
     let spectrum = TextureSpectrum::average(&[part], Averaging::Magnitude).unwrap();
     let rms = |x: &[f64]| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
     let lines = [0.01f64, 0.006, 0.004, 0.002];
     let expected = lines.iter().map(|a| a * a / 2.0).sum::<f64>().sqrt();
-    // Windowed power is 3/8 of the whole and two windows overlap: 0.87 of the RMS if phases differ.
+    // Windowed power is 3/8 of the whole, and two windows overlap: 0.87 of the RMS if phases
+    // differ.
     let ratio = rms(&spectrum.signal) / expected;
     assert!((0.7..1.05).contains(&ratio), "{ratio}");
     assert_eq!(spectrum.signal_rate_hz, 4_000.0);

@@ -1,4 +1,4 @@
-//! Levels are those of the shapes as stored.
+//! Levels belong to the shapes as stored.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{Level, SpectrumRef, stored_fields, stored_level};
@@ -7,17 +7,18 @@ use htex_format::round_parameters;
 use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
 use proptest::prelude::*;
 
-/// Spectra of each property: a sample, unless all are asked for.
+/// Number of spectra for each property: a sample, unless all are requested.
 fn count() -> u32 {
     if xtask::prove::whole() { 10_000 } else { 2_000 }
 }
 
 const BAND: Band = Band::TACTILE;
-/// Place of the option `bins` of sBeta.
+/// Index of sBeta's option `bins`.
 const SBETA_BINS: usize = 4;
 
-/// A spectrum on the grid: straight between a few levels in decibels, with the noise of an average.
-/// About one in four is steep towards an edge, where fits end at a bound of their parameters.
+/// A spectrum on the grid: straight lines between a few levels in decibels, with the noise of an
+/// average. About one in four is steep towards an edge, where fits end at a bound of their
+/// parameters.
 fn spectra() -> impl Strategy<Value = Vec<f64>> {
     let knots = prop::collection::vec(-30.0..0.0_f64, 5);
     let steep = prop_oneof![3 => Just(0.0), 1 => 10.0..60.0_f64, 1 => -60.0..-10.0_f64];
@@ -37,7 +38,7 @@ fn spectra() -> impl Strategy<Value = Vec<f64>> {
     })
 }
 
-/// A fit, its parameters as stored, and the level that goes with them.
+/// A fit: its parameters as stored, and the matching level.
 struct Stored {
     fit: Fit,
     parameters: Vec<f64>,
@@ -46,7 +47,7 @@ struct Stored {
     shape: Vec<f64>,
 }
 
-/// `None` where the model has nothing to fit: sPeak, of a spectrum without a peak.
+/// `None` if the model has nothing to fit: sPeak, for a spectrum without a peak.
 fn stored(model: &LoadedModel, options: &[f64], grid: &[f64], magnitude: &[f64]) -> Option<Stored> {
     let request = FitRequest {
         band: BAND,
@@ -73,7 +74,7 @@ fn rms(magnitude: &[f64]) -> f64 {
     (magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt()
 }
 
-/// The level of least squares of a shape to magnitudes at some bins.
+/// The least-squares level of a shape for magnitudes at some bins.
 fn least_squares(shape: &[f64], magnitude: &[f64], bins: impl Iterator<Item = usize>) -> f64 {
     let (mut both, mut own) = (0.0, 0.0);
     for bin in bins {
@@ -87,8 +88,9 @@ fn off_db(level: f64, wanted: f64) -> f64 {
     (20.0 * (level / wanted).log10()).abs()
 }
 
-/// The level of each model's fit by its definition, for the stored shape, computed in another way
-/// than by the model; one of them where a fit may end in several ways.
+/// The level of each model's fit for the stored shape, by its definition but computed in another
+/// way than in the model. If a fit may end in several ways, the result must be one of several
+/// levels.
 fn wanted(
     model: &LoadedModel,
     options: &[f64],
@@ -111,7 +113,7 @@ fn wanted(
             let peak = bin(stored.parameters[0]);
             vec![magnitude[peak] / stored.shape[peak]]
         }
-        // What was fitted, by least squares over the band.
+        // Least squares over the band, for the fitted data.
         _ => {
             let fitted = model.magnitude(&stored.fit.parameters, BAND, grid).unwrap();
             let newtons: Vec<f64> = fitted.iter().map(|m| m * stored.fit.level_rms).collect();
@@ -120,7 +122,7 @@ fn wanted(
     }
 }
 
-/// Bins evenly spaced in log frequency, and the largest, which comes last.
+/// Bins evenly spaced in log frequency; the largest one comes last.
 fn spread(count: usize, grid: &[f64], magnitude: &[f64]) -> Vec<usize> {
     let larger = |a: &usize, b: &usize| magnitude[*a].total_cmp(&magnitude[*b]);
     let largest = (0..grid.len()).max_by(larger).unwrap();
@@ -142,9 +144,9 @@ fn as_high(shape: &[f64], magnitude: &[f64]) -> f64 {
     highest(magnitude) / highest(shape)
 }
 
-/// Least squares at the ten peaks; with bins all over the band as well, where the density would
-/// stand above twice the largest bin or there are too few peaks; or, if it still does, as high as
-/// that bin.
+/// Least squares at the ten peaks. Bins from the whole band are added if the density would exceed
+/// twice the largest bin or there are too few peaks. If it still does, the shape is as high as the
+/// largest bin.
 fn sbeta_levels(shape: &[f64], grid: &[f64], magnitude: &[f64], peaks: &[usize]) -> Vec<f64> {
     let spread = spread(10, grid, magnitude);
     let all = peaks.iter().chain(&spread).copied();
@@ -156,7 +158,7 @@ fn sbeta_levels(shape: &[f64], grid: &[f64], magnitude: &[f64], peaks: &[usize])
     ]
 }
 
-/// The energy of the peaks and bins, or as high as the largest bin.
+/// The energy of the peaks and bins, or the level at which the shape is as high as the largest bin.
 fn sbeta_energy_levels(
     shape: &[f64],
     grid: &[f64],

@@ -7,10 +7,10 @@ use htex_storage::{Location, Settings, Storage};
 
 const NAME: &str = "textures/many.htexlib";
 const URI: &str = "s3://textures/many.htexlib";
-/// The most bytes besides the texture.
+/// Largest number of bytes read apart from the texture.
 const MOST_BYTES: u64 = 64 << 10;
 
-/// A server with a library of `count` textures of the same bytes.
+/// A server with a library of `count` textures with the same bytes.
 fn server(count: u32) -> (Server, Vec<u8>) {
     let (folder, bytes) = (tempfile::tempdir().unwrap(), texture());
     let path = folder.path().join("many.htexlib");
@@ -61,7 +61,7 @@ fn one_texture_takes_three_requests_whatever_the_size() {
     }
 }
 
-/// The length that a header `Range: bytes=A-B` asks for.
+/// The length that a header `Range: bytes=A-B` requests.
 fn length(range: Option<&str>) -> u64 {
     let (first, last) = range.unwrap().trim_start_matches("bytes=").split_once('-').unwrap();
     last.parse::<u64>().unwrap() - first.parse::<u64>().unwrap() + 1

@@ -1,4 +1,4 @@
-//! Lines of sPeak: where they stand, how high, and how they sound.
+//! sPeak's lines: their frequency, height and sound.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{Level, SpectrumRef, stored_fields, stored_level};
@@ -16,7 +16,7 @@ fn speak() -> LoadedModel {
     Registry::builtin().find("speak").unwrap().clone()
 }
 
-/// The spectrum, averaged in power over three segments, of a sinusoid of 1 N.
+/// The spectrum of a 1 N sinusoid, averaged in power over three segments.
 fn tone(hz: f64) -> Vec<f64> {
     let mut analyzer = SegmentAnalyzer::new(SEGMENT);
     let mut bins = analyzer.make_bins();
@@ -66,7 +66,7 @@ fn stored(magnitude: &[f64], options: &[(&str, &str)]) -> Stored {
     }
 }
 
-/// Largest distances of the line of one sinusoid from it: in hertz and in decibels.
+/// Largest differences between a sinusoid and its line: in hertz and in decibels.
 fn worst(frequencies_hz: impl Iterator<Item = f64>, options: &[(&str, &str)]) -> (f64, f64) {
     frequencies_hz.fold((0.0, 0.0), |(hz, db), f| {
         let one = [&[("count", "1")], options].concat();
@@ -104,14 +104,14 @@ fn samples(parameters: &[f64], seed: u64) -> Vec<f32> {
     out
 }
 
-/// Largest difference of two stretches, over their RMS.
+/// Largest difference between two stretches, relative to their RMS.
 fn difference(a: &[f32], b: &[f32]) -> f32 {
     let rms = (a.iter().map(|x| x * x).sum::<f32>() / a.len() as f32).sqrt();
     let pairs = a.iter().zip(b);
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) / rms
 }
 
-/// A voice with the paper's options repeats after 0.2 s, whatever its seed.
+/// A voice with the paper's options repeats after 0.2 s, with any seed.
 #[test]
 fn lines_sound_by_seed_and_do_not_repeat_after_a_segment() {
     let spectrum: Vec<f64> = [63.0, 141.5, 322.2, 704.9]

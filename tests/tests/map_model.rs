@@ -1,4 +1,4 @@
-//! A model that is a map of a surface: what it plays depends on the place of the finger, also
+//! A model that is a map of a surface. What it plays depends on the place of the finger, also
 //! across the direction of its path.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
@@ -24,8 +24,8 @@ const FORCE_N: f64 = 0.4;
 /// Samples between two motions.
 const CONTROL: usize = 64;
 
-/// A hum over stripes along x: silent at the edges of each stripe, at multiples of `width_mm`
-/// across, and of RMS 1 in its middle.
+/// A hum over stripes along x. It is silent at the edges of each stripe, at multiples of `width_mm`
+/// across, and has RMS 1 in the middle.
 struct Stripes;
 
 struct StripesVoice {
@@ -104,7 +104,7 @@ impl MotionVoice for StripesVoice {
     }
 }
 
-/// Stripes 4 mm wide, of 0.1 N.
+/// Stripes 4 mm wide with 0.1 N.
 fn stripes() -> Asset {
     let mut registry = Registry::builtin();
     registry.add_motion_model::<Stripes>().unwrap();
@@ -113,7 +113,7 @@ fn stripes() -> Asset {
     Asset::with_registry(make(&model, &texture).unwrap(), registry)
 }
 
-/// A second of a voice whose finger goes along x at a distance across, if its place is known.
+/// A second of a voice whose finger moves along x at a distance across, if its place is known.
 fn played(y_mm: Option<f64>) -> Vec<f32> {
     let options = VoiceOptions::default().with_rate_hz(RATE_HZ);
     let mut voice = stripes().voice(&options).unwrap();
@@ -180,15 +180,15 @@ fn rendered(y_mm: f64) -> Vec<f32> {
     out
 }
 
-/// RMS in the middle, behind all fades.
+/// RMS in the middle, after all fades.
 fn rms(samples: &[f32]) -> f64 {
     let middle = &samples[samples.len() / 4..samples.len() / 2];
     let power: f64 = middle.iter().map(|x| f64::from(*x).powi(2)).sum();
     (power / middle.len() as f64).sqrt()
 }
 
-/// Paths of the same x: over the middle of a stripe, over the edge of two, a sixth of its width
-/// from an edge.
+/// Paths with the same x: over the middle of a stripe, over the edge between two, and a sixth of
+/// the width from an edge.
 #[test]
 fn two_paths_beside_each_other_differ() {
     type Path = fn(f64) -> Vec<f32>;
@@ -203,7 +203,7 @@ fn two_paths_beside_each_other_differ() {
     }
 }
 
-/// A path of unknown place goes along x at 0.
+/// A path whose place is unknown goes along x at 0.
 #[test]
 fn an_unknown_place_lies_on_the_x_axis() {
     assert_eq!(played(None), played(Some(0.0)));

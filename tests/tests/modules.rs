@@ -5,8 +5,8 @@ use htex_host::Registry;
 use htex_tests::deflated_bytes;
 use xtask::plugins;
 
-/// Most deflated bytes of each model's module: the measured size and about 2 % for other compilers.
-/// A change that raises one states the reason in `docs/modules.md`.
+/// Largest deflated size of each model's module, bytes: the measured size plus about 2 % for other
+/// compilers. A change that raises one must state the reason in `docs/modules.md`.
 const BOUNDS: &[(&str, usize)] = &[
     ("ar", 41_700),
     ("arma", 45_000),
@@ -18,7 +18,7 @@ const BOUNDS: &[(&str, usize)] = &[
     ("sslope", 24_600),
 ];
 
-/// The bindings' fixtures are fitted by the command, and their models are listed without it.
+/// The command fits the bindings' fixtures, and their models are listed without it.
 #[test]
 fn models_of_the_fixtures_are_those_that_are_fitted_by_default() {
     let registry = Registry::builtin();
@@ -43,7 +43,7 @@ fn modules_stay_small() {
         let bytes = deflated_bytes(&module);
         println!("{model:8} {:7} bytes, deflated {bytes:6}", module.len());
         assert!(bytes <= *bound, "{model}: {bytes} deflated bytes; {bound} are allowed");
-        // No code that formats numbers or JSON, and no text of a panic, is linked in.
+        // The module must not contain code that formats numbers or JSON, or the text of a panic.
         for foreign in ["serde", "core::fmt", "panicked at", "called `Option"] {
             let foreign = foreign.as_bytes();
             let found = module.windows(foreign.len()).any(|part| part == foreign);

@@ -7,7 +7,7 @@ use std::path::Path;
 use htex_host::{LoadedModel, Registry};
 use htex_tests::workspace;
 
-/// Calls a function with name and text of each of the workspace's sources in Rust and Python.
+/// Calls a function with the name and text of each Rust and Python source in the workspace.
 fn sources(folder: &Path, each: &mut dyn FnMut(&str, &str)) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -20,7 +20,7 @@ fn sources(folder: &Path, each: &mut dyn FnMut(&str, &str)) {
     }
 }
 
-/// What a function begins with in a source of this name.
+/// How a function begins in a source with this name.
 fn keyword_of(name: &str) -> Option<&'static str> {
     match Path::new(name).extension()?.to_str()? {
         "rs" => Some("fn "),
@@ -45,8 +45,8 @@ fn page(name: &str) -> String {
     std::fs::read_to_string(workspace().join(name)).unwrap()
 }
 
-/// Names of the tests in the workspace's sources: functions after `#[test]`, of Python those that
-/// pytest takes.
+/// Names of the tests in the workspace's sources: functions after `#[test]`, and in Python those
+/// that pytest collects.
 fn known_tests() -> BTreeSet<String> {
     let mut tests = BTreeSet::new();
     sources(&workspace(), &mut |name, text| {
@@ -99,8 +99,8 @@ fn the_tests_that_the_pages_name_are_there() {
     assert!(seen > 80, "{seen} tests are named");
 }
 
-/// Each promise links to the tests that check it, each in the file that the link names. What is
-/// only said to be trusted, and where the protection ends, needs none.
+/// Each promise links to the tests that check it, each in the file that the link names. Statements
+/// of trust, and of where protection ends, need no test.
 #[test]
 fn the_promises_of_security_name_their_tests() {
     const WITHOUT: [&str; 4] =
@@ -131,7 +131,7 @@ fn the_promises_of_security_name_their_tests() {
     assert!(seen.len() > 20, "{} tests", seen.len());
 }
 
-/// Every kind of input has a test that holds what is said of it: a test, a fuzz target, or a file
+/// Every kind of input has a test for what the page says about it: a test, a fuzz target, or a file
 /// of tests.
 #[test]
 fn each_threat_has_its_test() {
@@ -175,7 +175,7 @@ fn the_paths_and_functions_that_the_page_of_the_paper_names_are_there() {
     assert!(paths > 40 && functions > 10, "{paths} paths, {functions} functions");
 }
 
-/// The paths of the workspace that a page names, without those that have a pattern.
+/// The workspace paths that a page names, without patterns.
 fn paths(text: &str) -> impl Iterator<Item = &str> {
     code(text).filter(|name| {
         let folder = name.split('/').next().unwrap_or_default();
@@ -205,7 +205,7 @@ fn the_map_is_short_and_what_it_names_is_there() {
     }
 }
 
-/// An option's default as a user writes it.
+/// An option's default as a user would write it.
 fn default(model: &LoadedModel, option: &str) -> String {
     let options = &model.descriptor().options;
     let option = options.iter().find(|o| o.name == option);

@@ -12,7 +12,7 @@ use htex_tests::workspace;
 use serde_json::Value;
 use xtask::generated::{file_with, only};
 
-/// Relative difference that compilers and versions of a library may make.
+/// Relative difference that compilers and library versions may cause.
 const NEAR: f64 = 1e-9;
 
 #[test]
@@ -56,7 +56,7 @@ fn near(a: &Value, b: &Value) -> bool {
     }
 }
 
-/// The table of ranges in the text is that of the descriptors.
+/// The table of ranges in the text matches the descriptors.
 #[test]
 fn the_text_has_every_field_and_its_range() {
     let text = fs::read_to_string(workspace().join("spec/htex-1.md")).unwrap();
@@ -105,7 +105,7 @@ fn every_model_has_cases() {
     assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
 }
 
-/// Valid files that this player does not play: one embeds an empty module, one has a field of a
+/// Valid files that this player cannot play: one embeds an empty module, one has a field from a
 /// newer version of the model.
 const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.htex"];
 

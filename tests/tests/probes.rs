@@ -1,10 +1,11 @@
-//! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number
-//! of a document that has all keys is replaced by numbers around and beyond the ranges, texts by
-//! others, and every key is left out.
+//! Every number has a single range: schema and reader refuse the same values. In a document that
+//! has all keys, every number is replaced by numbers around and beyond the ranges, texts by other
+//! texts, and every key is left out.
 //!
-//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader:
-//! lines of JSON with `kind`, `what`, `document`, `valid` (what reading says) and `schema` (what
-//! the schema says). Manifests are read in an archive with an entry `a.bin` of nine zero bytes.
+//! With `HTEX_PROBES_OUT` the documents are written to the file with that name, for another reader.
+//! Each line is JSON with `kind`, `what`, `document`, `valid` (the reader's verdict) and `schema`
+//! (the schema's verdict). Manifests are read in an archive with an entry `a.bin` of nine zero
+//! bytes.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]
@@ -25,14 +26,14 @@ use htex_schema::Schema;
 use htex_tests::workspace;
 use serde_json::{Map, Value, json};
 
-/// Numbers on both sides of the ranges' ends, fractions among them.
+/// Numbers on both sides of the ranges' ends, including fractions.
 const PROBES: [f64; 38] = [
     -1e300, -1e13, -1e10, -3e9, -2e6, -1e6, -4e3, -1e3, -121.0, -100.0, -81.0, -20.0, -5.0, -4.0,
     -1.5, -1.0, -1e-10, 0.0, 1e-300, 1e-13, 1e-10, 0.004, 0.04, 0.5, 1.0, 1.5, 5.0, 15.0, 30.0,
     55.0, 300.0, 1e3, 5e3, 2e4, 2e6, 2e9, 2e12, 1e300,
 ];
 
-/// Texts that are no names, or of another form.
+/// Texts that are not names, or have another form.
 const TEXTS: [&str; 8] = ["", " ", "a", "a/b", "\u{7}é", "0123", "\u{85}\u{2003}", "\u{feff}"];
 
 fn schema(stem: &str) -> Value {
@@ -40,7 +41,7 @@ fn schema(stem: &str) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
 }
 
-/// JSON pointers of a document's values for which `is` holds.
+/// JSON pointers to a document's values for which `is` holds.
 fn pointers(value: &Value, at: &str, is: &dyn Fn(&Value) -> bool, out: &mut Vec<String>) {
     if is(value) {
         out.push(at.to_owned());
@@ -61,7 +62,7 @@ fn pointers(value: &Value, at: &str, is: &dyn Fn(&Value) -> bool, out: &mut Vec<
     }
 }
 
-/// Returns a document with one change each: a number or a text by another, or without a key.
+/// Returns documents with one change each: another number or text, or a missing key.
 fn changes_of(document: &Value) -> Vec<(String, Value)> {
     let mut numbers = Vec::new();
     pointers(document, "", &Value::is_number, &mut numbers);
@@ -73,7 +74,7 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
     };
     for pointer in &numbers {
         for probe in PROBES {
-            // Whole numbers are written as such, where they have 64 bits.
+            // Integers are written as such if they fit into 64 bits.
             let whole = probe.fract() == 0.0 && probe.abs() < 1e18;
             let probe = if whole { json!(probe as i64) } else { json!(probe) };
             change(pointer, &probe, &|all| *all.pointer_mut(pointer).unwrap() = probe.clone());
@@ -101,17 +102,17 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
     changes
 }
 
-/// A changed document, and its verdicts.
+/// A changed document, and the verdicts on it.
 struct Change {
     what: String,
     document: Value,
     /// Whether the schema allows it.
     by_schema: bool,
-    /// Errors of reading.
+    /// The reader's errors.
     errors: Vec<Finding>,
 }
 
-/// Writes changed documents with the verdicts of reading and of the schema to the file that
+/// Writes changed documents, with the verdicts of the reader and the schema, to the file that
 /// `HTEX_PROBES_OUT` names, if it is set.
 fn write_out(stem: &str, changes: &[Change]) {
     static OUT: OnceLock<Option<Mutex<File>>> = OnceLock::new();
@@ -183,7 +184,7 @@ fn toml(value: &Value) -> String {
     }
 }
 
-/// A manifest with every key that holds a number.
+/// A manifest with every key that has a number.
 fn manifest() -> Value {
     let bytes = fs::read(workspace().join("spec/conformance/valid_law.htex")).unwrap();
     let mut manifest = manifest_json(&bytes, &Limits::default()).unwrap();
@@ -327,7 +328,7 @@ fn studies_have_the_ranges_of_their_schema() {
         htex_lab::study::read_study(text.as_bytes(), &mut findings);
         findings.into_list()
     };
-    // Motion and device are checked as those of a scene.
+    // Motion and device are checked in the same way as a scene's.
     compare("study-1", &study, &["/scale/", "/repetitions", "/participants", "/asset"], &read);
 }
 
@@ -402,14 +403,14 @@ fn answers_have_the_ranges_of_their_schema() {
     }
 }
 
-/// The error of reading a document, as a finding.
+/// The error from reading a document, as a finding.
 fn refused<T>(read: Result<T, impl ToString>) -> Vec<Finding> {
     let error = read.err().map(|error| error.to_string());
     let finding = |error: String| Finding::new(&htex_format::RULES[0], "", &error);
     error.into_iter().map(finding).collect()
 }
 
-/// Samples as a file of NumPy, version 1.0 of its format.
+/// Samples as an NPY file, version 1.0 of the format.
 fn npy(samples: &[f32]) -> Vec<u8> {
     let shape = samples.len();
     let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({shape},), }}");
@@ -447,7 +448,7 @@ fn recipes_have_the_ranges_of_their_schema() {
     compare("recipe-1", &recipe, &["/recordings absent", "/rate_hz absent"], &read);
 }
 
-/// The places of a schema that have a default, validated by the rest of the same place.
+/// The places in a schema that have a default, validated by the rest of the same place.
 #[test]
 fn every_default_is_a_value_of_its_own_schema() {
     let mut checked = 0;

@@ -16,7 +16,7 @@ thread_local! {
     static CALLS: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Counts a thread's calls of the system's allocator.
+/// Counts a thread's calls of the system allocator.
 struct Counting;
 
 // SAFETY: every call goes to the system's allocator as it came.
@@ -45,12 +45,12 @@ fn asset() -> Asset {
     Asset::from_bytes(&bytes()).unwrap()
 }
 
-/// A texture of two conditions, in all models.
+/// A texture with two conditions and all models.
 fn bytes() -> Vec<u8> {
     recorded_at(&[60.0, 120.0])
 }
 
-/// A texture recorded at these speeds, in all models.
+/// A texture recorded at these speeds, with all models.
 fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
     let take = |speed_mm_s: f64| {
         let options = SimulationOptions::new(Surface::Sandpaper)
@@ -76,7 +76,7 @@ fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
     fitted.asset.to_bytes().unwrap()
 }
 
-/// Parameters of a model at both conditions, between which its voice is retuned.
+/// Parameters of a model at both conditions. The model's voice is retuned between them.
 #[test]
 fn retuning_does_not_allocate() {
     let asset = asset();
@@ -100,7 +100,7 @@ fn retuning_does_not_allocate() {
     }
 }
 
-/// Voices in common calls, more than one call takes.
+/// Voices in common calls, more than fit in one call.
 #[test]
 fn rendering_together_does_not_allocate() {
     let asset = asset();
@@ -121,7 +121,7 @@ fn rendering_together_does_not_allocate() {
     }
 }
 
-/// Blocks of a voice, before each of which the finger changes its speed.
+/// Renders blocks of a voice. Before each block the finger changes its speed.
 fn follow(voice: &mut htex::Voice, what: &str) {
     let mut block = [0.0f32; 64];
     for i in 0..400 {
@@ -138,7 +138,7 @@ fn follow(voice: &mut htex::Voice, what: &str) {
 #[test]
 fn following_the_finger_does_not_allocate() {
     assert!(count(|| drop(std::hint::black_box(vec![1u8]))) >= 2, "the counter counts");
-    // Interpolated between two speeds, and scaled from one.
+    // One interpolates between two speeds, the other scales from a single speed.
     let one = Asset::from_bytes(&recorded_at(&[80.0])).unwrap();
     let assets = [asset(), one];
     let of_all = |asset| Registry::builtin_names().into_iter().map(move |model| (asset, model));
@@ -202,7 +202,7 @@ fn a_scene_is_rendered_without_allocating() {
     }
 }
 
-/// Two surfaces side by side, every effect on, and an arbitrary motion.
+/// Two surfaces side by side, with every effect on, and an arbitrary motion.
 fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
     let surface = |from: f64| file::Surface {
         region: Some(Region { x_mm: [from, from + 20.0], y_mm: [-1.0, 1.0] }),
@@ -233,7 +233,7 @@ fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
     }
 }
 
-/// A voice's output, envelope and errors, at motions that lift the finger and that no finger has.
+/// A voice's output, envelope and errors, at motions that lift the finger and at impossible ones.
 #[test]
 fn voices_measure_and_fail_without_allocating() {
     let asset = asset();

@@ -1,5 +1,4 @@
-//! Runs every seed of the fuzz targets, and every input that fuzzing has found, through its
-//! target.
+//! Runs every seed of the fuzz targets, and every input that fuzzing has found, through its target.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeSet;
@@ -8,7 +7,7 @@ use std::path::{Path, PathBuf};
 use htex_fuzzing::{TARGETS, container, run, seeds, with_checksums};
 use htex_tests::workspace;
 
-/// All files of a target's folder; none when the folder does not exist.
+/// All files in a target's folder; empty if the folder does not exist.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let files = std::fs::read_dir(folder).into_iter().flatten();
     files.map(|file| file.unwrap().path()).collect()
@@ -64,7 +63,7 @@ fn every_format_of_recordings_is_fuzzed() {
     }
 }
 
-/// Only that the files exist is tested: the bytes of some depend on the platform's compiler.
+/// Only checks that the files exist: the bytes of some depend on the platform's compiler.
 #[test]
 fn generated_seeds_are_there() {
     for (target, name, bytes) in seeds::seeds() {

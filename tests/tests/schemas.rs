@@ -1,5 +1,5 @@
-//! Validates every conformance file against the published schemas: by the `jsonschema` crate, and
-//! by Ajv where Node and the package are installed.
+//! Validates every conformance file against the published schemas, with the `jsonschema` crate and,
+//! if Node and the package are installed, with Ajv.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,7 +12,7 @@ use htex_schema::Schema;
 use htex_tests::workspace;
 use serde_json::{Value, json};
 
-/// Invalid files that a schema refuses. A schema cannot see rules across objects or in other
+/// Invalid files that a schema refuses. A schema cannot check rules across objects or in other
 /// entries.
 const REFUSED: &[&str] = &[
     "at_empty",
@@ -92,7 +92,7 @@ fn json_of(path: &Path) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The names in a folder with this ending, without it.
+/// The names in a folder that end like this, without the ending.
 fn stems(folder: &str, end: &str) -> Vec<String> {
     let all = fs::read_dir(spec(folder)).unwrap();
     let names = all.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -102,7 +102,7 @@ fn stems(folder: &str, end: &str) -> Vec<String> {
     stems
 }
 
-/// A document, and whether its report calls it valid. JSON that cannot be read is left out.
+/// A document, and whether its report calls it valid. Unreadable JSON is left out.
 type Documents = BTreeMap<String, (Value, bool)>;
 
 fn manifests() -> Documents {
@@ -115,7 +115,7 @@ fn manifests() -> Documents {
     stems("conformance", ".htex").into_iter().filter_map(read).collect()
 }
 
-/// Scenes of version 1.0, which the schema describes.
+/// Version 1.0 scenes, which the schema describes.
 fn scenes() -> Documents {
     let read = |stem: String| {
         let bytes = fs::read(spec(&format!("scene-conformance/{stem}.scene.json"))).unwrap();
@@ -142,7 +142,7 @@ fn published(file: &str) -> Value {
     json_of(&spec(&format!("schemas/{file}")))
 }
 
-/// Names of the documents that a schema refuses; valid ones must pass.
+/// Names of the documents that a schema refuses. Valid documents must pass.
 fn refused(schema: &str, documents: &Documents) -> Vec<String> {
     let schema = Schema::new(&published(schema)).unwrap();
     let mut refused = Vec::new();
@@ -185,8 +185,8 @@ fn schemas_name_themselves_and_use_the_standards_words_alone() {
     }
 }
 
-/// Whether a place of a schema has the keyword `format`, of which validators differ; documents may
-/// have a key of this name.
+/// Whether a place in a schema has the keyword `format`, which validators treat differently.
+/// Documents may have a key with this name.
 fn has_format(schema: &Value) -> bool {
     match schema {
         Value::Object(map) => {
@@ -197,8 +197,7 @@ fn has_format(schema: &Value) -> bool {
     }
 }
 
-/// The input for Ajv: every schema, compiled in its strict mode, and every document with its
-/// schema.
+/// The input for Ajv: every schema, compiled in strict mode, and every document with its schema.
 fn questions(documents: &[(&str, &Documents)]) -> Value {
     let schemas: BTreeSet<String> = stems("schemas", ".json").into_iter().collect();
     let schemas: Vec<Value> = schemas.iter().map(|s| published(&format!("{s}.json"))).collect();
@@ -243,8 +242,8 @@ fn ajv_says_the_same_where_it_is() {
     assert_eq!(told, ours);
 }
 
-/// Documents of a laboratory that other programs read (takes, answers, gains of persons), and
-/// extensions of assets.
+/// Laboratory documents that other programs read (takes, answers, gains of persons), and extensions
+/// of assets.
 #[test]
 fn generated_schemas_of_the_laboratory_are_fresh() {
     for (name, schema) in [

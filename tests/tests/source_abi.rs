@@ -7,7 +7,8 @@ use htex_device::source::abi::{
 };
 use htex_tests::surface::{Constants, SOURCE};
 
-/// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
+/// FNV-1a hash of the listing of each minor version of this major version, oldest first. New
+/// versions only add lines.
 const FROZEN: &[(&str, u64)] = &[("1.0", 0x4321_9581_e294_5dc9)];
 
 const THAW: &str = "The surface of the source ABI is frozen: sources that exist were built against it. \
@@ -50,8 +51,8 @@ fn the_header_compiles_as_c11_and_cxx17() {
     SOURCE.compile(&rust_constants());
 }
 
-/// A host must tell the ABIs apart by their markers alone, and the codes that both have are the
-/// same.
+/// A host must be able to tell the ABIs apart only by their markers, and codes that both have are
+/// the same.
 #[test]
 fn a_source_is_not_taken_for_a_device_or_a_model() {
     for other in [htex_device::abi::ABI_MARKER, htex_model::abi::ABI_MARKER] {

@@ -1,5 +1,4 @@
-//! Models of third parties: the examples and the templates are built, loaded, fitted and
-//! played.
+//! Third-party models: the examples and the templates are built, loaded, fitted and played.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 #[path = "common/builds.rs"]
@@ -15,7 +14,7 @@ use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
 use xtask::needs;
 
-/// Most deflated bytes of the template's module, built without flags.
+/// Largest deflated size of the template's module, built without flags, bytes.
 const TEMPLATE_BYTES: usize = 42_000;
 
 #[test]
@@ -61,8 +60,8 @@ fn the_template_in_c() {
     }
 }
 
-/// A model or a device may be written in C++: every header compiles without a warning, and its
-/// functions are used.
+/// A model or a device may be written in C++: every header compiles without warnings, and the test
+/// uses its functions.
 #[test]
 fn the_headers_compile_as_cpp() {
     let there = Command::new("c++").arg("--version").output().is_ok();
@@ -126,7 +125,7 @@ fn the_template_in_rust() {
         let text = fs::read_to_string(templates().join("rust").join(from)).unwrap();
         fs::write(project.join(to), filled_in(&text)).unwrap();
     }
-    // The versions of the lock file.
+    // Uses the versions in the lock file.
     fs::copy(workspace().join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
     let model = load(&build_rust(&project, None));
     assert_eq!(model.id(), "com.example.trial");
@@ -150,7 +149,7 @@ fn the_template_in_rust() {
     }
 }
 
-/// Twice the speed, twice the level; without a motion as at 100 mm/s.
+/// Twice the speed gives twice the level. Without a motion it plays as at 100 mm/s.
 fn follows_the_speed(model: &LoadedModel) {
     assert!(model.follows_motion());
     holds(model, 0.03);
@@ -192,7 +191,7 @@ fn spectra() -> [(&'static str, Vec<f64>); 5] {
     ]
 }
 
-/// Lines at the multiples of 65 Hz, as the Hann window shows them.
+/// Lines at the multiples of 65 Hz, as a Hann window shows them.
 fn comb_spectrum(grid: &[f64]) -> Vec<f64> {
     let line = |f: f64| match (f % 65.0).min(65.0 - f % 65.0) {
         d if d < 1.0 => 1.0,
@@ -202,8 +201,8 @@ fn comb_spectrum(grid: &[f64]) -> Vec<f64> {
     grid.iter().map(|&f| 0.01 * line(f) * (-f / 300.0).exp()).collect()
 }
 
-/// The requirements of a model: its voice has its magnitude and level, depends on its seed and not
-/// on the block size, and changes without a click; empty spectra and wrong parameters are refused.
+/// The requirements for a model: its voice has its magnitude and level, depends on its seed but not
+/// on the block size, and changes without a click. It refuses empty spectra and wrong parameters.
 fn holds(model: &LoadedModel, level_tolerance: f64) {
     for (name, magnitude) in spectra() {
         let fit = fit(model, &magnitude, &[]).unwrap();
@@ -283,7 +282,7 @@ fn edges_are_answered(model: &LoadedModel) {
     }
 }
 
-/// Bursts that the model itself played are found again in the signal.
+/// The model finds bursts that it played itself in the signal.
 fn the_rhythm_is_found(model: &LoadedModel) {
     let played = [150.0, 100.0, 0.1, 0.3, 0.0, 100.0, 0.0];
     let grid = Band::TACTILE.grid_hz();
@@ -296,7 +295,7 @@ fn the_rhythm_is_found(model: &LoadedModel) {
     assert!((found[2] - 0.1).abs() < 0.003 && (found[3] - 0.3).abs() < 0.1);
 }
 
-/// The fundamental of a comb is found, not its half or its double.
+/// The model finds the fundamental of a comb, not half or twice that frequency.
 fn the_pitch_is_found(model: &LoadedModel) {
     let comb = comb_spectrum(&Band::TACTILE.grid_hz());
     let found = fit(model, &comb, &[]).unwrap().parameters;
@@ -304,7 +303,7 @@ fn the_pitch_is_found(model: &LoadedModel) {
     assert!((found[1] / found[0] - 65.0).abs() < 0.1);
 }
 
-/// A WASM module fits and plays bit for bit like the library of the same source.
+/// A WASM module fits and plays bit for bit like the library from the same source.
 fn is_the_same(native: &LoadedModel, wasm: &LoadedModel) {
     for (name, magnitude) in spectra() {
         let [a, b] = [native, wasm].map(|model| fit(model, &magnitude, &[]).unwrap());

@@ -61,7 +61,7 @@ fn blocks_and_seeds() {
         for block in [1, 7, 64, 1_000] {
             assert_eq!(render(block, 5), whole, "{} in blocks of {block}", model.id());
         }
-        // sPeak starts all its sinusoids at their crests unless asked otherwise.
+        // sPeak starts all its sinusoids at their crests unless requested otherwise.
         if model.short_name() != "speak" {
             assert_ne!(render(64, 6), whole, "{}", model.id());
         }
@@ -87,16 +87,16 @@ fn retunes_do_not_click() {
             Stream::new(&model, p, Band::TACTILE, RATE_HZ, 3).unwrap().render(&mut out).unwrap();
             largest(&out)
         };
-        // A click would show as a bend far sharper than any the steady signals have.
+        // A click would appear as a bend much sharper than any in the steady signals.
         let bound = 2.0 * steady(&parameters).max(steady(&other)).max(steady(&half));
         assert!(largest(&out) < bound, "{}: {} {bound}", model.id(), largest(&out));
     }
 }
 
-/// A voice that has been through a hundred mixes plays each as a voice that was made with it, to a
-/// ten-thousandth of its RMS. Lines are left out: sinusoids of sPeak go on with the phases they
-/// had, and a map keeps the correction for the filters of the band's edges that it was made with
-/// (0.4 % between two rows).
+/// A voice that has been retuned through a hundred mixes plays each mix like a voice made for it,
+/// to a ten-thousandth of its RMS. Lines are left out: sPeak's sinusoids continue with their
+/// phases, and a map keeps the correction for the filters at the band's edges with which it was
+/// made (0.4 % between two rows).
 #[test]
 fn a_retuned_voice_plays_what_one_made_so_plays() {
     const SEED: u64 = 21;
@@ -110,19 +110,19 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
     let pairs = models.iter().filter(|(model, _)| !model.has_lines());
     let pairs =
         pairs.map(|(model, parameters)| (model, parameters.clone(), louder_at_one_end(model)));
-    // Orders that rise and fall, with a direct form and as a lattice.
+    // Orders that rise and fall, in direct form and as a lattice.
     let orders = [(3, 8), (5, 30)].map(|(low, high)| (ar, of_order(low), of_order(high)));
     for (model, parameters, other) in pairs.chain(orders) {
         let rate_hz = model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ).unwrap();
         let make = |set: &[f64]| model.voice(set, Band::TACTILE, rate_hz, SEED).unwrap();
         let mut voice = make(&parameters);
-        // Long enough for a change and the state of filters before it to have decayed.
+        // Long enough for a change, and for the previous state of filters, to decay.
         let frames = (0.5 * rate_hz) as usize;
         let (mut retuned, mut worst) = (vec![0.0; frames], 0.0f64);
         for i in 0..100 {
             let part = 0.5 + 0.5 * (1.7 * f64::from(i)).sin();
             let mixed = model.interpolate(&[&parameters, &other], &[part, 1.0 - part]).unwrap();
-            // Of changes that arrive during another, the last one counts.
+            // If changes arrive during another change, the last one counts.
             voice.retune(&other).unwrap();
             voice.render(&mut retuned[..5]).unwrap();
             voice.retune(&parameters).unwrap();
@@ -142,15 +142,15 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
     }
 }
 
-/// Voices that are rendered in one call give the same bits as each alone: with any remainder of
-/// their last blocks, while some of them change, and beside voices of other models.
+/// Voices rendered in one call give the same bits as each alone: with any remainder in their last
+/// blocks, while some of them change, and next to voices of other models.
 #[test]
 fn voices_together_are_voices_alone() {
     let models = fitted();
     let (ar, _) = &models[0];
     let mut sets: Vec<(&LoadedModel, Vec<f64>)> =
         models.iter().map(|(m, p)| (m, p.clone())).collect();
-    // Orders and rates of filters that run side by side, in other lengths, and as a lattice.
+    // Orders and rates of filters that run side by side, with other lengths, and as a lattice.
     let orders = [6, 6, 2, 6, 9, 6, 6, 6, 6, 3, 6, 6, 20, 6, 6, 6, 6, 1, 6, 6, 6];
     let first = sets.len();
     for (i, order) in orders.into_iter().enumerate() {
@@ -165,7 +165,7 @@ fn voices_together_are_voices_alone() {
     };
     let mut alone: Vec<_> = sets.iter().enumerate().map(make).collect();
     let mut together: Vec<_> = sets.iter().enumerate().map(make).collect();
-    // The last are behind the others by a sample.
+    // The last one is a sample behind the others.
     let last = sets.len() - 1;
     together[last].render(&mut [0.0]).unwrap();
     alone[last].render(&mut [0.0]).unwrap();
@@ -217,9 +217,9 @@ fn a_rate_that_cannot_be_reached_is_an_error() {
     assert!(refused.contains("from 50 Hz to 1000000 Hz"), "{refused}");
 }
 
-/// White noise over the band, whose upper half bin lies above the Nyquist frequency: the filters at
-/// the band's edges and that half bin take 1.1 % off, which the voice makes up for, and so does it
-/// for what the bins of the band miss at its edges.
+/// White noise over a band whose upper half bin lies above the Nyquist frequency. The filters at
+/// the band's edges and that half bin remove 1.1 %. The voice corrects for this, and for what the
+/// band's bins miss at its edges.
 #[test]
 fn the_level_is_that_behind_the_filters_of_the_band() {
     let model = Registry::builtin().find("ar").unwrap().clone();
@@ -235,7 +235,8 @@ fn the_level_is_that_behind_the_filters_of_the_band() {
             let read = &measured_spectrum(&out)[first..first + band.bins()];
             power += level_rms(read).powi(2) / 8.0;
         }
-        // Noise of so many samples scatters by 0.1 %; from 2 kHz on, the resampler takes 0.3 % off.
+        // Noise with this many samples scatters by 0.1 %; from 2 kHz on, the resampler removes 0.3
+        // %.
         assert!((power.sqrt() - 1.0).abs() < 6e-3, "{rate_hz} {band:?}: {}", power.sqrt());
     }
 }

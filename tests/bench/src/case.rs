@@ -1,4 +1,4 @@
-//! The input of all programs: one simulated surface, its spectrum and the models fitted to it.
+//! The input for all programs: one simulated surface, its spectrum, and the models fitted to it.
 
 use std::path::{Path, PathBuf};
 
@@ -47,7 +47,7 @@ impl Case {
         Ok(case)
     }
 
-    /// A model's parameters, flat as the ABI has them.
+    /// A model's parameters, in the flat form of the ABI.
     pub fn parameters(&self, model: &str) -> &[f64] {
         let found = self.parameters.iter().find(|(name, _)| name == model);
         found.map_or(&[], |(_, parameters)| parameters)
@@ -58,14 +58,14 @@ impl Case {
         self.list("ar", 0)
     }
 
-    /// The list that begins at an index of a model's flat parameters.
+    /// The list that begins at an index in a model's flat parameters.
     fn list(&self, model: &str, at: usize) -> &[f64] {
         let flat = self.parameters(model);
         let len = flat.get(at).map_or(0, |len| *len as usize);
         flat.get(at + 1..at + 1 + len).unwrap_or_default()
     }
 
-    /// The files that the other programs read.
+    /// The JSON file that the other programs read.
     fn json(&self) -> serde_json::Value {
         let lines = self.list("speak", 0);
         json!({
@@ -80,7 +80,7 @@ impl Case {
     }
 }
 
-/// A fit's input.
+/// The input of a fit.
 pub fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequest<'a> {
     FitRequest {
         band: spectrum.band,
@@ -92,7 +92,7 @@ pub fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequ
     }
 }
 
-/// An asset of all models, as `htex fit` makes it.
+/// An asset with all models, made as `htex fit` makes it.
 fn asset(registry: &Registry, recording: htex_author::Recording) -> Result<Vec<u8>, Failure> {
     let mut models = Vec::new();
     for model in registry.by_default() {

@@ -1,9 +1,9 @@
-//! Benchmark of htex beside plain loops in C and Python libraries, in one interleaved run:
-//! `cargo xtask bench`.
+//! Compares htex with plain loops in C and with Python libraries in one interleaved run: `cargo
+//! xtask bench`.
 //!
-//! Everything runs on one thread, in turns, so that other load on the machine affects all alike;
-//! the table has the least time of each, and the spread of all. A peer that is not installed is
-//! skipped with a message.
+//! Everything runs on one thread, in turns, so that other load on the machine affects all alike.
+//! The table contains the minimum time of each task, and the spread of all its times. A peer that
+//! is not installed is skipped with a message.
 
 mod case;
 mod ours;
@@ -18,13 +18,13 @@ use case::Case;
 use peer::Peer;
 use table::{Row, Rows};
 
-/// Rounds of everything.
+/// Number of rounds of all tasks.
 const ROUNDS: usize = 9;
-/// Rounds of whole programs.
+/// Number of rounds of whole programs.
 const WHOLE_ROUNDS: usize = 5;
 const SECONDS: &str = "600";
 
-/// A row: our task, its unit, and the peers' tasks with the target ratio to each.
+/// Rows: our task, its unit, and the peers' tasks with the target ratio for each.
 const ROWS: &[Row] = table::rows();
 
 fn main() -> ExitCode {
@@ -86,7 +86,8 @@ fn measure(
     Ok(())
 }
 
-/// Ten minutes of texture to a file, and a recording to an asset, as a user runs them.
+/// Measures ten minutes of texture to a file, and a recording to an asset, as a user would run
+/// them.
 fn measure_whole(folder: &Path, rows: &mut Rows) -> Result<(), Box<dyn std::error::Error>> {
     let Some(htex) = std::env::var_os("HTEX_BENCH_COMMAND") else {
         eprintln!("whole programs: skipped, HTEX_BENCH_COMMAND does not name the htex command");
@@ -116,7 +117,7 @@ fn peers_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../peers")
 }
 
-/// Compiles the plain loops with optimisation, and starts them.
+/// Compiles the plain loops with optimisation and starts them.
 fn start_c(case: &Case) -> Result<Peer, String> {
     let program = case.folder.join("plain");
     let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());

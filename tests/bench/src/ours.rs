@@ -1,4 +1,4 @@
-//! The tasks, by htex.
+//! The tasks, performed by htex.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,20 +12,20 @@ use crate::case::{Case, request};
 
 const DEVICE_HZ: f64 = 20_000.0;
 const BLOCK: usize = 256;
-/// As many as in the loops in C.
+/// Number of samples, the same as in the C loops.
 const SAMPLES: usize = 1 << 20;
 const VOICES: u64 = 1_000;
-/// Voices that are rendered in one call.
+/// Number of voices rendered in one call.
 const TOGETHER: usize = 16;
-/// Blocks of each voice, as many as in the loops in C.
+/// Number of blocks of each voice, the same as in the C loops.
 const ROUNDS: usize = 16;
-/// Times an asset is opened before the measured time.
+/// How often an asset is opened before the time is measured.
 const OPENINGS: usize = 20;
 
 type Failure = Box<dyn std::error::Error>;
 type Task<'a> = Box<dyn FnMut() -> Result<f64, Failure> + 'a>;
 
-/// A task by its name; each run returns seconds a unit.
+/// Returns a task by its name. Each run returns seconds per unit.
 pub fn task<'a>(case: &'a Case, name: &str) -> Result<Task<'a>, Failure> {
     Ok(match name {
         "ar" => voice(case, "ar")?,
@@ -78,7 +78,7 @@ fn stream<'a>(case: &'a Case, model: &str) -> Result<Task<'a>, Failure> {
     }))
 }
 
-/// A thousand voices of AR, each with its own noise, at their own rate.
+/// A thousand AR voices, each with its own noise, at their own rate.
 fn many_voices<'a>(case: &'a Case) -> Result<Task<'a>, Failure> {
     let model = case.registry.find("ar")?;
     let voices: Result<Vec<_>, _> = (0..VOICES).map(|seed| new_voice(case, model, seed)).collect();
@@ -96,7 +96,7 @@ fn many_voices<'a>(case: &'a Case) -> Result<Task<'a>, Failure> {
     }))
 }
 
-/// The paper's five models from a spectrum.
+/// Fits the paper's five models to a spectrum.
 fn fit(case: &Case) -> Result<f64, Failure> {
     let begun = Instant::now();
     for name in ["ar", "mfcc", "speak", "sbeta", "sslope"] {
@@ -107,7 +107,7 @@ fn fit(case: &Case) -> Result<f64, Failure> {
     Ok(begun.elapsed().as_secs_f64())
 }
 
-/// AR by Burg's method on the segments.
+/// Fits AR to the segments by Burg's method.
 fn fit_burg(case: &Case) -> Result<f64, Failure> {
     let begun = Instant::now();
     let model = case.registry.find("ar")?;
@@ -116,7 +116,7 @@ fn fit_burg(case: &Case) -> Result<f64, Failure> {
     Ok(begun.elapsed().as_secs_f64())
 }
 
-/// From a CSV file to the texture spectrum.
+/// Measures from a CSV file to the texture spectrum.
 fn process(case: &Case) -> Result<f64, Failure> {
     let begun = Instant::now();
     let recording = read_recording(&case.folder.join("recording.csv"), &ReadOptions::default())?;
@@ -125,7 +125,7 @@ fn process(case: &Case) -> Result<f64, Failure> {
     Ok(begun.elapsed().as_secs_f64())
 }
 
-/// From an asset's bytes to the first sample.
+/// Measures from an asset's bytes to the first sample.
 fn open(case: &Case) -> Result<f64, Failure> {
     let begun = Instant::now();
     let asset = Asset::from_bytes(&case.asset)?;

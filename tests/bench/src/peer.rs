@@ -1,7 +1,7 @@
-//! A peer: a program that lists its tasks, then runs one for each line of input.
+//! A peer: a program that lists its tasks, and then runs one task for each line of input.
 //!
-//! Protocol: at its start it prints `skip TASK: reason` for tasks that it lacks, and
-//! `ready TASK …`; then it reads the name of a task on each line and replies `seconds units ok`.
+//! Protocol: at its start it prints `skip TASK: reason` for tasks that it does not support, and
+//! `ready TASK …`. Then it reads a task's name from each line and replies `seconds units ok`.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -16,10 +16,10 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Starts a program; tasks that it lacks are reported on standard error.
+    /// Starts a program. Tasks that it does not support are reported on standard error.
     ///
     /// # Errors
-    /// The reason why it does not run.
+    /// Why it does not run.
     pub fn start(name: &'static str, command: &mut Command) -> Result<Self, String> {
         let spawned = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         let mut child = spawned.map_err(|error| format!("{name} does not start: {error}"))?;
@@ -38,15 +38,15 @@ impl Peer {
         }
     }
 
-    /// Whether it has a task.
+    /// Whether it supports a task.
     pub fn can(&self, task: &str) -> bool {
         self.tasks.iter().any(|known| known == task)
     }
 
-    /// Runs a task once; returns seconds a unit.
+    /// Runs a task once and returns seconds per unit.
     ///
     /// # Errors
-    /// When it ends or replies anything but numbers.
+    /// When it ends, or replies anything except numbers.
     pub fn run(&mut self, task: &str) -> Result<f64, String> {
         writeln!(self.to, "{task}")
             .and_then(|()| self.to.flush())
@@ -72,7 +72,7 @@ impl Peer {
 
 impl Drop for Peer {
     fn drop(&mut self) {
-        // It ends when its input does; this ends it sooner.
+        // It would end when its input does; this ends it sooner.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

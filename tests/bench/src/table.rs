@@ -15,7 +15,7 @@ pub struct Against {
     pub task: &'static str,
     /// Description, for the table.
     pub what: &'static str,
-    /// Target ratio of times; `None` for a comparison without a target.
+    /// Target ratio of the times; `None` for a comparison without a target.
     pub aim: Option<f64>,
 }
 
@@ -26,7 +26,7 @@ pub struct Row {
     /// Description, for the table.
     pub what: &'static str,
     pub unit: &'static str,
-    /// Units a second.
+    /// Units per second.
     pub scale: f64,
     pub against: &'static [Against],
 }
@@ -147,7 +147,7 @@ pub struct Rows {
     rows: &'static [Row],
     ours: Vec<Vec<f64>>,
     theirs: Vec<Vec<Vec<f64>>>,
-    /// Seconds and MiB of whole programs.
+    /// Seconds and MiB used by whole programs.
     whole_ours: Vec<(f64, f64)>,
     whole_theirs: Vec<(f64, f64)>,
 }
@@ -156,7 +156,7 @@ pub struct Rows {
 struct Timing {
     least: f64,
     median: f64,
-    /// Half the distance between the quartiles over the median.
+    /// Half the distance between the quartiles, divided by the median.
     spread: f64,
 }
 
@@ -180,7 +180,7 @@ struct Line {
     htex: Timing,
     against: String,
     peer: Option<Timing>,
-    /// The peer's least time over ours.
+    /// The peer's minimum time divided by ours.
     ratio: Option<f64>,
     aim: Option<f64>,
 }

@@ -3,11 +3,11 @@
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Time between two readings of a program's memory.
+/// Interval between two readings of a program's memory.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// Runs a program twice: for its time in seconds, and for its peak memory in MiB (RSS); NaN where
-/// the system does not report it.
+/// Runs a program twice: once for its time in seconds, once for its peak memory in MiB (RSS). The
+/// memory is NaN if the system does not report it.
 ///
 /// # Errors
 /// When it does not start or fails.
@@ -18,8 +18,8 @@ pub fn run(command: &mut Command) -> Result<(f64, f64), String> {
     let seconds = begun.elapsed().as_secs_f64();
     let mut child = start(command)?;
     let mut most_kib = f64::NAN;
-    // The system's figure for a program that has ended includes the memory of the one that started
-    // it.
+    // For a program that has ended, the system's figure includes the memory of the program that
+    // started it, so it is read while the program runs.
     while matches!(child.try_wait(), Ok(None)) {
         most_kib = peak_kib(child.id()).unwrap_or(most_kib);
         std::thread::sleep(LOOK);

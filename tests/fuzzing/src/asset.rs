@@ -5,7 +5,7 @@ use htex_format::{Asset, Limits, validate};
 use crate::container::with_checksums;
 use crate::promise;
 
-/// Smaller than the defaults, so that short inputs find slow paths.
+/// Smaller than the defaults, so that short inputs reach slow paths.
 const LIMITS: Limits = Limits {
     file_bytes: 1 << 20,
     entries: 256,
@@ -16,14 +16,14 @@ const LIMITS: Limits = Limits {
     values: 1 << 16,
 };
 
-/// Opens the bytes as they are, and again with valid checksums.
+/// Opens the bytes unchanged, and again with valid checksums.
 pub fn open_asset(input: &[u8]) -> bool {
     let mended = with_checksums(input);
     let opened = open(input);
     (mended != input && open(&mended)) || opened
 }
 
-/// Validates, opens, plays, writes. Embedded models are left to other targets.
+/// Validates, opens, plays and writes the asset. Other targets cover embedded models.
 pub(crate) fn open(bytes: &[u8]) -> bool {
     let report = validate(bytes, &LIMITS);
     promise::findings(&report.findings);

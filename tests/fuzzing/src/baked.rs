@@ -1,12 +1,13 @@
-//! A baked block, opened and played as a microcontroller does.
+//! Opens and plays a baked block as a microcontroller does.
 
 use htex_player::{Block, Player, crc32};
 
 /// Offset of the length in the header.
 const LENGTH: usize = 8;
 
-/// Opens the input after its first 17 bytes as a block, and plays it at two motions, which the 16
-/// bytes before it are. If the first byte is odd, the block gets its length and checksum first.
+/// Opens the input after its first 17 bytes as a block, and plays it at two motions, which are the
+/// 16 bytes before it. If the first byte is odd, the block first gets its correct length and
+/// checksum.
 pub fn baked_block(input: &[u8]) -> bool {
     let Some((&[mends, motions @ ..], block)) = input.split_first_chunk::<17>() else {
         return false;
@@ -32,7 +33,7 @@ pub fn baked_block(input: &[u8]) -> bool {
     true
 }
 
-/// Writes the length of the block, and its checksum over the last bytes.
+/// Writes the block's length, and its checksum over the last bytes.
 fn mend(block: &mut [u8]) {
     let len = block.len() as u32;
     if let Some(field) = block.get_mut(LENGTH..LENGTH + 4) {

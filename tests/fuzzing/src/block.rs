@@ -1,4 +1,4 @@
-//! A parameter block of a built-in model, in an asset with this block only.
+//! Parameter blocks of built-in models, each alone in an asset.
 
 use std::sync::OnceLock;
 
@@ -9,7 +9,7 @@ use htex_host::{LoadedModel, Registry};
 use crate::asset::open;
 use crate::container::container;
 
-/// Opens an asset whose one block is the input; its first byte chooses the model, the
+/// Opens an asset whose only block is the input. The input's first byte chooses the model, the
 /// second the number of conditions.
 pub fn parameter_block(input: &[u8]) -> bool {
     let Some((&[model, conditions], block)) = input.split_first_chunk::<2>() else {
@@ -23,7 +23,7 @@ pub fn parameter_block(input: &[u8]) -> bool {
     open(&container(&json, [("parameters.bin", block)]))
 }
 
-/// The manifest of an asset of one model at some conditions.
+/// The manifest of an asset with one model at some conditions.
 pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
     let band = htex_host::Band::TACTILE;
     let condition = |i: usize| Condition {

@@ -1,6 +1,6 @@
 //! Well-typed bodies of WASM functions, generated from bytes.
 
-/// The bytes of an input, used one after the other; zeros behind the last.
+/// The bytes of an input, used one after the other. After the last one, they are zeros.
 pub(crate) struct Bytes<'a>(pub(crate) &'a [u8]);
 
 impl Bytes<'_> {
@@ -35,7 +35,7 @@ impl Type {
     }
 }
 
-/// Parameters and result of a signature in WebAssembly text.
+/// Parses the parameters and the result of a signature in WebAssembly text.
 pub(crate) fn signature(text: &str) -> (Vec<Type>, Option<Type>) {
     let types = |text: &str| -> Vec<Type> {
         let words = text.split([' ', '(', ')']);
@@ -52,7 +52,7 @@ pub(crate) fn signature(text: &str) -> (Vec<Type>, Option<Type>) {
     (types(parameters), types(result).first().copied())
 }
 
-/// The text of a body with these parameters and this result, after up to three statements.
+/// Returns the text of a body with these parameters and this result, after up to three statements.
 pub(crate) fn body(bytes: &mut Bytes<'_>, parameters: &[Type], result: Option<Type>) -> String {
     let mut body = Body { bytes, parameters };
     let mut text = String::new();
@@ -127,7 +127,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// A number near to those that hosts and models use.
+    /// Returns a number close to those that hosts and models use.
     fn usual(&mut self, of: Type) -> &'static str {
         const WHOLE: [&str; 8] = ["0", "1", "-1", "16", "8192", "65536", "524280", "0x48540100"];
         const LONG: [&str; 8] = ["0", "1", "-1", "-7", "256", "65536", "1048577", "-9"];

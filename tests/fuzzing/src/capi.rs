@@ -1,4 +1,4 @@
-//! Calls of libhtex as a program in C makes them: any order, any handles, any numbers.
+//! Calls libhtex as a C program might: in any order, with any handles and any numbers.
 #![allow(unsafe_code)] // The functions take pointers; all pointers here are live.
 
 use std::ffi::{CStr, c_char};
@@ -9,15 +9,15 @@ use htex_c::*;
 
 use crate::body::Bytes;
 
-/// Most calls of one input, and most frames of one call.
+/// Largest number of calls per input, and of frames per call.
 const MOST_CALLS: usize = 64;
 const MOST_FRAMES: usize = 512;
 
-/// Makes calls from the input: pairs of an operation and its arguments, with two assets that exist
-/// and one made of the input's end. True when at least one call renders.
+/// Makes calls from the input: pairs of an operation and its arguments, with two existing assets
+/// and one made from the end of the input. Returns true if at least one call renders.
 ///
 /// # Panics
-/// When a call reports an error of the library itself, an error has no text, or a sample is not
+/// When a call reports an internal error of the library, an error has no text, or a sample is not
 /// finite.
 pub fn c_calls(input: &[u8]) -> bool {
     let mut calls =
@@ -29,7 +29,7 @@ pub fn c_calls(input: &[u8]) -> bool {
         }
         calls.one();
     }
-    // What is left is freed once; handles that the input freed are refused.
+    // Frees every remaining handle once. Handles that the input already freed are refused.
     for asset in std::mem::take(&mut calls.assets) {
         calls.told(htex_asset_free(asset));
     }
@@ -69,7 +69,7 @@ impl Calls<'_> {
         }
     }
 
-    /// A number of any kind: small, usual or any bits.
+    /// A number of any kind: small, usual, or arbitrary bits.
     fn number(&mut self) -> f64 {
         match self.bytes.next() {
             kind @ 0..=199 => f64::from(kind),

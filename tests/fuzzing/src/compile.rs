@@ -1,4 +1,4 @@
-//! Modules that take long to compile.
+//! Modules that take a long time to compile.
 
 use std::time::{Duration, Instant};
 
@@ -9,14 +9,15 @@ use crate::heavy::Heavy;
 use crate::module::model;
 use crate::promise::sentence;
 
-/// Allowed time by the estimate, which assumes a machine three times as slow.
+/// Allowed compile time by the estimate, which assumes a machine three times as slow.
 const ALLOWED: Duration = Duration::from_millis(300);
-/// Hard limit: the programs are built with counters, and other programs run beside them.
+/// Hard limit. It is generous, because the programs are built with counters and run next to other
+/// programs.
 const NEVER: Duration = Duration::from_secs(6);
 
-/// Loads a valid model with a function that is described by a byte each: locals, depth, nests,
-/// copies, kinds of blocks, statements. A function within the limit of compiling is compiled in the
-/// allowed time.
+/// Loads a valid model with an extra function. One byte each describes its locals, depth, nests,
+/// copies, kinds of blocks and statements. A function within the limits must compile in the allowed
+/// time.
 pub fn compile_limits(input: &[u8]) -> bool {
     let mut bytes = Bytes(input);
     let squared = |byte: u8| usize::from(byte) * usize::from(byte) / 32;

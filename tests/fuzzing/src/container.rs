@@ -1,7 +1,5 @@
-//! Containers around fuzzed parts, with valid checksums, which a fuzzer would not find.
-//!
-//! Modules are built out of well-typed bodies, so that a mutation reaches the code after the
-//! checks.
+//! Wraps fuzzed parts in containers with valid checksums, which a fuzzer would not find.
+//! Modules are built from well-typed bodies, so that mutations reach the code after the checks.
 
 use std::io::{Cursor, Write};
 
@@ -10,7 +8,7 @@ use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 const MEDIA_TYPE: &[u8] = b"application/vnd.htex+zip";
 
-/// A valid archive of a manifest and other entries, all of them stored.
+/// Makes a valid archive from a manifest and other entries, all stored without compression.
 pub fn container<'a>(
     manifest: &'a [u8],
     entries: impl IntoIterator<Item = (&'a str, &'a [u8])>,
@@ -23,7 +21,7 @@ pub fn container<'a>(
         .system(System::Unix)
         .unix_permissions(0o644);
     for (name, bytes) in first.into_iter().chain(entries) {
-        // This writer refuses a duplicate name, which is left to `open_asset`.
+        // This writer refuses duplicate names, so `open_asset` covers those.
         if writer.start_file(name, options).is_ok() {
             writer.write_all(bytes).expect("memory takes all");
         }
@@ -31,7 +29,7 @@ pub fn container<'a>(
     writer.finish().expect("memory takes all").into_inner()
 }
 
-/// The same archive with valid checksums, as far as entries are stored and can be found.
+/// Returns the same archive with valid checksums, for all stored entries that can be found.
 pub fn with_checksums(bytes: &[u8]) -> Vec<u8> {
     const LOCAL: &[u8] = b"PK\x03\x04";
     const CENTRAL: &[u8] = b"PK\x01\x02";

@@ -10,7 +10,7 @@ use crate::promise::{finite, sentence};
 /// Longest list that is filled.
 const LONGEST: u32 = 8;
 
-/// Reads a descriptor, writes it, and makes parameters that fit it.
+/// Reads a descriptor, writes it, and makes parameters that match it.
 pub fn descriptor(input: &[u8]) -> bool {
     let Ok(json) = std::str::from_utf8(input) else {
         return false;
@@ -30,7 +30,7 @@ pub fn descriptor(input: &[u8]) -> bool {
     }
 }
 
-/// Parameters between the least (0) and the greatest (1) that the fields allow.
+/// Makes parameters between the minimum (0) and the maximum (1) that the fields allow.
 fn use_at(descriptor: &Descriptor, weight: f64) {
     let numbers = |field: &htex_model::Field| {
         let one = (field.min * (1.0 - weight) + field.max * weight).clamp(field.min, field.max);

@@ -1,5 +1,5 @@
-//! Inputs that differ from a valid one in one value, or in two adjacent ones, which take the
-//! extreme values that can be written: all of them, in the same order each time.
+//! Makes inputs that differ from a valid one in one value, or in two adjacent values, which take
+//! every extreme that can be written, always in the same order.
 //!
 //! `tests/tests/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer
 //! covers the rest.
@@ -36,7 +36,7 @@ const NUMBERS: &[&str] = &[
     "1.7976931348623157e308",
     "1e999",
 ];
-/// The numbers for pairs of values.
+/// The numbers used for pairs of values.
 const FEW: &[&str] = &["0", "-1", "1", "5e-324", "1e19", "1e300", "1e308"];
 /// The increments of a column.
 const CLIMBS: &[f64] = &[5e-324, 1e-308, 1e-300, 1e-12, 1e-9, 1e-6, 1e6, 1e15, 1e300, 1e307];
@@ -61,16 +61,16 @@ const WORDS: &[&str] = &[
 ];
 /// Cells that are not numbers.
 const CELLS: &[&str] = &["", " ", "nan", "inf", "-inf", "0x10", "1,5", "\u{1b}[31m", "\"", "é"];
-/// Longest text that replaces another.
+/// Length of the long text that replaces another.
 const LONG: usize = 5000;
-/// Placeholder of the inserted text.
+/// Placeholder for the inserted text.
 const MARK: &str = "\"~here~\"";
 const SECOND_MARK: &str = "\"~there~\"";
-/// Bytes looked at from the beginning and from the end.
+/// Number of bytes changed at the beginning and at the end.
 const BYTES: usize = 512;
 
-/// A JSON document with each value replaced by each extreme, duplicated, or left out; and with two
-/// adjacent numbers of an object or list replaced by extremes.
+/// Changes a JSON document: each value is replaced by each extreme, duplicated, or left out, and
+/// two adjacent numbers in an object or list are replaced by extremes.
 ///
 /// # Panics
 /// When the document is not JSON.
@@ -124,7 +124,7 @@ fn walk(value: &Value, at: String, pointers: &mut Vec<String>) {
     pointers.push(at);
 }
 
-/// A key as a JSON pointer has it.
+/// Escapes a key as JSON pointers require.
 fn escaped(key: &str) -> String {
     key.replace('~', "~0").replace('/', "~1")
 }
@@ -144,7 +144,7 @@ fn parent<'a>(document: &'a Value, pointer: &str) -> Option<&'a Value> {
     document.pointer(&pointer[..pointer.rfind('/')?])
 }
 
-/// The document without this value.
+/// Returns the document without this value.
 fn without(sound: &Value, pointer: &str) -> String {
     let Some(slash) = pointer.rfind('/') else {
         return String::new();
@@ -162,7 +162,7 @@ fn without(sound: &Value, pointer: &str) -> String {
     document.to_string()
 }
 
-/// Adjacent numbers of one object or list.
+/// Returns adjacent numbers in the same object or list.
 fn neighbours<'a>(sound: &Value, pointers: &'a [String]) -> Vec<(&'a str, &'a str)> {
     let is_number = |pointer: &&String| sound.pointer(pointer).is_some_and(Value::is_number);
     let numbers: Vec<&str> = pointers.iter().filter(is_number).map(|p| &**p).collect();
@@ -171,8 +171,8 @@ fn neighbours<'a>(sound: &Value, pointers: &'a [String]) -> Vec<(&'a str, &'a st
     pairs.filter(|(a, b)| folder(a) == folder(b)).collect()
 }
 
-/// A table with each cell replaced by each extreme, with each column replaced as a whole,
-/// alternating or increasing by an extreme step, and without each row.
+/// Changes a table: each cell is replaced by each extreme, each column is replaced as a whole,
+/// either alternating or increasing by an extreme step, and each row is left out.
 ///
 /// # Panics
 /// When the table is not text.
@@ -226,8 +226,8 @@ fn climb(by: f64, rows: usize) -> Vec<String> {
     (0..rows).map(|r| format!("{:e}", by * r as f64)).collect()
 }
 
-/// A binary file with each byte, and each four of them as a little-endian number, replaced by
-/// extremes, and cut before each: within its first and last bytes.
+/// Changes the first and last bytes of a binary file: each byte, and each group of four as a
+/// little-endian number, is replaced by extremes, and the file is cut before each.
 pub fn bytes(document: &[u8], each: &mut dyn FnMut(&[u8])) {
     let last = document.len().saturating_sub(BYTES).max(BYTES);
     let places = (0..document.len()).filter(|at| *at < BYTES || *at >= last);

@@ -1,4 +1,4 @@
-//! The texture formats of others.
+//! Third-party texture formats.
 
 use htex_exchange::haptic::Metadata;
 use htex_exchange::hatt::{Imported, asset, read};
@@ -9,8 +9,8 @@ use htex_exchange::{
 
 use crate::promise::sentence;
 
-/// A model file of the Penn Haptic Texture Toolkit: what is read becomes an asset that opens, and
-/// has finite magnitudes at each node.
+/// Reads a model file of the Penn Haptic Texture Toolkit. If it is valid, it must become an asset
+/// that opens and has finite magnitudes at each node.
 pub fn hatt(input: &[u8]) -> bool {
     let imported = Imported { name: "fuzzed", tool: "fuzz" };
     let texture = match read(input) {
@@ -37,11 +37,11 @@ pub fn hatt(input: &[u8]) -> bool {
     true
 }
 
-/// Full scale of what is imported.
+/// Full scale of imported files.
 const FULL_SCALE: f64 = 0.25;
 
-/// A file of Meta: what is read is a recording within its full scale, and is the same after it was
-/// written.
+/// Reads a Meta file. If it is valid, it must be a recording within its full scale, and be the same
+/// after it is written and read again.
 pub fn haptic(input: &[u8]) -> bool {
     let read = Haptic::from_bytes(input);
     if let Ok(file) = &read {
@@ -54,12 +54,12 @@ pub fn haptic(input: &[u8]) -> bool {
     recorded("fuzzed.haptic", input, read.is_ok())
 }
 
-/// A file of Apple: as [`haptic`].
+/// Reads an Apple file, as [`haptic`].
 pub fn ahap(input: &[u8]) -> bool {
     let read = Ahap::from_bytes(input);
     if let Ok(file) = &read {
         let patterns = file.patterns(&PROFILES[0]);
-        // Combining many patterns compares each with each; what is longer is not read again.
+        // Combining patterns compares each one with all others, so a long file is not read again.
         let is_short = patterns.iter().all(|pattern| pattern.end_s() <= MOST_S);
         if patterns.len() < 100 && is_short {
             let pattern = combined(&patterns);
@@ -71,7 +71,7 @@ pub fn ahap(input: &[u8]) -> bool {
     recorded("fuzzed.ahap", input, read.is_ok())
 }
 
-/// A file of MPEG: as [`haptic`].
+/// Reads an MPEG file, as [`haptic`].
 pub fn hjif(input: &[u8]) -> bool {
     let read = Hjif::from_bytes(input);
     if let Ok(file) = &read {
@@ -81,7 +81,8 @@ pub fn hjif(input: &[u8]) -> bool {
     recorded("fuzzed.hjif", input, read.is_ok())
 }
 
-/// A glTF file: its asset, if it is one, comes back from a file that is written of it, bit for bit.
+/// Reads a glTF file. If it carries an asset, writing and reading it again must give the same
+/// bytes.
 pub fn gltf(input: &[u8]) -> bool {
     let read = htex_exchange::gltf::read(input);
     if let Ok(texture) = &read {
@@ -107,8 +108,8 @@ pub fn gltf(input: &[u8]) -> bool {
     true
 }
 
-/// An image of a friction map: what is read has 255 by 255 pixels at most, comes back pixel by
-/// pixel, and is played within bounds.
+/// Reads an image of a friction map. If it is valid, it has at most 255 by 255 pixels, is unchanged
+/// pixel by pixel after it is written and read again, and plays within bounds.
 pub fn png(input: &[u8]) -> bool {
     let image = match htex_exchange::map::read(input) {
         Ok(image) => image,
@@ -145,7 +146,7 @@ pub fn png(input: &[u8]) -> bool {
             htex::Motion::new(80.0, 0.4).with_place_mm(f64::from(step), 0.7 * f64::from(step));
         voice.set_motion(motion).expect("a motion in range");
         voice.render(&mut samples).expect("a map is rendered");
-        // The cubic and the filters of the band's edges overshoot.
+        // The cubic interpolation and the filters at the band's edges overshoot.
         assert!(samples.iter().all(|x| f64::from(x.abs()) <= 4.0 * FULL_SCALE));
     }
     true
@@ -157,7 +158,7 @@ fn same_end(before: &Pattern, after: &Pattern) {
     }
 }
 
-/// Reads a file as a recording; one that no reader takes is none.
+/// Reads a file as a recording. If `is_read` is false, no reader may accept it.
 fn recorded(name: &str, input: &[u8], is_read: bool) -> bool {
     let physical = Physical {
         full_scale: Some(FULL_SCALE),

@@ -1,19 +1,19 @@
-//! WASM functions that are small and take long to compile.
+//! Small WASM functions that take a long time to compile.
 
-/// A function: blocks within blocks, with statements at the head and at the end of each.
+/// A function: nested blocks, with statements at the head and at the end of each.
 #[derive(Debug, Clone, Default)]
 pub struct Heavy {
     /// Local variables, 64-bit integers.
     pub locals: usize,
-    /// Blocks within one another.
+    /// Nesting depth of blocks.
     pub depth: usize,
-    /// Consecutive nests.
+    /// Number of consecutive nests.
     pub nests: usize,
-    /// Copies of the function.
+    /// Number of copies of the function.
     pub copies: usize,
-    /// Kinds of the blocks, in turn: a block, a loop, an `if`.
+    /// Kinds of the blocks, used in turn: a block, a loop, an `if`.
     pub blocks: Vec<u8>,
-    /// Statements at the head of each block, by their number in [`Heavy::statement`].
+    /// Statements at the head of each block, as numbers in [`Heavy::statement`].
     pub head: Vec<u8>,
     /// Statements at the end of each block.
     pub end: Vec<u8>,
@@ -23,7 +23,7 @@ pub struct Heavy {
 const KINDS: u8 = 14;
 
 impl Heavy {
-    /// Text of the functions and of the items they use, for a module with a memory.
+    /// Returns the text of the functions and of the items they use, for a module with a memory.
     pub fn text(&self) -> String {
         let mut function = String::new();
         let mut n = 0;
@@ -44,7 +44,7 @@ impl Heavy {
                 };
             }
         }
-        // So that every variable is used.
+        // Uses every variable.
         for local in 1..=self.locals {
             function += &format!("(i64.store (i32.const 0) (local.get {local}))");
         }
@@ -66,7 +66,7 @@ impl Heavy {
         }
     }
 
-    /// The `n`th statement, within so many blocks. No two of a kind are the same.
+    /// Returns the `n`th statement, at a nesting depth. No two of a kind are equal.
     fn statement(&self, kind: u8, n: usize, depth: usize) -> String {
         let local = |n: usize| 1 + n % self.locals.max(1);
         let (to, from) = (local(n), local(n * 7 + 3));

@@ -1,23 +1,23 @@
-//! Recordings as laboratories keep them, and column maps.
+//! Recordings in laboratory formats, and column maps.
 
 use htex_author::recording::{ColumnMap, ReadOptions};
 
 use crate::recordings::{recording_with, refused};
 
-/// Maps that read columns of any file, by their numbers.
+/// Maps that read the columns of any file by number.
 const MAPS: &[&str] = &["lateral=#1:1", "lateral_x=#1*2-#2/4,lateral_y=#2:1,normal=#3:1"];
 
-/// A FLAC, whose header has a rate.
+/// A FLAC file, whose header states a rate.
 pub fn flac(input: &[u8]) -> bool {
     any_map("fuzzed.flac", input)
 }
 
-/// A MATLAB file of version 5.
+/// A MATLAB file, version 5.
 pub fn mat(input: &[u8]) -> bool {
     any_map("fuzzed.mat", input)
 }
 
-/// A TDMS of LabVIEW.
+/// A TDMS file from LabVIEW.
 pub fn tdms(input: &[u8]) -> bool {
     any_map("fuzzed.tdms", input)
 }
@@ -31,12 +31,12 @@ pub fn arrow(input: &[u8]) -> bool {
     any_map("fuzzed.arrow", input)
 }
 
-/// An HDF5, or a MATLAB file of version 7.3.
+/// An HDF5 file, or a MATLAB file of version 7.3.
 pub fn hdf5(input: &[u8]) -> bool {
     any_map("fuzzed.h5", input)
 }
 
-/// A column map, on the first line, and the CSV that it is for.
+/// A column map on the first line, followed by its CSV.
 pub fn column_map(input: &[u8]) -> bool {
     let line_end = input.iter().position(|byte| *byte == b'\n');
     let (map, rest) = input.split_at(line_end.unwrap_or(input.len()));
@@ -49,7 +49,7 @@ pub fn column_map(input: &[u8]) -> bool {
     }
 }
 
-/// Reads a recording by the names of its columns, and by each map.
+/// Reads a recording by its column names, and by each map.
 fn any_map(name: &str, input: &[u8]) -> bool {
     let mut options = vec![ReadOptions::default()];
     for map in MAPS {

@@ -1,8 +1,8 @@
-//! The bodies of the fuzz targets: one function each, which processes untrusted input as far
-//! as an application would and panics when a promise is broken.
+//! The bodies of the fuzz targets, one function each. A target processes untrusted input as far as
+//! an application would, and panics if a promise is broken.
 //!
-//! The programs in `fuzz/` call these functions, and so does the test that runs all seeds and
-//! regressions (`tests/tests/regressions.rs`): a finding is the same in both.
+//! Both the programs in `fuzz/` and the test that runs all seeds and regressions
+//! (`tests/tests/regressions.rs`) call these functions, so a finding is the same in both.
 #![cfg(feature = "wasm")]
 #![deny(unsafe_code)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // A panic is a finding.
@@ -63,11 +63,11 @@ pub use toml_text::toml_text;
 /// A fuzz target.
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
-    /// Its name: of the program in `fuzz/fuzz_targets`, and of the folders of its seeds and
+    /// The name of its program in `fuzz/fuzz_targets`, and of the folders of its seeds and
     /// regressions.
     pub name: &'static str,
-    /// Reads the input and uses its content. True when it was accepted, false when it was refused
-    /// with a valid error.
+    /// Reads the input and uses its content. Returns true if the input was accepted, false if it
+    /// was refused with a valid error.
     ///
     /// # Panics
     /// When a promise is broken.
@@ -117,7 +117,7 @@ const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {
     Target { name, run }
 }
 
-/// Runs the target of this name.
+/// Runs the target with this name.
 ///
 /// # Panics
 /// When a promise is broken, or the target is unknown.

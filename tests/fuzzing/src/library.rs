@@ -1,11 +1,11 @@
-//! A library, as a whole file and built around fuzzed pages.
+//! Libraries: whole files, and files built around fuzzed pages.
 
 use htex_finding::Report;
 use htex_library::{Library, LibraryError, Limits, MAGIC, Writer, check_name, validate_source};
 
 use crate::promise;
 
-/// Smaller than the defaults, so that short inputs find slow paths.
+/// Smaller than the defaults, so that short inputs reach slow paths.
 const LIMITS: Limits = Limits {
     entries: 1 << 12,
     leaves: 64,
@@ -15,19 +15,19 @@ const LIMITS: Limits = Limits {
     objects: 64,
     ratio: 10,
 };
-/// Textures that are read by name.
+/// Number of textures that are read by name.
 const READ: usize = 32;
 const HEADER_BYTES: usize = 128;
 
-/// What the first byte of the input makes of the rest.
+/// The input's first byte determines how the rest is used.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Around {
     /// The rest is a file.
     File,
     /// The rest is a file; its header gets a valid checksum.
     Header,
-    /// The rest is a leaf page, shared objects and payload, after the lengths of the first two (16
-    /// bits each).
+    /// The rest is a leaf page, shared objects and payload. The lengths of the first two come
+    /// before them (16 bits each).
     Leaf,
     /// The rest is a root page, in front of the leaf pages of [`leaves`].
     Root,
@@ -36,7 +36,7 @@ pub(crate) enum Around {
 impl Around {
     const ALL: [Self; 4] = [Self::File, Self::Header, Self::Leaf, Self::Root];
 
-    /// The input that makes this of `rest`.
+    /// Returns the input that uses `rest` in this way.
     pub(crate) fn input(self, rest: &[u8]) -> Vec<u8> {
         [&[self as u8], rest].concat()
     }
@@ -75,7 +75,7 @@ impl Around {
     }
 }
 
-/// Two leaf pages of a texture each, `a` and `b`, of no bytes.
+/// Two leaf pages with an empty texture each, `a` and `b`.
 pub(crate) fn leaves() -> [Vec<u8>; 2] {
     // One entry, no words, its name, no tags, no models, no conditions, a law of zeros, no bytes,
     // no objects, a hash.
@@ -86,7 +86,8 @@ pub(crate) fn leaves() -> [Vec<u8>; 2] {
     })
 }
 
-/// Opens a library and reads it as far as an application would. One that is valid is packed again.
+/// Opens a library and reads it as far as an application would. If it is valid, it is also packed
+/// again.
 pub fn library(input: &[u8]) -> bool {
     let Some((kind, rest)) = input.split_first() else {
         return false;
@@ -107,7 +108,7 @@ pub fn library(input: &[u8]) -> bool {
     }
 }
 
-/// Reads all entries and some textures. True when there are entries.
+/// Reads all entries and some textures. Returns true if there are entries.
 fn read(library: &Library<&[u8]>, report: &Report) -> bool {
     let refused = |error: LibraryError| {
         promise::sentence(&error);
@@ -141,7 +142,7 @@ fn read(library: &Library<&[u8]>, report: &Report) -> bool {
     count > 0
 }
 
-/// The textures of a valid library can be packed, and are then those of the library.
+/// The textures of a valid library can be packed, and the new library has the same textures.
 fn pack_again(library: &Library<&[u8]>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("again.htexlib");
@@ -168,7 +169,7 @@ fn pack_again(library: &Library<&[u8]>) {
     assert!(library.entries().map(facts).eq(again.entries().map(facts)));
 }
 
-/// A page of the index with a valid checksum, not compressed: a deflate stream of stored blocks.
+/// Makes an index page with a valid checksum, not compressed: a deflate stream of stored blocks.
 pub(crate) fn page(contents: &[u8]) -> Vec<u8> {
     let mut page = (contents.len() as u32).to_le_bytes().to_vec();
     let blocks = contents.chunks(usize::from(u16::MAX));
@@ -186,7 +187,8 @@ pub(crate) fn page(contents: &[u8]) -> Vec<u8> {
     [&crc32fast::hash(&page).to_le_bytes(), &page[..]].concat()
 }
 
-/// A file of these parts with a valid header; `counts` are entries and leaves.
+/// Makes a file from these parts with a valid header. `counts` are the numbers of entries and
+/// leaves.
 fn file(root: &[u8], leaves: &[u8], shared: &[u8], payload: &[u8], counts: (u64, u32)) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
     file.extend([1, 0, 0, 0, 0, 0, 0, 0]);
@@ -204,7 +206,7 @@ fn file(root: &[u8], leaves: &[u8], shared: &[u8], payload: &[u8], counts: (u64,
     with_checksum(&[&file, &index, shared, payload].concat())
 }
 
-/// The file with a valid checksum of its header.
+/// Returns the file with a valid header checksum.
 fn with_checksum(file: &[u8]) -> Vec<u8> {
     let mut file = file.to_vec();
     if let Some((header, _)) = file.split_first_chunk_mut::<HEADER_BYTES>() {

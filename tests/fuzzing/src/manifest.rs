@@ -5,10 +5,10 @@ use serde_json::Value;
 use crate::asset::open;
 use crate::container::container;
 
-/// Most bytes of a generated entry.
+/// Largest size of a generated entry, bytes.
 const MOST: usize = 1 << 16;
 
-/// Opens an asset of this manifest, with entries as it describes them.
+/// Opens an asset with this manifest, and with entries as it describes them.
 pub fn manifest(json: &[u8]) -> bool {
     let value: Value = serde_json::from_slice(json).unwrap_or_default();
     let mut entries: Vec<(&str, Vec<u8>)> = Vec::new();
@@ -36,7 +36,7 @@ fn text<'a>(value: &'a Value, pointer: &str) -> Option<&'a str> {
     value.pointer(pointer)?.as_str()
 }
 
-/// A parameter block for the fields: lists of one number, and all bytes are 1.
+/// A parameter block for the fields. Lists have one number, and all bytes are 1.
 fn block(representation: &Value) -> Vec<u8> {
     let one = |field: &Value| {
         let store = field.get("store");
@@ -54,7 +54,7 @@ fn block(representation: &Value) -> Vec<u8> {
     vec![1; bytes.min(MOST)]
 }
 
-/// Bytes of spectra on a grid of 5 Hz, one for each condition.
+/// Size of the spectra on a 5 Hz grid, one for each condition, bytes.
 fn reference_bytes(manifest: &Value) -> usize {
     let edge = |name: &str| manifest.pointer(name).and_then(Value::as_f64).unwrap_or(0.0);
     let first = (edge("/band/low_hz") / 5.0).ceil();

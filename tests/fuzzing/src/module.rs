@@ -1,4 +1,4 @@
-//! WASM modules, as models.
+//! WASM modules used as models.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::promise::{finite, sentence};
 #[path = "../../../sdk/host/tests/common/mod.rs"]
 pub(crate) mod model;
 
-/// Tight limits of time and memory.
+/// Tight limits on time and memory.
 pub(crate) fn limits() -> WasmLimits {
     WasmLimits::default()
         .with_memory_bytes(2 << 20)
@@ -23,8 +23,8 @@ pub(crate) fn limits() -> WasmLimits {
         .with_cache(WasmCache::Off)
 }
 
-/// Loads a module and makes every call. Input that does not begin as a module describes bodies for
-/// the functions of a valid model.
+/// Loads a module and makes every call. Input that does not start like a module describes bodies
+/// for the functions of a valid model.
 pub fn wasm_module(input: &[u8]) -> bool {
     let written;
     let bytes = if input.starts_with(b"\0asm") {
@@ -42,8 +42,8 @@ pub fn wasm_module(input: &[u8]) -> bool {
     }
 }
 
-/// A module: for each function a byte chooses whether its body is generated from the following
-/// bytes.
+/// Makes a module. For each function, a byte chooses whether its body is generated from the
+/// following bytes.
 fn of_bodies(input: &[u8]) -> Vec<u8> {
     let mut bytes = Bytes(input);
     let mut bodies = Vec::new();
@@ -63,7 +63,7 @@ fn refused(error: &HostError) -> bool {
     false
 }
 
-/// Makes every call that a host makes of a model.
+/// Makes every call that a host makes to a model.
 fn use_all(model: &LoadedModel) {
     let band = Band::TACTILE;
     let (grid, ones) = (band.grid_hz(), vec![1.0; band.bins()]);

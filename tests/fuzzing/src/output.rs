@@ -1,4 +1,4 @@
-//! Names of scenes and formats, which determine the name of a file.
+//! Names of scenes and formats, which determine the name of the output file.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -7,9 +7,9 @@ use serde_json::json;
 
 use crate::scene::{around, folder};
 
-/// The output file of a scene of this name in this format lies in the current folder, whether the
-/// caller or the scene chooses the format. The format stands behind a line feed; the first byte
-/// chooses whether the scene is rehearsed.
+/// The output file of a scene with this name and format must lie in the current folder, whether the
+/// caller or the scene chooses the format. The format follows a line feed. The first byte chooses
+/// whether the scene is rehearsed.
 pub fn output_name(input: &[u8]) -> bool {
     let Some((&first, rest)) = input.split_first() else {
         return false;
@@ -33,8 +33,8 @@ pub fn output_name(input: &[u8]) -> bool {
     !rest.is_empty()
 }
 
-/// One name in the current folder, not of a hidden file, with an extension: that of the format
-/// where it is a plain word.
+/// Asserts that it is a single name in the current folder, is not hidden, and has an extension: the
+/// format's, if the format is a plain word.
 fn is_here(name: &str, format: &str) {
     let parts: Vec<Component<'_>> = Path::new(name).components().collect();
     assert_eq!(parts, [Component::Normal(name.as_ref())], "{name:?}");

@@ -1,4 +1,4 @@
-//! Untrusted text, printed to a terminal.
+//! Untrusted text printed to a terminal.
 
 use std::sync::OnceLock;
 
@@ -10,13 +10,13 @@ use serde_json::Value;
 use crate::block;
 use crate::container::container;
 
-/// Most characters of a text.
+/// Largest length of a text, characters.
 const MOST: usize = 1000;
-/// Most bytes of output for a byte of text: an escape has six, `\u{1b}`.
+/// Largest number of output bytes per byte of text. An escape such as `\u{1b}` has six.
 const WIDEST: usize = 6;
 
 /// Puts a text into a string or a key of a manifest and of a descriptor; the first byte chooses
-/// which. Messages about them, and the text itself, are printed as one line without control
+/// which. Messages about them, and the text itself, must be printed as one line without control
 /// characters.
 pub fn printed_text(input: &[u8]) -> bool {
     let Some((&which, text)) = input.split_first() else {
@@ -36,8 +36,8 @@ pub fn printed_text(input: &[u8]) -> bool {
     !text.is_empty()
 }
 
-/// One line without characters that control a terminal, reverse text or hide it; printed again, it
-/// is the same.
+/// Asserts that it is one line without characters that control a terminal, reverse text or hide it,
+/// and that printing it again does not change it.
 fn is_tame(printed: &str, from_bytes: usize) {
     let steers = printed.chars().find(|c| steers(*c));
     assert_eq!(steers, None, "in {printed:?}");
@@ -45,7 +45,8 @@ fn is_tame(printed: &str, from_bytes: usize) {
     assert_eq!(plain(printed), printed);
 }
 
-/// Control characters; other line ends; marks of direction, of no width and of languages.
+/// Whether it is a control character, another line end, or a mark of direction, zero width or
+/// language.
 fn steers(c: char) -> bool {
     let marks = [
         0x00ad..=0x00ad,
@@ -64,7 +65,7 @@ fn steers(c: char) -> bool {
     c.is_control() || marks.iter().any(|range| range.contains(&u32::from(c)))
 }
 
-/// The messages about a manifest: those of findings have no control characters.
+/// Returns the messages about a manifest. Messages of findings have no control characters.
 fn of_manifest(json: &str) -> Vec<String> {
     let bytes = container(json.as_bytes(), [("parameters.bin", &[0; 64][..])]);
     let findings = validate(&bytes, &Limits::default()).findings;
@@ -120,7 +121,7 @@ fn write(document: &mut Value, which: usize, text: &str) {
     }
 }
 
-/// Pointers to all texts and objects.
+/// Finds pointers to all texts and objects.
 fn find(value: &Value, pointer: String, places: &mut Vec<String>) {
     match value {
         Value::Array(list) => {

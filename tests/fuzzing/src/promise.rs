@@ -1,4 +1,4 @@
-//! The promises that hold for all input.
+//! The promises that hold for any input.
 
 use std::fmt::Display;
 
@@ -6,12 +6,12 @@ use htex::Asset;
 use htex_finding::{Finding, Rule};
 use htex_host::{HostError, Status};
 
-/// Longest error text; what it quotes of the input is bounded.
+/// Longest error text. Quotations from the input are bounded.
 const LONGEST: usize = 20_000;
-/// Samples of a block.
+/// Samples in a block.
 const BLOCK: usize = 64;
 
-/// An error is a sentence: text in one line, without control characters.
+/// Asserts that an error is a sentence: one line of text without control characters.
 pub(crate) fn sentence(error: &impl Display) {
     let text = error.to_string();
     assert!(!text.trim().is_empty(), "an error without words");
@@ -23,7 +23,7 @@ pub(crate) fn sentence(error: &impl Display) {
 const RULES: [&[Rule]; 4] =
     [htex_format::RULES, htex_library::RULES, htex_scene::RULES, htex_lab::study::RULES];
 
-/// Findings have a code that is explained, and a sentence.
+/// Asserts that findings have an explained code, and a sentence.
 pub(crate) fn findings(findings: &[Finding]) {
     for finding in findings {
         let mut rules = RULES.iter().copied().flatten();
@@ -32,7 +32,7 @@ pub(crate) fn findings(findings: &[Finding]) {
     }
 }
 
-/// A built-in model may refuse, and may not panic.
+/// A built-in model may refuse but must not panic.
 pub(crate) fn refusal(error: &htex::Error) {
     sentence(error);
     if let htex::Error::Model(error) = error {
@@ -56,7 +56,7 @@ pub(crate) fn finite(what: &str, numbers: impl IntoIterator<Item = f64>) {
     }
 }
 
-/// Plays each representation of an asset by the built-in models, moves the finger, and computes
+/// Plays each representation of an asset with the built-in models, moves the finger, and computes
 /// magnitudes.
 pub(crate) fn play(asset: &Asset) {
     let band = asset.band();

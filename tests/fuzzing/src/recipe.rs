@@ -5,7 +5,7 @@ use htex_finding::plain;
 
 use crate::promise::sentence;
 
-/// A recipe, and the result of a job.
+/// Reads the input as a recipe and as the result of a job.
 pub fn recipe(input: &[u8]) -> bool {
     let made = taken(Made::from_bytes("key", input).and_then(|made| made.to_bytes("key")));
     let Ok(text) = std::str::from_utf8(input) else {
@@ -15,7 +15,7 @@ pub fn recipe(input: &[u8]) -> bool {
 }
 
 fn taken<T>(result: Result<T, BuildError>) -> bool {
-    // A reader of TOML shows the line that is wrong below its sentence.
+    // A TOML reader shows the wrong line below its sentence.
     if let Err(error) = &result {
         sentence(&plain(&error.to_string()));
     }

@@ -1,5 +1,5 @@
-//! Recipes with a table, in a folder with traps: what they name is found, checked and hashed as a
-//! build does, and nothing is fitted. An error goes into the report of the folder, where links lead
+//! Recipes with a table, in a folder with traps. The files they name are found, checked and hashed
+//! as in a build, but nothing is fitted. Errors go into the report of the folder, where links lead
 //! outside.
 
 use std::net::TcpListener;
@@ -13,11 +13,11 @@ use tempfile::TempDir;
 
 use crate::promise::sentence;
 
-/// Requests to the server of this machine.
+/// Number of requests to the local server.
 static REQUESTS: AtomicUsize = AtomicUsize::new(0);
 const PRECIOUS: &[u8] = b"precious";
 
-/// A recipe, a zero byte, a table. In both `PORT` stands for the port of a server of this machine.
+/// A recipe, a zero byte, and a table. In both, `PORT` stands for the port of a local server.
 pub fn recipe_folder(input: &[u8]) -> bool {
     let (folder, port) = traps();
     let (recipe, table) = match input.iter().position(|byte| *byte == 0) {
@@ -44,14 +44,14 @@ pub fn recipe_folder(input: &[u8]) -> bool {
 
 fn taken<T>(result: Result<T, BuildError>) -> bool {
     if let Err(error) = &result {
-        // A reader of TOML shows the line that is wrong, which may be long.
+        // A TOML reader shows the wrong line, which may be long.
         let text: String = plain(&error.to_string()).chars().take(2000).collect();
         sentence(&text);
     }
     result.is_ok()
 }
 
-/// The folder, made once, and the port.
+/// Returns the folder, which is made once, and the port.
 fn traps() -> &'static (TempDir, String) {
     static TRAPS: OnceLock<(TempDir, String)> = OnceLock::new();
     TRAPS.get_or_init(|| {

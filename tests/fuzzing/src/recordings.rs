@@ -13,10 +13,10 @@ use htex_scene::Trace;
 
 use crate::promise::{finite, sentence};
 
-/// Most samples of which a spectrum is taken.
+/// Largest number of samples from which a spectrum is computed.
 const MOST: usize = 100_000;
 
-/// A CSV as a recording, and as a motion.
+/// Reads a CSV file as a recording, and as a motion.
 pub fn csv(input: &[u8]) -> bool {
     let followed = match trace_from_bytes("fuzzed.csv", input) {
         Ok(columns) => {
@@ -28,22 +28,22 @@ pub fn csv(input: &[u8]) -> bool {
     recording("fuzzed.csv", input, 100.0) || followed
 }
 
-/// A WAV, whose header has a rate.
+/// A WAV file, whose header states a rate.
 pub fn wav(input: &[u8]) -> bool {
     recording("fuzzed.wav", input, 2000.0)
 }
 
-/// An NPY, which has no rate, at 1 kHz.
+/// An NPY file, which states no rate, at 1 kHz.
 pub fn npy(input: &[u8]) -> bool {
     recording("fuzzed.npy", input, 1000.0)
 }
 
-/// Reads a recording as it is and, when it has no rate, at this one; takes its spectrum.
+/// Reads a recording, at this rate if it states none, and computes its spectrum.
 fn recording(name: &str, input: &[u8], rate_hz: f64) -> bool {
     recording_with(name, input, &ReadOptions::default(), rate_hz)
 }
 
-/// What is shown of a file before it is read: the map of its columns is one.
+/// Previews a file, as is done before it is read: the map of its columns must be valid.
 fn previewed(name: &str, input: &[u8], options: &ReadOptions) {
     match preview(Path::new(name), input, options) {
         Ok(found) if found.map.is_empty() => {}

@@ -1,4 +1,4 @@
-//! Responses of a setup.
+//! Responses of a recording setup.
 
 use htex_author::recording::response_from_bytes;
 use htex_author::{Recording, SpectrumOptions, segment_spectra};

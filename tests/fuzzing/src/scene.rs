@@ -14,7 +14,7 @@ use htex_scene::{
 
 use crate::promise::{findings, finite, refusal, sentence};
 
-/// Blocks that are rendered.
+/// Number of rendered blocks.
 const BLOCKS: usize = 4;
 
 /// Reads a scene, opens the files it names, plans it for each kind of device, and renders its
@@ -36,7 +36,7 @@ pub fn scene(input: &[u8]) -> bool {
     }
 }
 
-/// The built-in models, and files.
+/// The built-in models and the file device.
 pub(crate) fn around() -> Surroundings<'static> {
     static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
     let (models, devices) =
@@ -44,7 +44,7 @@ pub(crate) fn around() -> Surroundings<'static> {
     Surroundings { models, embedded: false, devices }
 }
 
-/// The folder of the assets that scenes name.
+/// The folder of the assets that the scenes name.
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes")
 }
@@ -61,7 +61,7 @@ fn read_twice(input: &[u8]) {
     }
 }
 
-/// One device of each quantity.
+/// One device for each quantity.
 fn devices_of(scene: &LoadedScene) -> [Capabilities; 3] {
     let file = Capabilities {
         quantity: Quantity::LateralForce,

@@ -1,4 +1,4 @@
-//! The seeds of all targets, made by the writers of htex.
+//! The seeds of all targets, made by htex's own writers.
 
 use std::f64::consts::PI;
 use std::io::Cursor;
@@ -54,8 +54,8 @@ pub fn seeds() -> Vec<Seed> {
     seeds
 }
 
-/// Model files of the Penn Haptic Texture Toolkit: of four nodes with triangles, one of them
-/// silent, and of one without zeros.
+/// Model files of the Penn Haptic Texture Toolkit: one with four nodes and triangles, one of whose
+/// nodes is silent, and one with a single node without zeros.
 fn models_of_others() -> Vec<Seed> {
     let list = |name: &str, values: &[f64]| {
         let values: String = values.iter().map(|x| format!("<value>{x}</value>")).collect();
@@ -87,8 +87,8 @@ fn models_of_others() -> Vec<Seed> {
     vec![seed("four-nodes", &whole), seed("one-node", one)]
 }
 
-/// Files of Meta, Apple and MPEG: envelopes and transients, as they are written here, and what is
-/// only read.
+/// Files from Meta, Apple and MPEG: envelopes and transients in the form htex writes, and forms
+/// that it only reads.
 fn signals_of_others() -> Vec<Seed> {
     let profile = &htex_exchange::PROFILES[0];
     let point = |time_s, value| htex_exchange::Point { time_s, value };
@@ -140,7 +140,7 @@ fn signals_of_others() -> Vec<Seed> {
     ]
 }
 
-/// Meshes whose material carries an asset of the first model: a container, and a text with its
+/// Meshes whose material carries an asset of the first model: as a container, and as text with its
 /// buffer.
 fn meshes(registry: &Registry) -> Vec<Seed> {
     let model = registry.models().first().expect("a built-in model");
@@ -157,7 +157,7 @@ fn meshes(registry: &Registry) -> Vec<Seed> {
     ["glb", "gltf"].map(mesh).to_vec()
 }
 
-/// An image of the row of a texture.
+/// An image of one row of a texture.
 fn images(registry: &Registry) -> Vec<Seed> {
     let model = registry.find("sslope").expect("a built-in model");
     let bytes = asset(model).to_bytes().expect("a sound asset");
@@ -169,8 +169,8 @@ fn images(registry: &Registry) -> Vec<Seed> {
     vec![("png", "row".to_owned(), made.bytes)]
 }
 
-/// Part files of takes, as they are and as what the target builds them from: a second of a finger,
-/// with a tracker's rows.
+/// Part files of takes, as files and in the form from which the target builds them: a second of a
+/// finger with rows from a tracker.
 fn parts() -> Vec<Seed> {
     let header = |format: &str| {
         format!(
@@ -202,8 +202,8 @@ fn studies() -> Vec<Seed> {
         ("study", "two", STUDY.to_owned()),
         ("answers", "begun", answered()),
         ("recipe", "vinyls", recipe.to_owned()),
-        // Choices of the grammar: the beginnings of valid texts, and a bracket that is opened again
-        // and again.
+        // Choices of the grammar: the beginnings of valid texts, and a bracket that is opened
+        // repeatedly.
         ("toml_text", "recipe", "\0\0\x04".to_owned()),
         ("toml_text", "study", "\x01".to_owned()),
         ("toml_text", "calibration", "\x02".to_owned()),
@@ -220,7 +220,7 @@ fn studies() -> Vec<Seed> {
     .to_vec()
 }
 
-/// A library as a file and in parts: a leaf page of two textures that share an object, and a root
+/// A library as a file and in parts: a leaf page with two textures that share an object, and a root
 /// page.
 fn libraries() -> Vec<Seed> {
     let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
@@ -244,8 +244,8 @@ fn libraries() -> Vec<Seed> {
     .to_vec()
 }
 
-/// Contents of a leaf page, shared objects and payload: an asset, and the same with a part of it
-/// shared.
+/// Contents of a leaf page, shared objects and payload: an asset, and the same asset with a part of
+/// it shared.
 fn leaf(asset: &[u8]) -> Vec<u8> {
     let read = htex_format::Asset::from_bytes(asset).expect("an example");
     let models = read.manifest.representations.iter().map(|r| r.model.as_str());
@@ -277,7 +277,7 @@ fn leaf(asset: &[u8]) -> Vec<u8> {
         vec![0],
         varint(asset.len()),
         varint(own.len()),
-        // No object; one of 100 bytes from 0 on, after 100 own bytes.
+        // No object, then one object of 100 bytes starting at 0, after 100 own bytes.
         vec![0, 1, 100, 0, 100],
         blake3::hash(asset).as_bytes().repeat(2),
     ]
@@ -286,7 +286,7 @@ fn leaf(asset: &[u8]) -> Vec<u8> {
     [lengths.concat(), leaf, shared, asset.to_vec(), own].concat()
 }
 
-/// Baked blocks of noise and of sinusoids, with two motions of the grid before each.
+/// Baked blocks of noise and of sinusoids, each after two motions of the grid.
 fn blocks() -> Vec<Seed> {
     let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
     let asset = htex::Asset::from_bytes(vinyl).expect("an example");
@@ -301,7 +301,7 @@ fn blocks() -> Vec<Seed> {
     ["sslope", "speak"].map(seed).to_vec()
 }
 
-/// Calls of libhtex: two voices that render and are freed, the second twice.
+/// Calls of libhtex: two voices render and are freed, the second one twice.
 fn calls() -> Vec<Seed> {
     let unknown = [231, 0, 0, 0, 0, 0, 0, 0xf8, 0x7f];
     let motion = [&[80, 200, 40], &unknown[..], &unknown, &unknown].concat();
@@ -333,7 +333,7 @@ fn words() -> Vec<Seed> {
     texts.chain(names.iter().map(seed("output_name"))).collect()
 }
 
-/// An asset of one model at two conditions; each number lies in the middle of its range.
+/// An asset with one model at two conditions. Each number lies in the middle of its range.
 fn asset(model: &LoadedModel) -> htex_format::Asset {
     let mut flat = Vec::new();
     for field in &model.descriptor().fields {
@@ -362,7 +362,7 @@ fn asset(model: &LoadedModel) -> htex_format::Asset {
     }
 }
 
-/// The block of a written asset: the stored entry is found by its size.
+/// The block of a written asset. The stored entry is found by its size.
 fn block_of(asset: &htex_format::Asset) -> Vec<u8> {
     let bytes = asset.to_bytes().expect("a sound asset");
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).expect("an archive");
@@ -442,7 +442,7 @@ const SCENE: &str = r#"{"htex_scene":"1.0","surfaces":[{"asset":"vinyl.htex","re
 "response_depth_db":20},"duration_s":1,"seed":2,"budget":{"ns_per_sample":1e6,"max_error_db":90},
 "effects":{"crossfade":"on","dither":"auto","limiter":"off"}}"#;
 
-/// WAVs of each kind of sample, and NPYs.
+/// WAV files with each sample format, and NPY files.
 fn samples() -> Vec<Seed> {
     let mut seeds = Vec::new();
     let wave = |i: u32| (f64::from(i) * 0.3).sin() * 0.2;
@@ -483,7 +483,7 @@ fn samples() -> Vec<Seed> {
     seeds
 }
 
-/// Files that SciPy, h5py, npTDMS, pyarrow and soundfile wrote, and maps.
+/// Files written by SciPy, h5py, npTDMS, pyarrow and soundfile, and maps.
 fn lab_files() -> Vec<Seed> {
     macro_rules! files {
         ($($target:literal: $name:literal;)*) => {
@@ -529,14 +529,14 @@ fn npy(kind: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
     [start, format!("{text:<117}\n").as_bytes(), numbers].concat()
 }
 
-/// Modules, and the inputs from which `wasm_module` and `signed_plugin` generate theirs.
+/// Modules, and the inputs from which `wasm_module` and `signed_plugin` generate their modules.
 fn modules() -> Vec<Seed> {
     let sound = wat::parse_str(model::text("1.0.0", &[], "")).expect("a sound module");
     let varied: Vec<u8> = (0..=255u8).map(|i| i.wrapping_mul(37) ^ (i >> 3)).collect();
     let mut seeds: Vec<Seed> = vec![
         ("wasm_module", "sound.wasm".to_owned(), sound.clone()),
         ("wasm_module", "sound-bodies".to_owned(), vec![0]),
-        // Nested conditions, and loops one behind the other.
+        // Nested conditions, and consecutive loops.
         ("compile_limits", "nested".to_owned(), vec![60, 30, 10, 0, 0, 1, 2, 0]),
         ("compile_limits", "loops".to_owned(), vec![80, 5, 60, 1, 1, 2, 1, 0, 0, 2, 4]),
         ("wasm_module", "made-bodies".to_owned(), varied),

@@ -1,4 +1,4 @@
-//! Models in assets, signed and unsigned.
+//! Signed and unsigned models embedded in assets.
 
 use htex::{Asset, Registry, Search};
 use htex_format::{Manifest, Plugin, Signature};
@@ -8,13 +8,13 @@ use crate::container::container;
 use crate::module::{limits, model};
 use crate::promise::{findings, sentence};
 
-/// Bytes of an input before the module.
+/// Number of input bytes before the module.
 const HEAD: usize = 4;
 /// Base of a fuzzed secret key.
 const KEY: [u8; 32] = [7; 32];
 
 /// Opens an asset that embeds a model. The head of the input chooses what is signed and what is
-/// then changed; after it comes the module, or nothing for a valid one.
+/// changed afterwards. The module follows; if it is empty, a valid one is used.
 pub fn signed_plugin(input: &[u8]) -> bool {
     let Some((&[how, place, change, key], module)) = input.split_first_chunk::<HEAD>() else {
         return false;
@@ -60,8 +60,8 @@ pub fn signed_plugin(input: &[u8]) -> bool {
     true
 }
 
-/// Changes one byte of the signature, of the signed text, or of the module; or takes the
-/// signature of another version.
+/// Changes one byte of the signature, of the signed text, or of the module, or uses the signature
+/// of another version.
 fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8]) {
     let Plugin {
         model, version, blake3, signature: Some(Signature { public_key, ed25519 }), ..
@@ -98,7 +98,8 @@ fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8])
     }
 }
 
-/// The plugin with its key and signature in lower case: hexadecimal digits have two.
+/// Returns the plugin with its key and signature in lower case, because hexadecimal digits have two
+/// cases.
 fn same_case(plugin: &Plugin) -> Plugin {
     let mut plugin = plugin.clone();
     if let Some(Signature { public_key, ed25519 }) = &mut plugin.signature {
@@ -120,7 +121,7 @@ fn manifest(plugin: Plugin) -> Manifest {
     manifest
 }
 
-/// Loads the model under tight limits, and plays it.
+/// Loads the model under tight limits and plays it.
 fn load(data: htex_format::Asset) {
     let search = Search::builtin().with_limits(limits()).with_builtin(false);
     let registry = Registry::search(&search).expect("nothing is searched");

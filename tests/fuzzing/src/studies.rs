@@ -1,4 +1,4 @@
-//! Studies and files of answers.
+//! Studies, and files of answers.
 
 use std::sync::OnceLock;
 
@@ -9,15 +9,15 @@ use htex_lab::study::{
 
 use crate::promise::{self, sentence};
 
-/// Most trials of a plan that is made.
+/// Largest number of trials of a plan that is made.
 const MOST_TRIALS: usize = 100_000;
 
-/// A study of two participants.
+/// A study with two participants.
 pub(crate) const STUDY: &str = "htex_study = '1.0'\nname = 'S'\nseed = 5\ntrial_s = 0.05\nparticipants = 2\nrepetitions = 1\n\
     models = ['ar', 'sbeta']\nphases = ['testing']\nmotion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\n\
     device = { adapter = 'file' }\n[[textures]]\nasset = 'vinyl.htex'\n";
 
-/// A file `study.toml`, and the order of its participants.
+/// Reads a file `study.toml`, and makes the order of its participants.
 pub fn study(input: &[u8]) -> bool {
     let mut findings = Findings::default();
     let study = read_study(input, &mut findings);
@@ -44,7 +44,7 @@ fn trials(study: &Study) -> usize {
     repeated.saturating_mul(participants)
 }
 
-/// A file of a participant's answers: exported, and continued by the session that it says it is of.
+/// Reads a participant's answers, exports them, and continues them with the session that they name.
 pub fn answers(input: &[u8]) -> bool {
     static PLANNED: OnceLock<(Study, Plan)> = OnceLock::new();
     let (study, plan) = PLANNED.get_or_init(|| {

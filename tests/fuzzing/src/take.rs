@@ -1,4 +1,4 @@
-//! Part files of takes, which a killed program leaves.
+//! Part files of takes, which a killed program leaves behind.
 
 use std::path::{Path, PathBuf};
 
@@ -6,14 +6,14 @@ use htex_lab::record::{Outcome, recover};
 
 use crate::promise::sentence;
 
-/// The first byte of an input whose chunks get their lengths and hashes here.
+/// First byte of an input whose chunks get their lengths and hashes here.
 const BUILT: u8 = b'B';
-/// Bytes of a value.
+/// Size of a value, bytes.
 const VALUE: usize = 8;
 
-/// A part file as it is, or after a byte `B` the header's line and pieces that become chunks: a
-/// byte of the kind, one of the number of values, and the values. It is recovered in a folder of
-/// its own.
+/// Recovers a part file in its own folder. The input is the file itself or, after a byte `B`, the
+/// header's line and pieces that become chunks: a byte for the kind, one for the number of values,
+/// and the values.
 pub fn take_part(input: &[u8]) -> bool {
     let bytes = match input {
         [BUILT, rest @ ..] => built(rest),
@@ -54,7 +54,7 @@ fn beside(file: &Path) -> PathBuf {
     file.with_extension("json")
 }
 
-/// A part file with valid lengths and hashes.
+/// Makes a part file with valid lengths and hashes.
 pub(crate) fn built(input: &[u8]) -> Vec<u8> {
     let header = input.iter().position(|b| *b == b'\n');
     let (header, mut rest) = input.split_at(header.map_or(input.len(), |end| end + 1));

@@ -1,6 +1,6 @@
-//! A day of every model:
-//! `cargo run --release -p htex-hard-cases --no-default-features --example long_runs`. `--hours N`
-//! for another length, `--json` for a script. Exit status 1 if a bound is broken.
+//! Runs every model for a day: `cargo run --release -p htex-hard-cases --no-default-features
+//! --example long_runs`. `--hours N` sets another length, `--json` prints JSON for scripts. The
+//! exit status is 1 if a bound is broken.
 
 use std::process::ExitCode;
 
@@ -8,13 +8,13 @@ use htex_hard_cases::long::{Blocks, Run, drift_db, phase_error_cycles, run};
 use htex_hard_cases::seen::models;
 use serde_json::{Value, json};
 
-/// Difference between hours, decibels.
+/// Largest difference between hours, decibels.
 const DRIFT_DB: f64 = 0.05;
-/// Ratio of the time of a sample in the last minute to that in the first, which is rendered again
-/// in turns.
+/// Largest ratio of the time per sample in the last minute to the first minute, which is rendered
+/// again in turns.
 const SLOWDOWN: f64 = 1.1;
 const PHASE_CYCLES: f64 = 1e-6;
-/// Seconds in which blocks are compared, of each seed.
+/// Duration, for each seed, in which blocks are compared, seconds.
 const COMPARED_S: f64 = 3_600.0;
 const SEEDS: [u64; 4] = [0, 1, 2, u64::MAX];
 
@@ -74,7 +74,7 @@ fn voices(hours: f64, quiet: bool) -> Vec<Value> {
     rows.collect()
 }
 
-/// Blocks of an hour of each seed, and the number of repeated ones.
+/// Compares an hour of blocks for each seed. Returns the number of blocks, and of repeated blocks.
 fn compare(model: &htex_host::LoadedModel) -> (usize, u64) {
     let mut blocks = Blocks::new();
     let repeated =

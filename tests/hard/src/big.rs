@@ -1,4 +1,4 @@
-//! Floating point of 256 bits, as a reference.
+//! 256-bit floating point numbers, as a reference.
 
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -12,11 +12,11 @@ thread_local! {
     static CONSTS: RefCell<Consts> = RefCell::new(Consts::new().unwrap());
 }
 
-/// A number of 256 bits.
+/// A 256-bit number.
 #[derive(Debug, Clone)]
 pub struct Big(BigFloat);
 
-/// The number, without rounding.
+/// Converts a number without rounding.
 pub fn big(x: f64) -> Big {
     Big(BigFloat::from_f64(x, BITS))
 }
@@ -60,7 +60,7 @@ impl Big {
         Self(self.0.sqrt(BITS, ROUND))
     }
 
-    /// Rounded to f64, by way of decimals.
+    /// Rounds to f64, through decimals.
     pub fn to_f64(&self) -> f64 {
         let text = CONSTS.with(|consts| {
             let consts = &mut consts.borrow_mut();

@@ -3,12 +3,12 @@
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-/// The number, without rounding.
+/// Converts a number without rounding.
 pub fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }
 
-/// `|x - reference| / |reference|`; the difference itself where the reference is zero.
+/// `|x - reference| / |reference|`, or the difference itself if the reference is zero.
 pub fn relative_error(x: f64, reference: &BigRational) -> f64 {
     if !x.is_finite() {
         return f64::NAN;

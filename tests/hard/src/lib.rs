@@ -1,8 +1,8 @@
-//! Hard cases: an input, a model or a part of the library, an operation, and a promise: a result
-//! that is finite and within a stated bound, or a refusal by name. The table is tested
+//! Hard cases. Each has an input, a model or a part of the library, an operation, and a promise: a
+//! finite result within a stated bound, or a refusal with a named error. The table is tested
 //! (`tests/table.rs`) and published (`spec/hard-cases.md`).
 //!
-//! The bounds are part of the project; the tests print the errors that a machine measures.
+//! The bounds are part of the project. The tests print the errors that a machine measures.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 #![forbid(unsafe_code)]
 
@@ -37,14 +37,14 @@ pub enum Promise {
         unit: &'static str,
         /// The reference.
         with: &'static str,
-        /// The largest error; NaN, which exceeds every bound, where something is not finite.
+        /// The largest error; NaN, which exceeds every bound, if something is not finite.
         worst: fn() -> f64,
     },
     /// Refused with an error.
     Refused {
         /// The error's text, or a part of it.
         by: &'static str,
-        /// Runs the case: the error's text, or what happened instead.
+        /// Runs the case. Returns the error's text, or what happened instead.
         said: fn() -> String,
     },
 }
@@ -53,7 +53,7 @@ pub enum Promise {
 #[derive(Debug, Clone, Copy)]
 pub struct Bound(pub f64, pub &'static str, pub &'static str);
 
-/// A row whose result lies within `bound`: largest error, its unit, what it is compared with.
+/// A row whose result lies within `bound`: the largest error, its unit, and the reference.
 pub(crate) const fn within(
     input: &'static str,
     subject: &'static str,
@@ -75,7 +75,7 @@ pub(crate) const fn refused(
     Case { input, subject, operation, promise: Promise::Refused { by, said } }
 }
 
-/// The larger of two errors; NaN if either is.
+/// The larger of two errors; NaN if either is NaN.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         return f64::NAN;
@@ -83,12 +83,12 @@ pub(crate) fn worse(a: f64, b: f64) -> f64 {
     a.max(b)
 }
 
-/// Number of conditions that do not hold; a row of [`none`] promises 0.
+/// Number of conditions that do not hold. A row with [`none`] promises 0.
 pub(crate) fn failures(of: impl IntoIterator<Item = bool>) -> f64 {
     of.into_iter().filter(|holds| !holds).count() as f64
 }
 
-/// A bound of no failure.
+/// A bound that allows no failure.
 pub(crate) const fn none(what: &'static str) -> Bound {
     Bound(0.0, "failures", what)
 }
@@ -109,7 +109,7 @@ pub fn sections() -> Vec<Section> {
 }
 
 impl Case {
-    /// Runs the case; returns the measured error, or the refusal, as text for the test's output.
+    /// Runs the case. Returns the measured error, or the refusal, as text for the test's output.
     ///
     /// # Errors
     /// The promise and the result.

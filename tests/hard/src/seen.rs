@@ -1,4 +1,4 @@
-//! A signal's texture spectrum, and every operation of models on it.
+//! A signal's texture spectrum, and every model operation on it.
 
 use htex_dsp::grid::level_rms;
 use htex_dsp::spectrum::SegmentAnalyzer;
@@ -34,10 +34,10 @@ pub fn model(name: &str) -> LoadedModel {
     Registry::builtin().find(name).unwrap().clone()
 }
 
-/// Fits a model with some options, to a spectrum on the grid of the tactile band and a signal.
+/// Fits a model, with options, to a spectrum on the grid of the tactile band and to a signal.
 ///
 /// # Errors
-/// The model's refusal.
+/// The model refuses.
 pub fn fit_with(
     model: &LoadedModel,
     magnitude: &[f64],
@@ -54,16 +54,17 @@ pub fn fit_with(
     })
 }
 
-/// Fits a model with its defaults to a spectrum on the grid of the tactile band.
+/// Fits a model, with its defaults, to a spectrum on the grid of the tactile band.
 ///
 /// # Errors
-/// The model's refusal.
+/// The model refuses.
 pub fn fit(model: &LoadedModel, magnitude: &[f64]) -> Result<Fit, HostError> {
     fit_with(model, magnitude, &[], &[])
 }
 
-/// Fits every model but those named, and runs every operation on the parameters; returns the
-/// largest sample over its RMS. NaN, and a line on standard output, if anything fails.
+/// Fits every model except those named, and runs every operation on the parameters. Returns the
+/// largest sample relative to its RMS. If anything fails, returns NaN and prints a line to standard
+/// output.
 pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
     let magnitude = spectrum(signal);
     let (mut largest, mut failed) = (0.0, false);
@@ -82,17 +83,17 @@ pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
     if failed { f64::NAN } else { largest }
 }
 
-/// As [`every_model_but`] none.
+/// As [`every_model_but`], without exceptions.
 pub fn every_model(signal: &[f64]) -> f64 {
     every_model_but(&[], signal)
 }
 
-/// The error of a model that refuses to fit a signal; a text if it does not.
+/// The error with which a model refuses to fit a signal; a text if it does not refuse.
 pub fn refusal(name: &str, signal: &[f64]) -> String {
     told(fit(&model(name), &spectrum(signal)))
 }
 
-/// The refusals of all models, if all refuse for the same reason by its status.
+/// The models' refusals, if all refuse with the same status.
 pub fn refusal_of_all(signal: &[f64]) -> String {
     let magnitude = spectrum(signal);
     let said = |model: &LoadedModel| told(fit(model, &magnitude));
@@ -112,7 +113,7 @@ pub fn told<T>(result: Result<T, HostError>) -> String {
     }
 }
 
-/// Fit, magnitude, interpolation, voice, retunes: the largest sample.
+/// Runs fit, magnitude, interpolation, voice and retunes, and returns the largest sample.
 fn whole_life(model: &LoadedModel, magnitude: &[f64]) -> Result<f64, String> {
     let say = |what: &'static str| move |e: HostError| format!("{what}: {e}");
     let fitted = fit(model, magnitude).map_err(say("fit"))?;
@@ -122,18 +123,18 @@ fn whole_life(model: &LoadedModel, magnitude: &[f64]) -> Result<f64, String> {
     let half = model.interpolate(&sets, &[0.5, 0.5]).map_err(say("interpolate"))?;
     check_shape(model, &half)?;
     let mut peak = play(model, &fitted.parameters, &[]).map_err(say("render"))?;
-    // From the longer set to the shorter ones: a voice of AR keeps its order.
+    // From the longer set to the shorter ones, because an AR voice keeps its order.
     let turns: [&[f64]; 3] = [&half, &other.parameters, &fitted.parameters];
     peak = peak.max(play(model, &fitted.parameters, &turns).map_err(say("retune"))?);
     if peak.is_finite() { Ok(peak) } else { Err("a sample is subnormal".to_owned()) }
 }
 
-/// A magnitude is finite and of unit RMS.
+/// Checks that a magnitude is finite and has unit RMS.
 fn check_shape(model: &LoadedModel, parameters: &[f64]) -> Result<(), String> {
     let magnitude =
         model.magnitude(parameters, BAND, &BAND.grid_hz()).map_err(|e| e.to_string())?;
     let level = level_rms(&magnitude);
-    // sPeak's lines are read through a window, and reach beyond the band.
+    // sPeak's lines are seen through a window, and reach beyond the band.
     let off = if model.short_name() == "speak" { 0.5 } else { 1e-9 };
     if (level - 1.0).abs() > off {
         return Err(format!("the magnitude's RMS is {level}"));
@@ -141,8 +142,8 @@ fn check_shape(model: &LoadedModel, parameters: &[f64]) -> Result<(), String> {
     Ok(())
 }
 
-/// The largest of some samples of a voice, retuned before every one of the first; NaN where one is
-/// subnormal.
+/// The largest of some samples of a voice, which is retuned before each of the first ones; NaN if a
+/// sample is subnormal.
 fn play(model: &LoadedModel, start: &[f64], turns: &[&[f64]]) -> Result<f64, HostError> {
     let mut stream = Stream::new(model, start, BAND, RATE_HZ, 1)?;
     let mut out = [0.0f32; 4_000];

@@ -4,24 +4,24 @@ use htex_dsp::noise::GaussianNoise;
 
 /// Rate of the samples, hertz.
 pub const RATE_HZ: f64 = 20_000.0;
-/// Samples of a recording: ten segments of a fifth of a second.
+/// Samples in a recording: ten segments of a fifth of a second.
 pub const SAMPLES: usize = 40_000;
 
-/// Samples of a function of time, seconds.
+/// Samples of a function of time in seconds.
 pub fn of_time(f: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..SAMPLES).map(|i| f(i as f64 / RATE_HZ)).collect()
 }
 
-/// A tone of 1 N.
+/// A 1 N tone.
 pub fn tone(hz: f64) -> Vec<f64> {
-    // The phase is reduced in whole numbers first, so that the tone has the precision of f64.
+    // The phase is first reduced in whole numbers, so that the tone has the precision of f64.
     of_time(|t| {
         let cycles = hz * t;
         (std::f64::consts::TAU * (cycles - cycles.floor()) + 0.3).sin()
     })
 }
 
-/// White noise of 1 N.
+/// White noise with 1 N.
 pub fn noise() -> Vec<f64> {
     let mut noise = GaussianNoise::new(7);
     let mut samples = vec![0.0; SAMPLES];
@@ -29,7 +29,7 @@ pub fn noise() -> Vec<f64> {
     samples
 }
 
-/// Noise with most of its power low, as friction has it, newtons.
+/// Noise with most of its power at low frequencies, like friction, newtons.
 pub fn friction() -> Vec<f64> {
     let mut low = 0.0;
     let coloured = |x: f64| {
@@ -39,12 +39,12 @@ pub fn friction() -> Vec<f64> {
     noise().into_iter().map(coloured).collect()
 }
 
-/// Two signals, sample by sample.
+/// The sum of two signals.
 pub fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
-/// A signal times a number.
+/// A signal multiplied by a number.
 pub fn scaled(a: &[f64], gain: f64) -> Vec<f64> {
     a.iter().map(|x| gain * x).collect()
 }
@@ -56,7 +56,7 @@ pub fn impulse() -> Vec<f64> {
     x
 }
 
-/// Rounded to whole multiples of a step.
+/// A signal rounded to multiples of a step.
 pub fn quantised(a: &[f64], step: f64) -> Vec<f64> {
     a.iter().map(|x| (x / step).round() * step).collect()
 }

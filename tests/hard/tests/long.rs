@@ -1,13 +1,13 @@
-//! Hours of voices: steady power, finite samples, no repetition. The accuracy of the example
-//! `long_runs` at a length that fits here.
+//! Hours of voices: steady power, finite samples, no repetition. Checks the same bounds as the
+//! example `long_runs`, for a length that fits here.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_hard_cases::long::{Blocks, drift_db, phase_error_cycles, run};
 use htex_hard_cases::seen::models;
 
-/// An hour in parts of ten minutes. Ten minutes of 1 kHz of noise are 1.2 million independent
-/// values: the standard error of a part is 0.0056 dB, and shapes of narrow bands have a fraction of
-/// that.
+/// An hour in parts of ten minutes. Ten minutes of noise with 1 kHz bandwidth contain 1.2 million
+/// independent values, so the standard error of a part is 0.0056 dB. Shapes with narrow bands
+/// contain a fraction of these values.
 #[test]
 fn an_hour_is_steady() {
     for model in models() {
@@ -24,14 +24,14 @@ fn an_hour_is_steady() {
         assert_eq!(run.power.len(), 6);
         assert_eq!(run.broken, 0, "{}", model.short_name());
         assert!(drift < 0.1, "{}: {drift} dB", model.short_name());
-        // Above 0 by the power that the bins of the band miss at its edges; a map's lines next to
-        // them are weaker by the filters.
+        // Above 0 by the power that the band's bins miss at its edges. A map's lines next to the
+        // edges are weaker because of the filters.
         assert!((-0.1..0.15).contains(&off), "{}: {off} dB", model.short_name());
     }
 }
 
-/// Six minutes of four seeds, no two blocks of 64 samples alike. Lines repeat: those of sPeak lie
-/// on a grid of 5 Hz, and a map is crossed again.
+/// Six minutes with four seeds contain no two equal blocks of 64 samples. Lines repeat: sPeak's
+/// lines lie on a 5 Hz grid, and a map is crossed again.
 #[test]
 fn seeds_never_repeat_a_block() {
     for model in models().iter().filter(|m| !m.has_lines()) {
@@ -46,8 +46,8 @@ fn seeds_never_repeat_a_block() {
     }
 }
 
-/// Frequencies that a binary fraction of the rate does not hold, after 20 million samples: a day at
-/// 230 Hz, and a step of the way of a day at 20 kHz.
+/// Frequencies that are not a binary fraction of the rate, after 20 million samples: a day at 230
+/// Hz, and one step of the way to a day at 20 kHz.
 #[test]
 fn phases_do_not_drift() {
     for (frequency_hz, rate_hz) in [(317.3, 2_000.0), (0.1 + 20.0, 20_000.0), (999.9, 44_100.0)] {

@@ -10,7 +10,7 @@ fn generated_page_is_fresh() {
     xtask::generated::file("spec/hard-cases.md", page.as_bytes());
 }
 
-/// Runs the cases of a section; prints the measured errors.
+/// Runs the cases of a section and prints the measured errors.
 fn hold(title: &str) {
     let sections = sections();
     let section = sections.iter().find(|s| s.title == title).unwrap();

@@ -1,4 +1,4 @@
-//! Bodies that break off.
+//! HTTP bodies that break off.
 
 use std::error::Error;
 use std::pin::Pin;
@@ -22,7 +22,7 @@ where
     body.map_err(Into::into).boxed_unsync()
 }
 
-/// A body that ends before its end; its stated length stays.
+/// A body that ends early. Its stated length stays.
 pub(crate) struct Faulty {
     body: AnyBody,
     rest: u64,
@@ -30,12 +30,12 @@ pub(crate) struct Faulty {
 }
 
 impl Faulty {
-    /// With an error after this many bytes, which ends the connection.
+    /// Fails with an error after this many bytes, which ends the connection.
     pub(crate) fn cut(body: AnyBody, bytes: u64) -> AnyBody {
         Self::boxed(body, bytes, false)
     }
 
-    /// Without anything more after this many bytes.
+    /// Sends nothing more after this many bytes.
     pub(crate) fn stall(body: AnyBody, bytes: u64) -> AnyBody {
         Self::boxed(body, bytes, true)
     }
@@ -55,7 +55,7 @@ impl Body for Faulty {
         context: &mut Context<'_>,
     ) -> Poll<Option<Result<Frame<Bytes>, Self::Error>>> {
         if self.rest == 0 {
-            // Never woken: the connection stays open until the client ends it.
+            // It is never woken, so the connection stays open until the client ends it.
             return if self.is_stalled {
                 Poll::Pending
             } else {

@@ -1,6 +1,6 @@
 //! A web server on loopback for tests, in the process of the test: an S3-compatible store (the
-//! crates `s3s` and `s3s-fs`) with signatures, and the files of the bucket `web` also without them.
-//! It records its requests and fails them as a test asks.
+//! crates `s3s` and `s3s-fs`) with signatures. The files in the bucket `web` can also be read
+//! without them. It records its requests, and fails them as a test specifies.
 //!
 //! ```
 //! use htex_object_server::{Fault, Server};
@@ -39,16 +39,16 @@ use body::{AnyBody, Faulty};
 
 /// The key that the server knows.
 pub const ACCESS_KEY: &str = "AKIDHTEXTEST";
-/// Its secret, by which a test finds it in messages.
+/// Its secret. Tests search messages for it.
 pub const SECRET_KEY: &str = "sEcReT-of-the-htex-test";
 
 /// What happens to a request.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fault {
-    /// It is answered.
+    /// The request is answered normally.
     None,
-    /// It is refused with this status and the code of an error document, which quotes the request
-    /// as S3 does.
+    /// It is refused with this status and an error code. As in S3, the error document quotes the
+    /// request.
     Status(u16, &'static str),
     /// It is answered later.
     Delay(Duration),
@@ -64,13 +64,14 @@ pub enum Fault {
     Redirect(String),
     /// It is answered without the header `ETag`.
     WithoutTag,
-    /// The same, and the connection ends after this many bytes of the response's body.
+    /// As `WithoutTag`, and the connection ends after this many bytes of the response's
+    /// body.
     CutWithoutTag(u64),
-    /// It arrives without the header `Range`, as on a server that knows none.
+    /// It arrives without the header `Range`, as on a server that does not support ranges.
     Whole,
 }
 
-/// A request as it came.
+/// A request as it arrived.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
     /// `GET`, `PUT`, …
@@ -81,7 +82,7 @@ pub struct Seen {
     pub range: Option<String>,
     /// Whether it was signed.
     pub is_signed: bool,
-    /// The headers `Content-Type` and `Cache-Control` of what is written.
+    /// The headers `Content-Type` and `Cache-Control` of written files.
     pub content_type: Option<String>,
     pub cache_control: Option<String>,
     /// The header `Referer`.
@@ -90,7 +91,7 @@ pub struct Seen {
 
 type Rule = Box<dyn Fn(usize, &Seen) -> Fault + Send + Sync>;
 
-/// A server that ends when it is dropped.
+/// A server. It ends when it is dropped.
 pub struct Server {
     address: SocketAddr,
     folder: TempDir,
@@ -114,8 +115,7 @@ impl Server {
         Self::start_after(Duration::ZERO)
     }
 
-    /// Starts on a free port, which refuses connections for this time, as that of a server that
-    /// restarts does.
+    /// Starts on a free port. It refuses connections for this time, like a server that restarts.
     pub fn start_after(time: Duration) -> Self {
         let folder = TempDir::new().unwrap();
         for bucket in ["surfaces", "web"] {
@@ -150,7 +150,7 @@ impl Server {
         format!("http://{}", self.address)
     }
 
-    /// The variables of the environment for this server.
+    /// The environment variables for this server.
     pub fn variables(&self) -> Vec<(&'static str, String)> {
         vec![
             ("AWS_ACCESS_KEY_ID", ACCESS_KEY.to_owned()),
@@ -168,12 +168,12 @@ impl Server {
         std::fs::write(path, bytes).unwrap();
     }
 
-    /// The bytes of `BUCKET/KEY`, if there is such a file.
+    /// The bytes of `BUCKET/KEY`, if the file exists.
     pub fn get(&self, name: &str) -> Option<Vec<u8>> {
         std::fs::read(self.path(name)).ok()
     }
 
-    /// Every file that the server keeps, parts of unfinished ones among them.
+    /// Every file that the server stores, including parts of unfinished ones.
     pub fn files(&self) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
         let mut open = vec![self.folder.path().to_owned()];
@@ -191,8 +191,8 @@ impl Server {
         found
     }
 
-    /// From now on requests meet these faults; the function gets the number of requests before,
-    /// from now on.
+    /// Applies these faults to all following requests. The function receives the number of requests
+    /// since this call.
     pub fn fail(&self, rule: impl Fn(usize, &Seen) -> Fault + Send + Sync + 'static) {
         *self.shared.rule.lock().unwrap() = (Box::new(rule), 0);
         self.shared.seen.lock().unwrap().clear();
@@ -242,7 +242,7 @@ async fn serve(socket: TcpStream, shared: Arc<Shared>) {
         let shared = Arc::clone(&shared);
         async move { shared.answer(request).await }
     });
-    // A connection that was cut by a fault ends with an error here.
+    // A connection that a fault cuts ends with an error here.
     let _ = http1::Builder::new().serve_connection(TokioIo::new(socket), answer).await;
 }
 
@@ -296,7 +296,7 @@ impl Shared {
         }
     }
 
-    /// Records the request, and asks the rule.
+    /// Records the request and applies the rule.
     fn fault_of(&self, request: &Request<Incoming>) -> Fault {
         let range = request.headers().get("range");
         let header = |name: &str| {
@@ -336,7 +336,7 @@ fn without_tag(mut response: Response<AnyBody>) -> Response<AnyBody> {
     response
 }
 
-/// An error document that quotes the request's signature, as those of S3 do.
+/// An error document that quotes the request's signature, as S3 does.
 fn refusal(status: u16, code: &str, request: &Request<Incoming>) -> Response<AnyBody> {
     let signature = request.headers().get("authorization");
     let signature = signature.map_or("", |signature| signature.to_str().unwrap());

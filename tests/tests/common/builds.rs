@@ -1,4 +1,4 @@
-//! Third parties' models, built from their sources.
+//! Third-party models, built from their sources.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use htex_host::LoadedModel;
 use htex_tests::workspace;
 use xtask::needs;
 
-/// Where what these tests build is kept between runs.
+/// Where these tests keep what they build between runs.
 const BUILDS: &str = env!("CARGO_TARGET_TMPDIR");
 pub const WASM: &str = "wasm32-unknown-unknown";
 
@@ -27,13 +27,13 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs a C project's `build.sh`; returns what it built.
+/// Runs a C project's `build.sh` and returns what it built.
 pub fn build_c(project: &Path, kind: &str) -> PathBuf {
     let built = run(Command::new("sh").arg(project.join("build.sh")).arg(kind));
     project.join(built.trim())
 }
 
-/// Builds a Rust project, for this machine or another target; returns its library.
+/// Builds a Rust project, for this machine or another target, and returns its library.
 pub fn build_rust(project: &Path, target: Option<&str>) -> PathBuf {
     let folder = folder("third-party-target");
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
@@ -53,7 +53,7 @@ pub fn build_rust(project: &Path, target: Option<&str>) -> PathBuf {
     folder.join(target.unwrap_or_default()).join("release").join(library)
 }
 
-/// What a program prints; its errors if it fails.
+/// Returns what a program prints, or its errors if it fails.
 fn run(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -61,7 +61,7 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A copy of the example in C, ready to be built.
+/// A copy of the C example, ready to be built.
 pub fn bursts_project() -> PathBuf {
     let project = folder("model-c-bursts");
     for file in ["bursts.c", "rhythm.h", "build.sh"] {
@@ -74,12 +74,12 @@ pub fn bursts_project() -> PathBuf {
     project
 }
 
-/// The example in Rust.
+/// The Rust example.
 pub fn texel_project() -> PathBuf {
     workspace().join("examples/model-rust-texel")
 }
 
-/// Loads a model that must be one.
+/// Loads a model, which must be valid.
 pub fn load(path: &Path) -> LoadedModel {
     LoadedModel::from_file(path).unwrap()
 }

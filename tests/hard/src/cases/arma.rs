@@ -1,4 +1,4 @@
-//! Poles and zeros at the edge of what their lines can say.
+//! Poles and zeros at the limits of what their line representation can express.
 
 use std::f64::consts::PI;
 
@@ -24,7 +24,7 @@ fn set(poles: &[f64], zeros: &[f64]) -> Vec<f64> {
     [&counts[0], poles, &counts[1], zeros, &[2_000.0]].concat()
 }
 
-/// Whether a set has finite magnitudes and is played.
+/// Whether a set has finite magnitudes and plays.
 fn is_played(parameters: &[f64]) -> bool {
     let arma = model("arma");
     let magnitude = arma.magnitude(parameters, BAND, &BAND.grid_hz());
@@ -33,7 +33,7 @@ fn is_played(parameters: &[f64]) -> bool {
     magnitude.is_ok() && played.is_ok()
 }
 
-/// The refusal of a set, by magnitude and by voice.
+/// How a set is refused, by magnitude and by voice.
 fn said_of(parameters: &[f64]) -> String {
     let arma = model("arma");
     let magnitude = told(arma.magnitude(parameters, BAND, &[100.0]));
@@ -41,14 +41,14 @@ fn said_of(parameters: &[f64]) -> String {
     if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
-/// Lines of a pair of poles, or zeros, at a radius.
+/// The lines of a pair of poles, or of zeros, at a radius.
 fn pair(radius: f64, hz: f64) -> Vec<f64> {
     let angle = 2.0 * PI * hz / 2_000.0;
     line_spectral_frequencies(&[2.0 * radius * angle.cos(), -radius * radius]).unwrap()
 }
 
-/// Decibels by which the magnitude with zeros on the circle, at a frequency, is above what is next
-/// to it.
+/// How many decibels the magnitude at a frequency, with zeros on the circle, is above its
+/// neighbours.
 fn notch_db(hz: f64) -> f64 {
     let line = 2.0 * PI * hz / 2_000.0;
     let parameters = set(&[], &[line, line]);

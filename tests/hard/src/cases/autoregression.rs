@@ -13,10 +13,10 @@ pub(crate) const SECTION: Section = Section {
 };
 
 const BAND: Band = Band::TACTILE;
-/// Rate at which levels are measured, hertz.
+/// Sample rate at which levels are measured, hertz.
 const PLAYED_HZ: f64 = 2_000.0;
 
-/// The refusal of a filter as a parameter set, by magnitude and by voice.
+/// How a filter is refused as a parameter set, by magnitude and by voice.
 fn filter_refused(coefficients: &[f64]) -> String {
     let ar = model("ar");
     let count = [coefficients.len() as f64];
@@ -26,7 +26,7 @@ fn filter_refused(coefficients: &[f64]) -> String {
     if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
-/// Whether fits of orders up to 64 at a model rate are stable, by each method, and are played.
+/// Whether fits of orders up to 64 at a model rate are stable with each method, and play.
 fn fits_at(rate_hz: &str) -> f64 {
     let ar = model("ar");
     let (signal, mut results) = (friction(), Vec::new());
@@ -46,7 +46,7 @@ fn fits_at(rate_hz: &str) -> f64 {
     failures(results)
 }
 
-/// Whether fits of orders that exact arithmetic reaches are stable in it.
+/// Whether fits are stable in exact arithmetic, for orders that it can handle.
 fn exactly_stable(rate_hz: &str) -> f64 {
     let ar = model("ar");
     let magnitude = spectrum(&friction());
@@ -58,7 +58,7 @@ fn exactly_stable(rate_hz: &str) -> f64 {
     }))
 }
 
-/// Decibels by which the level of a fitted tone of 1 N is off, and by which its voice is.
+/// Error of the level of a fitted 1 N tone, and of its voice, decibels.
 fn tone_level(hz: f64) -> f64 {
     let ar = model("ar");
     let fitted = fit_with(&ar, &spectrum(&tone(hz)), &[], &[]).unwrap();
@@ -254,7 +254,7 @@ const CASES: &[Case] = &[
         let said = models().into_iter().map(|model| {
             let fitted = crate::seen::fit(&model, &spectrum(&friction())).unwrap();
             let mut parameters = fitted.parameters;
-            // A scalar's place, or the first of a list.
+            // A scalar's position, or the first of a list.
             let last = parameters.len() - 1;
             parameters[last] = f64::NAN;
             let grid = BAND.grid_hz();

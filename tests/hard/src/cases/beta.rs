@@ -1,4 +1,4 @@
-//! The beta density and sBeta at the ends of their parameters.
+//! The beta density and sBeta at the limits of their parameters.
 
 use htex_dsp::beta::BetaDensity;
 use htex_dsp::grid::level_rms;
@@ -19,7 +19,7 @@ pub(crate) const SECTION: Section = Section {
 const BAND: Band = Band::TACTILE;
 const PLACES: [f64; 9] = [1e-12, 1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999, 1.0 - 1e-12];
 
-/// ln Γ(x) in 256 bits: shifted above 60, then Stirling's series to 12 terms, 1e-33 of it.
+/// ln Γ(x) in 256 bits: shifted above 60, then Stirling's series with 12 terms, accurate to 1e-33.
 fn log_gamma(x: f64) -> Big {
     // B_2n / (2n (2n - 1)).
     const TERMS: [(f64, f64); 12] = [
@@ -62,7 +62,7 @@ fn log_density(u: f64, alpha: f64, beta: f64, log_beta: &Big) -> Big {
     a * big(u).ln() + b * (big(1.0) - big(u)).ln() - log_beta.clone()
 }
 
-/// Largest relative error of the density where it is no underflow.
+/// Largest relative error of the density where it does not underflow.
 fn density_error(parameters: &[f64], places: &[f64]) -> f64 {
     let mut worst = 0.0;
     for &alpha in parameters {
@@ -73,7 +73,7 @@ fn density_error(parameters: &[f64], places: &[f64]) -> f64 {
                 let log = log_density(u, alpha, beta, &scale);
                 let found = density.at(u);
                 let error = match log.to_f64() {
-                    // What rounds to nothing must be next to nothing.
+                    // A value that rounds to zero must be close to zero.
                     small if small < -700.0 => (found >= 1e-300).into(),
                     _ => log.exp().relative_error(found),
                 };
@@ -84,7 +84,8 @@ fn density_error(parameters: &[f64], places: &[f64]) -> f64 {
     worst
 }
 
-/// Whether shapes are of unit RMS, and their voices near it; or refused, if that is `allowed`.
+/// Whether shapes have unit RMS and their voices are close to it. A refusal counts if it is
+/// `allowed`.
 fn shapes(parameters: &[f64], allowed: bool) -> f64 {
     let each = |alpha| parameters.iter().map(move |&beta| [alpha, beta]);
     let sets = parameters.iter().flat_map(|&alpha| each(alpha));
@@ -97,7 +98,7 @@ fn shapes(parameters: &[f64], allowed: bool) -> f64 {
     }))
 }
 
-/// What becomes of a parameter set, by magnitude and by voice.
+/// What happens to a parameter set, by magnitude and by voice.
 fn shape(set: &[f64]) -> String {
     let sbeta = model("sbeta");
     let magnitude = sbeta.magnitude(set, BAND, &BAND.grid_hz());
@@ -128,18 +129,18 @@ fn shape(set: &[f64]) -> String {
     }
 }
 
-/// A spectrum with peaks of 1 N at some bins, on a floor.
+/// A spectrum with 1 N peaks at some bins, on a floor.
 fn peaks(at: &[usize], floor: f64) -> Vec<f64> {
     let mut magnitude = vec![floor; BAND.bins()];
     at.iter().for_each(|&bin| magnitude[bin] = 1.0);
     magnitude
 }
 
-/// To peaks and bins in decibels, which is the default, and to peaks alone by magnitudes.
+/// Fits to peaks and bins in decibels, which is the default, and fits only to peaks by magnitudes.
 const WAYS: [[(&str, &str); 2]; 2] =
     [[("error", "decibel"), ("bins", "20")], [("error", "magnitude"), ("bins", "0")]];
 
-/// Whether spectra are fitted in both ways with each lower bound and played.
+/// Whether spectra can be fitted in both ways with each lower bound, and play.
 fn fitted(spectra: &[Vec<f64>]) -> f64 {
     let sbeta = model("sbeta");
     let bounds = || WAYS.into_iter().flat_map(|way| ["1", "0", "0.5"].map(|bound| (way, bound)));
@@ -160,8 +161,8 @@ fn fitted(spectra: &[Vec<f64>]) -> f64 {
     }))
 }
 
-/// The worst of a measure of fits of tones of 150, 500 and 747.5 Hz, in both ways with lower bounds
-/// 0.5 and 1.
+/// The worst value of a measure over fits of tones at 150, 500 and 747.5 Hz, in both ways, with
+/// lower bounds 0.5 and 1.
 fn of_tones(off: impl Fn(f64, &Fit) -> f64) -> f64 {
     let (sbeta, mut worst) = (model("sbeta"), 0.0);
     for hz in [150.0, 500.0, 747.5] {

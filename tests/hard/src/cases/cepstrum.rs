@@ -1,4 +1,4 @@
-//! Mel banks finer than the grid, and cepstra of nothing.
+//! Mel banks finer than the grid, and cepstra of empty spectra.
 
 use htex_dsp::dct::{InverseDct, dct_ii};
 use htex_dsp::grid::level_rms;
@@ -19,7 +19,7 @@ pub(crate) const SECTION: Section = Section {
 };
 
 const BAND: Band = Band::TACTILE;
-/// What a recording of 200 Hz holds: 17 bins.
+/// The band of a 200 Hz recording: 17 bins.
 const NARROW: Band = Band { low_hz: 20.0, high_hz: 100.0 };
 const INVERSES: [&str; 3] = ["pinv", "nnls", "interpolate"];
 
@@ -47,7 +47,7 @@ fn lives(magnitude: &[f64], bands: &str, coefficients: &str) -> f64 {
     }))
 }
 
-/// Failures of fits in a band in which most filters are empty, by every inverse.
+/// Failures of fits, by every inverse, in a band in which most filters are empty.
 fn empty_bands(bands: &str) -> f64 {
     let (mfcc, grid) = (model("mfcc"), NARROW.grid_hz());
     let magnitude: Vec<f64> = grid.iter().map(|f| 1.0 / f).collect();
@@ -77,7 +77,7 @@ fn set(cepstrum: &[f64], bands: f64, inverse: f64) -> Vec<f64> {
     [&count[..], cepstrum, &[bands, inverse]].concat()
 }
 
-/// Error of the orthonormal DCT-II of numbers up to 1, against 256 bits.
+/// Error of the orthonormal DCT-II for numbers up to 1, compared with 256 bits.
 fn dct_error(n: usize) -> f64 {
     let values: Vec<f64> = (0..n).map(|i| ((7 * i + 3) % 11) as f64 / 11.0).collect();
     let mut found = vec![0.0; n + 2];

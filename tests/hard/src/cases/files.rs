@@ -26,7 +26,7 @@ fn recording(rate_hz: f64, axes: Vec<f64>) -> Recording {
     Recording::new("hard", rate_hz, vec![axes]).unwrap()
 }
 
-/// An asset of a recording in all models.
+/// An asset with all models, fitted to a recording.
 pub(crate) fn fitted(recordings: Vec<(Recording, f64)>) -> Result<FittedAsset, AuthorError> {
     let take = |(recording, speed_mm_s)| Take {
         recording,
@@ -38,8 +38,8 @@ pub(crate) fn fitted(recordings: Vec<(Recording, f64)>) -> Result<FittedAsset, A
     fit_asset(&takes, &request)
 }
 
-/// The largest sample over the level of all voices of a recording's file; NaN if what is opened is
-/// not what was stored, or fewer than `models` are in it.
+/// The largest sample, relative to the level, over all voices in a recording's file. NaN if the
+/// opened asset is not what was stored, or contains fewer than `models` models.
 fn opened(recording: Recording, models: usize) -> f64 {
     let fitted = match fitted(vec![(recording, 80.0)]) {
         Ok(fitted) => fitted,
@@ -77,17 +77,17 @@ fn played(asset: &htex::Asset, model: &str) -> f64 {
     }
 }
 
-/// How many models the registry has.
+/// The number of models in the registry.
 fn all() -> usize {
     Registry::builtin().models().len()
 }
 
-/// Words of an error; or that there was none.
+/// The text of an error, or the statement that there was none.
 fn words<T>(result: Result<T, impl std::fmt::Display>) -> String {
     result.map_or_else(|error| error.to_string(), |_| "it was done".to_owned())
 }
 
-/// The texture spectrum through a setup of some response at 20, 100, 105, 110 and 1000 Hz.
+/// The texture spectrum through a setup with some response at 20, 100, 105, 110 and 1000 Hz.
 fn through(magnitude: [f64; 5]) -> Result<TextureSpectrum, AuthorError> {
     let options = SpectrumOptions::default().with_response(SetupResponse {
         frequency_hz: vec![20.0, 100.0, 105.0, 110.0, 1_000.0],

@@ -14,19 +14,19 @@ pub(crate) const SECTION: Section = Section {
 const BAND: Band = Band::TACTILE;
 const RATE_HZ: f64 = 4_000.0;
 const SPEED_MM_S: f64 = 80.0;
-/// The motions that a host may tell.
+/// The largest coordinate that a host may pass.
 const FARTHEST_MM: f64 = 1e12;
 const FASTEST_MM_S: f64 = 1e6;
 const STRONGEST_N: f64 = 1e6;
 
-/// Parameters of grey values, with the RMS that is theirs, or 1 where they have none.
+/// Parameters for grey values, with their own RMS, or 1 if they have none.
 fn map(width: usize, pitch_mm: f64, grey: &[f64]) -> Vec<f64> {
     let rms = htex_map::rms(width, pitch_mm, SPEED_MM_S, grey, BAND).unwrap_or(1.0);
     let scalars = [width as f64, pitch_mm, SPEED_MM_S, 0.5, rms, grey.len() as f64];
     [&scalars[..], grey].concat()
 }
 
-/// Grey values of a number that are as unlike each other as they can be, but for a pattern.
+/// A number of grey values in a fixed pattern, whose neighbours differ strongly.
 fn rough(count: usize) -> Vec<f64> {
     let value = |i: usize| ((i * i * 7919 + i * 104_729) % 256) as f64;
     (0..count).map(value).collect()
@@ -40,7 +40,7 @@ fn motion(speed_mm_s: f64, force_n: f64, [x_mm, y_mm]: [f64; 2]) -> Motion {
     Motion { speed_mm_s, force_n, position_mm: 0.0, x_mm, y_mm }
 }
 
-/// The largest sample of a voice that is told motions 10 ms apart; NaN if one is not finite.
+/// The largest sample of a voice that receives motions 10 ms apart; NaN if a sample is not finite.
 fn largest(parameters: &[f64], motions: &[Motion]) -> f64 {
     let (mut voice, mut largest) = (voice(parameters), 0.0);
     for motion in motions {
@@ -52,8 +52,8 @@ fn largest(parameters: &[f64], motions: &[Motion]) -> f64 {
     largest
 }
 
-/// Whether a map is played, untold and told, within what its grey values can be at 16 times the
-/// force.
+/// Whether a map plays, without motions and with them, within what its grey values allow at 16
+/// times the force.
 fn is_bounded(parameters: &[f64]) -> bool {
     let magnitude = model("map").magnitude(parameters, BAND, &BAND.grid_hz());
     let places = [[0.0; 2], [0.3, -0.2], [FARTHEST_MM; 2], [-FARTHEST_MM, 0.0], [0.0; 2]];
@@ -69,14 +69,14 @@ fn is_bounded(parameters: &[f64]) -> bool {
         .collect();
     let mut untold = [0.0f32; 4_000];
     voice(parameters).render(&mut untold).unwrap();
-    // The cubic overshoots by a fourth along each axis, and the filters of the edges by less than
-    // twice.
+    // The cubic overshoots by a fourth along each axis, and the filters at the edges by less than a
+    // factor of two.
     let most = 16.0 * 2.0 * 1.25 * 1.25 * 255.0 / parameters[4];
     let told = largest(parameters, &motions);
     magnitude.is_ok() && untold.iter().all(|x| f64::from(x.abs()) <= most) && told <= most
 }
 
-/// The refusal of grey values, by magnitude and by voice.
+/// How grey values are refused, by magnitude and by voice.
 fn said_of(parameters: &[f64]) -> String {
     let magnitude = told(model("map").magnitude(parameters, BAND, &[100.0]));
     let voice = told(model("map").voice(parameters, BAND, RATE_HZ, 1));

@@ -20,7 +20,7 @@ pub(crate) const SECTION: Section = Section {
 
 const BAND: Band = Band::TACTILE;
 
-/// Filters with reflection coefficients up to `most` in size.
+/// Filters with reflection coefficients of at most `most` in absolute value.
 fn filters(order: usize, most: f64, count: u64) -> Vec<Vec<f64>> {
     let filter = |seed| {
         let mut uniform = Uniform::new(seed);
@@ -35,7 +35,8 @@ fn set(coefficients: &[f64]) -> Vec<f64> {
     [&[coefficients.len() as f64], coefficients, &[2_000.0]].concat()
 }
 
-/// Mixes half way between all pairs of filters that are refused, or not stable without rounding.
+/// Number of half-way mixes, over all pairs of filters, that are refused or unstable without
+/// rounding.
 fn unstable_mixes(filters: &[Vec<f64>]) -> f64 {
     let ar = model("ar");
     let mut results = Vec::new();
@@ -52,8 +53,7 @@ fn unstable_mixes(filters: &[Vec<f64>]) -> f64 {
     failures(results)
 }
 
-/// Filters at the ends of what there is: poles near the circle at both ends and all around, and
-/// none.
+/// Extreme filters: poles near the circle at both ends and all around, and no poles.
 fn extremes() -> Vec<Vec<f64>> {
     let near = 1.0 - 1e-6;
     let pair = |turn: f64| {
@@ -72,7 +72,7 @@ fn extremes() -> Vec<Vec<f64>> {
     ]
 }
 
-/// Largest error of coefficients that went to line spectral frequencies and back.
+/// Largest error of coefficients after conversion to line spectral frequencies and back.
 fn round_trip(filters: &[Vec<f64>]) -> f64 {
     let off = filters.iter().map(|a| {
         let back = line_spectral_frequencies(a).and_then(|w| from_line_spectral_frequencies(&w));
@@ -85,14 +85,14 @@ fn round_trip(filters: &[Vec<f64>]) -> f64 {
     off.fold(0.0, worse)
 }
 
-/// Two samples that differ from zero, 3 ms apart: their spectrum is a comb.
+/// Two nonzero samples, 3 ms apart. Their spectrum is a comb.
 fn clicks() -> Vec<f64> {
     let first = impulse();
     let delayed = std::iter::repeat_n(0.0, 60).chain(first.iter().copied());
     first.iter().zip(delayed).map(|(x, y)| x + 0.5 * y).collect()
 }
 
-/// Whether mixes of fits to unlike recordings, at weights near 0 and 1 too, are shapes that play.
+/// Whether mixes of fits to unlike recordings, also at weights near 0 and 1, are shapes that play.
 fn mixes(model: &LoadedModel) -> Vec<bool> {
     let recordings = [noise(), friction(), clicks(), tone(300.0), far_apart()];
     let fitted: Vec<Vec<f64>> = recordings

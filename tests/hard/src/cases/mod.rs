@@ -1,4 +1,4 @@
-//! The rows, by kind.
+//! The rows of the table, by kind.
 
 mod arma;
 mod autoregression;

@@ -1,4 +1,4 @@
-//! Fingers that move as no finger does, on assets and in scenes.
+//! Motions that no finger makes, on assets and in scenes.
 
 use htex::{Asset, Effects, VoiceOptions};
 use htex_author::recording::Recording;
@@ -19,7 +19,7 @@ pub(crate) const SECTION: Section = Section {
 
 const LIMIT_V: f64 = 150.0;
 
-/// Bytes of an asset of one or two conditions in all models.
+/// An asset with one or two conditions and all models.
 fn asset(conditions: usize) -> Asset {
     let recording = |x| Recording::new("hard", RATE_HZ, vec![x]).unwrap();
     let takes = vec![(recording(friction()), 60.0), (recording(scaled(&noise(), 0.1)), 120.0)];
@@ -32,7 +32,8 @@ fn models() -> Vec<String> {
     known.iter().map(|m| m.short_name().to_owned()).collect()
 }
 
-/// The largest sample over 0.1 N of every model's voice that is moved so before each block.
+/// The largest sample, relative to 0.1 N, over every model's voice when it is moved like this
+/// before each block.
 fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
     let asset = asset(2);
     let mut peak = 0.0;
@@ -53,7 +54,7 @@ fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
     peak / 0.1
 }
 
-/// The refusal of a motion by every model's voice, which plays on.
+/// How every model's voice refuses a motion. The voice must play on.
 fn motion_refused(speed_mm_s: f64, force_n: f64) -> String {
     let asset = asset(2);
     let mut said = String::new();
@@ -73,7 +74,7 @@ fn motion_refused(speed_mm_s: f64, force_n: f64) -> String {
     said
 }
 
-/// What a device takes: newtons, or volts on a carrier.
+/// What a device accepts: newtons, or volts on a carrier.
 fn device(quantity: Quantity, rate_hz: f64, carrier_hz: Option<f64>) -> Capabilities {
     Capabilities {
         quantity,
@@ -87,7 +88,8 @@ fn device(quantity: Quantity, rate_hz: f64, carrier_hz: Option<f64>) -> Capabili
     }
 }
 
-/// A live scene of one surface that lies everywhere, with every stage that can be forced on.
+/// A live scene with one surface that covers everything, and with every stage that can be forced
+/// on.
 fn scene(conditions: usize) -> LoadedScene {
     LoadedScene {
         scene: Scene {
@@ -116,15 +118,15 @@ fn finger(speed_mm_s: f64, force_n: f64) -> Finger {
     Finger { speed_mm_s, force_n, at_mm: None }
 }
 
-/// The largest sample of a scene whose finger moves so in turns, and of what it renders when the
-/// finger moves sanely again; NaN if that is silent, or if the limiter held what was no number.
+/// The largest sample of a scene while the finger makes these motions in turn, and after it moves
+/// sanely again. NaN if that is silent, or if the limiter had to handle NaN.
 fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
     let scene = scene(1);
     let plan = plan(&scene, device, &Costs::embedded()).unwrap();
     let mut renderer = Renderer::new(&scene, &plan).unwrap();
     let mut block = [0.0f32; 64];
     let (mut peak, mut at_limit) = (0.0, 0);
-    // The drive, when nobody says another.
+    // The default drive voltage.
     let drive_v = device.limit.map(|limit| 0.5 * limit);
     for i in 0..600 {
         let (speed_mm_s, force_n) = match i {
@@ -141,7 +143,7 @@ fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
     if held_numbers && block.iter().any(|x| *x != 0.0) { peak } else { f64::NAN }
 }
 
-/// The largest sample of a scene that never changes, of a finger that all but lifts off.
+/// The largest sample of a constant scene with a finger that almost lifts off.
 fn all_but_lifted(force_n: f64) -> f64 {
     let mut scene = scene(1);
     scene.scene.effects.clear();
@@ -166,10 +168,10 @@ fn scene_refused(speed_mm_s: f64, force_n: f64) -> String {
     moved.map_or_else(|error| error.to_string(), |()| "it was done".to_owned())
 }
 
-/// The least and the most that counts as a reading of a finger.
+/// The extreme values that still count as a reading of a finger.
 const ENDS: [(f64, f64); 6] =
     [(0.0, 0.0), (1_000.0, 20.0), (0.0, 20.0), (1_000.0, 0.0), (5e-324, 5e-324), (80.0, 0.4)];
-/// Readings of no finger, beyond `f32` and longer than one is held for.
+/// Impossible readings, beyond `f32` and longer than a motion is held.
 const BEYOND_FLOATS: [(f64, f64); 4] = [(80.0, 1e39), (1e9, 0.4), (1e300, 1e300), (80.0, 0.4)];
 
 const CASES: &[Case] = &[

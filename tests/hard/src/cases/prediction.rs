@@ -20,7 +20,7 @@ pub(crate) const SECTION: Section = Section {
 
 const LEVINSON: &str = "Levinson–Durbin";
 const FILTER: &str = "all-pole filter";
-/// A pole this far inside the unit circle.
+/// Distance of a pole inside the unit circle.
 const RIM: f64 = 1e-12;
 
 /// A resonance with its poles [`RIM`] inside the circle, at a 20th of the rate's turn.
@@ -59,7 +59,7 @@ fn magnitude_error(coefficients: &[f64], hz: &[f64], rate_hz: f64) -> f64 {
     off.fold(0.0, worse)
 }
 
-/// Whether estimates of orders up to 64 are stable, and have a finite error.
+/// Whether estimates of orders up to 64 are stable and have a finite error.
 fn all_orders(signal: &[f64]) -> f64 {
     let estimates = [yule_walker, burg, covariance];
     let orders = [1, 2, 3, 6, 7, 16, 17, 31, 64];
@@ -72,7 +72,7 @@ fn all_orders(signal: &[f64]) -> f64 {
     }))
 }
 
-/// A low-pass signal, oversampled so many times: ten poles at 0 Hz.
+/// A low-pass signal, oversampled by a factor: ten poles at 0 Hz.
 fn oversampled(times: f64) -> Vec<f64> {
     let mut x = noise();
     x.truncate(20_000);
@@ -86,8 +86,8 @@ fn oversampled(times: f64) -> Vec<f64> {
     x
 }
 
-/// The largest sample that a lattice at the rim makes of a million samples of noise, over the root
-/// of their number: it adds up nearly all it was ever given.
+/// The largest sample that a lattice at the rim makes from a million samples of noise, relative to
+/// the root of their number. It accumulates nearly everything it ever received.
 fn rim_run(reflection: &[f64]) -> f64 {
     let mut lattice = AllPoleLattice::new(reflection);
     let mut noise = htex_dsp::noise::GaussianNoise::new(3);
@@ -102,7 +102,7 @@ fn rim_run(reflection: &[f64]) -> f64 {
     largest / f64::sqrt(count)
 }
 
-/// How many samples after an impulse a ringing filter of 0.9 is exactly at rest.
+/// Number of samples until a filter that rings with 0.9 is exactly at rest after an impulse.
 fn samples_to_rest() -> f64 {
     let mut lattice = AllPoleLattice::new(&[0.3, -0.81]);
     lattice.tick(1.0);

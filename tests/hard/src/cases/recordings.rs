@@ -1,4 +1,4 @@
-//! Recordings at which spectra degenerate, through every model of the registry.
+//! Recordings with degenerate spectra, passed through every model of the registry.
 
 use crate::seen::{
     every_model, every_model_but, fit_with, model, refusal, refusal_of_all, spectrum, told,
@@ -15,7 +15,7 @@ pub(crate) const SECTION: Section = Section {
     cases: CASES,
 };
 
-/// Fitted, played and changed by these models.
+/// A row in which these models are fitted, played and changed.
 const fn lives(input: &'static str, subject: &'static str, worst: fn() -> f64) -> Case {
     let bound = Bound(12.0, "× RMS", "finite, and samples");
     let operation = "fit, magnitude, mix, render, retune";
@@ -25,7 +25,7 @@ const fn lives(input: &'static str, subject: &'static str, worst: fn() -> f64) -
 const ALL: &str = "every model";
 const NO_PEAK: &str = "CannotFit: the spectrum has no peak";
 
-/// The refusals of sPeak's peaks at bins, if they are all the same.
+/// How sPeak refuses peaks at bins, if it refuses all in the same way.
 fn refusal_of_bins(signals: &[Vec<f64>]) -> String {
     let at_bins = [("frequency", "bin")];
     let refused =

@@ -25,8 +25,8 @@ fn butterworth(ratio: &Big, order: f64) -> Big {
     big(1.0) / (big(1.0) + power).sqrt()
 }
 
-/// Decibels between digital low- and high-pass sections and the bilinear transform, where they pass
-/// more than -200 dB.
+/// Difference between digital low- and high-pass sections and the bilinear transform, decibels,
+/// where they pass more than -200 dB.
 fn section_error_db(order: usize, cutoff_hz: f64) -> f64 {
     let tan = |hz: f64| {
         let angle = Big::pi() * big(hz) / big(RATE_HZ);
@@ -51,7 +51,7 @@ fn section_error_db(order: usize, cutoff_hz: f64) -> f64 {
     worst
 }
 
-/// Relative error of sSlope's magnitude between two frequencies, against 256 bits.
+/// Relative error of sSlope's magnitude between two frequencies, compared with 256 bits.
 fn shape_error(peak_hz: f64, orders: (f64, f64)) -> f64 {
     let grid = BAND.grid_hz();
     let set = [peak_hz, orders.0, orders.1];
@@ -65,7 +65,7 @@ fn shape_error(peak_hz: f64, orders: (f64, f64)) -> f64 {
         let above = big(hz) / big(peak_hz);
         butterworth(&above, orders.1) * butterworth(&(big(1.0) / above), orders.0)
     };
-    // To the largest: the shape's scale is its level's.
+    // Relative to the largest value: the scale of the shape belongs to its level.
     let top = (0..grid.len()).max_by(|&a, &b| found[a].total_cmp(&found[b])).unwrap();
     let largest = at(grid[top]);
     let off = [0, 1, 13, 97, 195, 196].map(|i: usize| {
@@ -75,7 +75,7 @@ fn shape_error(peak_hz: f64, orders: (f64, f64)) -> f64 {
     off.into_iter().fold(0.0, worse)
 }
 
-/// Orders that a spectrum is fitted with; they must be in range, and the shape must play.
+/// Orders with which a spectrum is fitted. They must be in range, and the shape must play.
 fn orders(magnitude: &[f64], slopes: &str) -> Option<[f64; 3]> {
     let sslope = model("sslope");
     let fitted = fit_with(&sslope, magnitude, &[], &[("slopes", slopes)]).ok()?;
@@ -86,13 +86,13 @@ fn orders(magnitude: &[f64], slopes: &str) -> Option<[f64; 3]> {
     (sane && played.is_ok() && fitted.level_rms > 0.0).then_some(set)
 }
 
-/// Whether orders are as wanted by each way of measuring slopes.
+/// Whether the orders are as wanted with each way of measuring slopes.
 fn all_ways(magnitude: &[f64], wanted: [f64; 3]) -> [bool; 3] {
     ["least-squares", "end-points", "anchored"]
         .map(|slopes| orders(magnitude, slopes) == Some(wanted))
 }
 
-/// A spectrum that falls to both sides of a peak, by decibels a decade.
+/// A spectrum that falls on both sides of a peak, by decibels per decade.
 fn roof(peak_hz: f64, db_per_decade: f64) -> Vec<f64> {
     let at = |f: f64| -db_per_decade * (f / peak_hz).log10().abs();
     BAND.grid_hz().into_iter().map(|f| 10f64.powf(at(f) / 20.0)).collect()
@@ -285,7 +285,7 @@ const CASES: &[Case] = &[
     }),
     within(ENDS, "sPeak", "fit", none("a line at each edge, as strong"), || {
         let fitted = crate::seen::fit(&model("speak"), &ends());
-        // The bins of the band read 5/6 of the power of either.
+        // The bins of the band contain 5/6 of the power of either.
         let amplitude = 1.2f64.sqrt();
         let lines = [2.0, 20.0, 1000.0, 2.0, amplitude, amplitude, 1.0];
         let equal = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;

@@ -1,4 +1,4 @@
-//! What sound is made of.
+//! The building blocks of sound.
 
 use htex_dsp::biquad::{Biquad, Cascade};
 use htex_dsp::noise::GaussianNoise;
@@ -21,7 +21,7 @@ pub(crate) const SECTION: Section = Section {
 
 const BAND: Band = Band::TACTILE;
 
-/// Largest error of oscillators between 0 Hz and Nyquist, some hours on, against 256 bits.
+/// Largest error of oscillators between 0 Hz and Nyquist after some hours, compared with 256 bits.
 fn sine_error(rate_hz: f64, hours: f64) -> f64 {
     let frequencies = [0.0, 1e-9, 20.0, 333.3, 0.499_999 * rate_hz];
     let samples = (hours * 3600.0 * rate_hz) as u64;
@@ -44,7 +44,8 @@ fn sine_error(rate_hz: f64, hours: f64) -> f64 {
     worst
 }
 
-/// RMS of a sine after a conversion of rates, and of one that lies beyond what the new rate holds.
+/// RMS of a sine after a rate conversion; for a sine beyond the new Nyquist frequency, what is
+/// left.
 fn converted(from_hz: f64, to_hz: f64, hz: f64) -> f64 {
     let Ok(Some(mut resampler)) = Resampler::new(from_hz, to_hz, 1_000.0) else {
         return f64::NAN;

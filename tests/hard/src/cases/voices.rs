@@ -14,12 +14,12 @@ pub(crate) const SECTION: Section = Section {
 
 const BAND: Band = Band::TACTILE;
 
-/// Parameters fitted to friction and to white noise, as like to each other as they are not.
+/// Parameters fitted to friction and to white noise, two very different spectra.
 fn two_sets(model: &LoadedModel) -> [Vec<f64>; 2] {
     [friction(), noise()].map(|x| fit(model, &spectrum(&x)).unwrap().parameters)
 }
 
-/// The largest sample over the RMS of a second at a rate; NaN if a sample is subnormal.
+/// The largest sample, relative to the RMS, of a second at a rate; NaN if a sample is subnormal.
 fn peak_at(model: &LoadedModel, rate_hz: f64) -> f64 {
     let [set, _] = two_sets(model);
     let mut out = vec![0.0f32; (rate_hz as usize).clamp(100, 20_000)];
@@ -33,7 +33,7 @@ fn peak_at(model: &LoadedModel, rate_hz: f64) -> f64 {
     if subnormal { f64::NAN } else { peak.into() }
 }
 
-/// The largest sample of a voice whose parameters change before each of so many.
+/// The largest sample of a voice whose parameters change before every block.
 fn restless(model: &LoadedModel) -> f64 {
     let sets = two_sets(model);
     let mut stream = Stream::new(model, &sets[0], BAND, 20_000.0, 1).unwrap();
@@ -47,7 +47,7 @@ fn restless(model: &LoadedModel) -> f64 {
     peak
 }
 
-/// What a voice says to parameters it cannot change to; it plays on.
+/// How a voice refuses parameters that it cannot change to. It must play on.
 fn retune_refused(name: &str, from: &[f64], to: &[f64]) -> String {
     let mut voice = model(name).voice(from, BAND, 2_000.0, 1).unwrap();
     let said = told(voice.retune(to));
@@ -58,7 +58,7 @@ fn retune_refused(name: &str, from: &[f64], to: &[f64]) -> String {
     }
 }
 
-/// Decibels by which the level of a voice is off unit RMS after it was retuned from a tone to white
+/// How many decibels the level of a voice is off unit RMS after it was retuned from a tone to white
 /// noise, and from there to the tone.
 fn level_after_retune_db(model: &LoadedModel) -> f64 {
     let [tone, noise] =
@@ -67,7 +67,7 @@ fn level_after_retune_db(model: &LoadedModel) -> f64 {
     let mut voice = model.voice(&tone, BAND, rate_hz, 1).unwrap();
     let mut off = 0.0;
     for set in [noise, tone] {
-        // sPeak glides from set to set of as many lines: a second is plenty.
+        // sPeak glides between sets with the same number of lines, for which a second is plenty.
         let mut out = vec![0.0f32; (41.0 * rate_hz) as usize];
         if let Err(error) = voice.retune(&set) {
             println!("{}: {error}", model.short_name());
@@ -81,8 +81,8 @@ fn level_after_retune_db(model: &LoadedModel) -> f64 {
     off
 }
 
-/// By how much the correlation of neighbouring samples, which tells spectra apart, is off a new
-/// voice's after a voice was retuned from a tone to white noise, and from there to the tone.
+/// How much the correlation of neighbouring samples, which distinguishes spectra, differs from a
+/// new voice's after a voice was retuned from a tone to white noise, and from there to the tone.
 fn unlike_a_new_voice(model: &LoadedModel) -> f64 {
     let [tone, noise] =
         [tone(300.0), noise()].map(|x| fit(model, &spectrum(&x)).unwrap().parameters);
@@ -106,7 +106,7 @@ fn unlike_a_new_voice(model: &LoadedModel) -> f64 {
     worse(off[0], off[1])
 }
 
-/// Whether a voice plays the same samples in odd blocks as in one, before and after a change.
+/// Whether a voice plays the same samples in odd blocks as in one block, before and after a change.
 fn same_in_blocks(model: &LoadedModel) -> bool {
     let [set, other] = two_sets(model);
     let rate_hz = model.voice_rate_hz(&set, BAND, 2_500.0).unwrap();

@@ -2,21 +2,21 @@
 
 use std::collections::HashSet;
 
-/// Samples of a block.
+/// Samples in a block.
 pub const LENGTH: usize = 64;
 
-/// Hashes of blocks of 64 samples. Two different blocks have the same hash with probability 2⁻⁶⁴.
+/// Hashes of blocks with 64 samples. Two different blocks have the same hash with probability 2⁻⁶⁴.
 #[derive(Debug, Default)]
 pub struct Blocks(HashSet<u64>);
 
 impl Blocks {
-    /// Without blocks.
+    /// Makes a set without blocks.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds the blocks of some samples (a remainder behind the last is ignored), and
-    /// returns how many of them were there before.
+    /// Adds the blocks of some samples, ignoring an incomplete one at the end. Returns how many of
+    /// them had been added before.
     pub fn add(&mut self, samples: &[f32]) -> u64 {
         let (blocks, _) = samples.as_chunks::<LENGTH>();
         blocks.iter().filter(|block| !self.0.insert(hash(block))).count() as u64
@@ -32,7 +32,7 @@ impl Blocks {
     }
 }
 
-/// Hash of all bits, multiplied and folded sample by sample.
+/// Hashes all bits, multiplied and folded sample by sample.
 fn hash(block: &[f32; LENGTH]) -> u64 {
     block.iter().fold(0x9e37_79b9_7f4a_7c15, |hash, x| {
         let mixed = (hash ^ u64::from(x.to_bits())).wrapping_mul(0xff51_afd7_ed55_8ccd);

@@ -1,7 +1,7 @@
 //! Long runs: hours of a voice.
 //!
-//! A day of a voice is rendered in blocks, with counts of power by
-//! the hour, of samples that are not finite or subnormal, and of repeated blocks.
+//! A day of a voice is rendered in blocks. The run measures the power of each hour, and counts
+//! samples that are not finite or subnormal and repeated blocks.
 
 mod blocks;
 mod phase;
@@ -18,10 +18,10 @@ use crate::signals::friction;
 
 /// Samples rendered at a time.
 pub const BLOCK: usize = 4_096;
-/// The requested rate of voices, hertz; each renders at its own, which is lower.
+/// The requested sample rate, hertz. Each voice renders at its own rate, which is lower.
 pub const WANTED_HZ: f64 = 20_000.0;
 
-/// Results of a run of a voice.
+/// Results of running a voice.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// The rate the voice renders at, hertz.
@@ -34,8 +34,8 @@ pub struct Run {
     pub broken: u64,
     /// Blocks of 64 samples that had been rendered before.
     pub repeated: u64,
-    /// Nanoseconds a sample in the fastest blocks of the first minute, rendered again, and of the
-    /// last.
+    /// Nanoseconds per sample in the fastest blocks of the first minute, rendered again, and of the
+    /// last minute.
     pub ns_per_sample: (f64, f64),
 }
 
@@ -44,7 +44,7 @@ pub fn parameters(model: &LoadedModel) -> Vec<f64> {
     fit(model, &spectrum(&friction())).unwrap().parameters
 }
 
-/// Renders `seconds` of a voice of `seed`, in parts of `part_s` seconds. `blocks` collects the
+/// Renders `seconds` of a voice with `seed`, in parts of `part_s` seconds. `blocks` collects the
 /// blocks, to find repetitions.
 pub fn run(
     model: &LoadedModel,
@@ -88,12 +88,12 @@ pub fn run(
     }
 }
 
-/// Times the last minute of a voice and the first, rendered again by a fresh one, in turns and by
-/// their fastest blocks, since the speed of a processor changes during a day.
+/// Times the last minute of a voice and the first, which a fresh voice renders again. It takes
+/// turns and compares the fastest blocks, because the speed of a processor changes during a day.
 struct Turns {
     fresh: ModelVoice,
     block: [f32; BLOCK],
-    /// Nanoseconds a sample, of the fresh voice and of the old one.
+    /// Nanoseconds per sample, of the fresh voice and of the old one.
     fastest: [f64; 2],
 }
 

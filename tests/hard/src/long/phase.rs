@@ -6,11 +6,11 @@ use num_traits::ToPrimitive;
 
 use crate::exact::exact;
 
-/// Phase error of an oscillator after so many samples against exact arithmetic, cycles. The phase
-/// is read from two samples a quarter of a cycle of the oscillator's own frequency apart: from the
-/// amplitudes of sine and cosine that fit a stretch of samples best.
+/// Phase error of an oscillator after a number of samples, compared with exact arithmetic, cycles.
+/// The phase is read at two samples a quarter of a cycle of the oscillator's own frequency apart:
+/// from the amplitudes of sine and cosine that best fit a stretch of samples.
 ///
-/// `frequency_hz` is well between 0 and half of `rate_hz`.
+/// `frequency_hz` must be well between 0 and half of `rate_hz`.
 pub fn phase_error_cycles(frequency_hz: f64, rate_hz: f64, samples: u64) -> f64 {
     let sine = Sine { frequency_hz, amplitude: 1.0, phase_cycles: 0.0 };
     let mut bank = SineBank::new(rate_hz, 1, &[sine]);
@@ -27,13 +27,13 @@ pub fn phase_error_cycles(frequency_hz: f64, rate_hz: f64, samples: u64) -> f64 
     (off - off.round()).abs()
 }
 
-/// The fraction of a cycle after so many samples, without rounding until the end.
+/// The fraction of a cycle after a number of samples, rounded only at the end.
 fn cycles(frequency_hz: f64, rate_hz: f64, samples: u64) -> f64 {
     let turned = exact(frequency_hz) / exact(rate_hz) * BigRational::from_integer(samples.into());
     turned.fract().to_f64().unwrap_or(f64::NAN)
 }
 
-/// The phase, cycles, of the cosine that fits samples best in the sense of least squares.
+/// The phase, in cycles, of the cosine that fits samples best (least squares).
 fn phase_of(samples: &[f32], turn: f64) -> f64 {
     let (mut cc, mut cs, mut ss, mut xc, mut xs) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (n, &x) in samples.iter().enumerate() {

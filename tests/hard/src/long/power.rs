@@ -1,17 +1,17 @@
-//! Power by the hour.
+//! Power per hour.
 
-/// Mean squares of parts of a stream, one behind the other.
+/// Mean squares of consecutive parts of a stream.
 #[derive(Debug)]
 pub struct Power {
     part: u64,
     sum: f64,
     count: u64,
-    /// Mean square of each whole part.
+    /// Mean square of each complete part.
     pub parts: Vec<f64>,
 }
 
 impl Power {
-    /// Of parts of so many samples.
+    /// Makes parts with this many samples.
     pub fn new(part: u64) -> Self {
         Self { part: part.max(1), sum: 0.0, count: 0, parts: Vec::new() }
     }
@@ -20,7 +20,7 @@ impl Power {
         while !samples.is_empty() {
             let left = (self.part - self.count).min(samples.len() as u64) as usize;
             let (now, later) = samples.split_at(left);
-            // Blocks are short, and their sums are added up in f64.
+            // Blocks are short, so their sums are added in f64.
             self.sum += now.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
             self.count += left as u64;
             samples = later;

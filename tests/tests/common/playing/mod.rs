@@ -1,5 +1,5 @@
-//! Reference data for players: the models' descriptors, assets with parameters of every
-//! model, and the values to be read from them.
+//! Reference data for players: the models' descriptors, assets with parameters of every model, and
+//! the values that players should read from them.
 
 mod parameters;
 
@@ -12,7 +12,7 @@ use xtask::generated::File;
 
 use parameters::parameters;
 
-/// An asset to be made: its band, its conditions, and the motions at which it is read.
+/// An asset to make: its band, its conditions, and the motions at which it is read.
 struct Plan {
     name: &'static str,
     band_hz: [f64; 2],
@@ -20,13 +20,13 @@ struct Plan {
     conditions: &'static [[f64; 2]],
     motions: &'static [[f64; 2]],
     contact: &'static str,
-    /// Exponents of frequency over speed, level over speed and level over force, where a law is
-    /// stated.
+    /// Exponents of the law, if it has one: frequency over speed, level over speed, level over
+    /// force.
     law: Option<[f64; 3]>,
-    /// Triangles that it stores, by its conditions.
+    /// Stored triangles, as indices of its conditions.
     triangles: &'static [[usize; 3]],
-    /// Levels, newtons, if they differ from the condition's number; it is then also read where no
-    /// motion is given.
+    /// Levels, newtons, if they differ from the condition's number. The asset is then also read
+    /// without a motion.
     levels: Option<&'static [f64]>,
 }
 
@@ -39,9 +39,9 @@ impl Plan {
 
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 
-/// Conditions of the assets of three to five are far from a line and from a circle. Those of
-/// `grid`, as measured by hand, are in neither order of a grid; those of `circle` have positions on
-/// one.
+/// The conditions of assets with three to five are far from a line and from a circle. The
+/// conditions of `grid`, as measured by hand, are in neither of a grid's orders. The conditions of
+/// `circle` have positions on a circle.
 const PLANS: [Plan; 9] = [
     Plan {
         name: "one_condition",
@@ -141,9 +141,9 @@ const PLANS: [Plan; 9] = [
         contact: "tool",
         law: None,
         levels: None,
-        // The other diagonal than the fan from the slow and light condition has, in both senses of
-        // turning. By its force the last condition would be grouped with the lower edge; here it is
-        // the corner of a narrow triangle.
+        // Uses the diagonal opposite to the fan from the slow and light condition, with both senses
+        // of turning. By its force, the last condition would be grouped with the lower edge; here
+        // it is the corner of a narrow triangle.
         triangles: &[[3, 2, 1], [4, 1, 3], [0, 4, 1], [0, 3, 4]],
         band_hz: TACTILE_HZ,
         conditions: &[[40.0, 0.4], [40.0, 1.2], [160.0, 1.2], [160.0, 0.4], [100.0, 0.41]],
@@ -161,7 +161,7 @@ const PLANS: [Plan; 9] = [
         contact: "tool",
         law: None,
         // As in files of the Penn Haptic Texture Toolkit: nothing is felt at rest. The strongest
-        // level stands where no finger presses.
+        // level is stored where no finger presses.
         levels: Some(&[0.0, 0.09, 0.02, 0.05, 0.03]),
         triangles: &[],
         band_hz: TACTILE_HZ,
@@ -170,7 +170,7 @@ const PLANS: [Plan; 9] = [
     },
 ];
 
-/// Further frequencies of magnitudes, beside the grid and outside the band, hertz.
+/// Further frequencies for magnitudes, off the grid and outside the band, hertz.
 const BESIDE_HZ: [f64; 8] = [10.0, 19.99, 33.3, 101.25, 317.7, 437.5, 998.5, 1_000.5];
 
 /// The folder of the models' descriptors.
@@ -193,7 +193,7 @@ pub fn files() -> Vec<File> {
     files
 }
 
-/// A model's descriptor as it crosses the ABI, and its path.
+/// A model's descriptor in the form that crosses the ABI, and its path.
 fn descriptor(model: &LoadedModel) -> File {
     let text = serde_json::to_string_pretty(model.descriptor()).unwrap() + "\n";
     (format!("{MODELS}/{}.json", model.id()), text.into_bytes())
@@ -256,7 +256,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// The values read from an asset, a line of JSON for each case.
+/// The values read from an asset, one line of JSON per case.
 fn numbers(plan: &Plan, asset: &Asset) -> String {
     let mut frequency_hz = asset.band().grid_hz();
     frequency_hz.extend(BESIDE_HZ);

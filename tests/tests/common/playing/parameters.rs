@@ -1,11 +1,11 @@
-//! Parameters of each model, drawn in ranges that cover its cases.
+//! Random parameters for each model, in ranges that cover its cases.
 
 use htex_dsp::grid::Band;
 use htex_dsp::line_spectrum::line_spectral_frequencies_of_reflection;
 use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::uniform::Uniform;
 
-/// The flat array of a model for a condition of an asset.
+/// A model's flat array for one condition of an asset.
 pub fn parameters(model: &str, band: Band, asset: usize, condition: usize) -> Vec<f64> {
     let seed = model.bytes().fold(7, |sum, byte| 31 * sum + u64::from(byte));
     let mut draw = Draw(Uniform::new(seed + (100 * asset + condition) as u64));
@@ -34,12 +34,13 @@ impl Draw {
     }
 }
 
-/// A list behind its length.
+/// A list after its length.
 fn list(values: &[f64]) -> Vec<f64> {
     [&[values.len() as f64], values].concat()
 }
 
-/// Orders 0 to 12, within an asset too, at rates that reach above the band, to it, and not to it.
+/// Orders 0 to 12, also different ones within an asset, at rates that reach above the band, up to
+/// it, and not up to it.
 fn ar(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     let order = [0, 2, 4, 6, 8][asset % 5] + 2 * (condition % 3);
     let rate_hz = [2_000.0, 2_000.0, 4_000.0, 1_000.0, 1_500.0][asset % 5];
@@ -47,7 +48,7 @@ fn ar(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     [list(&reflection_to_coefficients(&reflection)), vec![rate_hz]].concat()
 }
 
-/// Orders 0 to 12 of poles and 0 to 6 of zeros, within an asset too.
+/// Orders 0 to 12 of poles and 0 to 6 of zeros, also different ones within an asset.
 fn arma(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     let poles = [0, 2, 4, 6, 8][asset % 5] + 2 * (condition % 3);
     let zeros = [0, 1, 3, 4, 2][asset % 5] + condition % 3;
@@ -70,7 +71,8 @@ fn mfcc(draw: &mut Draw, asset: usize) -> Vec<f64> {
     [list(&cepstrum), vec![bands, inverse]].concat()
 }
 
-/// As many lines at all conditions of an asset, or not; some outside the band.
+/// The same number of lines at all conditions of an asset, or different numbers; some lines lie
+/// outside the band.
 fn speak(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     let count = 3 + asset + if asset.is_multiple_of(2) { 0 } else { condition };
     let mut frequency_hz = draw.list(count, 35.0, 430.0);
@@ -89,7 +91,8 @@ fn bands(draw: &mut Draw, asset: usize) -> Vec<f64> {
     [list(&below), vec![step_db, layout]].concat()
 }
 
-/// Odd and even widths, one row and several, waves that are a fundamental of 12 to 30 Hz apart.
+/// Odd and even widths, one row and several, and waves whose frequencies are a fundamental of 12 to
+/// 30 Hz apart.
 fn map(draw: &mut Draw, band: Band, asset: usize, condition: usize) -> Vec<f64> {
     let width = [40, 17, 64, 31, 8][asset % 5] + condition;
     let rows = [1, 3, 2, 4, 5][asset % 5];

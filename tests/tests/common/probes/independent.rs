@@ -1,6 +1,6 @@
-//! A reader and player of all specifications, written in Python from their text by someone who had
-//! not read the sources (`tests/peers/independent`), agrees on every conformance file, and on the
-//! verdict on every changed document.
+//! An independent reader and player of all specifications agrees on every conformance file, and on
+//! the verdict on every changed document. It was written in Python from their text by someone who
+//! had not read the sources (`tests/peers/independent`).
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -34,7 +34,7 @@ fn a_reader_written_from_the_text_agrees() {
 }
 
 /// The Python with the packages of `tests/peers/independent/requirements.txt` that the environment
-/// names, else that of `.ci/run`, else the system's.
+/// names; otherwise the one of `.ci/run`, otherwise the system's.
 fn python() -> Option<PathBuf> {
     let named = std::env::var_os("HTEX_PYTHON").map(PathBuf::from);
     let own = workspace().join("target/peers/bin/python");

@@ -49,8 +49,8 @@ def _fit(ratings: Ratings, factors: list[str]) -> Any:
     if len(factors) > 1:
         components.update({f"participant * {factor}": f"0 + C({factor})" for factor in factors})
     model = MixedLM.from_formula(formula, ratings.cells, groups="participant", vc_formula=components)
-    # L-BFGS, the default, stops far from the optimum if a component is small. The likelihood decides
-    # between the two other methods.
+    # L-BFGS, the default, stops far from the optimum if a component is small. The likelihood
+    # decides between the two other methods.
     found = [fit for method in ("bfgs", "powell") if (fit := _fitted(model, method)) is not None]
     if not found:
         raise Undefined("NOT_CONVERGED", f"{_TEST} has no solution for these ratings")

@@ -94,8 +94,8 @@ class Analysis:
         """Write report.html, analysis.json, the tables as CSV, and the figures as SVG and PDF."""
         for name, data in self.files(command).items():
             path = pathlib.Path(folder, name)
-            # The user chose the folder, but its contents may come from somebody else, so no link in it
-            # is followed.
+            # The user chose the folder, but its contents may come from somebody else, so no link in
+            # it is followed.
             if path.parent != pathlib.Path(folder) and path.parent.is_symlink():
                 problem = "it is a symbolic link, and nothing is written through one here; remove it"
                 raise PermissionError(errno.EPERM, problem, str(path.parent))

@@ -1,7 +1,7 @@
 """Writes tests/golden/arma.json with SciPy: python tests/peers/arma.py > tests/golden/arma.json.
 
-The line spectral frequencies are angles of roots of the symmetric and the antisymmetric polynomial, the magnitudes those of
-`scipy.signal.freqz`, and the samples those of `scipy.signal.lfilter`.
+The line spectral frequencies are root angles of the symmetric and the antisymmetric polynomial. The
+magnitudes come from `scipy.signal.freqz`, and the samples from `scipy.signal.lfilter`.
 """
 
 import json

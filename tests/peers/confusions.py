@@ -1,12 +1,15 @@
-"""Holds measures of difference against people who told materials apart, with NumPy and SciPy alone and the command as its users run it.
+"""Compares measures of difference with people who told materials apart, using only NumPy, SciPy and
+the command as its users run it.
 
     python tests/peers/confusions.py FOLDER [--htex COMMAND]
 
-FOLDER has four sounds of each of five materials of LMT-108, NAME1.wav to NAME4.wav (shinolab/vibrotactile-autoencoder, history,
-f3dc99a2). 18 people felt them on a vibrating display and said which it was, 630 times (`CONFUSIONS`). Each sound is set to one level
-between 20 and 1000 Hz, since people felt them so; `htex compare` measures each pair of sounds of two materials, and the mean of the 16 pairs is the
-distance of the materials. Printed is Spearman's correlation, over the ten pairs of materials, of that distance and of how seldom
-people took one for the other; the interval is that of 95 % of 1,000 draws of sounds and of trials.
+FOLDER contains four sounds of each of five materials from LMT-108, NAME1.wav to NAME4.wav
+(shinolab/vibrotactile-autoencoder, history, f3dc99a2). 18 people felt them on a vibrating display
+and said which material it was, 630 times (`CONFUSIONS`). Each sound is set to one level between 20
+and 1000 Hz, because people felt them that way. `htex compare` measures each pair of sounds from two
+materials; the distance of the materials is the mean over the 16 pairs. The script prints Spearman's
+correlation, over the ten pairs of materials, between that distance and how seldom people took one
+material for the other. The interval contains 95 % of 1,000 draws of sounds and trials.
 """
 
 import argparse
@@ -42,7 +45,7 @@ DRAWS = 1000
 
 
 def levelled(path, to):
-    """Writes a sound at a tenth of its rate, between 20 and 1000 Hz and at one level."""
+    """Write a sound at a tenth of its rate, between 20 and 1000 Hz and at one level."""
     with wave.open(str(path)) as file:
         rate, channels = file.getframerate(), file.getnchannels()
         samples = np.frombuffer(file.readframes(file.getnframes()), "<i2").reshape(-1, channels)[:, 0]
@@ -57,7 +60,7 @@ def levelled(path, to):
 
 
 def compared(command, folder, one, other, quantity):
-    """The measures of two sounds."""
+    """Return the measures of two sounds."""
     arguments = ["compare", one, other, "--quantity", quantity, "--scale", "1", "--segments", "windows", "--json"]
     done = subprocess.run([command, *arguments], capture_output=True, text=True, cwd=folder)
     if done.returncode:
@@ -73,19 +76,21 @@ def compared(command, folder, one, other, quantity):
 
 
 def confused(counts):
-    """How often each pair of materials was taken for each other."""
+    """Return how often each pair of materials was confused."""
     share = counts / counts.sum(axis=1, keepdims=True)
     return np.array([(share[i, j] + share[j, i]) / 2 for i, j in PAIRS])
 
 
 def correlation(distances, chosen, counts):
-    """Spearman's correlation of the distances of the chosen sounds with how seldom materials were confused."""
+    """Return Spearman's correlation of the chosen sounds' distances with how seldom the materials
+    were confused.
+    """
     means = [np.mean(distances[i, j][np.ix_(chosen[i], chosen[j])]) for i, j in PAIRS]
     return stats.spearmanr(means, -confused(counts)).statistic
 
 
 def drawn(random):
-    """Sounds and trials, drawn with replacement."""
+    """Draw sounds and trials with replacement."""
     sounds = [random.integers(0, 4, 4) for _ in MATERIALS]
     counts = [random.multinomial(row.sum(), row / row.sum()) for row in CONFUSIONS]
     return sounds, np.array(counts, float)

@@ -1,8 +1,10 @@
-"""What is felt of a difference, from the definition in docs/felt.md and the module `htex_dsp::vibrotactile` alone.
+"""Computes what is felt of a difference, only from the definition in docs/felt.md and the module
+`htex_dsp::vibrotactile`.
 
     python3 tests/peers/felt.py > tests/golden/felt.json
 
-The skin is a complex impedance here, the threshold a line in decibels over decades, and bands are edges in hertz.
+Here the skin is a complex impedance, the threshold a line in decibels over decades, and bands are
+edges in hertz.
 """
 
 import json
@@ -20,7 +22,7 @@ def threshold_db(hertz):
 
 
 def skin(hertz, soft):
-    """Displacement by 1 N, metres."""
+    """Displacement caused by 1 N, metres."""
     s = 2j * math.pi * hertz
     return soft / abs(1000.0 + 1.5 * s + 0.00015 * s * s)
 

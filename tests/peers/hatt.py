@@ -3,10 +3,12 @@
     python tests/peers/hatt.py target/release/htex FOLDER
     python tests/peers/hatt.py --told FILE.xml MAGNITUDES.json
 
-imports each `*.xml` of the folder, and at each node whose variance is above 0 compares the magnitudes of `htex spectrum` from 20 to 490 Hz with
-those of the file's filter by `scipy.signal.freqz`: the amplitude that a periodic Hann window of 0.2 s reads of its density. Prints a line for each
-file: nodes, bytes, and the largest difference, dB. With `--told` it compares magnitudes that another program wrote: a list of lists, node by node.
-Exits with 1 where one differs by 0.01 dB or more.
+The script imports each `*.xml` in the folder. At each node whose variance is above 0 it compares
+the magnitudes from `htex spectrum`, 20 to 490 Hz, with the magnitudes of the file's filter from
+`scipy.signal.freqz`: the amplitude that a periodic Hann window of 0.2 s shows for its density. It
+prints a line for each file: nodes, bytes, and the largest difference, dB. With `--told` it compares
+magnitudes that another program wrote: a list of lists, node by node. It exits with 1 if any differs
+by 0.01 dB or more.
 """
 
 import json
@@ -40,7 +42,9 @@ def magnitude(node, rate):
 
 
 def largest_db(file, told):
-    """The largest difference at any audible node of what `told` returns of a node and its number."""
+    """Return the largest difference, over all audible nodes, from what `told` returns for a node
+    and its number.
+    """
     root = ElementTree.parse(file).getroot()
     rate = float(root.find("SampleRate").text)
     nodes = list(enumerate(root.findall("model")))

@@ -1,9 +1,9 @@
-"""A reader of libraries written from spec/htexlib-1.md alone: lists and extracts textures.
+"""A reader of libraries, written only from spec/htexlib-1.md: lists and extracts textures.
 
     python3 tests/peers/library.py spec/library-conformance/valid_*.htexlib
 
-prints each library's textures as JSON, one line a file. It needs `pip install blake3` to compare hashes, and does
-without.
+The script prints each library's textures as JSON, one line per file. It needs `pip install blake3`
+to compare hashes, and works without it.
 """
 
 import json

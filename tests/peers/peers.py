@@ -1,8 +1,9 @@
-"""What people use today: the same tasks with NumPy, SciPy, spectrum and librosa, on one thread.
+"""Performs the same tasks with the tools that people use today: NumPy, SciPy, spectrum and librosa,
+on one thread.
 
-Speaks the protocol of tests/bench/src/peer.rs: prints "ready TASK ..." and "skip TASK: reason", then
-takes a task's name a line and answers "seconds units ok". Argument: the folder with case.json,
-spectrum.npy and recording.csv that the bench writes.
+It speaks the protocol of tests/bench/src/peer.rs: it prints "ready TASK ..." and "skip TASK:
+reason", then reads a task's name from each line and answers "seconds units ok". Argument: the
+folder with case.json, spectrum.npy and recording.csv that the bench writes.
 """
 
 import json
@@ -33,7 +34,7 @@ def task(units):
 
 
 def random_phase(curve):
-    """Ten seconds of noise under a curve, in one inverse transform."""
+    """Make ten seconds of noise under a curve, with one inverse transform."""
     bins = np.zeros(LONG // 2 + 1, complex)
     k = np.arange(200, 10_001)
     phase = rng.uniform(0, 2 * np.pi, k.size)
@@ -74,7 +75,7 @@ def sbeta():
 
 @task(LONG)
 def sbeta_irfft():
-    """The inverse transform alone, the curve at hand."""
+    """Run only the inverse transform; the curve is already computed."""
     return random_phase(lambda f, at=beta_curve: at)
 
 
@@ -100,7 +101,7 @@ def mel_bank(bands=26):
 
 @task(LONG)
 def mfcc():
-    """Pseudo-inverse, and one inverse transform."""
+    """Run the pseudo-inverse, and one inverse transform."""
     energy = np.exp(fft.idct(np.pad(case["mfcc"], (0, 26 - len(case["mfcc"]))), norm="ortho"))
     power = np.clip(np.linalg.pinv(mel_bank()) @ energy, 0, None)
     return random_phase(lambda f: np.interp(f, frequency, np.sqrt(power)))
@@ -167,7 +168,7 @@ def fit():
 
 @task(1)
 def fit_ar_spectrum():
-    """Burg's method on the signal, by the package spectrum."""
+    """Run Burg's method on the signal, with the package spectrum."""
     import spectrum
 
     return spectrum.arburg(np.array(case["signal"]), 6)[0]

@@ -1,18 +1,20 @@
-"""Holds the laws of motion against recordings of others, with NumPy and SciPy alone and the command as its users run it.
+"""Compares the laws of motion with third-party recordings, using only NumPy, SciPy and the command
+as its users run it.
 
     python tests/peers/real.py FOLDER [--htex COMMAND]
 
-FOLDER has what it has of:
+FOLDER may contain any of:
 
     speeds/NAME_vN.wav   one stroke a file, at the speeds of `SPEEDS`, N from 1 (jennafradin/textsense, exploration_speed)
     hatt/Models_*.xml    models of the Penn Haptic Texture Toolkit (H. Culbertson, J. J. Lopez Delgado, K. J. Kuchenbecker 2014)
     free/*.csv           free motions of a finger at 1 kHz: speed (mm/s), force (N), friction (a coefficient) (CdpLab/MDTextHaptDisplay)
 
-None of it comes with htex; its licences do not allow it. For each pair of what was recorded and what was left out it fits an
-asset, renders 20 s at the speed that was left out, and compares the spectrum of the samples with that of the recording: the level
-and the third octaves, beside those of the nearest recorded speed as it is (`clamped`). Of a free motion it fits a grid to one half in time,
-and compares what plays at the motions of the other half with what was recorded there, beside the error that the asset states. Tables are in
-Markdown.
+None of these files comes with htex, because their licences do not allow it. For each pair of known
+and held-out recordings, the script fits an asset, renders 20 s at the held-out speed, and compares
+the spectrum of the samples with the recording's spectrum: the level and the third octaves, next to
+the result of playing the nearest recorded speed unchanged (`clamped`). For a free motion, it fits a
+grid to one half in time. It compares what plays at the motions of the other half with what was
+recorded there, next to the error that the asset states. Tables are printed in Markdown.
 """
 
 import argparse
@@ -43,7 +45,7 @@ FEWEST_WINDOWS = 4
 
 
 def read_wav(path):
-    """Samples and rate of a WAV of 16-bit integers or 32-bit floats, one channel."""
+    """Return samples and rate of a one-channel WAV file with 16-bit integers or 32-bit floats."""
     data = pathlib.Path(path).read_bytes()
     kind = int.from_bytes(data[20:22], "little")
     if kind == 1:
@@ -63,7 +65,7 @@ def write_wav(path, samples, rate):
 
 
 def power(samples, rate):
-    """Frequencies, Hz, and mean squared magnitude in windows of 0.2 s that overlap by half."""
+    """Return frequencies, Hz, and mean squared magnitudes in 0.2 s windows that overlap by half."""
     size = round(rate / 5)
     window = np.hanning(size + 1)[:-1]
     parts = [samples[i : i + size] for i in range(0, len(samples) - size + 1, size // 2)]
@@ -82,7 +84,7 @@ def level_db(spectrum):
 
 
 def third_octaves_db(a, b):
-    """RMS of the differences of two spectra in third octaves of 20 * 2^(k/3) Hz, dB."""
+    """Return the RMS difference of two spectra in third octaves of 20 * 2^(k/3) Hz, dB."""
     edges = 20 * 2 ** (np.arange(18) / 3)
     errors = []
     for low, high in zip(edges, edges[1:]):
@@ -93,13 +95,13 @@ def third_octaves_db(a, b):
 
 
 def with_level(spectrum, other):
-    """A spectrum with the level of another."""
+    """Return a spectrum with the level of another."""
     frequency, of = spectrum
     return frequency, of * 10 ** ((level_db(other) - level_db(spectrum)) / 10)
 
 
 class Htex:
-    """The command, in a folder of its own."""
+    """The command, in its own folder."""
 
     def __init__(self, command, folder):
         self.command, self.folder = command, pathlib.Path(folder)
@@ -111,14 +113,14 @@ class Htex:
         return done.stdout
 
     def fit(self, recordings, *options):
-        """An asset of (file, speed, force)."""
+        """Make an asset from (file, speed, force)."""
         files = [file for file, *_ in recordings]
         at = [f"--at=speed={speed},force={force}" for _, speed, force in recordings]
         self.run("fit", *files, *at, "--model", "bands", "--name", "real", "-o", "real.htex", *options)
         return json.loads(self.run("info", "real.htex", "--json"))
 
     def play(self, speed, force):
-        """The spectrum of what plays at a motion."""
+        """Return the spectrum of what plays at a motion."""
         motion = ("--speed", speed, "--force", force)
         self.run("synth", "real.htex", "--model", "bands", *motion, "--seconds", RENDERED_S, "-o", "played.wav")
         return power(*read_wav(self.folder / "played.wav"))
@@ -132,7 +134,7 @@ class Strokes:
         self.spectra = {speed: power(*read_wav(file)) for speed, file in files.items()}
 
     def held_out(self, htex, known, options=()):
-        """Errors at each speed that is not known."""
+        """Return the errors at each held-out speed."""
         law = htex.fit([(self.files[v], v, FORCE_N) for v in known], *options)["law"]
         for speed in sorted(set(self.files) - set(known)):
             truth, played = self.spectra[speed], htex.play(speed, FORCE_N)
@@ -162,13 +164,15 @@ def strokes(folder):
 
 
 def smooth(values, rate):
-    """The average over 50 ms, shrinking at the ends."""
+    """Return the average over 50 ms, over fewer samples at the ends."""
     kernel = np.ones(2 * round(rate / 40) + 1)
     return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")
 
 
 def steady_windows(recording):
-    """Logarithms of speed and force, and the power, of each window of 0.2 s in which both stay within 10 %."""
+    """Return logarithms of speed and force, and the power, of each 0.2 s window in which both stay
+    within 10 %.
+    """
     speed, force, lateral = recording
     size, window = FREE_RATE // 5, np.hanning(FREE_RATE // 5 + 1)[:-1]
     averages = [smooth(values, FREE_RATE) for values in (speed, force)]
@@ -183,7 +187,7 @@ def steady_windows(recording):
 
 
 def gathered(recording):
-    """Mean speed and force, and the spectrum, of windows of about the same motion."""
+    """Return mean speed and force, and the spectrum, of windows with about the same motion."""
     cells = {}
     for motion, of in steady_windows(recording):
         cells.setdefault(tuple(np.round(motion / np.log(GATHERED))), []).append((motion, of))
@@ -199,7 +203,9 @@ def rms(values):
 
 
 def free_half(htex, known, other):
-    """Stated error of a grid of one half, and the errors at the motions of the other of the grid and of one condition."""
+    """Return the stated error of a grid for one half, and the errors at the other half's motions of
+    the grid and of a single condition.
+    """
     columns = dict(zip(("speed_mm_s", "fz_n", "lateral_n"), known))
     table = np.column_stack(list(columns.values()))
     np.savetxt(htex.folder / "half.csv", table, "%.6f", ",", header=",".join(columns), comments="")
@@ -217,7 +223,7 @@ def free_half(htex, known, other):
 
 
 def free(htex, folder):
-    """Each half of a free motion from the other."""
+    """Predict each half of a free motion from the other."""
     global BAND_HZ
     BAND_HZ = (20.0, 499.0)
     print("\n## Free motions: each half in time from the other\n")
@@ -269,7 +275,7 @@ def speeds(htex, folder):
 
 
 def node_signal(model, seconds, rate, seed):
-    """Samples of an ARMA node."""
+    """Return the samples of an ARMA node."""
     numbers = lambda key: [float(v.text) for v in model.find(key).findall("value")]
     ar, ma = numbers("ARcoeff"), numbers("MAcoeff")
     ar = ar if ar[:1] == [1.0] else [1.0, *ar]
@@ -279,7 +285,9 @@ def node_signal(model, seconds, rate, seed):
 
 
 def hatt(htex, folder):
-    """Each audible node, played as a recording; what it predicts of the next faster node of about the same force."""
+    """Play each audible node as a recording, and predict the next faster node with about the same
+    force.
+    """
     global BAND_HZ
     BAND_HZ = (20.0, 500.0)
     rows = []

@@ -1,4 +1,6 @@
-"""Ten minutes of AR texture to a WAV file with SciPy: the whole process that `htex synth` is held against."""
+"""Writes ten minutes of AR texture to a WAV file with SciPy: the complete process, for comparison
+with `htex synth`.
+"""
 
 import json
 import sys

@@ -35,8 +35,8 @@ const TESTS: &[&str] = &[
     "unity",
 ];
 
-/// Writes all generated files. It builds the whole workspace with the same features as `cargo
-/// test`.
+/// Writes all generated files. It builds the whole workspace with the same features as
+/// `cargo test`.
 ///
 /// # Errors
 /// When a test of a generated file fails.

@@ -112,8 +112,8 @@ pub fn anchor(heading: &str) -> String {
     kept.collect()
 }
 
-/// Returns the anchors of a page's headings, and the anchors that it defines itself with `<a
-/// id="…">`.
+/// Returns the anchors of a page's headings, and the anchors that it defines itself with
+/// `<a id="…">`.
 pub fn anchors(page: &str) -> Vec<String> {
     let code = blocks(page);
     let mut anchors: Vec<String> = Vec::new();

@@ -24,8 +24,11 @@ export interface Readable {
 /** An error of the library. */
 export class HtexError extends Error {
   readonly name: "HtexError";
-  /** The kind of error: "invalid-argument", "invalid-asset", "no-representation", "no-model", "model", "invalid-motion", "bad-handle",
-   * "unsupported", "internal", "invalid-library", "absent", "device", "io", "untrusted" and others. */
+  /**
+   * The kind of error: "invalid-argument", "invalid-asset", "no-representation", "no-model",
+   * "model", "invalid-motion", "bad-handle", "unsupported", "internal", "invalid-library",
+   * "absent", "device", "io", "untrusted" and others.
+   */
   readonly code: string;
 }
 
@@ -481,9 +484,12 @@ export interface RumbleEffect {
   weakMagnitude: number;
 }
 
-/** The strengths of the two motors of a gamepad for an envelope: all on the large one up to a mean frequency of 60 Hz, all on the small one from
- * 420 Hz. `gain`: strength of a level of 1, of which a motor has at most 1; default 3, for levels of full scale. `duration`: of the effect, ms.
- * Default 100. */
+/**
+ * Returns the strengths of a gamepad's two motors for an envelope. Up to a mean frequency of 60 Hz
+ * only the large motor runs, and from 420 Hz only the small one. `gain` is the strength for a level
+ * of 1; a motor's strength is at most 1. Default 3, for levels of full scale. `duration` is the
+ * duration of the effect, ms. Default 100.
+ */
 export function dualRumble(envelope: { readonly level: number; readonly centroid: number }, options?: { gain?: number; duration?: number }): RumbleEffect;
 
 export interface PadOptions {

@@ -1,5 +1,5 @@
-//! Compares htex with plain loops in C and with Python libraries in one interleaved run: `cargo
-//! xtask bench`.
+//! Compares htex with plain loops in C and with Python libraries, in one interleaved run:
+//! `cargo xtask bench`.
 //!
 //! Everything runs on one thread, in turns, so that other load on the machine affects all alike.
 //! The table contains the minimum time of each task, and the spread of all its times. A peer that

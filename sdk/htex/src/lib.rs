@@ -16,8 +16,8 @@
 //! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the
 //!   program is smaller and can only play representations of built-in models.
 //! - `write` (default): `format::Asset::write` and `to_bytes`.
-//! - `author`: `htex::author`, which reads recordings and makes assets, and `htex::simulate`, which
-//!   simulates recordings.
+//! - `author`: `htex::author` reads recordings and makes assets, and `htex::simulate` simulates
+//!   recordings.
 //! - `library`: `htex::Library`, a file with thousands of textures. `Asset::from_library` opens one
 //!   of them; `htex::library` has the full interface.
 //! - `storage`: `htex::storage`, which opens files by path or URI, and `Library::open_located`. The

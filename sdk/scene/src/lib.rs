@@ -10,9 +10,9 @@
 //! 3. `representation` chooses the model of each surface within the budget.
 //! 4. `plan` asks each effect in the table (`stages`) whether it is needed. An effect that is not
 //!    needed is not built. Each decision has a reason.
-//! 5. `render` pulls samples through the chain: the device's stages request them from the
-//!    resampler, which requests the sum of the surfaces of one rate, which requests the stages of
-//!    each surface (`track`), which request its voice.
+//! 5. `render` pulls samples through the chain, from the end to the start: the device's stages, the
+//!    resampler, the sum of the surfaces of one rate, the stages of each surface (`track`), and its
+//!    voice.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -176,8 +176,9 @@ export class Texture {
   /** Magnitudes of the texture's spectrum, in its unit, at frequencies in Hz. */
   spectrum(frequencies: ArrayLike<number>, options?: At): Float64Array;
   /**
-   * Magnitudes at a recorded condition (default: the default condition), as a recording of the voice reads them: without chance, and of
-   * sums of sinusoids from 20 s of their samples.
+   * Magnitudes at a recorded condition (default: the default condition), as a recording of the
+   * voice would show them, but without random variation. For sums of sinusoids they are computed
+   * from 20 s of samples.
    */
   readSpectrum(options?: { model?: string; condition?: number }): { frequencies: Float64Array; magnitudes: Float64Array };
   /** Level of a representation: RMS in the texture's unit. */

@@ -30,7 +30,10 @@ const PLAYER = { model: "string", seed: "integer", motion: "object", gain: "numb
 
 const unit = (x) => (Number.isNaN(x) ? 0 : Math.min(Math.max(x, 0), 1));
 
-/** The parameters of the effect "dual-rumble" for an envelope: `gain` is the strength of a level of 1, `duration` that of the effect, ms. */
+/**
+ * Returns the parameters of the effect "dual-rumble" for an envelope. `gain` is the strength for a
+ * level of 1, `duration` the effect's duration, ms.
+ */
 export function dualRumble({ level, centroid }, options = {}) {
   const { gain = STRENGTH, duration = 1e3 * HELD * RUMBLE_S } = checked(options, RUMBLE, "dualRumble");
   const strength = unit(gain * level);

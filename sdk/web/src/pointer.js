@@ -13,7 +13,10 @@ const AVERAGED_S = 0.03;
 const RESTS_S = 0.06;
 /** Force of a pointer that reports no pressure, N. */
 const FORCE_N = 0.4;
-/** Pressures that stand for "pressed" in devices that measure none: that of the specification, and those that some browsers send. */
+/**
+ * Pressures that stand for "pressed" in devices that measure no pressure: the one in the
+ * specification, and those that some browsers send.
+ */
 const NO_PRESSURE = [0, 0.5, 1];
 /**
  * Events that count as a gesture, after which a browser allows sound. A touch counts when it is

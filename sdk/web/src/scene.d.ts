@@ -82,7 +82,10 @@ export interface Scene {
   [Symbol.dispose](): void;
 }
 
-/** Opens a scene: the bytes of its file, and those of the textures, traces and responses that it names, by their paths in it. */
+/**
+ * Opens a scene from the bytes of its file and of the textures, traces and responses that it names,
+ * by their paths in it.
+ */
 export function scene(bytes: Bytes, files?: Record<string, Bytes | NamedBytes> | Map<string, Bytes | NamedBytes>, options?: SceneOptions): Promise<Scene>;
 
 /** Sets where the module `htex-scene.wasm` is. Call this before the first use. */

@@ -1,7 +1,7 @@
 //! Runs every model for a day:
 //! `cargo run --release -p htex-hard-cases --no-default-features --example long_runs`.
-//! `--hours N` sets another length, `--json` prints JSON for scripts. The exit status is 1 if a bound
-//! is broken.
+//! `--hours N` sets another length, `--json` prints JSON for scripts. The exit status is 1 if a
+//! bound is broken.
 
 use std::process::ExitCode;
 

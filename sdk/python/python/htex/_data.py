@@ -27,7 +27,7 @@ class Condition:
     repeatability_rms_db: float | None = None
     """RMS over nine bands of the difference between odd and even blocks of time of the recording, over √2, decibels."""
     segments: int | None = None
-    """Number of segments that were averaged, where the asset states it; 0 for a condition that was computed between recorded ones."""
+    """Number of averaged segments, if the asset states it; 0 for a computed condition."""
 
 
 @dataclass(frozen=True)
@@ -39,19 +39,19 @@ class LibraryEntry:
     tags: tuple[str, ...]
     """Search terms."""
     models: tuple[str, ...]
-    """Ids of the models that describe it."""
+    """Ids of the models of its representations."""
     speed_mm_s: tuple[float, float] | None
-    """Least and greatest recorded speed, mm/s; ``None`` when none is known."""
+    """Lowest and highest recorded speed, mm/s; ``None`` if unknown."""
     force_n: tuple[float, float] | None
-    """Least and greatest recorded force, newtons; ``None`` when none is known."""
+    """Lowest and highest recorded force, newtons; ``None`` if unknown."""
     contact: str
     """What slid over the surface: ``finger``, ``tool`` or ``unknown``."""
     law: dict[str, Exponent]
-    """How frequencies and level follow a motion that was not recorded, as ``Texture.law``, without estimates."""
+    """How frequencies and level follow unrecorded motions: ``Texture.law`` without estimates."""
     bytes: int
-    """Bytes of the texture's file."""
+    """Size of the texture's file, bytes."""
     blake3: str
-    """BLAKE3 of the texture's file, hexadecimal."""
+    """BLAKE3 hash of the texture's file, hexadecimal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ class Reach:
     """How a speed or force relates to the recorded values."""
 
     kind: Literal["inside", "unknown", "followed", "outside"]
-    """Where it lies. Outside the recorded values the texture follows its law from the nearest one."""
+    """Where the value lies. Outside the recorded range, the texture follows its law."""
     asked: float | None = None
     """The requested value."""
     recorded: float | None = None
@@ -91,11 +91,11 @@ class Exponent:
     """An exponent of a texture's law, and its source."""
 
     exponent: float
-    """The exponent that is played."""
+    """The exponent used for playback."""
     source: Literal["measured", "given", "assumed"]
     """Where it comes from."""
     estimate: float | None = None
-    """The measurement, before it was drawn to the assumed exponent by its error."""
+    """The measurement, before its error pulled it towards the assumed exponent."""
     standard_error: float | None = None
     """Standard error of the measurement."""
 
@@ -108,7 +108,7 @@ class Envelope:
     """
 
     level_rms: float
-    """RMS of the samples, in the unit; 0 for none."""
+    """RMS of the samples, in the unit; 0 if there are none."""
     centroid_hz: float
     """Mean frequency, weighted by power, hertz; 0 for silence."""
     frames: int
@@ -122,15 +122,15 @@ class DeviceStatus:
     """What a device has done since it was opened."""
 
     frames_written: int
-    """Samples that it took."""
+    """Number of samples written to the device."""
     frames_played: int
-    """Samples that came out."""
+    """Number of samples played."""
     underruns: int
-    """Times it ran dry."""
+    """Number of times the device ran out of samples."""
     latency_s: float
     """Time from writing a sample to its output, seconds."""
     peak: float
-    """Largest magnitude written, in the device's unit."""
+    """Largest absolute value written, in the device's unit."""
 
 
 @dataclass(frozen=True)
@@ -142,13 +142,13 @@ class Coverage:
     slides: bool
     """Whether the voice is audible."""
     excess: float
-    """Relative distance of the motion from the one that is played."""
+    """Relative difference between the motion and the one that is actually played."""
     description: str
     """One sentence; empty if nothing differs from the recording."""
     frequency_factor: float
-    """Factor of all frequencies."""
+    """Factor that multiplies all frequencies."""
     level_factor: float
-    """Factor of the level."""
+    """Factor that multiplies the level."""
     speed: Reach
     """Speed, mm/s."""
     force: Reach
@@ -162,15 +162,15 @@ class Processed:
     spectrum: Spectrum
     """The spectrum."""
     condition: Condition
-    """Speed and force: the given values, else the measured medians."""
+    """Speed and force: the given values or, without them, the measured medians."""
     rate_hz: float
     """Sample rate of the recording, hertz."""
     segments: int
     """Number of averaged segments."""
     from_sweeps: bool
-    """Whether the segments are in sweeps, else in evenly spaced windows."""
+    """Whether the segments are sweeps; if not, they are evenly spaced windows."""
     read_s: list[tuple[float, float]]
-    """The stretches that were read, seconds."""
+    """The segments that were read, seconds."""
     speed_spread_mm_s: tuple[float, float] | None
     """Lowest and highest speed over the segments, mm/s."""
     force_spread_n: tuple[float, float] | None
@@ -195,9 +195,9 @@ class Imported:
     texture: _htex.Texture
     """The texture."""
     warnings: list[str]
-    """What a person should know of the file, as sentences."""
+    """Warnings about the file, as sentences."""
     notes: list[str]
-    """What a person may want to know, such as that a licence is missing."""
+    """Notes about the file, such as that a licence is missing."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -209,7 +209,7 @@ class Fit:
     spectra: list[Spectrum]
     """The recorded spectrum of each condition."""
     fit_ms: list[float]
-    """Time of the fits of each model, milliseconds."""
+    """Time spent on fitting each model, milliseconds."""
     skipped: list[tuple[str, str]]
     """Models that could not be fitted, with reasons."""
     notes: list[str]
@@ -241,7 +241,7 @@ class Tradeoff:
     """Accuracy against bytes and time."""
 
     columns: dict[str, list[Any]]
-    """Every setting on every recording, as columns that pandas and polars take."""
+    """Every setting on every recording, as columns for pandas or polars."""
     knees: list[dict[str, Any]]
     """Knees of the fronts."""
     left_out: list[dict[str, Any]]
@@ -261,13 +261,13 @@ class Comparison:
     """A recording compared with a texture, or with another recording."""
 
     condition: Condition
-    """Speed and force of the recording, and how far it repeats."""
+    """Speed and force of the recording, and its repeatability."""
     representations: list[dict[str, Any]]
-    """Of a texture: the model, the level and the measures of each representation, with what is felt."""
+    """If it was compared with a texture: each representation's model, level, measures and felt error."""
     other: dict[str, Any] | None
-    """Of another recording: the same measures."""
+    """The same measures, if it was compared with another recording."""
     other_condition: Condition | None
-    """Speed and force of the other recording, and how far it repeats."""
+    """Speed and force of the other recording, and its repeatability."""
     warnings: list[str]
     """Warnings about the recordings, as sentences."""
 
@@ -290,13 +290,13 @@ class Response:
     frequency_hz: npt.NDArray[np.float64]
     """Frequencies, hertz."""
     magnitude: npt.NDArray[np.float64]
-    """Magnitude, in the output's unit over the input's."""
+    """Magnitude, in the output's unit divided by the input's."""
     phase_rad: npt.NDArray[np.float64]
-    """Phase of output against input, radians."""
+    """Phase of the output relative to the input, radians."""
     coherence: npt.NDArray[np.float64] | None = None
-    """Coherence, 0 to 1, where it was measured."""
+    """Coherence, 0 to 1, if it was measured."""
     relative_error: npt.NDArray[np.float64] | None = None
-    """Standard deviation of the magnitude relative to it, where it was measured."""
+    """Relative standard deviation of the magnitude, if it was measured."""
     about: dict[str, Any] = field(default_factory=dict)
     """Settings, hits or windows with the reasons why some were thrown out, peak and warnings."""
 
@@ -320,11 +320,11 @@ class Simulation(dict[str, npt.NDArray[np.float64]]):
     """
 
     csv: bytes
-    """The CSV file of it, which says that it is simulated."""
+    """The recording as a CSV file, which states that it is simulated."""
     rate_hz: float
     """Sample rate, hertz."""
     response: Response
-    """Response of the simulated rig, by which ``process(..., response=...)`` divides."""
+    """Response of the simulated rig, for ``process(..., response=...)``."""
 
     def __init__(self, columns: Any, *, csv: bytes, rate_hz: float, response: Response) -> None:
         super().__init__(columns)

@@ -34,7 +34,7 @@ class Field:
     description: str = ""
     """Meaning of the parameter."""
     most: int | None = None
-    """Most numbers of a list; ``None`` for one number."""
+    """Largest length of a list; ``None`` for a single number."""
 
     def _described(self) -> dict[str, Any]:
         scalar = self.most is None

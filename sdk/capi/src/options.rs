@@ -36,9 +36,9 @@ pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 /// Assets may embed models as WASM modules. These need an engine, which must be turned on. The
 /// library in `lib/whole` has one; in a build without it, turning it on gives
 /// HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is first used,
-/// unless `cache` has it: that takes 0.07 to 0.4 s for this example, and 5 s at most. While a
-/// module is loaded, one thread wakes every 50 ms to stop calls that exceed their time limit. All
-/// resources are limited: 64 MiB of memory per voice, 0.5 s per block, 5 s to compile.
+/// unless `cache` has it. That takes 0.07 to 0.4 s for `examples/model-c-bursts`, and 5 s at most.
+/// While a module is loaded, one thread wakes every 50 ms to stop calls that exceed their time
+/// limit. All resources are limited: 64 MiB of memory per voice, 0.5 s per block, 5 s to compile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_open_options {

@@ -118,11 +118,12 @@ impl Voice {
     /// ([`Synthesis`](crate::Synthesis)), only the level changes.
     ///
     /// Outside the recorded conditions, frequencies and level follow the asset's law
-    /// ([`Law`](crate::Law)), starting at the nearest recorded motion. Frequencies reach 1/16 to 8
-    /// times the recorded ones, and at most half the sample rate. The level reaches at most
-    /// [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger that does not
-    /// slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these effects can be
-    /// switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a motion.
+    /// ([`Law`](crate::Law)), starting at the nearest recorded motion. Frequencies are at least
+    /// 1/16 and at most 8 times the recorded ones, and never exceed half the sample rate. The level
+    /// is at most [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger
+    /// that does not slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these effects
+    /// can be switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a
+    /// motion.
     ///
     /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
     /// voice then holds the last good motion for at most 100 ms, and is silent after that until the

@@ -3,8 +3,7 @@
 
 use htex_play::{Asset, VoiceOptions};
 
-/// Sample rates at which no image lies next to the frequency that it mirrors at the filter's own
-/// rate.
+/// Sample rates at which no image from the filter's own rate lies next to its original frequency.
 const RATES_HZ: [f64; 8] =
     [2_000.0, 2_050.0, 2_200.0, 2_400.0, 2_500.0, 4_000.0, 8_000.0, 44_100.0];
 const SECONDS: f64 = 20.0;

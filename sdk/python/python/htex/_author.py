@@ -112,11 +112,11 @@ def tradeoff(
     """Measure accuracy against bytes and time over models and their options, as ``htex tradeoff``
     does.
 
-    ``error`` selects the error for fronts and knees: ``held_out``, in units of the difference to a
-    second recording, or an error against the fitted data, in decibels. The default is ``held_out``,
-    or ``third_octave`` if a recording is too short to hold any part of it out. ``journal`` is a
-    file from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are as
-    in ``fit``.
+    ``error`` selects the error for fronts and knees: ``held_out``, where 1 is as good as a second
+    recording, or an error against the fitted data, in decibels. The default is ``held_out``, or
+    ``third_octave`` if a recording is too short to hold any part of it out. ``journal`` is a file
+    from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are as in
+    ``fit``.
     """
     request = {
         "models": model_list(models),

@@ -263,7 +263,7 @@ class Comparison:
     condition: Condition
     """Speed and force of the recording, and its repeatability."""
     representations: list[dict[str, Any]]
-    """If it was compared with a texture: each representation's model, level, measures and felt error."""
+    """If compared with a texture: each representation's model, level, measures and felt error."""
     other: dict[str, Any] | None
     """The same measures, if it was compared with another recording."""
     other_condition: Condition | None

@@ -20,28 +20,31 @@
 
 
 /*
- Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
+ Version of this interface, major and minor: 0x00010000 is 1.0. A new minor version only adds to
+ it.
  */
 #define HTEX_API_VERSION 65536
 
 /*
- Modules are not loaded: a texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
+ Modules are not loaded. A texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
  */
 #define HTEX_ENGINE_OFF 0
 
 /*
- Modules run without handlers for signals: each access to memory is compared with its bound.
+ Modules run without signal handlers: each memory access is checked against its bound.
  */
 #define HTEX_ENGINE_CHECKED 1
 
 /*
- Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay after htex_shutdown and pass on what
- is not of a module. The model of `examples/model-c-bursts` then takes 34 ns a sample instead of 42.
+ Modules run with process-wide handlers for SIGSEGV, SIGBUS, SIGILL and SIGFPE. The handlers
+ remain after htex_shutdown, and pass on signals that do not come from a module. The model of
+ `examples/model-c-bursts` then takes 34 ns per sample instead of 42.
  */
 #define HTEX_ENGINE_SIGNALS 2
 
 /*
- Status of a call. Later versions may return further values; all but HTEX_STATUS_OK are errors.
+ Status of a call. Later versions may return further values. All values except HTEX_STATUS_OK are
+ errors.
  */
 enum htex_status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -53,7 +56,7 @@ enum htex_status
      */
     HTEX_STATUS_OK = 0,
     /*
-     A pointer is NULL or misaligned, a text is not UTF-8, or a number is out of its range.
+     A pointer is NULL or misaligned, a text is not UTF-8, or a number is out of range.
      */
     HTEX_STATUS_INVALID_ARGUMENT = 1,
     /*
@@ -61,7 +64,7 @@ enum htex_status
      */
     HTEX_STATUS_BAD_HANDLE = 2,
     /*
-     Another thread uses the object at this moment.
+     Another thread is using the object.
      */
     HTEX_STATUS_BUSY = 3,
     /*
@@ -97,23 +100,23 @@ enum htex_status
      */
     HTEX_STATUS_UNSUPPORTED = 11,
     /*
-     The buffer is too small; it has the beginning of the text.
+     The buffer is too small. It contains the beginning of the text.
      */
     HTEX_STATUS_TRUNCATED = 12,
     /*
-     An error of the library itself. The object of the call must be freed.
+     An error in the library itself. The object of the call must be freed.
      */
     HTEX_STATUS_INTERNAL = 13,
     /*
-     The library of textures is invalid.
+     The texture library is invalid.
      */
     HTEX_STATUS_INVALID_LIBRARY = 14,
     /*
-     The library has no texture of this name.
+     The library has no texture with this name.
      */
     HTEX_STATUS_ABSENT = 15,
     /*
-     The device or its driver is missing, in use, or failed; it is at rest.
+     The device or its driver is missing, in use, or failed. The device is at rest.
      */
     HTEX_STATUS_DEVICE = 16,
 };
@@ -165,13 +168,16 @@ typedef struct htex_bytes {
 } htex_bytes;
 
 /*
- Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
- built-in models alone, which make no thread, file or handler of signals.
+ Options for opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to
+ zero for the defaults: only the built-in models, which create no threads, files or signal
+ handlers.
 
- WASM modules, which assets may bring along, are run by an engine that must be turned on. The library in `lib/whole` has one; in a
- build without it, turning it on is HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is
- first used (that example takes 0.07 to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
- calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
+ Assets may embed models as WASM modules. These need an engine, which must be turned on. The
+ library in `lib/whole` has one; in a build without it, turning it on gives
+ HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is first used,
+ unless `cache` has it. That takes 0.07 to 0.4 s for `examples/model-c-bursts`, and 5 s at most.
+ While a module is loaded, one thread wakes every 50 ms to stop calls that exceed their time
+ limit. All resources are limited: 64 MiB of memory per voice, 0.5 s per block, 5 s to compile.
  */
 typedef struct htex_open_options {
     /*
@@ -183,7 +189,8 @@ typedef struct htex_open_options {
      */
     uint32_t engine;
     /*
-     Files of models to load, native libraries or WASM modules. A native library runs with all rights of the program.
+     Model files to load: native libraries or WASM modules. A native library runs with all rights
+     of the program.
      */
     const char *const *plugins;
     /*
@@ -191,7 +198,8 @@ typedef struct htex_open_options {
      */
     size_t plugins_len;
     /*
-     WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call alone.
+     WASM modules of models, in memory. They run in a sandbox. The bytes are only used during the
+     call.
      */
     const struct htex_bytes *modules;
     /*
@@ -199,22 +207,24 @@ typedef struct htex_open_options {
      */
     size_t modules_len;
     /*
-     Folder for compiled modules, made for this user alone; NULL: none is written. With one, a key that authenticates the files in
-     it is kept as `wasm.key` in the user's folder of settings, such as `~/.config/htex`.
+     Folder for compiled modules, created for this user only; NULL to write none. With a folder,
+     a key that authenticates its files is stored as `wasm.key` in the user's settings folder,
+     such as `~/.config/htex`.
      */
     const char *cache;
     /*
-     Not 0: modules that assets bring along do not run even with an engine.
+     If not 0, modules embedded in assets do not run even with an engine.
      */
     uint32_t no_embedded;
     /*
-     Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
+     If not 0, installed models are also searched for, in the folders of HTEX_PLUGIN_PATH and in
+     the user's folder.
      */
     uint32_t installed;
 } htex_open_options;
 
 /*
- An opened asset. Several threads may use it at a time. Zero is no asset.
+ An opened asset. Several threads may use it at the same time. Zero is not an asset.
  */
 typedef struct htex_asset {
     /*
@@ -224,7 +234,7 @@ typedef struct htex_asset {
 } htex_asset;
 
 /*
- A file that the program reads. Set `size` to sizeof(htex_reader).
+ A file whose bytes the program reads. Set `size` to sizeof(htex_reader).
  */
 typedef struct htex_reader {
     /*
@@ -232,26 +242,27 @@ typedef struct htex_reader {
      */
     uint32_t size;
     /*
-     Bytes of the file.
+     Size of the file, bytes.
      */
     uint64_t len;
     /*
-     The first argument of the functions.
+     First argument passed to the functions.
      */
     void *context;
     /*
-     Fills `buffer` with the `len` bytes from `offset` on, which are in the file. Returns 0, or another number for an error. Is called
-     in the thread of a call of the library, for a library of textures in several threads at a time.
+     Fills `buffer` with the `len` bytes at `offset`, which lie within the file. Returns 0, or
+     another number for an error. It is called in the thread of a library call; for a library of
+     textures, several threads may call it at the same time.
      */
     int32_t (*read)(void *context, uint64_t offset, uint8_t *buffer, size_t len);
     /*
-     Called once when the file is not read any more, also after an error; may be NULL.
+     Called once when the file is no longer read, also after an error; may be NULL.
      */
     void (*close)(void *context);
 } htex_reader;
 
 /*
- A band of frequencies.
+ A frequency band.
  */
 typedef struct htex_band {
     /*
@@ -269,18 +280,18 @@ typedef struct htex_band {
  */
 typedef struct htex_condition {
     /*
-     Scanning speed, mm/s; NAN if it is not known.
+     Scanning speed, mm/s; NAN if unknown.
      */
     double speed_mm_s;
     /*
-     Normal force, N; NAN if it is not known.
+     Normal force, N; NAN if unknown.
      */
     double force_n;
 } htex_condition;
 
 /*
- Motion of a finger over a texture, at one moment. Later versions add what may be unknown at the end; what a program that was compiled
- against an earlier one does not have is not known.
+ Motion of a finger over a texture at one moment. Later versions add optional values at the end.
+ Values that a program's older header does not have count as unknown.
  */
 typedef struct htex_motion {
     /*
@@ -296,23 +307,23 @@ typedef struct htex_motion {
      */
     double force_n;
     /*
-     Position along the path, mm, of either sign; NAN if it is not known. Only models that follow the position use
-     it.
+     Position along the path, mm, of either sign; NAN if unknown. Only models that follow the
+     position use it.
      */
     double position_mm;
     /*
-     Place on the surface, x and y, mm, of either sign; NAN, either or both, if it is not known. Only models that are maps of
-     a surface use it.
+     Place on the surface: coordinate x, mm, of either sign. The place is unknown if x, y or both
+     are NAN. Only models that are maps of a surface use it.
      */
     double x_mm;
     /*
-     As `x_mm`, across it.
+     Coordinate y of the place, mm, at a right angle to `x_mm`.
      */
     double y_mm;
 } htex_motion;
 
 /*
- A device that is open. One thread at a time may use it. Zero is no device.
+ An open device. Only one thread at a time may use it. Zero is not a device.
  */
 typedef struct htex_device {
     /*
@@ -322,7 +333,8 @@ typedef struct htex_device {
 } htex_device;
 
 /*
- What a device did since it was opened. Set `size` to sizeof(htex_device_counts) before the call.
+ What a device has done since it was opened. Set `size` to sizeof(htex_device_counts) before the
+ call.
  */
 typedef struct htex_device_counts {
     /*
@@ -330,15 +342,15 @@ typedef struct htex_device_counts {
      */
     uint32_t size;
     /*
-     Samples that it took.
+     Number of samples written to the device.
      */
     uint64_t frames_written;
     /*
-     Samples that came out.
+     Number of samples played.
      */
     uint64_t frames_played;
     /*
-     Times it ran dry.
+     Number of times the device ran out of samples.
      */
     uint64_t underruns;
     /*
@@ -346,13 +358,13 @@ typedef struct htex_device_counts {
      */
     double latency_s;
     /*
-     Largest magnitude written, in the device's unit.
+     Largest absolute value written, in the device's unit.
      */
     double peak;
 } htex_device_counts;
 
 /*
- An opened library. Several threads may use it at a time. Zero is no library.
+ An opened library. Several threads may use it at the same time. Zero is not a library.
  */
 typedef struct htex_library {
     /*
@@ -362,12 +374,14 @@ typedef struct htex_library {
 } htex_library;
 
 /*
- Receives a message, UTF-8, valid during the call. `context` is that of htex_set_log.
+ Receives a message in UTF-8, which is valid during the call. `context` is the value that was
+ passed to htex_set_log.
  */
 typedef void (*htex_log_callback)(htex_log_level level, const char *message, void *context);
 
 /*
- Options of a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for the defaults.
+ Options for opening a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for
+ the defaults.
  */
 typedef struct htex_scene_options {
     /*
@@ -375,13 +389,13 @@ typedef struct htex_scene_options {
      */
     uint32_t size;
     /*
-     Rate of the samples, Hz; 0: 20000.
+     Sample rate, Hz; 0 for 20000.
      */
     double rate_hz;
 } htex_scene_options;
 
 /*
- A planned scene that is playing. One thread at a time may use it. Zero is no scene.
+ A planned scene that is playing. Only one thread at a time may use it. Zero is not a scene.
  */
 typedef struct htex_scene {
     /*
@@ -391,7 +405,7 @@ typedef struct htex_scene {
 } htex_scene;
 
 /*
- The files that a scene names. Set `size` to sizeof(htex_files).
+ Gives access to the files that a scene names. Set `size` to sizeof(htex_files).
  */
 typedef struct htex_files {
     /*
@@ -399,12 +413,12 @@ typedef struct htex_files {
      */
     uint32_t size;
     /*
-     The first argument of `open`.
+     First argument passed to `open`.
      */
     void *context;
     /*
-     Opens the file of a name, as the scene has it (UTF-8): fills `file`, whose `size` is set. Returns 0, or another number if
-     there is no such file.
+     Opens the file with a name as the scene states it (UTF-8), and fills `file`, whose `size` is
+     set. Returns 0, or another number if there is no such file.
      */
     int32_t (*open)(void *context, const char *name, struct htex_reader *file);
 } htex_files;
@@ -426,7 +440,7 @@ typedef struct htex_finger {
      */
     double force_n;
     /*
-     Position, mm; both NAN if it is not known: then the finger is on every surface without a region.
+     Position, mm. If unknown, both are NAN, and the finger is on every surface without a region.
      */
     double x_mm;
     /*
@@ -436,7 +450,8 @@ typedef struct htex_finger {
 } htex_finger;
 
 /*
- Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the defaults.
+ Options for making a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for
+ the defaults.
  */
 typedef struct htex_voice_options {
     /*
@@ -444,11 +459,12 @@ typedef struct htex_voice_options {
      */
     uint32_t size;
     /*
-     The model of the representation, by its id or short name; NULL: the representation of least error.
+     The model of the representation, by its id or short name; NULL for the representation with
+     the smallest error.
      */
     const char *model;
     /*
-     Rate of the samples, Hz, at least twice the asset's highest frequency; 0: 20000.
+     Sample rate, Hz, at least twice the asset's highest frequency; 0 for 20000.
      */
     double rate_hz;
     /*
@@ -456,47 +472,50 @@ typedef struct htex_voice_options {
      */
     uint64_t seed;
     /*
-     Motion of the start; NULL: the first recorded condition, or the strongest if the first is silent.
+     Motion at the start; NULL for the first recorded condition, or the strongest if the first is
+     silent.
      */
     const struct htex_motion *motion;
     /*
-     How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
+     How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL for streamed.
      */
     const char *synthesis;
     /*
-     Gain of the samples; 0: 1. htex_voice_set_gain changes it.
+     Gain of the samples; 0 for 1. htex_voice_set_gain changes it.
      */
     double gain;
     /*
-     Greatest magnitude of a sample after the gain, in the asset's unit; 0: no limit. The gain falls at once where a sample would
-     exceed it, and returns with a time constant of 50 ms.
+     Largest absolute value of a sample after the gain, in the asset's unit; 0 for no limit. The
+     gain drops at once when a sample would exceed the limit, and recovers with a time constant
+     of 50 ms.
      */
     double limit;
     /*
-     Number of bands of htex_voice_envelope, 1 to 32; 0: no envelope, which takes no time.
+     Number of bands in htex_voice_envelope, 1 to 32; 0 switches the envelope off and costs no
+     time.
      */
     uint32_t envelope_bands;
     /*
-     Not 0: frequencies do not follow speeds beyond the recorded ones.
+     If not 0, frequencies do not follow speeds beyond the recorded ones.
      */
     uint32_t no_frequency_scaling;
     /*
-     Not 0: the level does not follow forces beyond the recorded ones.
+     If not 0, the level does not follow forces beyond the recorded ones.
      */
     uint32_t no_level_scaling;
     /*
-     Not 0: a finger that rests is not silent.
+     If not 0, a finger at rest is not silent.
      */
     uint32_t no_contact;
     /*
-     Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; 0: 4. Otherwise above
-     0 and finite.
+     Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
+     recorded level; above 0 and finite. 0 for 4.
      */
     double ceiling;
 } htex_voice_options;
 
 /*
- A playing texture. One thread at a time may use it. Zero is no voice.
+ A texture that is playing. Only one thread at a time may use it. Zero is not a voice.
  */
 typedef struct htex_voice {
     /*
@@ -506,7 +525,8 @@ typedef struct htex_voice {
 } htex_voice;
 
 /*
- What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope) before the call.
+ What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope)
+ before the call.
  */
 typedef struct htex_envelope {
     /*
@@ -514,7 +534,7 @@ typedef struct htex_envelope {
      */
     uint32_t size;
     /*
-     RMS of the samples, in the asset's unit, exactly; 0 for none.
+     Exact RMS of the samples, in the asset's unit; 0 if there are none.
      */
     double level_rms;
     /*
@@ -522,7 +542,7 @@ typedef struct htex_envelope {
      */
     double centroid_hz;
     /*
-     Number of the samples.
+     Number of samples.
      */
     uint64_t frames;
 } htex_envelope;
@@ -532,12 +552,13 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- [any thread] Version of the interface of the library that is loaded, as HTEX_API_VERSION.
+ [any thread] Returns the interface version of the loaded library, in the form of
+ HTEX_API_VERSION.
  */
 uint32_t htex_api_version(void);
 
 /*
- [any thread] Version of the library, such as "0.2.0". Static.
+ [any thread] Returns the version of the library, such as "0.2.0". The text is static.
  */
 const char *htex_version(void);
 
@@ -548,13 +569,14 @@ htex_status htex_asset_open(const char *path, const struct htex_open_options *op
 
 #if defined(_WIN32)
 /*
- [any thread; reads a file] As htex_asset_open, of a path of Windows in UTF-16.
+ [any thread; reads a file] As htex_asset_open, for a Windows path in UTF-16.
  */
 htex_status htex_asset_open_wide(const uint16_t *path, const struct htex_open_options *options, struct htex_asset *out);
 #endif
 
 /*
- [any thread; calls the reader] Opens an asset that the program reads. The reader is closed before this returns. `options` may be NULL.
+ [any thread; calls the reader] Opens an asset whose bytes the program reads. The reader is
+ closed before this returns. `options` may be NULL.
  */
 htex_status htex_asset_open_reader(const struct htex_reader *reader,
                                    const struct htex_open_options *options,
@@ -569,52 +591,52 @@ htex_status htex_asset_from_bytes(const uint8_t *bytes,
                                   struct htex_asset *out);
 
 /*
- [any thread] Frees an asset; its voices play on. HTEX_STATUS_BUSY if another thread uses it at this moment.
+ [any thread] Frees an asset. Its voices continue to play. HTEX_STATUS_BUSY if another thread is
+ using the asset.
  */
 htex_status htex_asset_free(struct htex_asset asset);
 
 /*
- [any thread] The asset's manifest as JSON: name, conditions, representations, qualities and all else that it states. Writes
- at most `capacity` bytes with the zero at the end, and the length without the zero to `length`, which may be NULL; a `capacity`
- of 0 asks for the length.
+ [any thread] Writes the asset's manifest as JSON: name, conditions, representations, qualities
+ and everything else that it states. At most `capacity` bytes are written, including a
+ terminating zero. `length` receives the length without the zero, and may be NULL. With a
+ `capacity` of 0 only the length is written.
  */
-htex_status htex_asset_manifest_json(struct htex_asset asset,
-                                     char *out,
-                                     size_t capacity,
-                                     size_t *length);
+htex_status htex_asset_manifest_json(struct htex_asset asset, char *out, size_t capacity, size_t *length);
 
 /*
- [any thread] Name of the asset. Written as by htex_asset_manifest_json.
+ [any thread] Writes the asset's name, as htex_asset_manifest_json does.
  */
 htex_status htex_asset_name(struct htex_asset asset, char *out, size_t capacity, size_t *length);
 
 /*
- [any thread] Unit of the samples, such as "N". Written as by htex_asset_manifest_json.
+ [any thread] Writes the unit of the samples, such as "N", as htex_asset_manifest_json does.
  */
 htex_status htex_asset_unit(struct htex_asset asset, char *out, size_t capacity, size_t *length);
 
 /*
- [any thread] Band of the asset's spectra.
+ [any thread] Writes the frequency band of the asset's spectra.
  */
 htex_status htex_asset_band(struct htex_asset asset, struct htex_band *out);
 
 /*
- [any thread] Number of recorded conditions.
+ [any thread] Writes the number of recorded conditions.
  */
 htex_status htex_asset_condition_count(struct htex_asset asset, size_t *out);
 
 /*
- [any thread] A recorded condition, counted from 0.
+ [any thread] Writes a recorded condition. Indices start at 0.
  */
 htex_status htex_asset_condition(struct htex_asset asset, size_t index, struct htex_condition *out);
 
 /*
- [any thread] Number of representations.
+ [any thread] Writes the number of representations.
  */
 htex_status htex_asset_representation_count(struct htex_asset asset, size_t *out);
 
 /*
- [any thread] Id of the model of a representation, counted from 0. Written as by htex_asset_manifest_json.
+ [any thread] Writes the model id of a representation, as htex_asset_manifest_json does. Indices
+ start at 0.
  */
 htex_status htex_asset_representation_model(struct htex_asset asset,
                                             size_t index,
@@ -623,9 +645,11 @@ htex_status htex_asset_representation_model(struct htex_asset asset,
                                             size_t *length);
 
 /*
- [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in Hz, in the asset's unit. `model` may be
- NULL (the representation of least error), and so may `at` (its first condition, or its strongest if the first is silent). Between conditions it is interpolated, outside them
- it follows the law of the asset, and where the finger does not slide it is 0.
+ [any thread; may load a model] Writes the magnitudes that a recording of the voice would show,
+ in the asset's unit, at frequencies in Hz. `model` may be NULL for the representation with the
+ smallest error. `at` may be NULL for its first condition, or its strongest if the first is
+ silent. Between conditions the magnitude is interpolated, outside them it follows the asset's
+ law, and where the finger does not slide it is 0.
  */
 htex_status htex_asset_magnitude(struct htex_asset asset,
                                  const char *model,
@@ -635,50 +659,45 @@ htex_status htex_asset_magnitude(struct htex_asset asset,
                                  size_t len);
 
 /*
- [any thread; may load a model] Level of the voice of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
+ [any thread; may load a model] Writes the level of a representation's voice, RMS in the asset's
+ unit. `model` and `at` are as for htex_asset_magnitude.
  */
-htex_status htex_asset_level_rms(struct htex_asset asset,
-                                 const char *model,
-                                 const struct htex_motion *at,
-                                 double *out);
+htex_status htex_asset_level_rms(struct htex_asset asset, const char *model, const struct htex_motion *at, double *out);
 
 /*
- [any thread; asks drivers] The devices that this library has as JSON, each with `id`, `name`, the names of what is connected now as `endpoints`, and `problem`, which
- is null or says what to install. Written as by htex_asset_manifest_json.
+ [any thread; asks drivers] Writes the devices of this library as JSON. Each has `id`, `name`,
+ `endpoints` (the names of what is connected now) and `problem`, which is null or says what to
+ install. Written as by htex_asset_manifest_json.
  */
-htex_status htex_device_list_json(char *out,
-                                  size_t capacity,
-                                  size_t *length);
+htex_status htex_device_list_json(char *out, size_t capacity, size_t *length);
 
 /*
- [any thread; asks drivers] A device as JSON: its `descriptor` with its settings and what becomes of the samples (`mapping`), and its `capabilities`
- with these settings: the quantity of its samples, rates, the largest magnitude; null, and a `problem`, where it cannot be used with them. `settings` as in htex_device_open.
+ [any thread; asks drivers] Writes a device as JSON. `descriptor` has its settings and says what
+ happens to the samples (`mapping`). `capabilities` holds what it can do with these settings: the
+ quantity of its samples, rates, the largest magnitude. If it cannot be used with them,
+ `capabilities` is null and `problem` says why. `settings` is as in htex_device_open.
  */
-htex_status htex_device_info_json(const char *name,
-                                  const char *settings,
-                                  char *out,
-                                  size_t capacity,
-                                  size_t *length);
+htex_status htex_device_info_json(const char *name, const char *settings, char *out, size_t capacity, size_t *length);
 
 /*
- [any thread; asks drivers] Opens a device, at rest: `sdl`, `parametric`, `channels`, `file`, or its id. `settings` are lines NAME=VALUE; NULL: the defaults.
- `rate_hz` is that of the samples; 0: the device's own. Samples are of the quantity that htex_device_info_json tells; a texture's in newtons become parts of full
- scale by the gain of its voice. A display that is driven by a voltage is not opened here: it needs a process that takes the voltage away
+ [any thread; asks drivers] Opens a device at rest: `sdl`, `parametric`, `channels`, `file`, or
+ its id. `settings` holds lines NAME=VALUE; NULL for the defaults. `rate_hz` is the sample rate;
+ 0 for the device's own. Samples have the quantity that htex_device_info_json states. A texture's
+ samples in newtons become fractions of full scale through the gain of its voice. A display
+ driven by a voltage cannot be opened here: it needs a separate process that removes the voltage
  if the program dies (`htex play`).
  */
-htex_status htex_device_open(const char *name,
-                             const char *settings,
-                             double rate_hz,
-                             struct htex_device *out);
+htex_status htex_device_open(const char *name, const char *settings, double rate_hz, struct htex_device *out);
 
 /*
- [one thread at a time] Rate of the samples, Hz.
+ [one thread at a time] Writes the sample rate, Hz.
  */
 htex_status htex_device_rate_hz(struct htex_device device, double *out);
 
 /*
- [one thread at a time; waits] Gives samples to a device, as many as it takes within `timeout_ms`, and writes their number to `written`. The first
- samples start it; when later ones come too late it goes to rest, and the call fails. After an error it is at rest, and stays there.
+ [one thread at a time; waits] Passes samples to a device, as many as it accepts within
+ `timeout_ms`, and writes their number to `written`. The first samples start the device. If later
+ samples arrive too late, it goes to rest and the call fails. After an error it stays at rest.
  */
 htex_status htex_device_write(struct htex_device device,
                               const float *samples,
@@ -687,29 +706,31 @@ htex_status htex_device_write(struct htex_device device,
                               size_t *written);
 
 /*
- [one thread at a time] Writes what the device did so far.
+ [one thread at a time] Writes what the device has done so far.
  */
 htex_status htex_device_status(struct htex_device device, struct htex_device_counts *out);
 
 /*
- [one thread at a time; waits] Plays what was written to its end, goes to rest, and keeps the result: a file appears under its name. Nothing can be written
- afterwards.
+ [one thread at a time; waits] Plays everything that was written, goes to rest, and saves the
+ result: a file appears under its name. Nothing can be written afterwards.
  */
 htex_status htex_device_finish(struct htex_device device);
 
 /*
- [one thread at a time; may wait] Frees a device. One that was not finished goes to rest at once, and leaves no file behind.
+ [one thread at a time; may wait] Frees a device. If htex_device_finish was not called, the
+ device goes to rest at once and leaves no file behind.
  */
 htex_status htex_device_free(struct htex_device device);
 
 /*
- [any thread; reads a file] Opens a library file. Its index is read page by page, its textures one at a time.
+ [any thread; reads a file] Opens a library file. The index is read page by page, and textures
+ one at a time.
  */
 htex_status htex_library_open(const char *path, struct htex_library *out);
 
 #if defined(_WIN32)
 /*
- [any thread; reads a file] As htex_library_open, of a path of Windows in UTF-16.
+ [any thread; reads a file] As htex_library_open, for a Windows path in UTF-16.
  */
 htex_status htex_library_open_wide(const uint16_t *path, struct htex_library *out);
 #endif
@@ -720,35 +741,36 @@ htex_status htex_library_open_wide(const uint16_t *path, struct htex_library *ou
 htex_status htex_library_from_bytes(const uint8_t *bytes, size_t len, struct htex_library *out);
 
 /*
- [any thread; calls the reader] Opens a library that the program reads. The struct is copied; its functions are called until the
- library is freed.
+ [any thread; calls the reader] Opens a library whose bytes the program reads. The struct is
+ copied. Its functions are called until the library is freed.
  */
-htex_status htex_library_open_reader(const struct htex_reader *reader,
-                                     struct htex_library *out);
+htex_status htex_library_open_reader(const struct htex_reader *reader, struct htex_library *out);
 
 /*
- [any thread] Frees a library; its assets stay open. HTEX_STATUS_BUSY if another thread uses it at this moment.
+ [any thread] Frees a library. Its assets stay open. HTEX_STATUS_BUSY if another thread is using
+ the library.
  */
 htex_status htex_library_free(struct htex_library library);
 
 /*
- [any thread] Name of the library, which may be empty. Written as by htex_asset_manifest_json.
+ [any thread] Writes the library's name, which may be empty, as htex_asset_manifest_json does.
  */
 htex_status htex_library_name(struct htex_library library, char *out, size_t capacity, size_t *length);
 
 /*
- [any thread] Number of textures.
+ [any thread] Writes the number of textures.
  */
 htex_status htex_library_count(struct htex_library library, uint64_t *out);
 
 /*
- [any thread] Number of pages of the index.
+ [any thread] Writes the number of pages in the index.
  */
 htex_status htex_library_page_count(struct htex_library library, size_t *out);
 
 /*
- [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array: the textures' names in ascending order, tags, models, ranges of
- recorded speeds and forces, bytes and hashes. Written as by htex_asset_manifest_json.
+ [any thread; reads the file] Writes the entries of a page of the index as a JSON array: the
+ textures' names in ascending order, tags, models, ranges of recorded speeds and forces, bytes
+ and hashes. Page numbers start at 0. Written as by htex_asset_manifest_json.
  */
 htex_status htex_library_page_json(struct htex_library library,
                                    size_t page,
@@ -757,8 +779,8 @@ htex_status htex_library_page_json(struct htex_library library,
                                    size_t *length);
 
 /*
- [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json; HTEX_STATUS_ABSENT if there is none of this
- name.
+ [any thread; reads the file] Writes the entry of a texture as JSON, as in
+ htex_library_page_json. HTEX_STATUS_ABSENT if there is no texture with this name.
  */
 htex_status htex_library_entry_json(struct htex_library library,
                                     const char *name,
@@ -767,7 +789,8 @@ htex_status htex_library_entry_json(struct htex_library library,
                                     size_t *length);
 
 /*
- [any thread; reads the file] Opens a texture of the library; HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
+ [any thread; reads the file] Opens a texture of the library. HTEX_STATUS_ABSENT if there is no
+ texture with this name. `options` may be NULL.
  */
 htex_status htex_library_asset(struct htex_library library,
                                const char *name,
@@ -775,17 +798,17 @@ htex_status htex_library_asset(struct htex_library library,
                                struct htex_asset *out);
 
 /*
- [any thread] Sets the function that receives messages; NULL: none, which is the default. It is called in the thread
- of the call that has the message, which is never one that renders or sets a motion, and must not call back into the library.
+ [any thread] Sets the function that receives messages; NULL for none, which is the default. It
+ is called in the thread of the call that produces the message, which is never a call that
+ renders or sets a motion. It must not call back into the library.
 
- Once this returns the previous function is not called any more.
+ Once this returns, the previous function is not called any more.
  */
-htex_status htex_set_log(htex_log_callback callback,
-                         void *context);
+htex_status htex_set_log(htex_log_callback callback, void *context);
 
 /*
- [any thread; reads files] Loads a scene file and its assets and plans it. Its samples have the assets' unit: the scene's own device is
- not used. `open` and `options` may be NULL.
+ [any thread; reads files] Loads a scene file and its assets, and plans it. Its samples have the
+ assets' unit, because the scene's own device is not used. `open` and `options` may be NULL.
  */
 htex_status htex_scene_open(const char *path,
                             const struct htex_open_options *open,
@@ -794,7 +817,7 @@ htex_status htex_scene_open(const char *path,
 
 #if defined(_WIN32)
 /*
- [any thread; reads files] As htex_scene_open, of a path of Windows in UTF-16.
+ [any thread; reads files] As htex_scene_open, for a Windows path in UTF-16.
  */
 htex_status htex_scene_open_wide(const uint16_t *path,
                                  const struct htex_open_options *open,
@@ -803,8 +826,8 @@ htex_status htex_scene_open_wide(const uint16_t *path,
 #endif
 
 /*
- [any thread] As htex_scene_open, of a scene in memory, whose files the program reads. Bytes and `files` are used during the call
- alone.
+ [any thread] As htex_scene_open, for a scene in memory whose files the program reads. The bytes
+ and `files` are only used during the call.
  */
 htex_status htex_scene_from_bytes(const uint8_t *bytes,
                                   size_t len,
@@ -819,61 +842,60 @@ htex_status htex_scene_from_bytes(const uint8_t *bytes,
 htex_status htex_scene_free(struct htex_scene scene);
 
 /*
- [one thread at a time] The plan as JSON: the stages that run and those that are left out, with the reasons. Written as by
- htex_asset_manifest_json.
+ [one thread at a time] Writes the plan as JSON: the stages that run, the stages that are left
+ out, and the reasons. Written as by htex_asset_manifest_json.
  */
-htex_status htex_scene_plan_json(struct htex_scene scene,
-                                 char *out,
-                                 size_t capacity,
-                                 size_t *length);
+htex_status htex_scene_plan_json(struct htex_scene scene, char *out, size_t capacity, size_t *length);
 
 /*
- [one thread at a time] Rate of the samples, Hz.
+ [one thread at a time] Writes the sample rate, Hz.
  */
 htex_status htex_scene_rate_hz(struct htex_scene scene, double *out);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the finger of a scene whose motion is live; in
- other scenes it changes nothing.
+ [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the
+ finger in a scene with live motion. In other scenes it has no effect.
  */
-htex_status htex_scene_set_finger(struct htex_scene scene,
-                                  const struct htex_finger *finger);
+htex_status htex_scene_set_finger(struct htex_scene scene, const struct htex_finger *finger);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Renders the next samples; writes their number, which is smaller at the end of the
- scene, to `rendered`. If a model fails, its surface is silent, the others play on, and the call returns the error.
+ [one thread at a time; real-time: neither allocates nor locks] Renders the next samples and
+ writes their number to `rendered`. It is smaller at the end of the scene. If a model fails, its
+ surface is silent, the others continue, and the call returns the error.
  */
-htex_status htex_scene_render(struct htex_scene scene,
-                              float *out,
-                              size_t frames,
-                              size_t *rendered);
+htex_status htex_scene_render(struct htex_scene scene, float *out, size_t frames, size_t *rendered);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Ends the scene with a ramp to silence, as early as possible.
+ [one thread at a time; real-time: neither allocates nor locks] Ends the scene as early as
+ possible, with a ramp to silence.
  */
 htex_status htex_scene_stop(struct htex_scene scene);
 
 /*
- [no other call may run in any thread] Frees all assets, voices, libraries, scenes and devices (which go to rest), and all memory that was allocated for them, ends
- the threads of engines and forgets the function of htex_set_log, so that the library can be unloaded. Handles from before are
- bad afterwards, and new objects may be made. Constants of the models that were used stay: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY, and nothing is freed of
- that kind, if an object is in use.
+ [no other call may run in any thread] Prepares the library for being unloaded. It frees all
+ assets, voices, libraries, scenes and devices (which go to rest), and all memory allocated for
+ them. It ends the engines' threads and removes the function of htex_set_log. Existing handles
+ become invalid; new objects may be made afterwards. Constants of the models that were used
+ remain: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY if an object is in use;
+ then no object of its kind is freed.
  */
 htex_status htex_shutdown(void);
 
 /*
- [any thread] Text of the last error of the calling thread, in English, UTF-8 and at most 1023 bytes; empty if there was
- none. Valid until the thread's next call that fails. A call that succeeds leaves it as it is.
+ [any thread] Returns the text of the calling thread's last error, in English, UTF-8, at most
+ 1023 bytes; empty if there was none. It is valid until the thread's next call that fails. A
+ successful call does not change it.
  */
 const char *htex_last_error(void);
 
 /*
- [any thread; real-time] What a status means, in English. Static; "unknown status" for other numbers.
+ [any thread; real-time] Returns what a status means, in English; "unknown status" for other
+ numbers. The text is static.
  */
 const char *htex_status_text(int32_t status);
 
 /*
- [any thread; may load a model] Makes a voice of an asset. `options` may be NULL.
+ [any thread; may load a model] Makes a voice from an asset. `options` may be NULL.
  */
 htex_status htex_voice_new(struct htex_asset asset, const struct htex_voice_options *options, struct htex_voice *out);
 
@@ -883,83 +905,74 @@ htex_status htex_voice_new(struct htex_asset asset, const struct htex_voice_opti
 htex_status htex_voice_free(struct htex_voice voice);
 
 /*
- [one thread at a time; not the real-time thread] Makes the voice as it was when it was made, with the same options and the same
- handle: the samples are those of a new voice. `motion` may be NULL (the motion of its options). After an error the voice plays on as before.
+ [one thread at a time; not the real-time thread] Restarts the voice with the same options and
+ the same handle: its samples are those of a new voice. `motion` may be NULL for the motion in
+ its options. After an error the voice plays on as before.
  */
-htex_status htex_voice_reset(struct htex_voice voice,
-                             const struct htex_motion *motion);
+htex_status htex_voice_reset(struct htex_voice voice, const struct htex_motion *motion);
 
 /*
- [one thread at a time] Id of the model that plays: of the options, or that of the representation that was chosen. Written as by
- htex_asset_manifest_json.
+ [one thread at a time] Writes the id of the model that plays: the one in the options, or the one
+ that was chosen. Written as by htex_asset_manifest_json.
  */
-htex_status htex_voice_model(struct htex_voice voice,
-                             char *out,
-                             size_t capacity,
-                             size_t *length);
+htex_status htex_voice_model(struct htex_voice voice, char *out, size_t capacity, size_t *length);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which is not negative and changes within 10 ms.
+ [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which must not be
+ negative. The change takes 10 ms.
  */
-htex_status htex_voice_set_gain(struct htex_voice voice,
-                                double gain);
+htex_status htex_voice_set_gain(struct htex_voice voice, double gain);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice rests, so that its samples are 0 until a motion
- is felt again, else 0. A voice that rests takes hardly any time to render.
+ [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice is silent
+ (its samples are 0 until the finger slides again), otherwise 0. A silent voice takes hardly any
+ time to render.
  */
-htex_status htex_voice_is_silent(struct htex_voice voice,
-                                 uint32_t *out);
+htex_status htex_voice_is_silent(struct htex_voice voice, uint32_t *out);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger; spectrum and level glide to it.
- After an error the voice plays on as before.
+ [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger.
+ Spectrum and level change gradually. After an error the voice plays on as before.
  */
-htex_status htex_voice_set_motion(struct htex_voice voice,
-                                  const struct htex_motion *motion);
+htex_status htex_voice_set_motion(struct htex_voice voice, const struct htex_motion *motion);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Renders the next samples, in the asset's unit. The samples
- do not depend on the lengths of the blocks.
+ [one thread at a time; real-time: neither allocates nor locks] Renders the next samples, in the
+ asset's unit. The samples do not depend on the lengths of the blocks.
  */
-htex_status htex_voice_render(struct htex_voice voice,
-                              float *out,
-                              size_t frames);
+htex_status htex_voice_render(struct htex_voice voice, float *out, size_t frames);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Adds the next samples, multiplied by `gain`, to `out`: for a mix of
- voices.
+ [one thread at a time; real-time: neither allocates nor locks] Multiplies the next samples by
+ `gain` and adds them to `out`, to mix several voices.
  */
-htex_status htex_voice_render_add(struct htex_voice voice,
-                                  float *out,
-                                  size_t frames,
-                                  float gain);
+htex_status htex_voice_render_add(struct htex_voice voice, float *out, size_t frames, float gain);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Tells what the voice played since the last call, effects, gain and limit
- included, for phones, pads and motors, which take level and frequency. Writes the mean square in each of the voice's `envelope_bands`, in the
- squared unit, to `bands`, which may be NULL with a `bands_len` of 0.
+ [one thread at a time; real-time: neither allocates nor locks] Writes what the voice played
+ since the last call, including effects, gain and limit, for phones, pads and motors that are
+ driven by level and frequency. `bands` receives the mean square in each of the voice's
+ `envelope_bands`, in the squared unit. It may be NULL if `bands_len` is 0.
 
- The level is exact. Frequency and bands are those of Hann windows of N samples, the least power of two that lasts 40 ms (20 kHz: 1024), of
- which one ends every N / 4 samples; a call has the mean of the windows that ended since the last call, and the numbers of that call if none
- did. The middle of a window is N / 2 samples before its end.
+ The level is exact. Frequency and bands are computed from Hann windows of N samples, where N is
+ the smallest power of two that lasts at least 40 ms (1024 at 20 kHz). A window ends every N / 4
+ samples, and its middle is N / 2 samples before its end. A call returns the mean of the windows
+ that ended since the last call; if none did, it returns the values of that call.
  */
-htex_status htex_voice_envelope(struct htex_voice voice,
-                                struct htex_envelope *out,
-                                double *bands,
-                                size_t bands_len);
+htex_status htex_voice_envelope(struct htex_voice voice, struct htex_envelope *out, double *bands, size_t bands_len);
 
 /*
- [one thread at a time] Writes the edges of the bands of htex_voice_envelope, one more than bands, Hz: equal ratios from the lowest to the highest frequency of
- the asset. The first band reaches down to 0 Hz, and the last up to half the rate.
+ [one thread at a time] Writes the edges of the bands of htex_voice_envelope, Hz: one more than
+ there are bands, spaced by equal ratios from the lowest to the highest frequency of the asset.
+ The first band also includes everything down to 0 Hz, and the last everything up to half the
+ sample rate.
  */
-htex_status htex_voice_envelope_edges(struct htex_voice voice,
-                                      double *edges_hz,
-                                      size_t len);
+htex_status htex_voice_envelope_edges(struct htex_voice voice, double *edges_hz, size_t len);
 
 /*
- [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames` samples for each of `motions_len` motions, which is set
- before its block: `motions_len * frames` samples. Stops at the first error; the rest of `out` is then unchanged.
+ [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames`
+ samples for each of `motions_len` motions, in total `motions_len * frames` samples. Each motion
+ is set before its block. Stops at the first error; the rest of `out` is then unchanged.
  */
 htex_status htex_voice_render_path(struct htex_voice voice,
                                    const struct htex_motion *motions,
@@ -968,8 +981,8 @@ htex_status htex_voice_render_path(struct htex_voice voice,
                                    size_t frames);
 
 /*
- [one thread at a time] How the voice plays a motion, and whether that is within the recorded conditions, as English text. Written as
- by htex_asset_manifest_json.
+ [one thread at a time] Writes how the voice plays a motion, and whether the motion lies within
+ the recorded conditions, as English text. Written as by htex_asset_manifest_json.
  */
 htex_status htex_voice_coverage(struct htex_voice voice,
                                 const struct htex_motion *motion,

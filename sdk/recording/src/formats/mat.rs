@@ -137,8 +137,7 @@ impl Sheet for Mat {
             let mut read = || {
                 let mut inside = ByteReader::new(self.inside(data.element)?, endian);
                 inside.skip(data.before)?;
-                inside
-                    .values(data.kind, shape.samples * shape.channels, &mut keep)
+                inside.values(data.kind, shape.samples * shape.channels, &mut *keep)
             };
             read().map_err(|error| damaged(data.element.at, &error.into()))
         });

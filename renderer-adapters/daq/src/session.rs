@@ -105,8 +105,10 @@ impl Session {
     /// Takes the samples that fit now and returns their number.
     pub(crate) fn write(&mut self, samples: &[f32]) -> Result<usize, DeviceError> {
         self.usable()?;
-        let samples = &samples[..samples.len().min(self.capacity)];
-        let volts = self.checked(samples)?;
+        // All samples of the call, also those for which there is no space: none may be output before
+        // a later one is refused.
+        let mut volts = self.checked(samples)?;
+        volts.truncate(self.capacity);
         if volts.is_empty() {
             return Ok(0);
         }

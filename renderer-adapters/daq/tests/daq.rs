@@ -108,6 +108,19 @@ fn no_sample_beyond_the_limit_comes_out() {
     }
 }
 
+/// A call may be longer than the buffer: its last sample is checked before its first one is output.
+#[test]
+fn a_wrong_sample_at_the_end_of_a_long_call_stops_all_of_it() {
+    let card = Card::new();
+    let mut device = card.open(&[]).unwrap();
+    let mut samples = vec![150.0; 100_000];
+    samples.push(151.0);
+    let error = device.write(&samples, LONG).unwrap_err();
+    let DeviceError::OverLimit { frame, .. } = error else { unreachable!("{error}") };
+    assert_eq!(frame, 100_000);
+    assert!(card.recorded().iter().all(|v| *v == 0.0));
+}
+
 /// Returns the largest magnitude of the mean over any 100 ms, volts at the display.
 fn direct_v(card: &Card) -> f64 {
     let recorded = card.recorded();

@@ -400,17 +400,33 @@ impl Asset {
     /// ```
     pub fn ranked(&self, measure: ErrorMeasure) -> Vec<usize> {
         let all = &self.data.manifest.representations;
-        let order = |i: &usize| {
-            let error_db = all[*i].error_db(measure);
-            let last = [!self.is_runnable(&all[*i]), error_db.is_none()];
-            (last, error_db.unwrap_or_default())
-        };
-        let mut ranked: Vec<usize> = (0..all.len()).collect();
-        ranked.sort_by(|a, b| {
+        let is_runnable = |i: &usize| self.is_runnable(&all[*i]);
+        let (mut ranked, others): (Vec<_>, Vec<_>) =
+            self.by_error(measure).into_iter().partition(is_runnable);
+        ranked.extend(others);
+        ranked
+    }
+
+    /// Returns the indices of the representations, those with a measured error first and by it.
+    fn by_error(&self, measure: ErrorMeasure) -> Vec<usize> {
+        let all = &self.data.manifest.representations;
+        let mut sorted: Vec<_> =
+            all.iter().map(|stored| stored.error_db(measure)).enumerate().collect();
+        sorted.sort_by(|(_, a), (_, b)| {
+            let order = |error: &Option<f64>| (error.is_none(), error.unwrap_or_default());
             let (a, b) = (order(a), order(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
-        ranked
+        sorted.into_iter().map(|(i, _)| i).collect()
+    }
+
+    /// Returns the first of [`Self::ranked`]. Asks whether a model is there only as often as needed,
+    /// since that takes longer than the rest of the choice.
+    fn best(&self, measure: ErrorMeasure) -> Option<usize> {
+        let all = &self.data.manifest.representations;
+        let sorted = self.by_error(measure);
+        let runnable = sorted.iter().find(|i| self.is_runnable(&all[**i]));
+        runnable.or(sorted.first()).copied()
     }
 
     /// Returns the index of a representation by its model's id or short name; `None` selects the
@@ -419,7 +435,7 @@ impl Asset {
         let all = &self.data.manifest.representations;
         let found = match model {
             Some(name) => all.iter().position(|r| is_named(r, name)),
-            None => self.ranked(ErrorMeasure::NineBand).first().copied(),
+            None => self.best(ErrorMeasure::NineBand),
         };
         found.ok_or_else(|| Error::NoRepresentation {
             wanted: model.unwrap_or("any").to_owned(),

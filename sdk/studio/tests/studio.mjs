@@ -99,5 +99,6 @@ export function htex(...words) {
 /** The samples of a WAV file of 32-bit numbers. */
 export function samplesOf(wav) {
   const at = wav.indexOf("data", 12, "latin1") + 8;
-  return new Float32Array(wav.buffer.slice(wav.byteOffset + at, wav.byteOffset + at + 4 * Math.floor((wav.length - at) / 4)));
+  // Chunks with the licence and the author may follow.
+  return new Float32Array(wav.buffer.slice(wav.byteOffset + at, wav.byteOffset + at + wav.readUInt32LE(at - 4)));
 }

@@ -109,7 +109,9 @@ export function start() {
       performance.mark("ready");
     })
     .catch(fail);
-  if ("serviceWorker" in navigator && location.protocol.startsWith("http") && import.meta.env.MODE === "static") {
+  // `htex studio` serves at a name of `.localhost`, and refuses the worker: it is there without a network anyway.
+  const isServed = location.protocol.startsWith("http") && !location.hostname.endsWith(".localhost");
+  if ("serviceWorker" in navigator && isServed && import.meta.env.MODE === "static") {
     navigator.serviceWorker.register("./sw.js").catch(() => {});
   }
 }

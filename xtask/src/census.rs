@@ -91,7 +91,9 @@ fn sources() -> Result<Vec<Source>> {
         Command::new("git").current_dir(workspace()).args(["ls-files", "*.rs"]).output()?;
     ensure!(listed.status.success(), "git ls-files failed");
     let names = String::from_utf8(listed.stdout)?;
-    names.lines().map(|name| source(Path::new(name))).collect()
+    // Templates of new plugins have words in place of names, which no parser takes.
+    let names = names.lines().filter(|name| !name.contains("/templates/"));
+    names.map(|name| source(Path::new(name))).collect()
 }
 
 fn source(path: &Path) -> Result<Source> {
@@ -247,11 +249,6 @@ impl<'a> Visit<'a> for Found {
             self.errors.push(ident.to_string());
         }
         visit::visit_item(self, item);
-    }
-
-    fn visit_impl_item_fn(&mut self, function: &'a syn::ImplItemFn) {
-        self.add(&function.vis, &function.sig.ident);
-        visit::visit_impl_item_fn(self, function);
     }
 
     fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {

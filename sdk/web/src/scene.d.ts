@@ -31,6 +31,8 @@ export interface ScenePlan {
   left_out: { name: string; surface?: number; reason: string }[];
   /** The model of each surface that is touched. */
   representation: { surface: number; model: string; why: string }[];
+  /** Cost of the renderer besides its stages, nanoseconds for each sample. */
+  renderer_ns: number;
   ns_per_sample_total: number;
   constant: boolean;
   rate_hz: number;

@@ -16,7 +16,7 @@ const file = (name) => readFile(path.join(HTEX_FIXTURES, "scenes", name));
 const filesOf = async (names) => Object.fromEntries(await Promise.all(names.map(async (name) => [name, await file(name)])));
 
 /** A plan without times, which the command may have measured. */
-const withoutCosts = (plan) => JSON.parse(JSON.stringify(plan, (name, value) => (/^(ns_per_sample|costs)/.test(name) ? undefined : value)));
+const withoutCosts = (plan) => JSON.parse(JSON.stringify(plan, (name, value) => (/^(ns_per_sample|renderer_ns|costs)/.test(name) ? undefined : value)));
 
 const FILES = {
   "two-swatches": ["coarse-fabric.htex", "vinyl.htex", "hand.csv"],

@@ -17,7 +17,7 @@ export function fileName(name: string, extension: string) {
 }
 
 /** Samples as a WAV file of 32-bit numbers, one channel, with chunks behind them. */
-export function wav(samples: Float32Array, rate: number, chunks = new Uint8Array()): Uint8Array {
+export function wav(samples: Float32Array, rate: number, chunks: Uint8Array = new Uint8Array()): Uint8Array {
   const data = new Uint8Array(58 + 4 * samples.length + chunks.length);
   const view = new DataView(data.buffer);
   const text = (at: number, letters: string) => [...letters].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));

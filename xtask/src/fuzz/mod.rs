@@ -20,12 +20,15 @@ pub use options::Options;
 use crate::jobs::at_a_time;
 use report::Outcome;
 
+/// Default time of a target, seconds.
+const SECONDS: u64 = 60;
+
 /// Builds and runs the chosen targets.
 ///
 /// # Errors
 /// When the programs cannot be built or run, or when fuzzing has found something.
 pub fn fuzz(options: &Options) -> Result<()> {
-    let options = &options.bounded();
+    let options = &options.bounded(SECONDS);
     let targets = chosen(&options.targets)?;
     let programs = compilation::build(options, &targets)?;
     println!("{}", report::HEAD);

@@ -22,20 +22,11 @@ pub struct Options {
     pub address: bool,
 }
 
-/// Default time of a target, seconds.
-const SECONDS: u64 = 60;
-
 impl Options {
-    /// Returns the same options, with the time of a proof (ten minutes) if no bound is given.
-    pub(crate) fn of_a_proof(&self) -> Self {
+    /// Returns the same options. If neither time nor executions are given, the time is `seconds`.
+    pub(crate) fn bounded(&self, seconds: u64) -> Self {
         let is_bounded = self.seconds.is_some() || self.executions.is_some();
-        Self { seconds: self.seconds.or((!is_bounded).then_some(600)), ..self.clone() }
-    }
-
-    /// Returns the same options, with the default time if no bound is given.
-    pub(super) fn bounded(&self) -> Self {
-        let is_bounded = self.seconds.is_some() || self.executions.is_some();
-        let seconds = self.seconds.or((!is_bounded).then_some(SECONDS));
+        let seconds = self.seconds.or((!is_bounded).then_some(seconds));
         Self { seconds, ..self.clone() }
     }
 }
@@ -53,10 +44,10 @@ mod tests {
         let bounds = |seconds, executions| {
             let options =
                 Options { targets: Vec::new(), seconds, executions, jobs: 2, address: false };
-            let options = options.bounded();
+            let options = options.bounded(60);
             (options.seconds, options.executions)
         };
-        assert_eq!(bounds(None, None), (Some(SECONDS), None));
+        assert_eq!(bounds(None, None), (Some(60), None));
         assert_eq!(bounds(None, Some(9)), (None, Some(9)));
         assert_eq!(bounds(Some(5), Some(9)), (Some(5), Some(9)));
     }

@@ -116,7 +116,7 @@ impl Proof {
     pub fn run(&self) -> Result<()> {
         match self {
             Self::Outputs(options) => outputs::prove(options),
-            Self::Fuzz(options) => fuzz::fuzz(&options.of_a_proof()),
+            Self::Fuzz(options) => fuzz::fuzz(&options.bounded(600)),
             Self::Targets => targets::prove(),
             Self::Edges => whole_test(&["--test", "edges"]),
             Self::Models => whole_test(&["--test", "command", "checker::"]),

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use htex_device_check::{CheckedKind, Finding, Subject, check, run_one};
+use htex_check::device::{CheckedKind, Finding, Subject, check, run_one};
 
 use crate::checking::CheckArgs;
 use crate::devices::SettingArgs;

@@ -3,11 +3,11 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use htex_base::finding::plain;
+use htex_check::device::Subject;
 use htex_device::{
     AdapterKind, Descriptor, Known, Origin, Profile, Registry, Search, Setting, SettingKind,
 };
-use htex_device_check::Subject;
-use htex_finding::plain;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use htex_author::{FeltError, FeltShare, GridReport};
-use htex_finding::plain;
+use htex_base::finding::plain;
 use htex_format::{
     AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality,
     Quantity, Representation, StoredField, Triangle,

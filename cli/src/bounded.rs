@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use htex_files::AtFile;
+use htex_base::files::AtFile;
 use htex_format::Limits;
 
 use crate::failure::Failure;

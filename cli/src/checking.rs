@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::time::Duration;
 
 use clap::Args;
-use htex_check_runner::{Finding, Report, Runner};
+use htex_check::harness::{Finding, Report, Runner};
 use serde::Serialize;
 
 use crate::exit::Exit;

@@ -5,9 +5,9 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use htex_check::device::Subject;
 use htex_device::{Adapter, DeviceError, Devices, KnownDevice, Settings};
 use htex_device_builtin::Optional;
-use htex_device_check::Subject;
 
 use crate::adapters;
 use crate::failure::Failure;

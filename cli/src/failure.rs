@@ -1,8 +1,8 @@
 //! The error with which a failed command ends.
 
 use htex_author::AuthorError;
-use htex_files::FileError;
-use htex_finding::{Finding, Hint, listed, plain};
+use htex_base::files::FileError;
+use htex_base::finding::{Finding, Hint, listed, plain};
 #[cfg(feature = "lab")]
 use htex_lab::record::RecordError;
 
@@ -22,16 +22,16 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Device(#[from] htex_device::DeviceError),
     #[error(transparent)]
-    Tradeoff(#[from] htex_tradeoff::TradeoffError),
+    Tradeoff(#[from] htex_author::tradeoff::TradeoffError),
     #[cfg(feature = "lab")]
     #[error(transparent)]
     Response(#[from] htex_lab::response::ResponseError),
     #[error(transparent)]
-    Storage(#[from] htex_storage::StorageError),
+    Storage(#[from] htex_base::storage::StorageError),
     #[error("{file}: {error}{}", flag_of(.error))]
     Asset { file: String, error: htex::Error },
     #[error("{file}: {error}")]
-    Library { file: String, error: htex_library::LibraryError },
+    Library { file: String, error: htex_format::library::LibraryError },
     #[error("{file}: {cannot} (`htex explain CODE` says more){}", listed(.findings))]
     Findings {
         file: String,
@@ -82,12 +82,12 @@ impl Failure {
 
     /// Returns 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
-        use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
-        use htex_host::HostError::{Option, UnknownModel};
-        use htex_storage::{
+        use htex_base::storage::{
             StorageError,
             StorageProblem::{NoCloud, ReadOnly},
         };
+        use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
+        use htex_host::HostError::{Option, UnknownModel};
         #[cfg(feature = "lab")]
         if self.is_wrong_use_of_lab() {
             return Exit::USAGE;

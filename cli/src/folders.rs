@@ -1,6 +1,6 @@
 //! The user's folders, as named by the environment.
 
-use htex_native::folders::relative;
+use htex_base::native::folders::relative;
 
 use crate::failure::Failure;
 use crate::output::warn;

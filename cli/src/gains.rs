@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use htex_files::AtFile;
+use htex_base::files::AtFile;
 use htex_format::Manifest;
 use htex_scene::file::Levels;
 use htex_scene::{Gain, GainKey, Gains, recordings_of, texture_id, texture_name};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use htex_author::report::{Axis, Plot, Series};
 use htex_author::{CellStatus, GridCell, GridReport};
-use htex_report::{Axis, Plot, Series};
 
 /// Classes of repeatability: upper limit in decibels, name and colour. The colours darken from good
 /// to bad.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use htex_finding::Hint;
+use htex_base::finding::Hint;
 
 /// Settings that messages about scenes and devices name in backquotes, with or without a value
 /// (`setting driver=x`), and the flags for them.

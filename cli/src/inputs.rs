@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::recording::ColumnMap;
+use htex_base::files::AtFile;
 use htex_device::Source;
-use htex_files::AtFile;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 

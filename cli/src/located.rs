@@ -12,8 +12,8 @@ use clap::ArgMatches;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use htex_finding::plain;
-use htex_storage::Location;
+use htex_base::finding::plain;
+use htex_base::storage::Location;
 use tempfile::TempDir;
 
 /// An argument for an asset, which must not exceed the maximum size of an asset.
@@ -217,7 +217,7 @@ impl Elsewhere {
         let folder = tempfile::Builder::new().prefix("htex-").tempdir()?;
         let path = folder.path().to_owned();
         // The copy must not be readable by others, because the store may be private.
-        htex_files::private::close(&path)?;
+        htex_base::files::private::close(&path)?;
         *FOLDER.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.clone());
         self.folder = Some(folder);
         Ok(path)

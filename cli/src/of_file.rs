@@ -3,8 +3,8 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use htex_files::FileError;
-use htex_library::LibraryError;
+use htex_base::files::FileError;
+use htex_format::library::LibraryError;
 use htex_scene::{LoadError, SceneError};
 
 use crate::failure::Failure;

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, FileError, OwnFolder};
-use htex_finding::{Notice, plain};
+use htex_base::files::{AtFile, FileError, OwnFolder};
+use htex_base::finding::{Notice, plain};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -140,7 +140,7 @@ impl Written<'_> {
     ) -> Result<(), FileError> {
         #[allow(clippy::disallowed_methods, reason = "the user named this file")]
         let written = match self {
-            Self::Named(path) => htex_files::replace_file(path, write),
+            Self::Named(path) => htex_base::files::replace_file(path, write),
             Self::Inside(folder, name) => folder.replace(name, write),
         };
         written.writing(self.path())

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use htex_device::guardian::{Guarded, is_unconfirmed, is_wanted, not_started};
 use htex_device::{Device, DeviceError, SettingKind, StreamFormat};
-use htex_device_guardian::{Guarded, is_unconfirmed, is_wanted, not_started};
 use htex_scene::file::Motion;
 use htex_scene::{Plan, Renderer};
 

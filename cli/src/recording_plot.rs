@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use htex_author::report::{Axis, Line, Plot, Series, series_color};
 use htex_author::{Recording, Segments};
-use htex_report::{Axis, Line, Plot, Series, series_color};
 
 /// Number of columns in the picture. Each shows the lowest and the highest of its samples.
 const COLUMNS: usize = 1000;

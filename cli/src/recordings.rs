@@ -6,7 +6,7 @@ use clap::Args;
 use htex_author::recording::{MOST_VALUES, read_recording};
 use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, SpectrumOptions, Take, validate_recording};
-use htex_finding::Report;
+use htex_base::finding::Report;
 #[cfg(feature = "lab")]
 use htex_lab::record::KnownTake;
 

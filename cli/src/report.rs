@@ -1,9 +1,9 @@
 //! The parts of a report on a fitted asset.
 
+use htex_author::report::{Measure, ModelResult, Share, Texture, model_color};
 use htex_author::{FeltShare, FittedAsset};
 use htex_format::{By, Judged, Quality};
 use htex_host::Registry;
-use htex_report::{Measure, ModelResult, Share, Texture, model_color};
 
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 use crate::columns::Column;
@@ -132,7 +132,7 @@ pub(crate) fn measures() -> Vec<Measure> {
 fn note(quality: Option<&Quality>) -> String {
     let of = |measure, decimals| {
         let value = quality.and_then(|q| q.get(measure));
-        htex_report::fixed(value.unwrap_or(f64::NAN), decimals)
+        htex_author::report::fixed(value.unwrap_or(f64::NAN), decimals)
     };
     let r = of(htex_format::Measure::SpectralCorrelation, 2);
     format!("r = {r}, error {} dB RMS", of(htex_format::Measure::NineBand, 1))

@@ -1,11 +1,11 @@
 //! The rules for all kinds of files, in one list.
 
-use htex_finding::Rule;
+use htex_base::finding::Rule;
 
 /// All rules of this program, grouped by subject.
 const TABLES: &[&[Rule]] = &[
     htex_format::RULES,
-    htex_library::RULES,
+    htex_format::library::RULES,
     htex_scene::RULES,
     htex_author::findings::RULES,
     #[cfg(feature = "build")]

@@ -4,9 +4,9 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use htex_base::files::read_regular;
 use htex_dsp::grid::Band;
 use htex_exchange::{MOST_BYTES, SceneSound};
-use htex_files::read_regular;
 use htex_format::{Quantity, Rights};
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Limits, LoadedScene, Renderer, read_scene};

@@ -150,7 +150,7 @@ impl SceneArgs {
         })
     }
 
-    pub(crate) fn validate(file: &Path) -> Result<htex_finding::Report, Failure> {
+    pub(crate) fn validate(file: &Path) -> Result<htex_base::finding::Report, Failure> {
         let registry = PluginArgs::installed()?;
         let around = Surroundings {
             models: &registry,

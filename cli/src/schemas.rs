@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_device::SettingKind;
-use htex_files::AtFile;
-use htex_finding::{FINDINGS_TRUNCATED, Finding, Report, Rule, Severity};
-use htex_format::{EXTENSION_SCHEMA_BROKEN, SCHEMA_BROKEN};
+use htex_base::files::AtFile;
+use htex_base::finding::{FINDINGS_TRUNCATED, Finding, Report, Rule, Severity};
 #[cfg(feature = "schemas")]
-use htex_schema::{Schema, Violation};
+use htex_base::schema::{Schema, Violation};
+use htex_device::SettingKind;
+use htex_format::{EXTENSION_SCHEMA_BROKEN, SCHEMA_BROKEN};
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
@@ -132,7 +132,7 @@ impl ExtensionSchema {
         let Some(extension) = manifest.get("extensions").and_then(|all| all.get(&self.name)) else {
             return;
         };
-        let at = format!("/extensions/{}", htex_finding::escape(&self.name));
+        let at = format!("/extensions/{}", htex_base::finding::escape(&self.name));
         for violation in self.schema.violations(extension) {
             let rule = format!("{}#{}", file_name(&self.file), violation.rule);
             add(report, EXTENSION_SCHEMA_BROKEN, violation, rule, &at);

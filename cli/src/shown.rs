@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_finding::plain;
+use htex_base::finding::plain;
 
 /// Returns a path with control characters escaped.
 pub(crate) fn shown(path: &Path) -> String {

@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use htex_check::device::Subject;
 #[cfg(feature = "lab")]
 use htex_device::Source;
 use htex_device::{KnownSource, SourceAdapter, Sources};
-use htex_device_check::Subject;
 use serde_json::Value;
 
 use crate::adapters;

@@ -3,9 +3,9 @@
 use std::fs::File;
 use std::path::Path;
 
-use htex_files::AtFile;
+use htex_base::files::AtFile;
+use htex_base::storage::{Storage, StorageError};
 use htex_format::Limits;
-use htex_storage::{Storage, StorageError};
 
 use crate::failure::Failure;
 use crate::located::{Role, keep, taken};
@@ -33,7 +33,7 @@ pub(crate) fn fetch() -> Result<(), Failure> {
             Role::Recording => MOST_RECORDING_BYTES,
         };
         let mut options = File::options();
-        htex_files::private::only_user(&mut options);
+        htex_base::files::private::only_user(&mut options);
         let file = options.write(true).create_new(true).open(&local).writing(&local)?;
         storage.download(&location, file, most_bytes)?;
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_finding::{Report, plain};
+use htex_base::finding::{Report, plain};
 
 use crate::exit::Exit;
 use crate::failure::Failure;

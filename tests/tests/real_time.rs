@@ -5,11 +5,11 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use htex::{Asset, VoiceOptions};
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_host::{Registry, Search};
 use htex_scene::file::{self, Budget, DeviceChoice, Effect, Motion, Region, Scene, Switch};
 use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
-use htex_simulate::{SimulationOptions, Surface, simulate};
 use xtask::plugins;
 
 thread_local! {

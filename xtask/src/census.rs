@@ -276,15 +276,7 @@ struct Package {
 }
 
 /// Crates whose `pub` items are meant for users.
-const FOR_USERS: [&str; 7] = [
-    "htex",
-    "htex-model",
-    "htex-device",
-    "htex-player",
-    "htex-capi",
-    "htex-shaped",
-    "htex-device-guardian",
-];
+const FOR_USERS: [&str; 5] = ["htex", "htex-model", "htex-device", "htex-player", "htex-capi"];
 
 impl Packages {
     fn read() -> Result<Self> {

@@ -14,26 +14,7 @@ use fs_err as fs;
 const VARIABLE: &str = "HTEX_GENERATE";
 
 /// The test programs that have generated files.
-const TESTS: &[&str] = &[
-    "abi",
-    "command",
-    "conformance",
-    "costs",
-    "device_abi",
-    "firmware",
-    "header",
-    "losses",
-    "measures",
-    "page",
-    "playing",
-    "recording_conformance",
-    "regressions",
-    "schemas",
-    "source_abi",
-    "study_rules",
-    "table",
-    "unity",
-];
+const PROGRAMS: [&str; 2] = ["command", "it"];
 
 /// Writes all generated files. It builds the whole workspace with the same features as
 /// `cargo test`.
@@ -43,7 +24,7 @@ const TESTS: &[&str] = &[
 pub fn generate() -> Result<()> {
     let mut cargo = Command::new(crate::places::cargo());
     cargo.args(["test", "--quiet", "--workspace"]);
-    cargo.args(TESTS.iter().flat_map(|test| ["--test", test]));
+    cargo.args(PROGRAMS.iter().flat_map(|test| ["--test", test]));
     // One test at a time, because several write parts of the same document.
     cargo.args(["--", "generated_", "--test-threads=1"]);
     cargo.env(VARIABLE, "1");

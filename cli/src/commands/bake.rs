@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex::Motion;
-use htex_bake::{BakeError, BakeLimits, Baked, Grid};
+use htex_play::bake::{BakeError, BakeLimits, Baked, Grid};
 use serde_json::json;
 
 use crate::exit::Exit;
@@ -12,7 +12,7 @@ use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::shown::shown;
-use htex_files::AtFile;
+use htex_base::files::AtFile;
 
 /// Range of the number of coefficients in a filter.
 const FEWEST: i64 = BakeLimits::FEWEST as i64;
@@ -92,7 +92,7 @@ impl Bake {
         };
         let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
         let limits = BakeLimits::within_db(self.within).with_longest(longest);
-        let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, limits)
+        let baked = htex_play::bake::bake(&asset, self.model.as_deref(), &grid, self.rate, limits)
             .of(&self.asset)?;
         let rights = match format {
             Format::Bytes => Some(&baked.rights),
@@ -102,8 +102,8 @@ impl Bake {
         check_outputs(beside.as_deref(), [self.asset.as_path()])?;
         let written = match format {
             Format::Bytes => baked.bytes.clone(),
-            Format::C => htex_bake::c_header(&name, &baked).into_bytes(),
-            Format::Rust => htex_bake::rust_source(&name, &baked).into_bytes(),
+            Format::C => htex_play::bake::c_header(&name, &baked).into_bytes(),
+            Format::Rust => htex_play::bake::rust_source(&name, &baked).into_bytes(),
         };
         write_file(&self.output, &written)?;
         if let Some(rights) = rights {
@@ -196,12 +196,12 @@ fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure
         Some("bin") => (Format::Bytes, |_| false, "bytes in a .bin file have no name"),
         Some("h") => (
             Format::C,
-            htex_bake::is_c_name,
+            htex_play::bake::is_c_name,
             "a name in C begins with a letter, has letters, digits and single underscores, and is no keyword",
         ),
         Some("rs") => (
             Format::Rust,
-            htex_bake::is_rust_name,
+            htex_play::bake::is_rust_name,
             "a constant in Rust has capital letters, digits and underscores, and begins with a letter",
         ),
         _ => {
@@ -214,8 +214,8 @@ fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure
     let name = match (given, &format) {
         (Some(given), _) if is_name(given) => given.to_owned(),
         (Some(given), _) => return Err(Failure::Usage(format!("--name {given}: {rule}"))),
-        (None, Format::Rust) => htex_bake::rust_name(&stem),
-        (None, _) => htex_bake::c_name(&stem),
+        (None, Format::Rust) => htex_play::bake::rust_name(&stem),
+        (None, _) => htex_play::bake::c_name(&stem),
     };
     Ok((name, format))
 }

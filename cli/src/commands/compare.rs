@@ -5,7 +5,7 @@ use htex_author::recording::format_names;
 use htex_author::{
     CompareError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, read_take,
 };
-use htex_finding::{Notice, plain};
+use htex_base::finding::{Notice, plain};
 use htex_format::Measure;
 use serde::Serialize;
 

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex::VoiceOptions;
 use htex_author::recording::{ReadOptions, read_recording};
+use htex_author::report::{Share, Texture, TextureReport, spectra_picture, texture_report};
 use htex_author::settings::FitSettings;
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
     AssetRequest, Exploration, FeltError, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
-use htex_files::{AtFile, OwnFolder};
+use htex_base::files::{AtFile, OwnFolder};
 use htex_format::{By, Keyed, Measure, Rights};
 use htex_host::Registry;
-use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
-use htex_simulate::{SimulationOptions, Surface, simulate};
 use serde::Serialize;
 
 use super::simulate::write_response;

@@ -1,11 +1,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use htex_base::files::{AtFile, read_regular};
 use htex_exchange::{
     Coding, ExchangeError, Exported, Format, Loss, MOST_BYTES, Path, Played, Profile, Stroke,
     Writes, exported, profile_names,
 };
-use htex_files::{AtFile, read_regular};
 use htex_format::Measure;
 use serde::Serialize;
 

@@ -2,11 +2,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_author::recording::format_names;
+use htex_author::report::{TextureReport, texture_report};
 use htex_author::settings::{FitSettings, Metadata};
 use htex_author::{AssetRequest, EmbedError, FittedAsset, embed_plugins, fit_asset};
-use htex_files::{AtFile, FileError};
+use htex_base::files::{AtFile, FileError};
 use htex_host::Registry;
-use htex_report::{TextureReport, texture_report};
 
 use crate::assets::AssetSummary;
 use crate::exit::Exit;

@@ -2,8 +2,8 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use clap::Args;
+use htex_base::files::AtFile;
 use htex_device::Quantity;
-use htex_files::AtFile;
 use htex_scene::{Gain as Kept, Gains, Renderer, START_DB, factor_of_db};
 
 use crate::commands::play;

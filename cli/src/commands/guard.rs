@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_device_guardian::hold;
+use htex_device::guardian::hold;
 
 use crate::devices::DeviceArgs;
 use crate::exit::Exit;

@@ -3,8 +3,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::settings::{FitSettings, Metadata};
+use htex_base::files::{AtFile, read_regular};
 use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, SignalSettings, imported};
-use htex_files::{AtFile, read_regular};
 use htex_format::{Quantity, license_file, read_license_file};
 
 use crate::assets::AssetSummary;

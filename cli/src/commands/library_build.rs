@@ -6,12 +6,12 @@ use std::time::Instant;
 
 use clap::Args;
 use htex_author::FeltShare;
+use htex_base::finding::{Severity, plain};
+use htex_base::storage::Location;
 use htex_build::{
     Build as Recipe, BuildError, BuildOptions, Built, Destination, FindingShare, Job, Report,
     Status, TextureReport, Why, named_briefly, report_failure,
 };
-use htex_finding::{Severity, plain};
-use htex_storage::Location;
 use serde::Serialize;
 
 use crate::assets::short_name;

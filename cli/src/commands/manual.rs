@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Command};
 use clap_mangen::Man;
-use htex_files::{AtFile, OwnFolder};
+use htex_base::files::{AtFile, OwnFolder};
 
 use crate::exit::Exit;
 use crate::failure::Failure;

@@ -2,8 +2,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use htex_files::AtFile;
-use htex_report::{Chain, ChainStage};
+use htex_author::report::{Chain, ChainStage};
+use htex_base::files::AtFile;
 use htex_scene::{Costs, Plan as Planned};
 
 use crate::exit::Exit;

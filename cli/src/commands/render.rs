@@ -3,8 +3,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_base::files::AtFile;
 use htex_device::{Capabilities, Quantity, Settings, StreamFormat};
-use htex_files::AtFile;
 use htex_scene::file::Motion;
 use htex_scene::{Renderer, output_name};
 use serde_json::json;

@@ -6,7 +6,7 @@ use clap::Args;
 use htex_author::recording::{
     ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
 };
-use htex_finding::Notice;
+use htex_base::finding::Notice;
 use htex_lab::response::{
     MeasuredResponse, Piece, Record, ResponseError, ResponseOptions, ResponseSettings, column_map,
     measure, response_picture,

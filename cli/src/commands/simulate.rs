@@ -5,7 +5,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use htex_author::SetupResponse;
 use htex_author::settings::GivenLaw;
-use htex_simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
+use htex_author::simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
 
 use crate::exit::Exit;
 use crate::failure::Failure;

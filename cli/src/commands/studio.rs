@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use htex_files::{Key, OwnFolder};
+use htex_base::files::{Key, OwnFolder};
 use htex_lab::page::ServedFolder;
 
 use crate::exit::Exit;

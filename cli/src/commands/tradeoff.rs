@@ -3,14 +3,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use htex_author::recording::format_names;
-use htex_author::{AuthorError, Exploration, Take};
-use htex_files::{AtFile, OwnFolder};
-use htex_format::{By, Measure};
-use htex_host::{LoadedModel, Origin, Registry};
-use htex_simulate::{SimulationOptions, Surface, simulate};
-use htex_tradeoff::{
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_author::tradeoff::{
     ErrorAxis, Journal, Model, Point, Request, Subject, csv, errors, others, page, sweep,
 };
+use htex_author::{AuthorError, Exploration, Take};
+use htex_base::files::{AtFile, OwnFolder};
+use htex_format::{By, Measure};
+use htex_host::{LoadedModel, Origin, Registry};
 
 use crate::columns::{Column, cells, headings};
 use crate::exit::Exit;
@@ -113,7 +113,7 @@ impl Tradeoff {
             bar.set_message(what.to_owned());
         })?;
         bar.finish_and_clear();
-        let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
+        let tradeoff = htex_author::tradeoff::Tradeoff::new(&tool(), &subjects, swept);
         let json = serde_json::to_vec(&tradeoff)?;
         // Their names are ours, so no link is followed.
         for (file, bytes) in [(&csv_file, csv(&tradeoff).as_bytes()), (&json_file, &json[..])] {
@@ -211,7 +211,7 @@ fn command() -> String {
     ["htex".to_owned()].into_iter().chain(quoted).collect::<Vec<_>>().join(" ")
 }
 
-fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
+fn to_text(tradeoff: &htex_author::tradeoff::Tradeoff, output: &Path) -> String {
     let points = tradeoff.summary();
     let name = points.first().map_or("", |p| &p.recording);
     let column = |measure| Column::new(measure, By::Magnitude);

@@ -2,11 +2,11 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_files::open_regular;
-use htex_finding::{Findings, Report, Severity};
+use htex_base::files::open_regular;
+use htex_base::finding::{Findings, Report, Severity};
+use htex_format::library::{EXTENSION, MAGIC};
 use htex_format::{DESCRIPTOR_INVALID, Limits, PLUGIN_UNUSABLE, Representation, validate_with};
 use htex_host::{Registry, Search, WasmLimits};
-use htex_library::{EXTENSION, MAGIC};
 use serde_json::Value;
 
 use super::lib::check;
@@ -210,7 +210,7 @@ const MOST_TOML_BYTES: u64 = 1 << 20;
 fn validate_recipe(path: &Path) -> Result<Report, Failure> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
     let options = BuildOptions::new(crate::models::tool()).with_limits(WasmLimit::all(&[]));
-    let text = htex_files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
+    let text = htex_base::files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
     let is_study = |line: &str| line.trim_start().starts_with("htex_study");
     if text.lines().any(is_study) {
         let file = crate::shown::shown(path);

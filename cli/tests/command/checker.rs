@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use htex_check::{CHECKS, Options, Outcome, Report, Runner, Settings, check, run_one};
+use htex_check::model::{CHECKS, Options, Outcome, Report, Runner, Settings, check, run_one};
 use htex_host::Registry;
 
 /// A fault of `tests/bad-plugins/bad.c`, and the check that must fail.

@@ -7,7 +7,7 @@ use std::process::Stdio;
 use std::time::{Duration, SystemTime};
 
 use crate::common::Place;
-use htex_library::{Entry, Library};
+use htex_format::library::{Entry, Library};
 use serde_json::Value;
 
 const RECIPE: &str = r#"

@@ -136,7 +136,7 @@ fn studies_on_pages_are_read() {
     let [short, more] = &studies[..] else { panic!("{studies:?}") };
     let (keys, textures) = short.split_once("[[textures]]").unwrap();
     for study in [short.clone(), format!("{keys}{more}\n[[textures]]{textures}")] {
-        let mut findings = htex_finding::Findings::default();
+        let mut findings = htex_base::finding::Findings::default();
         let read = htex_lab::study::read_study(study.as_bytes(), &mut findings);
         assert!(read.is_some(), "{study}\n{findings:?}");
     }

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use crate::common::Place;
 use crate::common::native::{self, complaints, count};
+use htex_check::device::CHECKS;
 use htex_device::{Adapter, DeviceError, NativeAdapter, Settings, StreamFormat};
-use htex_device_check::CHECKS;
 use serde_json::Value;
 
 /// A fault of `tests/bad-devices/bad.c`, the check that must fail, and its outcome.

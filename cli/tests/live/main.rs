@@ -7,7 +7,7 @@ mod bench;
 mod browser;
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../../../renderer-adapters/daq/tests/simulated/library.rs"]
+#[path = "../../../renderer-adapters/builtin/tests/it/daq_simulated/library.rs"]
 mod simulated;
 #[path = "../common/study.rs"]
 mod studies;

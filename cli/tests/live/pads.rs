@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::common::native::{self, complaints, count};
 use crate::common::{Place, Run};
-use htex_device_check::CHECKS;
+use htex_check::device::CHECKS;
 
 /// Checks that are of libraries: marker, exports, extensions, settings as lines, blocks, handles,
 /// arrays.

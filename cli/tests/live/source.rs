@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::Place;
 use crate::common::native::{self, complaints, count};
-use htex_device_check::source::CHECKS;
+use htex_check::device::source::CHECKS;
 use serde_json::Value;
 
 /// A fault of `tests/bad-sources/bad.c`, the check that must fail, and its outcome.

@@ -34,11 +34,11 @@ use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::sharpening::sharpen;
+use htex_model::shaped::{Curve, Places, ShapedVoice};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix, text,
 };
-use htex_shaped::{Curve, Places, ShapedVoice};
 
 use axis::{Axis, Layout, Point};
 use fit::{Fitter, below_highest_db, total_energy};
@@ -200,7 +200,7 @@ impl Model for BandEnergies {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_shaped::voice_rate_hz(band, wanted_hz)
+        htex_model::shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(

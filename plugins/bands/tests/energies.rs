@@ -5,8 +5,8 @@
 use htex_bands::{BandEnergies, FLOOR_DB, Spectrum};
 use htex_dsp::bands::{BandBank, band_error_db, rms};
 use htex_dsp::grid::{Band, level_rms};
+use htex_model::shaped::Curve;
 use htex_model::{Error, Fit, FitCondition, FitInput, Model, Numbers, Status, Values, Voice};
-use htex_shaped::Curve;
 use proptest::prelude::*;
 
 const WITHIN: f64 = 1.0;

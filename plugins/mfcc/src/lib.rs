@@ -19,11 +19,11 @@ use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::Scratch;
 use htex_dsp::shaped_noise::ComponentsKey;
+use htex_model::shaped::{Curve, Places, ShapedVoice};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix,
 };
-use htex_shaped::{Curve, Places, ShapedVoice};
 
 use inverse::Inverse;
 pub use knobs::KNOBS;
@@ -121,7 +121,7 @@ impl Model for MelCepstrum {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        htex_shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
+        htex_model::shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
     }
 
     /// Interpolates cepstra, i.e. logarithms of energies.
@@ -140,7 +140,7 @@ impl Model for MelCepstrum {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_shaped::voice_rate_hz(band, wanted_hz)
+        htex_model::shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(

@@ -18,11 +18,11 @@ use htex_dsp::beta::{BetaDensity, LogAxis};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
+use htex_model::shaped::{Curve, ShapedVoice};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values, mix,
     text,
 };
-use htex_shaped::{Curve, ShapedVoice};
 
 pub use knobs::KNOBS;
 pub use usual::USUAL;
@@ -95,7 +95,7 @@ impl Model for SpectralBeta {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
+        htex_model::shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
     fn interpolate(
@@ -107,7 +107,7 @@ impl Model for SpectralBeta {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_shaped::voice_rate_hz(band, wanted_hz)
+        htex_model::shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(

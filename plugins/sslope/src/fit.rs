@@ -3,8 +3,8 @@
 
 use alloc::vec::Vec;
 
+use htex_model::shaped::Curve;
 use htex_model::{Error, Fit, FitInput};
-use htex_shaped::Curve;
 
 use crate::{MAX_ORDER, ORDER_STEP, Shape};
 

@@ -22,11 +22,11 @@ use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
+use htex_model::shaped::{Curve, ShapedVoice};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix, text,
 };
-use htex_shaped::{Curve, ShapedVoice};
 
 pub use knobs::KNOBS;
 pub use usual::USUAL;
@@ -106,7 +106,7 @@ impl Model for SpectralSlope {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
+        htex_model::shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
     fn interpolate(
@@ -118,7 +118,7 @@ impl Model for SpectralSlope {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_shaped::voice_rate_hz(band, wanted_hz)
+        htex_model::shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(

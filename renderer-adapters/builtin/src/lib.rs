@@ -1,5 +1,7 @@
-//! The built-in devices and sources, which need no library. An adapter that is added here becomes
-//! available in the command, in Python and in C.
+//! The built-in devices and sources, one per module. An adapter that is added to [`devices`] or
+//! [`sources`] becomes available in the command, in Python and in C.
+//!
+//! [`motor`] is what devices share that receive a level and a frequency per block.
 //!
 //! ```
 //! use htex_device::Devices;
@@ -7,7 +9,23 @@
 //! assert_eq!(devices.find("file")?.descriptor().id, "org.htex.file");
 //! # Ok::<(), htex_device::DeviceError>(())
 //! ```
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)] // Allowed where a driver is called.
+
+// Tests of the buffers need no sound card.
+#[cfg(any(test, feature = "audio"))]
+pub mod audio;
+#[cfg(not(target_family = "wasm"))]
+pub mod channels;
+#[cfg(feature = "daq")]
+pub mod daq;
+pub mod file;
+// A page has neither libraries to load nor threads that keep a clock.
+#[cfg(not(target_family = "wasm"))]
+pub mod motor;
+#[cfg(not(target_family = "wasm"))]
+pub mod parametric;
+#[cfg(not(target_family = "wasm"))]
+pub mod sdl;
 
 use std::sync::Arc;
 
@@ -16,17 +34,17 @@ use htex_device::{Adapter, SourceAdapter};
 /// Returns the devices in display order.
 pub fn devices() -> Vec<Arc<dyn Adapter>> {
     vec![
-        Arc::new(htex_device_file::FileAdapter),
+        Arc::new(file::FileAdapter),
         #[cfg(feature = "daq")]
-        Arc::new(htex_device_daq::Daq::new()),
+        Arc::new(daq::Daq::new()),
         #[cfg(feature = "audio")]
-        Arc::new(htex_device_audio::Audio::new()),
+        Arc::new(audio::Audio::new()),
         #[cfg(not(target_family = "wasm"))]
-        Arc::new(htex_device_channels::Channels::new()),
+        Arc::new(channels::Channels::new()),
         #[cfg(not(target_family = "wasm"))]
-        Arc::new(htex_device_sdl::Sdl::new()),
+        Arc::new(sdl::Sdl::new()),
         #[cfg(not(target_family = "wasm"))]
-        Arc::new(htex_device_parametric::Parametric::new()),
+        Arc::new(parametric::Parametric::new()),
     ]
 }
 
@@ -34,9 +52,9 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
 pub fn sources() -> Vec<Arc<dyn SourceAdapter>> {
     vec![
         #[cfg(feature = "daq")]
-        Arc::new(htex_device_daq::DaqInput::new()),
+        Arc::new(daq::DaqInput::new()),
         #[cfg(feature = "audio")]
-        Arc::new(htex_device_audio::AudioInput::new()),
+        Arc::new(audio::AudioInput::new()),
     ]
 }
 

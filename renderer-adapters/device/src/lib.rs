@@ -31,6 +31,7 @@ mod direct;
 mod error;
 mod export;
 mod exported;
+pub mod guardian;
 mod handles;
 mod library;
 mod loaded;

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use htex_native::Symbols;
+use htex_base::native::Symbols;
 use serde::de::DeserializeOwned;
 
 use crate::abi::{
@@ -85,7 +85,7 @@ impl<T: Table> Library<T> {
         let name = path.display().to_string();
         let error = |fault: AbiFault| DeviceError::Abi { library: name.clone(), fault };
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
-        let library = unsafe { htex_native::Library::from_file(path) };
+        let library = unsafe { htex_base::native::Library::from_file(path) };
         let library = library.map_err(|e| error(AbiFault::NotLoaded(e.to_string())))?;
         let kind = T::KIND;
         let symbols =

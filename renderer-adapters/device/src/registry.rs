@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_native::folders::{data, libraries_in, listed};
+use htex_base::native::folders::{data, libraries_in, listed};
 
 use crate::library::Table;
 use crate::loaded::Native;

@@ -1,6 +1,6 @@
 //! The JSON Schemas of the documents that cross the ABI.
 
-use htex_schema::crossing;
+use htex_base::schema::crossing;
 use serde_json::Value;
 
 use crate::{Capabilities, Descriptor, Endpoint, SourceDescriptor, SourceStream};

@@ -1,6 +1,6 @@
 //! Grouping of recordings by exploration condition.
 
-use htex_finding::{Finding, Findings, Notice};
+use htex_base::finding::{Finding, Findings, Notice};
 use htex_format::{Condition, Source};
 use htex_host::FitCondition;
 

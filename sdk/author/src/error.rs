@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use htex_finding::{Finding, Hint, listed};
+use htex_base::finding::{Finding, Hint, listed};
 use htex_host::HostError;
 
 use htex_recording::hertz;

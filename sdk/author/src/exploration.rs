@@ -1,6 +1,6 @@
 //! Exploration conditions: speed and normal force of the finger while the texture is recorded.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use crate::findings::{RECORDING_OFF_TARGET, RECORDING_UNSTEADY, quantile};
 use crate::segments::Segments;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use htex_base::finding::Notice;
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
-use htex_finding::Notice;
 use htex_format::{
     Asset, AtCondition, Condition, Contact, Law, Manifest, Measure, Provenance, Quality, Quantity,
     Reference, Representation, round_within,

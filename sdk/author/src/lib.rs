@@ -23,7 +23,7 @@
 //!    player's mesh.
 //!
 //! ```
-//! use htex_simulate::{SimulationOptions, Surface, simulate};
+//! use htex_author::simulate::{SimulationOptions, Surface, simulate};
 //! use htex_author::{Averaging, SpectrumOptions, TextureSpectrum, segment_spectra};
 //!
 //! let simulation = simulate(&SimulationOptions::new(Surface::Vinyl))?;
@@ -60,12 +60,15 @@ mod reading;
 mod recorded;
 mod recording_finding;
 mod rendered;
+pub mod report;
 mod request;
 mod segments;
 pub mod settings;
+pub mod simulate;
 mod spectrum;
 mod stored;
 mod take;
+pub mod tradeoff;
 mod warnings;
 
 pub use averaging::Averaging;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_finding::{Finding, Findings, Notice, Report, Severity};
+use htex_base::finding::{Finding, Findings, Notice, Report, Severity};
 
 use crate::exploration::{exploration, keep_on_target};
 use crate::findings::{

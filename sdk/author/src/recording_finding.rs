@@ -1,6 +1,6 @@
 //! Findings of an asset's recordings, each with the recording's name.
 
-use htex_finding::Finding;
+use htex_base::finding::Finding;
 
 /// A finding of one of several recordings.
 #[derive(Debug, Clone, PartialEq, Eq)]

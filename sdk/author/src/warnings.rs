@@ -1,6 +1,6 @@
 //! Warnings of several recordings. Equal warnings become one sentence that names the recordings.
 
-use htex_finding::Notice;
+use htex_base::finding::Notice;
 
 /// Warnings in the order in which they first occurred, each with its recordings.
 #[derive(Debug, Default)]

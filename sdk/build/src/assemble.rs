@@ -5,9 +5,9 @@ use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use htex_files::AtFile;
+use htex_base::files::AtFile;
+use htex_format::library::{Packed, Writer};
 use htex_format::{Asset, Rights};
-use htex_library::{Packed, Writer};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;
@@ -267,7 +267,7 @@ fn remove_stale(
     let kept: BTreeSet<String> = built(now).collect();
     let before_built: BTreeSet<String> =
         built(&before).chain(now.removed.iter().cloned()).collect();
-    for name in before_built.iter().filter(|name| htex_library::check_name(name).is_ok()) {
+    for name in before_built.iter().filter(|name| htex_format::library::check_name(name).is_ok()) {
         if !kept.contains(name) {
             dist.remove(&Dist::texture(name))?;
         }

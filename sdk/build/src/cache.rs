@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
-use htex_files::AtFile;
+use htex_base::files::AtFile;
 
 use crate::BuildError;
 use crate::kept::{Kept, inside};

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use htex_files::{AtFile, OwnFolder};
+use htex_base::files::{AtFile, OwnFolder};
 
 use crate::BuildError;
 use crate::kept::inside;

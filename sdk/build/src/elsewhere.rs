@@ -9,8 +9,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use htex_files::{AtFile, OwnFolder};
-use htex_storage::{Location, Storage, StorageError, StorageProblem};
+use htex_base::files::{AtFile, OwnFolder};
+use htex_base::storage::{Location, Storage, StorageError, StorageProblem};
 use tempfile::TempDir;
 
 use crate::BuildError;
@@ -234,7 +234,7 @@ impl Elsewhere {
             Copies::Folder(own) => {
                 let copies = inside(COPIES);
                 let made = own.make_folder(&copies).writing(own.path().join(&copies))?;
-                htex_files::private::close(&made).writing(&made)?;
+                htex_base::files::private::close(&made).writing(&made)?;
                 Ok(CopiesIn { own: own.clone(), inside: copies })
             }
             Copies::Temporary(held) => {

@@ -21,10 +21,10 @@ pub enum BuildError {
     },
     /// A file cannot be read or written.
     #[error(transparent)]
-    File(#[from] htex_files::FileError),
+    File(#[from] htex_base::files::FileError),
     /// A remote file cannot be read or written.
     #[error(transparent)]
-    Storage(#[from] htex_storage::StorageError),
+    Storage(#[from] htex_base::storage::StorageError),
     /// Another build uses the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked { folder: PathBuf },
@@ -59,8 +59,8 @@ impl From<serde_json::Error> for BuildError {
     }
 }
 
-impl From<htex_files::toml::TomlError> for BuildError {
-    fn from(error: htex_files::toml::TomlError) -> Self {
+impl From<htex_base::files::toml::TomlError> for BuildError {
+    fn from(error: htex_base::files::toml::TomlError) -> Self {
         Self::Recipe(error.to_string())
     }
 }

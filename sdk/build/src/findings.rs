@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use htex_author::RecordingFinding;
 use htex_author::findings::RULES;
-use htex_finding::Severity;
+use htex_base::finding::Severity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -9,8 +9,8 @@ use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobSet, GlobSetBuilder};
-use htex_files::FileError;
-use htex_storage::Location;
+use htex_base::files::FileError;
+use htex_base::storage::Location;
 use walkdir::WalkDir;
 
 use crate::BuildError;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use htex_files::{AtFile, FileError, check_regular_at, open_regular};
+use htex_base::files::{AtFile, FileError, check_regular_at, open_regular};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;

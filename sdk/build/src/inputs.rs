@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
-use htex_files::{AtFile, read_regular};
-use htex_storage::Location;
+use htex_base::files::{AtFile, read_regular};
+use htex_base::storage::Location;
 use regex::Regex;
 
 use crate::BuildError;

@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 use htex_author::AuthorError;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
+use htex_base::files::{AtFile, FileError};
+use htex_base::storage::Location;
 use htex_exchange::SignalSettings;
-use htex_files::{AtFile, FileError};
 use htex_format::Asset;
 use htex_host::{Registry, Search, WasmLimits};
-use htex_storage::Location;
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;

@@ -2,7 +2,7 @@
 //!
 //! The results may come from somebody else, with a `.htex-build` that makes claims about the fit of
 //! a recording, known files, or what was published. So each file in it begins with a keyed hash of
-//! its name and content, with a key of this user ([`htex_files::Key`]). Files that this user has
+//! its name and content, with a key of this user ([`htex_base::files::Key`]). Files that this user has
 //! not made are not used, and are made again. If there is no folder for a user's key, a temporary
 //! key is used that ends with the build.
 
@@ -10,7 +10,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use htex_files::{AtFile, FileError, Key, OwnFolder};
+use htex_base::files::{AtFile, FileError, Key, OwnFolder};
 
 use crate::BuildError;
 
@@ -31,7 +31,7 @@ pub(crate) struct Kept {
 impl Kept {
     /// Returns the folder of stored data in the folder of the results.
     pub(crate) fn new(output: &Path) -> Result<Self, BuildError> {
-        let folder = htex_native::folders::config();
+        let folder = htex_base::native::folders::config();
         let key = folder.and_then(|folder| Key::of(&folder, KEY).ok());
         let key = match key {
             Some(key) => key,

@@ -1,7 +1,7 @@
 //! Finds keys in a recipe that its schema does not have. Without this check, a misspelt key would
 //! silently have no effect.
 
-use htex_files::toml::lines_of_keys;
+use htex_base::files::toml::lines_of_keys;
 use serde_json::Value;
 
 use crate::{BuildError, recipe_schema};
@@ -11,10 +11,10 @@ const MOST_NAMED: usize = 20;
 
 /// Refuses unknown keys in a recipe. Reports each with its line and the most similar known key.
 pub(crate) fn check_keys(text: &str, recipe: &Value) -> Result<(), BuildError> {
-    let unknown = htex_schema::unknown_keys(&recipe_schema(), recipe);
+    let unknown = htex_base::schema::unknown_keys(&recipe_schema(), recipe);
     let named = &unknown[..unknown.len().min(MOST_NAMED)];
     let lines = lines_of_keys(text, named.iter().map(|key| &key.path[..]));
-    let sentence = |(key, line): (&htex_schema::UnknownKey, Option<usize>)| match line {
+    let sentence = |(key, line): (&htex_base::schema::UnknownKey, Option<usize>)| match line {
         Some(line) => format!("line {line}: {key}"),
         None => key.to_string(),
     };

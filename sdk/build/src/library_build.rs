@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use htex_files::FileError;
+use htex_base::files::FileError;
+use htex_base::storage::{Location, StorageProblem};
 use htex_host::WasmLimits;
-use htex_storage::{Location, StorageProblem};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 

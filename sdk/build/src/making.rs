@@ -10,8 +10,8 @@ use htex_author::settings::{Metadata, ReadingSettings, SettingsError};
 use htex_author::{
     AssetRequest, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
+use htex_base::files::{AtFile, FileError, read_regular};
 use htex_exchange::{Import, MOST_BYTES, Physical, Profile, fit_signals};
-use htex_files::{AtFile, FileError, read_regular};
 use htex_format::Asset;
 use htex_host::Registry;
 

@@ -301,7 +301,7 @@ fn gather(
 }
 
 fn check_name(place: &str, name: &str) -> Result<(), BuildError> {
-    htex_library::check_name(name).at(place)
+    htex_format::library::check_name(name).at(place)
 }
 
 /// Refuses a texture whose file would have the same path as a folder of another texture.

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use htex_files::AtFile;
-use htex_storage::{Location, Storage, StorageError};
+use htex_base::files::AtFile;
+use htex_base::storage::{Location, Storage, StorageError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;

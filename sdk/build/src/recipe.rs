@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use htex_author::Exploration;
 use htex_author::settings::{FitSettings, Metadata, OneOrMore, ReadingSettings, one_or_more};
+use htex_base::files::{AtFile, read_regular_text};
 use htex_exchange::SignalSettings;
-use htex_files::{AtFile, read_regular_text};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
@@ -208,8 +208,8 @@ impl Recipe {
     /// If it is not TOML, has other keys or values than a recipe, or has a gate for a code that no
     /// finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
-        check_keys(text, &htex_files::toml::from_str(text)?)?;
-        let recipe: Self = htex_files::toml::from_str(text)?;
+        check_keys(text, &htex_base::files::toml::from_str(text)?)?;
+        let recipe: Self = htex_base::files::toml::from_str(text)?;
         recipe.check_codes()?;
         Ok(recipe)
     }

@@ -6,8 +6,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use htex_library::Library;
-use htex_storage::{Location, Storage};
+use htex_base::storage::{Location, Storage};
+use htex_format::library::Library;
 
 use crate::assemble::{MOST_REPORT_BYTES, REPORT_FILE, previous};
 use crate::dist::Dist;

@@ -255,11 +255,11 @@ fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
 
 /// Returns the JSON Schema of [`Report`]: `spec/schemas/build-report-1.json`.
 pub fn report_schema() -> serde_json::Value {
-    htex_schema::document::<Report>("build-report-1.json", "report of the build of a library")
+    htex_base::schema::document::<Report>("build-report-1.json", "report of the build of a library")
 }
 
 /// Returns the JSON Schema of [`Recipe`], for editors that check TOML:
 /// `spec/schemas/recipe-1.json`.
 pub fn recipe_schema() -> serde_json::Value {
-    htex_schema::document::<Recipe>("recipe-1.json", "recipe of a library of textures")
+    htex_base::schema::document::<Recipe>("recipe-1.json", "recipe of a library of textures")
 }

@@ -1,6 +1,6 @@
 //! The rules of recipes, in one table.
 
-use htex_finding::rule_table;
+use htex_base::finding::rule_table;
 
 rule_table! {
     RECIPE_INVALID Error:

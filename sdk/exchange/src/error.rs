@@ -27,7 +27,7 @@ fn quoted(text: &str) -> String {
     if shown.len() < text.len() {
         shown.push('…');
     }
-    htex_finding::plain(&shown).into_owned()
+    htex_base::finding::plain(&shown).into_owned()
 }
 
 impl Fault {

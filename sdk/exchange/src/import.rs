@@ -11,7 +11,7 @@ use htex_author::{
     AssetRequest, AuthorError, Averaging, Exploration, FeltError, FittedAsset, Level, Recording,
     SegmentChoice, Take, fit_asset,
 };
-use htex_finding::{Hint, Notice};
+use htex_base::finding::{Hint, Notice};
 use htex_format::Rights;
 use htex_host::Registry;
 

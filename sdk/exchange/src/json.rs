@@ -1,7 +1,7 @@
 //! Reading JSON with error places: a problem is located by its JSON pointer, or by line and column
 //! if the text is not JSON.
 
-use htex_finding::escape;
+use htex_base::finding::escape;
 use htex_format::{JsonError, parse_json};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -20,7 +20,7 @@ pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
     }
     // A test makes sure that the file can be read. If it could not, there would be no profiles, and
     // looking up any name would say so.
-    htex_files::toml::from_str(include_str!("profiles.toml"))
+    htex_base::files::toml::from_str(include_str!("profiles.toml"))
         .map_or_else(|_| Vec::new(), |all: Profiles| all.profile)
 });
 

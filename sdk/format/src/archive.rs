@@ -12,7 +12,7 @@ use crate::limits::Limits;
 use crate::rules as rule;
 use crate::unpack::{DEFLATED, STORED, unpack};
 use crate::zip_records::{self, Central, Common, END_BYTES, End, Local};
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 const ENCRYPTED: u16 = 1 | 1 << 6 | 1 << 13;
 const DATA_DESCRIPTOR: u16 = 1 << 3;

@@ -1,7 +1,7 @@
 //! An asset in memory.
 
 use crate::Manifest;
-use htex_finding::Finding;
+use htex_base::finding::Finding;
 
 /// One texture: its manifest, parameters, reference spectra and embedded modules.
 ///

@@ -11,8 +11,8 @@ use htex_model::Band;
 use crate::law::{Law, MOST_EXPONENT};
 use crate::manifest::{Condition, Manifest};
 use crate::rules as rule;
-use htex_finding::Findings;
-use htex_finding::escape;
+use htex_base::finding::Findings;
+use htex_base::finding::escape;
 
 /// Highest allowed upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;

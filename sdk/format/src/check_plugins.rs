@@ -7,7 +7,7 @@ use htex_model::is_model_id;
 
 use crate::rules as rule;
 use crate::{Manifest, Plugin};
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 /// Adds a finding for each rule that the manifest's plugins break, without looking at the modules.
 pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {

@@ -11,7 +11,7 @@ use crate::quality_json::{BAND_COUNT, Content, Entries, Entry};
 use crate::quantity::Quantity;
 use crate::rules as rule;
 use crate::triangles::{TrianglesError, check_corners, check_triangles};
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 /// Smallest allowed ratio of a step to the largest magnitude it is added to. Below it, rounding can
 /// change the step.

@@ -9,7 +9,7 @@ use crate::limits::Limits;
 use crate::rules::FILE_TOO_LARGE;
 use crate::validate::inspect;
 use crate::{Asset, ReadError, block};
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].

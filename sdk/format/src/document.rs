@@ -5,8 +5,8 @@ use serde_json::Value;
 
 use crate::json_text::{JsonError, parse_json};
 use crate::typed::typed;
-use htex_finding::Findings;
-use htex_finding::Rule;
+use htex_base::finding::Findings;
+use htex_base::finding::Rule;
 
 /// A kind of document: what messages call it, its version and the rules it must follow.
 #[derive(Debug, Clone, Copy)]

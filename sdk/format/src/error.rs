@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use htex_finding::{Finding, summary};
+use htex_base::finding::{Finding, summary};
 
 /// Error of reading an asset.
 ///

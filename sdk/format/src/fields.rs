@@ -9,8 +9,8 @@ use semver::Version;
 use crate::block::split;
 use crate::rules as rule;
 use crate::{Manifest, Representation, StoredField, WriteError};
-use htex_finding::Findings;
-use htex_finding::Rule;
+use htex_base::finding::Findings;
+use htex_base::finding::Rule;
 
 /// A difference between the stored fields and the model's fields.
 #[allow(missing_docs)] // The message says what a field is.

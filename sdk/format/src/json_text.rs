@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 use serde_json::map::Entry;
 use serde_json::{Map, Number, Value};
 
-use htex_finding::Place;
+use htex_base::finding::Place;
 
 /// Parses a JSON text that nests at most 128 deep, the parser's own limit. It refuses duplicate
 /// keys, because programs differ in which of the two they use.

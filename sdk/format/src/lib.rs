@@ -29,6 +29,9 @@ mod error;
 mod fields;
 mod json_text;
 mod law;
+#[cfg(feature = "library")]
+#[allow(missing_docs, reason = "fields and variants name what they hold")]
+pub mod library;
 mod license;
 mod limits;
 mod manifest;
@@ -63,8 +66,8 @@ pub use doi::{InvalidDoi, check_doi};
 pub use entry_ranges::{EntryRange, entry_ranges};
 pub use error::{ReadError, WriteError};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
-pub use htex_files::{remove_unfinished, replace_file, write_file};
-pub use htex_finding::{FileReport, Finding, Report, Severity};
+pub use htex_base::files::{remove_unfinished, replace_file, write_file};
+pub use htex_base::finding::{FileReport, Finding, Report, Severity};
 pub use htex_model::Band;
 pub use json_text::{JsonError, parse_json};
 pub use law::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};

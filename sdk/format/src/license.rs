@@ -3,7 +3,7 @@
 mod expression;
 
 use crate::rules as rule;
-use htex_finding::Rule;
+use htex_base::finding::Rule;
 
 /// The error for a text that is not an SPDX expression of listed licences.
 #[allow(missing_docs)] // The message says what a field is.

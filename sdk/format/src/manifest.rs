@@ -37,7 +37,7 @@ pub struct Manifest {
     #[schemars(regex(pattern = r"^1\.(0|[1-9][0-9]*)$"))]
     pub htex: String,
     /// Name of the texture.
-    #[schemars(regex(pattern = htex_schema::NOT_BLANK))]
+    #[schemars(regex(pattern = htex_base::schema::NOT_BLANK))]
     pub name: String,
     /// SPDX licence expression of the asset.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -6,8 +6,8 @@ use crate::document::{Document, DocumentRules};
 use crate::limits::Limits;
 use crate::rules as rule;
 use crate::{Manifest, Quantity, VERSION};
-use htex_finding::Findings;
-use htex_finding::escape;
+use htex_base::finding::Findings;
+use htex_base::finding::escape;
 
 const DOCUMENT: Document = Document {
     text: "manifest",

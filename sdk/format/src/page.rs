@@ -1,6 +1,6 @@
 //! Generator of `spec/validation.md` and `spec/schemas/manifest-1.json`.
 
-use htex_finding::{FileReport, rules_page};
+use htex_base::finding::{FileReport, rules_page};
 use serde_json::Value;
 
 use crate::{Manifest, RULES, STAGES, rules_of};
@@ -36,10 +36,13 @@ pub fn validation_page() -> String {
 
 /// Generates the JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
 pub fn manifest_schema() -> Value {
-    htex_schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
+    htex_base::schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
 }
 
 /// Generates the JSON Schema of a validation report: `spec/schemas/report-1.json`.
 pub fn report_schema() -> Value {
-    htex_schema::document::<FileReport>("report-1.json", "report of validation of an htex file")
+    htex_base::schema::document::<FileReport>(
+        "report-1.json",
+        "report of validation of an htex file",
+    )
 }

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{OwnFolder, read_regular};
+use htex_base::files::{OwnFolder, read_regular};
 
 use crate::{Manifest, replace_file};
 

@@ -2,7 +2,7 @@
 
 use crate::stages::*;
 
-htex_finding::rule_table! {
+htex_base::finding::rule_table! {
     FILE_TOO_LARGE Error [FILE]:
         "The file is larger than the limit.",
         "A reader limits what it reads from an untrusted file, before it reads it.",
@@ -328,5 +328,5 @@ htex_finding::rule_table! {
         "A model's or device's descriptor is invalid.",
         "Hosts refuse it when they load the model or device.",
         "Correct what the message names.";
-    + htex_finding::FINDINGS_TRUNCATED;
+    + htex_base::finding::FINDINGS_TRUNCATED;
 }

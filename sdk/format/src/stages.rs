@@ -1,7 +1,7 @@
 //! The stages of reading an asset: the order in which findings are made, and where reading stops.
 
-pub(crate) use htex_finding::COUNT;
-use htex_finding::{Rule, Stage};
+pub(crate) use htex_base::finding::COUNT;
+use htex_base::finding::{Rule, Stage};
 
 use crate::RULES;
 

@@ -25,7 +25,7 @@ use serde::de::{
 use serde::forward_to_deserialize_any;
 use serde_json::{Map, Value};
 
-use htex_finding::escape;
+use htex_base::finding::escape;
 
 /// Largest integer up to which every integer is exact in binary64.
 const EXACT: f64 = 9_007_199_254_740_992.0;

@@ -18,7 +18,7 @@ use crate::plugin::WASM_MAGIC;
 use crate::rules as rule;
 use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
-use htex_finding::{Finding, Findings, Report, Severity};
+use htex_base::finding::{Finding, Findings, Report, Severity};
 
 /// Validates the bytes of a `.htex` file. Reports every broken rule that can be detected
 /// independently of earlier ones. Never panics, and reads no more than `limits` allow.

@@ -9,7 +9,7 @@ use crate::limits::Limits;
 use crate::validate::inspect;
 use crate::zip_writer::ZipWriter;
 use crate::{Asset, WriteError, block, write_file};
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 impl Asset {
     /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.

@@ -60,12 +60,12 @@ pub use clock::Instant;
 pub use decimal::decimal;
 pub use descriptor::{DescriptorError, read_descriptor};
 pub use error::{HostError, OptionError};
+pub use htex_base::native::folders;
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{
     Descriptor, Field, Fit, FitCondition, FitOption, Kind, Knob, Knobs, Motion, Scale, Status,
     Store, Usual,
 };
-pub use htex_native::folders;
 pub use limits::{WasmCache, WasmCompiler, WasmEngine, WasmLimits, WasmTotal};
 pub use model::{FitRequest, LoadedModel, MOTION_EXTENSION};
 pub use note::Note;

@@ -2,7 +2,7 @@
 //!
 //! They limit memory, tables, stack, voices, time, the cost of compilation, the total of all
 //! modules, and optionally the number of instructions. For each limit, a test in
-//! `sdk/host/tests/limits.rs` exceeds it.
+//! `sdk/host/tests/it/limits.rs` exceeds it.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -5,10 +5,10 @@
 
 use std::path::Path;
 
+use htex_base::native::{Library, Symbols, table_of_symbols};
 use htex_model::abi::{AbiVersion, ModelTable};
 use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
-use htex_native::{Library, Symbols, table_of_symbols};
 
 use crate::HostError;
 use crate::marker::check_marker;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_native::folders::{data, libraries_in, listed};
+use htex_base::native::folders::{data, libraries_in, listed};
 
 use crate::error::Loading;
 use crate::registry::Rank;

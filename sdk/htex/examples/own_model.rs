@@ -6,10 +6,10 @@
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex::simulate::{SimulationOptions, Surface, simulate};
 use htex::{Asset, Motion, Registry, VoiceOptions};
+use htex_model::shaped::{Curve, ShapedVoice};
 use htex_model::{
     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
 };
-use htex_shaped::{Curve, ShapedVoice};
 
 /// The model: a plateau from `low_hz` to `high_hz`.
 struct Plateau;
@@ -59,7 +59,7 @@ impl Model for Plateau {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        htex_shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
+        htex_model::shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
     }
 
     fn interpolate(
@@ -71,7 +71,7 @@ impl Model for Plateau {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_shaped::voice_rate_hz(band, wanted_hz)
+        htex_model::shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(

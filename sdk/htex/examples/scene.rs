@@ -9,7 +9,7 @@ use std::sync::Arc;
 use htex::Registry;
 use htex::device::Devices;
 use htex::scene::{Costs, DeviceOverride, LoadedScene, Renderer, Surroundings, plan};
-use htex_device_file::FileAdapter;
+use htex_device_builtin::file::FileAdapter;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path: PathBuf = std::env::args_os().nth(1).ok_or("give a scene: scene SCENE.json")?.into();

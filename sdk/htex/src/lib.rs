@@ -29,21 +29,21 @@
 
 #[cfg(feature = "author")]
 pub use htex_author as author;
+#[cfg(feature = "author")]
+pub use htex_author::simulate;
+#[cfg(feature = "storage")]
+pub use htex_base::storage;
 #[cfg(feature = "scene")]
 pub use htex_device as device;
 /// The container: its types, reading, writing and validation.
 pub use htex_format as format;
-/// The models: registry, loaders, calls.
-pub use htex_host as host;
 /// Library files, which hold thousands of textures.
 #[cfg(feature = "library")]
-pub use htex_library as library;
+pub use htex_format::library;
 #[cfg(feature = "library")]
-pub use htex_library::Library;
+pub use htex_format::library::Library;
+/// The models: registry, loaders, calls.
+pub use htex_host as host;
 pub use htex_play::*;
 #[cfg(feature = "scene")]
 pub use htex_scene as scene;
-#[cfg(feature = "author")]
-pub use htex_simulate as simulate;
-#[cfg(feature = "storage")]
-pub use htex_storage as storage;

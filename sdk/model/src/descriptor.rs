@@ -200,5 +200,5 @@ impl From<&StaticOption> for FitOption {
 #[cfg(feature = "schemars")]
 pub fn descriptor_schema() -> serde_json::Value {
     let title = "descriptor of a texture model, ABI 1";
-    htex_schema::document::<Descriptor>("descriptor-1.json", title)
+    htex_base::schema::document::<Descriptor>("descriptor-1.json", title)
 }

@@ -46,6 +46,7 @@ pub mod motion_1;
 mod numbers;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 mod platform;
+pub mod shaped;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 pub mod shim;
 mod static_descriptor;

@@ -1,7 +1,7 @@
 //! What a WASM module needs in place of the standard library: a panic handler and an allocator.
 //!
 //! A module links no standard library, no serializer and no text formatting. `docs/modules.md` has
-//! the reasons, and `tests/tests/modules.rs` the size limits.
+//! the reasons, and `tests/tests/it/modules.rs` the size limits.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::wasm32::{memory_grow, unreachable};

@@ -295,7 +295,7 @@ pub trait Model: 'static {
 /// [`render`](Self::render) cannot fail. A voice that cannot continue writes zeros. If it panics,
 /// the content of `out` is undefined.
 ///
-/// The example of [`Model`] implements this trait. The crate `htex-shaped` has a complete voice for
+/// The example of [`Model`] implements this trait. The crate `htex-model` has a complete voice for
 /// models that are noise with a given spectrum.
 pub trait Voice: Send + 'static {
     /// Fills `out` with the next samples. `out` may have any length, and earlier contents are

@@ -66,8 +66,8 @@ impl Asset {
     /// When the library has no texture with this name, cannot be read, or stores an invalid asset
     /// for it.
     #[cfg(feature = "library")]
-    pub fn from_library<S: htex_library::LibrarySource>(
-        library: &htex_library::Library<S>,
+    pub fn from_library<S: htex_format::library::LibrarySource>(
+        library: &htex_format::library::Library<S>,
         name: &str,
     ) -> Result<Self, Error> {
         Self::from_bytes(&library.get(name)?)

@@ -17,7 +17,7 @@ pub enum Error {
     /// A library, or a texture in it, cannot be read.
     #[cfg(feature = "library")]
     #[error(transparent)]
-    Library(#[from] htex_library::LibraryError),
+    Library(#[from] htex_format::library::LibraryError),
     /// A model is missing, or returned an error.
     #[error(transparent)]
     Model(#[from] htex_host::HostError),

@@ -20,6 +20,9 @@
 #![forbid(unsafe_code)]
 
 mod asset;
+#[cfg(feature = "bake")]
+#[allow(missing_docs, reason = "fields and variants name what they hold")]
+pub mod bake;
 mod condition;
 pub mod envelope;
 mod error;
@@ -42,7 +45,7 @@ pub use condition::default_condition;
 pub use envelope::Envelope;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
-pub use htex_finding::{Finding, Severity};
+pub use htex_base::finding::{Finding, Severity};
 /// An asset's data: the argument of [`Asset::new`].
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use htex::Quantity;
 use htex_author::settings::{FitSettings, Metadata};
+use htex_base::files::read_regular;
 use htex_exchange::{
     Coding, ExchangeError, Export, FORMATS, Format, Import, ImportError, MOST_BYTES, PROFILES,
     Physical, Profile, Stroke, Writes,
 };
-use htex_files::read_regular;
 use htex_format::{license_file, read_license_file};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
@@ -121,7 +121,8 @@ impl Importing {
         let imported = htex_exchange::import(&name, &bytes, &how, &registry).or_raise()?;
         let written = imported.to_bytes().or_raise()?;
         let texture = Texture::of_bytes(&written, self.plugins, self.installed)?;
-        let texts = |all: &[htex_finding::Notice]| all.iter().map(ToString::to_string).collect();
+        let texts =
+            |all: &[htex_base::finding::Notice]| all.iter().map(ToString::to_string).collect();
         Ok((texture, texts(&imported.warnings), texts(&imported.notes)))
     }
 }

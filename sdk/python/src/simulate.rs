@@ -1,7 +1,7 @@
 //! Simulated recordings.
 
 use htex_author::settings::GivenLaw;
-use htex_simulate::{
+use htex_author::simulate::{
     Departures, FreeMotion, Simulation, SimulationError, SimulationOptions, Surface,
 };
 use numpy::{IntoPyArray, PyArray1};
@@ -106,7 +106,7 @@ fn moved(
 }
 
 fn written(options: &SimulationOptions) -> PyResult<(Simulation, Vec<u8>)> {
-    let simulation = htex_simulate::simulate(options).or_raise()?;
+    let simulation = htex_author::simulate::simulate(options).or_raise()?;
     let mut csv = Vec::new();
     simulation.write_csv(&mut csv)?;
     Ok((simulation, csv))

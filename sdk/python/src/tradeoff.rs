@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use htex_author::settings::named_models;
-use htex_tradeoff::{ErrorAxis, Journal, Model, Request, Subject, Tradeoff, sweep};
+use htex_author::tradeoff::{ErrorAxis, Journal, Model, Request, Subject, Tradeoff, sweep};
 use pyo3::prelude::*;
 
 use crate::errors::{OrRaise, of_file};

@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 use std::{fmt, io};
 
-use htex_finding::Hint;
+use htex_base::finding::Hint;
 use thiserror::Error;
 
 use crate::recording::RecordingError;

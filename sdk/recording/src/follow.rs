@@ -1,6 +1,6 @@
 //! The finger's motion from a tracker: a second file with its own sample rate.
 
-use htex_finding::Notice;
+use htex_base::finding::Notice;
 
 use crate::columns::assemble::{Assembled, Signals};
 use crate::columns::map::Role;

@@ -1,6 +1,6 @@
 //! A recording of a finger sliding on a surface, in physical units.
 
-use htex_finding::{Finding, Notice};
+use htex_base::finding::{Finding, Notice};
 use htex_format::Quantity;
 use thiserror::Error;
 

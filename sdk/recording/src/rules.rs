@@ -1,6 +1,6 @@
 //! The table of all rules for recordings.
 
-htex_finding::rule_table! {
+htex_base::finding::rule_table! {
     RECORDING_UNREADABLE Error ("map", "rate", "quantity"):
         "The file cannot be read as a recording.",
         "It is neither a table of numbers with a lateral force, nor a WAV or NPY file of one to three channels.",

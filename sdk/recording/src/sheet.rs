@@ -44,7 +44,7 @@ impl Columns {
     /// Returns the column's whole name, or `#` and its number if it has none.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.names.get(column) {
-            Some(name) if !name.is_empty() => htex_finding::plain(name).into_owned(),
+            Some(name) if !name.is_empty() => htex_base::finding::plain(name).into_owned(),
             _ => format!("#{}", column + 1),
         }
     }

@@ -5,7 +5,8 @@
 //! Times are the minimum over many short runs. All runs of a table are interleaved.
 #![allow(clippy::unwrap_used)] // A program for developers: a failure may end it.
 
-#[path = "../tests/common/mod.rs"]
+#[allow(dead_code)]
+#[path = "../tests/it/common/mod.rs"]
 mod common;
 
 use std::time::Instant;

@@ -1,7 +1,7 @@
 //! Checks whether a scene's motion stays within the speeds and forces at which its textures were
 //! recorded.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 use htex_play::{Asset, Coverage, Effects, Motions};
 
 use crate::file::{Effect, Motion, Scene, Surface, Switch};

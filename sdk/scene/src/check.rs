@@ -1,6 +1,6 @@
 //! Rules for the contents of a scene that need neither its files nor its device.
 
-use htex_finding::{Findings, Rule};
+use htex_base::finding::{Findings, Rule};
 
 use crate::file::{Budget, Constant, DeviceChoice, FAR_MM, Motion, Region, Scene, Surface};
 use crate::limits::Limits;

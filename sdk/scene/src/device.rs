@@ -6,11 +6,11 @@
 
 use std::collections::BTreeMap;
 
+use htex_base::finding::{Findings, escape};
 use htex_device::{
     Capabilities, Descriptor, DeviceError, Devices, FromScene, Ignored, Quantity, Setting,
     SettingKind, Settings, Stated,
 };
-use htex_finding::{Findings, escape};
 use htex_format::Quantity as Held;
 use serde_json::Value;
 

@@ -62,7 +62,7 @@ pub struct Surface {
     pub gain: f64,
     /// Id or short name of a model, or `auto`.
     #[serde(default = "auto")]
-    #[schemars(regex(pattern = htex_schema::NOT_BLANK))]
+    #[schemars(regex(pattern = htex_base::schema::NOT_BLANK))]
     pub representation: String,
 }
 

@@ -77,7 +77,7 @@ pub struct Gains {
 
 /// Returns the JSON Schema of gains files: `spec/schemas/gains-1.json`.
 pub fn gains_schema() -> Value {
-    htex_schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
+    htex_base::schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
 }
 
 /// Returns the identifier that all assets of one texture share, whenever and however they were
@@ -145,7 +145,7 @@ impl Gains {
     /// If the contents are not a gains file, or have keys that would be lost when they are written
     /// again.
     pub fn from_json(document: Value) -> io::Result<Self> {
-        htex_schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
+        htex_base::schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
         let gains: Self = serde_json::from_value(document)?;
         let is_sound =
             |gain: &Gain| gain.drive_v > 0.0 && gain.reference_rms.is_none_or(|rms| rms > 0.0);

@@ -5,8 +5,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use htex_base::finding::{Finding, Findings, Report, Rule};
 use htex_device::{Devices, Settings};
-use htex_finding::{Finding, Findings, Report, Rule};
 use htex_format::{Quantity, parse_json};
 use htex_play::{Asset, Registry, VoiceOptions};
 use htex_recording::{ReadError, ReadProblem};
@@ -85,7 +85,7 @@ pub enum LoadError {
         error: io::Error,
     },
     /// The scene is invalid.
-    #[error("invalid scene: {}", htex_finding::summary(.findings))]
+    #[error("invalid scene: {}", htex_base::finding::summary(.findings))]
     Invalid {
         /// All findings, including those that are not errors.
         findings: Vec<Finding>,

@@ -1,6 +1,6 @@
 //! Generates `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
 
-use htex_finding::rules_page;
+use htex_base::finding::rules_page;
 use serde_json::Value;
 
 use crate::{RULES, Scene};
@@ -46,5 +46,5 @@ pub fn findings_page() -> String {
 
 /// Returns the JSON Schema of version 1.0 scenes: `spec/schemas/scene-1.json`.
 pub fn scene_schema() -> Value {
-    htex_schema::document::<Scene>("scene-1.json", "Scene of htex 1")
+    htex_base::schema::document::<Scene>("scene-1.json", "Scene of htex 1")
 }

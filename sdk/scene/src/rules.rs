@@ -4,7 +4,7 @@
 //! an asset, but changes what is felt in a scene. A scene may come from anyone, so it must not name
 //! a file to write outside its folder, and no driver.
 
-htex_finding::rule_table! {
+htex_base::finding::rule_table! {
     SCENE_FILE_TOO_LARGE Error:
         "The scene file is larger than the limit.",
         "A reader limits the size of untrusted files before it reads them.",

@@ -1,6 +1,6 @@
 //! Parsing and validation of a scene file, without the files it names.
 
-use htex_finding::{Findings, escape};
+use htex_base::finding::{Findings, escape};
 use htex_format::{Document, DocumentRules};
 use serde_json::Value;
 

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use htex::Registry;
 use htex_author::recording::{ReadOptions, read_recording};
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
     AssetRequest, ModelRequest, SpectrumOptions, Take, TextureSpectrum, fit_asset, segment_spectra,
 };
 use htex_host::FitRequest;
-use htex_simulate::{SimulationOptions, Surface, simulate};
 use serde_json::json;
 
 /// The case, and the folder with its files for the other programs.

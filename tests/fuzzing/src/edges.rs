@@ -1,7 +1,7 @@
 //! Makes inputs that differ from a valid one in one value, or in two adjacent values, which take
 //! every extreme that can be written, always in the same order.
 //!
-//! `tests/tests/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer
+//! `tests/tests/it/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer
 //! covers the rest.
 
 use serde_json::Value;

@@ -2,7 +2,7 @@
 //! an application would, and panics if a promise is broken.
 //!
 //! Both the programs in `fuzz/` and the test that runs all seeds and regressions
-//! (`tests/tests/regressions.rs`) call these functions, so a finding is the same in both.
+//! (`tests/tests/it/regressions.rs`) call these functions, so a finding is the same in both.
 #![cfg(feature = "wasm")]
 #![deny(unsafe_code)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // A panic is a finding.

@@ -1,7 +1,9 @@
 //! Libraries: whole files, and files built around fuzzed pages.
 
-use htex_finding::Report;
-use htex_library::{Library, LibraryError, Limits, MAGIC, Writer, check_name, validate_source};
+use htex_base::finding::Report;
+use htex_format::library::{
+    Library, LibraryError, Limits, MAGIC, Writer, check_name, validate_source,
+};
 
 use crate::promise;
 
@@ -155,7 +157,7 @@ fn pack_again(library: &Library<&[u8]>) {
     }
     writer.finish().expect("it can be written");
     let again = Library::open(&path).expect("what is written can be opened");
-    let facts = |entry: Result<htex_library::Entry, _>| {
+    let facts = |entry: Result<htex_format::library::Entry, _>| {
         let entry = entry.expect("it can be read");
         (
             entry.name,

@@ -7,7 +7,7 @@ use htex_host::{Band, FitRequest, HostError, LoadedModel, Stream, WasmCache, Was
 use crate::body::{Bytes, body, signature};
 use crate::promise::{finite, sentence};
 
-#[path = "../../../sdk/host/tests/common/mod.rs"]
+#[path = "../../../sdk/host/tests/it/common/mod.rs"]
 pub(crate) mod model;
 
 /// Tight limits on time and memory.

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use htex_finding::plain;
+use htex_base::finding::plain;
 use htex_format::{Limits, validate};
 use htex_host::{Registry, read_descriptor};
 use serde_json::Value;
@@ -131,7 +131,7 @@ fn find(value: &Value, pointer: String, places: &mut Vec<String>) {
         }
         Value::Object(object) => {
             for (key, value) in object {
-                let key = htex_finding::escape(key);
+                let key = htex_base::finding::escape(key);
                 find(value, format!("{pointer}/{key}"), places);
             }
             places.push(pointer);

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use htex::Asset;
-use htex_finding::{Finding, Rule};
+use htex_base::finding::{Finding, Rule};
 use htex_host::{HostError, Status};
 
 /// Longest error text. Quotations from the input are bounded.
@@ -21,7 +21,7 @@ pub(crate) fn sentence(error: &impl Display) {
 }
 
 const RULES: [&[Rule]; 4] =
-    [htex_format::RULES, htex_library::RULES, htex_scene::RULES, htex_lab::study::RULES];
+    [htex_format::RULES, htex_format::library::RULES, htex_scene::RULES, htex_lab::study::RULES];
 
 /// Asserts that findings have an explained code, and a sentence.
 pub(crate) fn findings(findings: &[Finding]) {

@@ -1,7 +1,7 @@
 //! Recipes of libraries, and results of jobs.
 
+use htex_base::finding::plain;
 use htex_build::{BuildError, Made, Recipe};
-use htex_finding::plain;
 
 use crate::promise::sentence;
 

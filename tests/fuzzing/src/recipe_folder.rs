@@ -7,8 +7,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use htex_base::finding::plain;
 use htex_build::{Build, BuildError, BuildOptions, check, report_failure};
-use htex_finding::plain;
 use tempfile::TempDir;
 
 use crate::promise::sentence;

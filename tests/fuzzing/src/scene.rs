@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use htex::Registry;
+use htex_base::finding::Findings;
 use htex_device::{Capabilities, Devices, Quantity, Rates};
-use htex_device_file::FileAdapter;
-use htex_finding::Findings;
+use htex_device_builtin::file::FileAdapter;
 use htex_scene::{
     Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Renderer, SceneError,
     Surroundings, plan, read_scene,

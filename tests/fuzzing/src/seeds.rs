@@ -226,7 +226,8 @@ fn libraries() -> Vec<Seed> {
     let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("seed.htexlib");
-    let mut writer = htex_library::Writer::create(&path, "Seed").expect("it can be written");
+    let mut writer =
+        htex_format::library::Writer::create(&path, "Seed").expect("it can be written");
     for name in ["vinyl", "vinyl/again"] {
         writer.add(name, vinyl).expect("an example");
     }
@@ -290,9 +291,9 @@ fn leaf(asset: &[u8]) -> Vec<u8> {
 fn blocks() -> Vec<Seed> {
     let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
     let asset = htex::Asset::from_bytes(vinyl).expect("an example");
-    let grid = htex_bake::Grid::new(vec![60.0, 80.0], vec![0.4]).expect("a sound grid");
+    let grid = htex_play::bake::Grid::new(vec![60.0, 80.0], vec![0.4]).expect("a sound grid");
     let seed = |model: &str| {
-        let baked = htex_bake::bake(&asset, Some(model), &grid, 8_000.0, 1.0);
+        let baked = htex_play::bake::bake(&asset, Some(model), &grid, 8_000.0, 1.0);
         let block = baked.expect("a texture that can be baked").bytes;
         let motions = [70.0f32, 0.4, 0.0, 0.0].map(f32::to_le_bytes).concat();
         let all = [&[1], &motions[..], &block].concat();

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use htex_finding::{Findings, plain};
+use htex_base::finding::{Findings, plain};
 use htex_lab::study::{
     Line, ParticipantPlan, Participants, Plan, Presented, Session, Study, export, read_study,
 };

@@ -4,9 +4,9 @@
 
 use std::path::Path;
 
+use htex_base::files::toml::{MOST_LEVELS, TomlError, from_str};
+use htex_base::finding::{Findings, plain};
 use htex_build::Recipe;
-use htex_files::toml::{MOST_LEVELS, TomlError, from_str};
-use htex_finding::{Findings, plain};
 use htex_lab::record::Calibration;
 use htex_lab::study::read_study;
 use serde_json::Value;

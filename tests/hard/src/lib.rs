@@ -1,6 +1,6 @@
 //! Hard cases. Each has an input, a model or a part of the library, an operation, and a promise: a
 //! finite result within a stated bound, or a refusal with a named error. The table is tested
-//! (`tests/table.rs`) and published (`spec/hard-cases.md`).
+//! (`tests/it/table.rs`) and published (`spec/hard-cases.md`).
 //!
 //! The bounds are part of the project. The tests print the errors that a machine measures.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.

@@ -67,7 +67,7 @@ pub(super) fn end(outcomes: &[Outcome]) -> String {
         text += &format!(
             "\n{target}: {place}\n{tail}\n\
              When it is fixed, keep it as a regression: cp {place} tests/regressions/{target}/NAME,\n\
-             with a NAME that describes the fault, and `cargo test -p htex-tests --test regressions`.\n"
+             with a NAME that describes the fault, and `cargo test -p htex-tests --test it regressions::`.\n"
         );
     }
     text

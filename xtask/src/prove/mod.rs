@@ -87,7 +87,7 @@ pub enum Proof {
 
 /// Without the rest of the workspace, so that it takes only minutes.
 const ZERO: [&str; 8] =
-    ["test", "--locked", "-p", "htex-device-guardian", "--test", "zero", "--", "--nocapture"];
+    ["test", "--locked", "-p", "htex-device", "--test", "it", "guardian_zero::", "--", "--nocapture"];
 
 const DAYS: [&str; 8] = [
     "run",
@@ -118,19 +118,19 @@ impl Proof {
             Self::Outputs(options) => outputs::prove(options),
             Self::Fuzz(options) => fuzz::fuzz(&options.bounded(600)),
             Self::Targets => targets::prove(),
-            Self::Edges => whole_test(&["--test", "edges"]),
-            Self::Models => whole_test(&["--test", "command", "checker::"]),
-            Self::Grids => whole_test(&["--test", "grid"]),
+            Self::Edges => whole_test("it", "edges::"),
+            Self::Models => whole_test("command", "checker::"),
+            Self::Grids => whole_test("it", "grid::"),
             Self::Levels => {
-                whole_test(&["--test", "levels"])?;
-                whole_test(&["--test", "command", "fit::"])?;
-                whole_test(&["--test", "voices"])
+                whole_test("it", "levels::")?;
+                whole_test("command", "fit::")?;
+                whole_test("it", "voices::")
             }
-            Self::Scenes => whole_test(&["--test", "equivalence"]),
-            Self::Recipes => whole_test(&["--test", "command", "random_recipes::"]),
+            Self::Scenes => whole_test("it", "equivalence::"),
+            Self::Recipes => whole_test("command", "random_recipes::"),
             Self::Fingers => {
-                whole_test(&["--test", "live", "finger::random"])?;
-                whole_test(&["--test", "live", "hostile_programs"])
+                whole_test("live", "finger::random")?;
+                whole_test("live", "hostile_programs")
             }
             Self::Zero => cargo(&ZERO, &[(WHOLE, "1")]),
             Self::Days { hours } => {
@@ -148,9 +148,10 @@ impl Proof {
     }
 }
 
-/// Runs a test on everything that it normally samples, in the same build as `cargo test`.
-fn whole_test(test: &[&str]) -> Result<()> {
-    let test = [&["test", "--locked", "--workspace"], test, &["--", "--nocapture"]].concat();
+/// Runs the tests of these names on everything that they normally sample, in the same build as
+/// `cargo test`.
+fn whole_test(program: &str, tests: &str) -> Result<()> {
+    let test = ["test", "--locked", "--workspace", "--test", program, tests, "--", "--nocapture"];
     cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")])
 }
 

@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 
 use clap::Args;
-use htex_library::{Entry, Library, Located};
+use htex_format::library::{Entry, Library, Located};
 use serde::Serialize;
 
 use super::given::Given;
@@ -37,7 +37,7 @@ struct Differences {
 /// An iterator over a library's entries that knows the next one.
 struct Walk<'a> {
     given: &'a Given,
-    entries: htex_library::Entries<'a, Located>,
+    entries: htex_format::library::Entries<'a, Located>,
     next: Option<Entry>,
 }
 

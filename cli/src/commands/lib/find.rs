@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_library::Query;
+use htex_format::library::Query;
 
 use super::given::Given;
 use super::listing::Listing;

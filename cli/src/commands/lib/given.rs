@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use htex_library::{Library, Located};
-use htex_storage::{Location, Storage};
+use htex_base::storage::{Location, Storage};
+use htex_format::library::{Library, Located};
 
 use crate::failure::Failure;
 use crate::of_file::ResultOfFile;

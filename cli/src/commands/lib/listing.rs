@@ -1,7 +1,7 @@
 //! Prints lists of entries as table lines or a JSON array, while the index is still being read.
 
-use htex_finding::plain;
-use htex_library::{Entry, IndexedLaw, Interval};
+use htex_base::finding::plain;
+use htex_format::library::{Entry, IndexedLaw, Interval};
 
 use crate::assets::short_name;
 use crate::failure::Failure;

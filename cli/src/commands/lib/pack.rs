@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_library::{EXTENSION, LibraryError, Packed, Writer};
+use htex_format::library::{EXTENSION, LibraryError, Packed, Writer};
 use serde_json::{Value, json};
 
 use super::sources::sources;

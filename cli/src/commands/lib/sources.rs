@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use htex_files::AtFile;
+use htex_base::files::AtFile;
 
 use crate::failure::Failure;
 use crate::shown::shown;

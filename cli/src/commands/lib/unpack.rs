@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_files::{AtFile, Batch, OwnFolder};
-use htex_library::{Entry, LibraryError, Names};
+use htex_base::files::{AtFile, Batch, OwnFolder};
+use htex_format::library::{Entry, LibraryError, Names};
 
 use super::given::Given;
 use crate::exit::Exit;

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_finding::Report;
+use htex_base::finding::Report;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -32,5 +32,5 @@ impl Verify {
 
 /// Validates a library.
 pub(crate) fn check(path: &Path) -> Result<Report, Failure> {
-    htex_library::validate(path).of(path)
+    htex_format::library::validate(path).of(path)
 }

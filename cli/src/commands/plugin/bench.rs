@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use clap::Args;
-use htex_check::{BLOCKS, Cost, Subject, bench};
+use htex_check::model::{BLOCKS, Cost, Subject, bench};
 use htex_host::{LoadedModel, Origin, Registry, WasmLimits};
 
 use crate::commands::plugin::named::named;

@@ -2,8 +2,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use htex_check::{CheckError, Options, Report, Settings, check, run_one};
-use htex_files::FileError;
+use htex_base::files::FileError;
+use htex_check::model::{CheckError, Options, Report, Settings, check, run_one};
 
 use crate::checking::CheckArgs;
 use crate::exit::Exit;

@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_finding::plain;
+use htex_base::finding::plain;
 use htex_host::Registry;
 use serde_json::{Value, json};
 

@@ -2,12 +2,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use htex_check::templates;
+use htex_check::model::templates;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::print;
-use htex_files::{AtFile, OwnFolder};
+use htex_base::files::{AtFile, OwnFolder};
 
 /// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use htex_author::Exploration;
+use htex_base::finding::plain;
 use htex_device::Source;
-use htex_finding::plain;
 use htex_lab::record::{
     Moment, Next, Outcome, RecordError, Recorded, Required, Session, Setup, Tare, recover,
 };

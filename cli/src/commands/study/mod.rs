@@ -17,8 +17,8 @@ mod validate;
 use std::path::Path;
 
 use clap::{Args, Subcommand};
-use htex_files::AtFile;
-use htex_finding::Findings;
+use htex_base::files::AtFile;
+use htex_base::finding::Findings;
 use htex_lab::study::{Study as File, read_study};
 
 use crate::exit::Exit;

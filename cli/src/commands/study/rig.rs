@@ -4,9 +4,9 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use htex_base::files::{AtFile, OwnFolder};
+use htex_base::finding::plain;
 use htex_device::{DeviceError, SettingKind};
-use htex_files::{AtFile, OwnFolder};
-use htex_finding::plain;
 use htex_format::ErrorMeasure;
 use htex_lab::study::{
     DeviceUsed, Felt, Meter, OutputLevels, Played, Rig, Stimulus, Study, StudyError, full_drive,

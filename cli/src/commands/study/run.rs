@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_files::{AtFile, OwnFolder};
-use htex_finding::Severity;
+use htex_base::files::{AtFile, OwnFolder};
+use htex_base::finding::Severity;
 use htex_lab::study::{
     Clock, Ended, Felt, Header, Plan, Session, SimulatedParticipant, Study, StudyError,
     check_files, run,

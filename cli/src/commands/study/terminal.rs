@@ -33,7 +33,7 @@ impl Terminal {
 
     fn words(&self, view: &View) -> String {
         let is_line = matches!(self.input, Input::Lines { .. });
-        htex_finding::plain(&text(view, is_line)).into_owned()
+        htex_base::finding::plain(&text(view, is_line)).into_owned()
     }
 
     fn refuse(&self, typed: &str) {

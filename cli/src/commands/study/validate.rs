@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_files::AtFile;
-use htex_finding::{Findings, Report};
+use htex_base::files::AtFile;
+use htex_base::finding::{Findings, Report};
 use htex_lab::study::{check_files, read_study};
 
 use crate::exit::Exit;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use htex_native::{Symbols, table_of_symbols};
+use htex_base::native::{Symbols, table_of_symbols};
 
 use crate::crossing::{incoming, wait_ms};
 use crate::library::{Common, Table, Trouble};

@@ -10,10 +10,10 @@
 
 use std::f64::consts::TAU;
 
+use htex_base::finding::Findings;
 use htex_dsp::Band;
 use htex_dsp::fft::RealFft;
 use htex_dsp::window::hann_periodic;
-use htex_finding::Findings;
 
 use crate::Recording;
 use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};

@@ -1,6 +1,6 @@
 //! Detection of friction coefficients that are read as forces.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use crate::Recording;
 use crate::segments::{segment_len, sliding};

@@ -1,7 +1,7 @@
 //! Detection of signals that no finger produces: a straight line, and values that alternate from
 //! sample to sample.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use super::axis_words;
 use crate::{Recording, segment_len};

@@ -1,6 +1,6 @@
 //! Detection of recordings whose level differs from others at the same condition.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use super::quantile::median;
 use crate::SegmentSpectra;

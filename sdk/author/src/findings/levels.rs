@@ -1,6 +1,6 @@
 //! Detection of clipping and of coarse quantisation.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use super::{axis_words, pointer};
 use crate::{Recording, segment_len};

@@ -12,7 +12,7 @@ mod segments;
 mod spikes;
 mod stuck;
 
-use htex_finding::{Finding, Findings};
+use htex_base::finding::{Finding, Findings};
 use htex_format::Quantity;
 
 use crate::Recording;

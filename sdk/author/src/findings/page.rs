@@ -1,6 +1,6 @@
 //! Generator of `spec/recording-findings.md` from the table of rules.
 
-use htex_finding::rules_page;
+use htex_base::finding::rules_page;
 
 use super::{
     RULES, band, coefficient, course, differing, levels, plausible, quantile, segments, spikes,

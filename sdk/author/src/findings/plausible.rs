@@ -1,6 +1,6 @@
 //! Detection of forces and speeds that a finger cannot have.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use super::quantile::{median, quantile};
 use crate::Recording;

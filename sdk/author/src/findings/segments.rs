@@ -1,6 +1,6 @@
 //! Findings about the chosen segments and about sweeps that are left out.
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 
 use super::quantile::median;
 use crate::{Recording, SegmentSpectra};

@@ -5,7 +5,7 @@
 //! third-party recordings, at most four samples are removed by a repair at 12 times the usual
 //! corner, and no more than 0.1 % at five times (0.62 % in the current of a motor).
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 use htex_format::Quantity;
 
 use super::quantile::{median, quantile};

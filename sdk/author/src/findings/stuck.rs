@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use htex_finding::Findings;
+use htex_base::finding::Findings;
 use htex_format::Quantity;
 
 use super::{axis_words, pointer};

@@ -24,8 +24,8 @@ mod search;
 mod slopes;
 mod steady;
 
+use htex_base::finding::{Findings, Notice};
 use htex_dsp::Band;
-use htex_finding::{Findings, Notice};
 use htex_format::{Condition, Contact, Quantity};
 use htex_host::FitCondition;
 

@@ -1,7 +1,7 @@
 //! The steady windows of a recording.
 
+use htex_base::finding::{Finding, Notice};
 use htex_dsp::Band;
-use htex_finding::{Finding, Notice};
 use htex_format::Quantity;
 
 use super::paths::Window;

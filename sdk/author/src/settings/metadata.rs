@@ -2,7 +2,7 @@
 
 use super::setting::settings;
 use super::{GivenLaw, SettingsError};
-use htex_finding::Severity;
+use htex_base::finding::Severity;
 use htex_format::{Contact, Law, Manifest, check_doi, check_license};
 
 settings! {

@@ -58,5 +58,5 @@ impl Material {
 #[must_use]
 pub fn material_schema() -> Value {
     let title = "extension HTEX_texture of materials of glTF 2.0";
-    htex_schema::document::<Material>("gltf-material-1.json", title)
+    htex_base::schema::document::<Material>("gltf-material-1.json", title)
 }

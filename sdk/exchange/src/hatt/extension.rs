@@ -46,5 +46,5 @@ impl Hatt {
 /// Returns the JSON Schema of the extension: `spec/schemas/hatt-1.json`.
 pub fn extension_schema() -> Value {
     let title = "extension org.htex.hatt/1 of htex assets";
-    htex_schema::document::<Hatt>("hatt-1.json", title)
+    htex_base::schema::document::<Hatt>("hatt-1.json", title)
 }

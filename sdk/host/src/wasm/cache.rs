@@ -13,7 +13,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use htex_files::{Key, private};
+use htex_base::files::{Key, private};
 use wasmtime::{Engine, Module};
 
 use crate::{WasmCache, folders};

@@ -4,7 +4,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use htex_author::settings::ReadingSettings;
-use htex_files::{ContentError, open_regular};
+use htex_base::files::{ContentError, open_regular};
 use serde_json::Value;
 
 use crate::record::data::TakeHeader;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_files::InFile;
+use htex_base::files::InFile;
 use serde::Deserialize;
 
 use crate::record::error::RecordError;
@@ -57,8 +57,11 @@ impl Calibration {
 
     fn of(path: &Path, text: &str) -> Result<Self, Problem> {
         let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-        let matrix =
-            if is_toml { htex_files::toml::from_str::<File>(text)?.matrix } else { lines(text)? };
+        let matrix = if is_toml {
+            htex_base::files::toml::from_str::<File>(text)?.matrix
+        } else {
+            lines(text)?
+        };
         let width = matrix.iter().position(|row| row.len() != AXES);
         if let (true, Some(row)) = (matrix.len() == AXES, width) {
             let (number, len) = (row + 1, matrix[row].len());

@@ -100,7 +100,7 @@ impl JsonSchema for SignalText {
 
 /// Returns the JSON Schema of a take's header, version 1: `spec/schemas/take-1.json`.
 pub fn take_schema() -> Value {
-    htex_schema::crossing::<TakeHeader>("take-1.json", "header of a take of htex 1")
+    htex_base::schema::crossing::<TakeHeader>("take-1.json", "header of a take of htex 1")
 }
 
 /// A take in memory: its header and its samples.
@@ -169,7 +169,7 @@ impl TakeHeader {
         if *version != 1 {
             return Err(format!("its version is {version}, and this htex reads 1"));
         }
-        htex_schema::check_keys::<Self>(&json)?;
+        htex_base::schema::check_keys::<Self>(&json)?;
         let header: Self = serde_json::from_value(json).map_err(|error| error.to_string())?;
         match header.problem() {
             None => Ok(header),

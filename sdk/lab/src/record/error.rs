@@ -68,7 +68,7 @@ pub enum RecordError {
     Setup { what: &'static str, value: String, allowed: &'static str },
     /// A calibration matrix, a part file or the JSON next to a recording cannot be used.
     #[error(transparent)]
-    Content(#[from] htex_files::ContentError),
+    Content(#[from] htex_base::files::ContentError),
     /// A line of a tracker is not two numbers.
     #[error("tracker {name}, line {line}: {text:?} is not `x_mm y_mm` or `x_mm,y_mm`")]
     TrackerLine {
@@ -85,7 +85,7 @@ pub enum RecordError {
     Page(#[from] crate::page::PageError),
     /// A file could not be written.
     #[error(transparent)]
-    File(#[from] htex_files::FileError),
+    File(#[from] htex_base::files::FileError),
 }
 
 fn with_place(file: &Option<PathBuf>) -> String {

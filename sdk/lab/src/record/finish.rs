@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, InFile, OwnFolder};
+use htex_base::files::{AtFile, InFile, OwnFolder};
 use serde::Serialize;
 
 use crate::record::error::RecordError;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use htex_author::recording::read_recording;
 use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
-use htex_files::read_regular;
+use htex_base::files::read_regular;
 use htex_format::Quantity;
 use serde::Deserialize;
 

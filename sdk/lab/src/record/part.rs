@@ -9,7 +9,7 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, ContentError, InFile, OwnFolder};
+use htex_base::files::{AtFile, ContentError, InFile, OwnFolder};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
@@ -136,7 +136,7 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
         .map_err(|error| {
             format!(
                 "it is not the part of a take that this htex records ({}); move it elsewhere",
-                htex_finding::plain(&error)
+                htex_base::finding::plain(&error)
             )
         })
         .in_file(path)?;

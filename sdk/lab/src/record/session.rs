@@ -5,7 +5,7 @@ use std::path::Path;
 use htex_author::recording::Role;
 use htex_device::Source;
 
-use htex_files::{AtFile, ContentError, OwnFolder};
+use htex_base::files::{AtFile, ContentError, OwnFolder};
 
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;

@@ -1,8 +1,8 @@
 //! Converts the channels of a source to forces and positions.
 
 use htex_author::recording::{ColumnMap, Role, RowMap};
+use htex_base::finding::Notice;
 use htex_device::Channel;
-use htex_finding::Notice;
 use htex_format::Quantity;
 
 use crate::record::calibration::{AXES, Calibration};

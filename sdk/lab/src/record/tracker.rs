@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
 use htex_author::recording::{ColumnMap, ReadOptions, Role, RowMap, read_channels};
-use htex_files::bounded_lines;
+use htex_base::files::bounded_lines;
 
 use crate::record::error::RecordError;
 
@@ -131,7 +131,7 @@ impl TrackerRows for LineTracker {
                 return Err(RecordError::TrackerLine {
                     name: self.name.clone(),
                     line,
-                    text: htex_finding::plain(&text).into_owned(),
+                    text: htex_base::finding::plain(&text).into_owned(),
                 });
             };
             let at_s = now_s - now.saturating_duration_since(arrived).as_secs_f64();

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, OwnFolder};
+use htex_base::files::{AtFile, OwnFolder};
 use htex_format::Quantity;
 use serde_json::{Value, json};
 

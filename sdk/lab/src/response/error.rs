@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use htex_finding::Hint;
+use htex_base::finding::Hint;
 use serde::Serialize;
 use thiserror::Error;
 

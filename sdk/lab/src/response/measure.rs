@@ -1,6 +1,6 @@
 //! Measures a response from records.
 
-use htex_finding::Hint;
+use htex_base::finding::Hint;
 
 use super::average::{average, count_used, cut, scale_of};
 use super::error::{Channel, ResponseError};

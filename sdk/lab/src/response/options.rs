@@ -1,6 +1,6 @@
 //! Options of measuring a response.
 
-use htex_finding::Hint;
+use htex_base::finding::Hint;
 use serde::Serialize;
 
 use super::error::ResponseError;

@@ -1,6 +1,6 @@
 //! Draws a measured response: magnitude, phase and coherence over frequency.
 
-use htex_report::{Axis, Plot, Series, series_color, stacked};
+use htex_author::report::{Axis, Plot, Series, series_color, stacked};
 
 use super::measured::MeasuredResponse;
 

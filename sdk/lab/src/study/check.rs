@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use htex_finding::{Findings, Rule};
+use htex_base::finding::{Findings, Rule};
 
 use crate::study::file::{Matching, Participants, Phase, Study};
 use crate::study::rules as rule;

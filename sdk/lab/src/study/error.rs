@@ -13,7 +13,7 @@ pub enum StudyError {
     NoParticipant { name: String, known: String },
     /// A file could not be read or written.
     #[error(transparent)]
-    File(#[from] htex_files::FileError),
+    File(#[from] htex_base::files::FileError),
     /// Another program is recording answers of the same participant.
     #[error("{}: another htex is running this participant; wait for it to end", .file.display())]
     Busy {
@@ -67,7 +67,7 @@ pub enum StudyError {
     /// A recording of what was felt is not the one that was rated, or a recording or an asset has
     /// no spectrum that an analysis can use.
     #[error(transparent)]
-    Content(#[from] htex_files::ContentError),
+    Content(#[from] htex_base::files::ContentError),
     /// There are no recordings of what was felt.
     #[error("{}: the felt force was not recorded; give `htex study run` a source (--source)", .folder.display())]
     NotRecorded {

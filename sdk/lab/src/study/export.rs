@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use htex_files::AtFile;
-use htex_finding::as_text;
+use htex_base::files::AtFile;
+use htex_base::finding::as_text;
 
 use crate::study::error::StudyError;
 use crate::study::lines::{Answer, FeltFile, Header, Line};

@@ -14,8 +14,8 @@ use std::thread::JoinHandle;
 
 use htex_author::Exploration;
 use htex_author::recording::Role;
+use htex_base::files::{AtFile, OwnFolder};
 use htex_device::{DeviceError, Source};
-use htex_files::{AtFile, OwnFolder};
 use htex_format::Quantity;
 use serde_json::json;
 

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use htex_author::recording::read_recording;
 use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_base::files::{AtFile, ContentError, InFile};
+use htex_base::finding::as_text;
 use htex_dsp::Band;
-use htex_files::{AtFile, ContentError, InFile};
-use htex_finding::as_text;
 use htex_format::{Asset, Condition, Quantity};
 
 use crate::record::{TakeHeader, header_beside, settings_of};

@@ -14,7 +14,7 @@ pub const VERSION: &str = "1.0";
 /// A study: who feels which textures in which order, and which questions they answer.
 ///
 /// ```
-/// use htex_finding::Findings;
+/// use htex_base::finding::Findings;
 /// use htex_lab::study::{Plan, read_study};
 /// let text = r#"
 ///     htex_study = "1.0"
@@ -243,7 +243,7 @@ pub struct Scale {
 /// Pattern of a name in the results: not blank, without control characters.
 const NAME: &str = concat!(
     r"^[^\x00-\x1f\x7f-\x9f]*[^",
-    htex_schema::white_space!(),
+    htex_base::schema::white_space!(),
     r"\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
 );
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use htex_files::AtFile;
+use htex_base::files::AtFile;
 
 use crate::study::Study;
 use crate::study::error::StudyError;

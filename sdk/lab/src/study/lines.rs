@@ -406,5 +406,5 @@ impl Line {
 
 /// Returns the JSON Schema of a line of answers, version 1.0: `spec/schemas/answers-1.json`.
 pub fn answers_schema() -> serde_json::Value {
-    htex_schema::crossing::<Line>("answers-1.json", "line of a file of answers of htex 1")
+    htex_base::schema::crossing::<Line>("answers-1.json", "line of a file of answers of htex 1")
 }

@@ -4,7 +4,7 @@ use std::fs::{File, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, FileError, OwnFolder};
+use htex_base::files::{AtFile, FileError, OwnFolder};
 
 use crate::study::error::StudyError;
 use crate::study::lines::{Header, Line, SourceUsed};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_finding::{Finding, Findings};
+use htex_base::finding::{Finding, Findings};
 use htex_format::{Document, DocumentRules};
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, LoadError, LoadedScene, Surroundings};
@@ -68,7 +68,7 @@ pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
 fn parse(bytes: &[u8], findings: &mut Findings) -> Option<Value> {
     let problem = match std::str::from_utf8(bytes) {
         Err(error) => format!("the study is not UTF-8 after byte {}", error.valid_up_to()),
-        Ok(text) => match htex_files::toml::from_str(text) {
+        Ok(text) => match htex_base::files::toml::from_str(text) {
             Ok(table) => return Some(table),
             Err(error) => error.to_string(),
         },
@@ -149,5 +149,5 @@ pub fn files_of(study: &Study) -> Vec<PathBuf> {
 
 /// Returns the JSON Schema of studies, version 1.0: `spec/schemas/study-1.json`.
 pub fn study_schema() -> Value {
-    htex_schema::document::<Study>("study-1.json", "Study of htex 1")
+    htex_base::schema::document::<Study>("study-1.json", "Study of htex 1")
 }

@@ -1,6 +1,6 @@
 //! All rules for studies, in one table.
 
-use htex_finding::rules_page;
+use htex_base::finding::rules_page;
 
 const HEAD: &str = "\
 # Findings in studies
@@ -18,7 +18,7 @@ pub fn findings_page() -> String {
     rules_page(HEAD, RULES)
 }
 
-htex_finding::rule_table! {
+htex_base::finding::rule_table! {
     STUDY_FILE_TOO_LARGE Error:
         "The study file is larger than 1 MiB.",
         "A study names its assets and holds none of them; so large a file is probably another one.",

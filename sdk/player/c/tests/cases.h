@@ -1,5 +1,5 @@
 /* Plays cases from one piece of memory and passes on the results (format:
-   sdk/player/tests/common/stream.rs). */
+   sdk/player/tests/it/common/stream.rs). */
 #ifndef CASES_H
 #define CASES_H
 

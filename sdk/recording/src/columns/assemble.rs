@@ -1,6 +1,6 @@
 //! Building a recording from the columns of a file.
 
-use htex_finding::Notice;
+use htex_base::finding::Notice;
 use htex_format::Quantity;
 
 use crate::columns::by_order::by_order;
@@ -172,7 +172,7 @@ fn check_computed(sheet: &dyn Sheet, chosen: &Chosen, values: &[f64]) -> Result<
         None => Ok(()),
         Some(row) => {
             let problem = format!("the expression is {} there", values[row]);
-            Err(cell(sheet.place(row), &htex_finding::plain(text), problem))
+            Err(cell(sheet.place(row), &htex_base::finding::plain(text), problem))
         }
     }
 }

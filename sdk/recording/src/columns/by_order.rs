@@ -1,6 +1,6 @@
 //! Recordings whose channels have no names: roles by the order of the channels.
 
-use htex_finding::{Hint, Notice};
+use htex_base::finding::{Hint, Notice};
 use htex_format::Quantity;
 
 use crate::error::{Fault, ReadProblem};

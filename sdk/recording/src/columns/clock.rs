@@ -1,6 +1,6 @@
 //! The sample rate of a table, from its time column or from the options.
 
-use htex_finding::{Findings, Notice};
+use htex_base::finding::{Findings, Notice};
 
 use crate::error::{Fault, ReadProblem};
 use crate::hertz::hertz;

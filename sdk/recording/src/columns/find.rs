@@ -49,7 +49,7 @@ pub(crate) fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) 
     let target = base_unit(role, quantity);
     let unit = match unit {
         Unit::Volts => "volts".into(),
-        Unit::Unknown(unit) => htex_finding::plain(unit),
+        Unit::Unknown(unit) => htex_base::finding::plain(unit),
         Unit::Scale(_) | Unit::Unsaid => "no unit".into(),
     };
     format!(

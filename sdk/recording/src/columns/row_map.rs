@@ -1,6 +1,6 @@
 //! The column map for signals that arrive in blocks, such as the channels of an acquisition card.
 
-use htex_finding::Notice;
+use htex_base::finding::Notice;
 use htex_format::Quantity;
 
 use crate::ReadError;

@@ -1,6 +1,6 @@
 //! Selection of a file's columns, with their roles and units.
 
-use htex_finding::{Hint, Notice};
+use htex_base::finding::{Hint, Notice};
 use htex_format::Quantity;
 
 use crate::columns::expression::Formula;

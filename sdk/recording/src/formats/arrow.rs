@@ -329,5 +329,5 @@ fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError>
 }
 
 fn damaged(place: impl Into<Place>, problem: &ArrowError) -> Fault {
-    ReadProblem::Invalid(htex_finding::plain(&problem.to_string()).into_owned()).at(place)
+    ReadProblem::Invalid(htex_base::finding::plain(&problem.to_string()).into_owned()).at(place)
 }

@@ -111,7 +111,7 @@ impl Scan {
                 "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
                  to a file of their own"
             );
-            return Err(ReadProblem::Invalid(problem).at(htex_finding::plain(path)));
+            return Err(ReadProblem::Invalid(problem).at(htex_base::finding::plain(path)));
         }
         // Attributes that cannot be read do not state a rate; these include kinds that are not
         // numbers.
@@ -147,7 +147,7 @@ impl Scan {
                 let problem = format!(
                     "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
                 );
-                return Err(ReadProblem::Invalid(problem).at(htex_finding::plain(&path)));
+                return Err(ReadProblem::Invalid(problem).at(htex_base::finding::plain(&path)));
             }
         } else if is_number
             && is_rate_name(dataset.name())
@@ -185,7 +185,7 @@ fn fits(bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), Fault> {
         "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
         shape.samples, shape.channels
     );
-    Err(ReadProblem::Invalid(problem).at(htex_finding::plain(dataset.name())))
+    Err(ReadProblem::Invalid(problem).at(htex_base::finding::plain(dataset.name())))
 }
 
 /// Reads a data set in slabs: some samples of all its channels at once.
@@ -258,7 +258,7 @@ fn damaged(place: &str, error: &hdf5_reader::error::Error) -> Fault {
     let error = error.to_string();
     let problem = format!(
         "not readable HDF5: {}; copy the file again, or write it again by h5py or MATLAB",
-        htex_finding::plain(&error)
+        htex_base::finding::plain(&error)
     );
-    ReadProblem::Invalid(problem).at(htex_finding::plain(place))
+    ReadProblem::Invalid(problem).at(htex_base::finding::plain(place))
 }

@@ -195,7 +195,7 @@ impl Scan {
             Some(left) => Ok(inside.skip(left)?),
             None => Err(MatError::Size(format!(
                 "{} ends inside its values",
-                htex_finding::plain(&name)
+                htex_base::finding::plain(&name)
             ))),
         }
     }
@@ -217,7 +217,7 @@ impl Scan {
         if rows.saturating_mul(columns).saturating_mul(size) != u64::from(tag.bytes) {
             return Err(MatError::Size(format!(
                 "{} is {rows} by {columns} and has {} bytes of numbers",
-                htex_finding::plain(name),
+                htex_base::finding::plain(name),
                 tag.bytes
             )));
         }

@@ -127,9 +127,9 @@ impl<T> Arrays<T> {
                     None => Ok(Some(*rate_hz)),
                     Some((other, _)) => Err(ReadProblem::Invalid(format!(
                         "it states another sample rate than {}; give the rate of the recording",
-                        htex_finding::plain(name)
+                        htex_base::finding::plain(name)
                     ))
-                    .at(htex_finding::plain(other))),
+                    .at(htex_base::finding::plain(other))),
                 };
             }
             if around.is_empty() {

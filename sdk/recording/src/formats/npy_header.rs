@@ -100,14 +100,14 @@ fn kind(descr: &str) -> Result<(NumberType, Endian), NpyError> {
     let endian = match name.as_bytes().first() {
         Some(b'<') => Endian::Little,
         Some(b'>') => Endian::Big,
-        _ => return Err(NpyError::Type(htex_finding::plain(name).into_owned())),
+        _ => return Err(NpyError::Type(htex_base::finding::plain(name).into_owned())),
     };
     let kind = match &name[1..] {
         "f4" => NumberType::F32,
         "f8" => NumberType::F64,
         "i2" => NumberType::I16,
         "i4" => NumberType::I32,
-        _ => return Err(NpyError::Type(htex_finding::plain(name).into_owned())),
+        _ => return Err(NpyError::Type(htex_base::finding::plain(name).into_owned())),
     };
     Ok((kind, endian))
 }

@@ -317,7 +317,7 @@ fn damaged(place: &str, error: &ParquetError) -> Fault {
     let error = error.to_string();
     let problem = format!(
         "not readable Parquet: {}; copy the file again, or write it again",
-        htex_finding::plain(error.trim_end())
+        htex_base::finding::plain(error.trim_end())
     );
     ReadProblem::Invalid(problem).at(place)
 }

@@ -107,10 +107,10 @@ impl Sheet for Tdms {
                 Some((other, other_s)) => {
                     let problem = format!(
                         "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
-                        htex_finding::plain(&other.name)
+                        htex_base::finding::plain(&other.name)
                     );
                     return Err(
-                        ReadProblem::Invalid(problem).at(htex_finding::plain(&channel.name))
+                        ReadProblem::Invalid(problem).at(htex_base::finding::plain(&channel.name))
                     );
                 }
             }
@@ -126,7 +126,7 @@ impl Sheet for Tdms {
         let read = read.and_then(|()| {
             let read = |channel: &Channel| {
                 let read = self.read(channel);
-                read.map_err(|problem| damaged(htex_finding::plain(&channel.name), &problem))
+                read.map_err(|problem| damaged(htex_base::finding::plain(&channel.name), &problem))
             };
             chosen().map(read).collect()
         });

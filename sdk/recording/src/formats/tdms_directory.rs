@@ -192,7 +192,7 @@ impl Directory {
         if let Some(channel) = self.by_path.get(path) {
             return Ok(Some(*channel));
         }
-        let bad = || TdmsError::Path(htex_finding::plain(path).into_owned());
+        let bad = || TdmsError::Path(htex_base::finding::plain(path).into_owned());
         let parts = parts(path).ok_or_else(bad)?;
         let [group, own] = &parts[..] else {
             return if parts.len() < 2 { Ok(None) } else { Err(bad()) };

@@ -4,7 +4,7 @@
 //! ratio, and a constant level factor part of the level. Linear effects of a texture run at the
 //! model's rate, before the only resampling; of them, only frequency scaling reads at a changing
 //! ratio. An effect that a scene forces on although it is not needed is neutral, either bit for bit
-//! or to 1e-6 of full scale (`sdk/scene/tests/equivalence.rs`), so leaving it out is only an
+//! or to 1e-6 of full scale (`sdk/scene/tests/it/equivalence.rs`), so leaving it out is only an
 //! optimisation.
 
 mod carrier;

@@ -108,7 +108,7 @@ impl Document {
         match self.left.keys().next() {
             None => Ok(()),
             Some(name) => {
-                let (name, known) = (htex_finding::plain(name), self.known.join(", "));
+                let (name, known) = (htex_base::finding::plain(name), self.known.join(", "));
                 let sentence = format!("there is no {name}; there are {known}");
                 Err(Refusal::argument(sentence))
             }

@@ -146,7 +146,7 @@ fn settings(given: Document) -> Result<BTreeMap<String, String>, Refusal> {
         Value::String(text) => Ok((name, text)),
         Value::Number(_) | Value::Bool(_) => Ok((name, value.to_string())),
         _ => {
-            let name = htex_finding::plain(&name);
+            let name = htex_base::finding::plain(&name);
             let sentence = format!("the setting {name} is a text, a number, true or false");
             Err(Refusal::argument(sentence))
         }

@@ -6,7 +6,7 @@
 //! [`FitInput::condition`](htex_model::FitInput) contains the speed and force of the recording.
 
 use htex_model::{Error, Motion, MotionVoice, Values, Voice};
-use htex_shaped::ShapedVoice;
+use htex_model::shaped::ShapedVoice;
 
 use crate::Shape;
 

@@ -20,7 +20,7 @@ use htex_dsp::nelder_mead::{Options, minimize};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
 };
-use htex_shaped::{Curve, ShapedVoice};
+use htex_model::shaped::{Curve, ShapedVoice};
 
 const CENTRE: usize = 0;
 const BANDWIDTH: usize = 1;
@@ -83,7 +83,7 @@ impl Model for {{TYPE}} {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
+        htex_model::shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
     fn interpolate(
@@ -95,7 +95,7 @@ impl Model for {{TYPE}} {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_shaped::voice_rate_hz(band, wanted_hz)
+        htex_model::shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(

@@ -1,13 +1,13 @@
 //! Plays the block at [`BLOCK`] with the script of the tests. Prints a hash of the samples and the
 //! number of instructions per sample.
 //!
-//! `docs/microcontroller.md` has the commands. `sdk/bake/tests/board.rs` compares the hash with the
+//! `docs/microcontroller.md` has the commands. `sdk/play/tests/it/bake_board.rs` compares the hash with the
 //! host's.
 #![no_std]
 #![no_main]
 
 mod board;
-#[path = "../../../tests/common/script.rs"]
+#[path = "../../../tests/it/common/script.rs"]
 mod script;
 
 use core::fmt::Write;

@@ -1,8 +1,10 @@
 //! Blocks for players on microcontrollers.
 
 use htex::{Asset, AssetData};
-use htex_bake::{BakeError, Baked, Grid, bake as baked, c_header, c_name, rust_name, rust_source};
 use htex_format::Quantity;
+use htex_play::bake::{
+    BakeError, Baked, Grid, bake as baked, c_header, c_name, rust_name, rust_source,
+};
 use serde::Serialize;
 use serde_json::Value;
 

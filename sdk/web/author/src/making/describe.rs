@@ -1,7 +1,7 @@
 //! Converts findings, notices and spectra to documents, with settings that would help.
 
 use htex_author::TextureSpectrum;
-use htex_finding::{Finding, Hint, Notice, Severity};
+use htex_base::finding::{Finding, Hint, Notice, Severity};
 use htex_format::Quantity;
 use serde::Serialize;
 

@@ -173,7 +173,7 @@ fn only<'a>(name: &str, files: Files<'a>) -> Result<&'a [u8], Refusal> {
         return Err(Refusal::argument("give one file"));
     };
     if bytes.len() as u64 > MOST_BYTES {
-        let name = htex_finding::plain(name);
+        let name = htex_base::finding::plain(name);
         let sentence =
             format!("{name}: it has {} bytes, and at most {MOST_BYTES} are read", bytes.len());
         return Err(Refusal::file(sentence));

@@ -13,7 +13,7 @@ pub(crate) fn pack(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     if textures.len() != files.len() {
         return Err(Refusal::argument("a file is missing"));
     }
-    let mut writer = htex_library::MemoryWriter::new(&name)?;
+    let mut writer = htex_format::library::MemoryWriter::new(&name)?;
     if is_unlicensed {
         writer.allow_unlicensed();
     }

@@ -56,7 +56,7 @@ pub(crate) fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
     };
     Quantity::from_name(&name).ok_or_else(|| {
         let known: Vec<&str> = Quantity::ALL.iter().map(|quantity| quantity.name()).collect();
-        let name = htex_finding::plain(&name);
+        let name = htex_base::finding::plain(&name);
         Refusal::argument(format!("{name} is no quantity; there are {}", known.join(", ")))
     })
 }
@@ -101,7 +101,7 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
             one => number(one).map(|number| vec![number]),
         };
         let numbers = numbers.ok_or_else(|| {
-            let name = htex_finding::plain(&name);
+            let name = htex_base::finding::plain(&name);
             Refusal::argument(format!("the parameter {name} is a number, or a list of numbers"))
         })?;
         values.insert(name, numbers);

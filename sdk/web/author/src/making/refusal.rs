@@ -5,8 +5,8 @@ use htex_author::recording::{ReadError, ReadProblem};
 use htex_author::settings::SettingsError;
 use htex_author::{AuthorError, EditError};
 use htex_c::htex_status::*;
+use htex_format::library::LibraryError;
 use htex_format::{ReadError as AssetError, WriteError};
-use htex_library::LibraryError;
 
 use crate::refusal::Refusal;
 

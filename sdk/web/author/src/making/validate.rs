@@ -5,9 +5,9 @@ use std::path::Path;
 use htex::host::Registry;
 use htex_author::recording::{ReadOptions, rules};
 use htex_author::{Exploration, SpectrumOptions, validate_recording_bytes};
-use htex_finding::{FINDINGS_TRUNCATED, Report, Rule, Severity};
+use htex_base::finding::{FINDINGS_TRUNCATED, Report, Rule, Severity};
+use htex_format::library::{EXTENSION, MAGIC, validate_source};
 use htex_format::{Limits, Representation, validate_with};
-use htex_library::{EXTENSION, MAGIC, validate_source};
 use serde::Serialize;
 
 use super::describe::{self, DescribedFinding};
@@ -33,7 +33,7 @@ pub(crate) fn validate(mut call: Document, files: Files<'_>) -> Result<Answer, R
     let extension = path.extension().unwrap_or_default();
     let called = |own: &str| extension.eq_ignore_ascii_case(own);
     let (kind, report) = if called(EXTENSION) || bytes.starts_with(&MAGIC) {
-        let limits = htex_library::Limits::default();
+        let limits = htex_format::library::Limits::default();
         ("library", validate_source(*bytes, &limits)?)
     } else if called("htex") || bytes.starts_with(b"PK") || name.is_empty() {
         ("texture", of_texture(bytes))
@@ -74,7 +74,7 @@ struct Explained {
 pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let code = call.text("code")?.unwrap_or_default();
     call.finish()?;
-    let mut all = [htex_format::RULES, htex_library::RULES, rules::RULES]
+    let mut all = [htex_format::RULES, htex_format::library::RULES, rules::RULES]
         .into_iter()
         .flatten()
         .chain([FINDINGS_TRUNCATED]);

@@ -1,0 +1,173 @@
+//! An open sound input: the part that runs in the reader's thread.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use cpal::traits::{DeviceTrait, StreamTrait};
+use cpal::{FromSample, InputCallbackInfo, Sample, SampleFormat, SizedSample, StreamConfig};
+use htex_device::{Channel, Delivered, DeviceError, Source};
+use rtrb::{Consumer, RingBuffer};
+
+use crate::audio::card::Card;
+use crate::audio::failure::{Failure, failed, reporter};
+use crate::audio::listener::{Heard, Listener};
+
+/// Polling interval for samples.
+const LOOK: Duration = Duration::from_millis(2);
+/// If the card makes no call for this long, it is considered stopped.
+const STILL: Duration = Duration::from_secs(2);
+
+pub(crate) struct Recorder {
+    name: String,
+    channels: Vec<Channel>,
+    rate_hz: f64,
+    ring: Consumer<f64>,
+    heard: Arc<Heard>,
+    failure: Failure,
+    /// `None` after the source has ended.
+    stream: Option<cpal::Stream>,
+    is_running: bool,
+    delivered: u64,
+    /// The card's number of calls when last polled, and the time when that number last changed.
+    last_call: (u64, Instant),
+}
+
+impl Recorder {
+    /// Opens a card, which does not sample yet. At most `buffered` samples may wait to be read.
+    pub(crate) fn open(
+        card: &Card,
+        config: StreamConfig,
+        format: SampleFormat,
+        buffered: usize,
+    ) -> Result<Self, DeviceError> {
+        let (writer, ring) = RingBuffer::new(buffered);
+        let heard = Arc::new(Heard::default());
+        let listener = Listener::new(writer, Arc::clone(&heard));
+        let (failure, lost) = (Failure::default(), Arc::clone(&heard));
+        let report = reporter(failure.clone(), move || {
+            lost.lost.store(true, Ordering::Release);
+        });
+        let build = match format {
+            SampleFormat::I32 => build::<i32>,
+            SampleFormat::I16 => build::<i16>,
+            SampleFormat::U8 => build::<u8>,
+            _ => build::<f32>,
+        };
+        let stream = build(&card.device, config, listener, Box::new(report));
+        let channel = |number: u16| Channel::new(format!("ch{number}"), "");
+        Ok(Self {
+            name: card.name.clone(),
+            channels: (1..=config.channels).map(channel).collect(),
+            rate_hz: f64::from(config.sample_rate),
+            ring,
+            heard,
+            failure,
+            stream: Some(stream.map_err(|error| failed(&card.name, error.to_string()))?),
+            is_running: false,
+            delivered: 0,
+            last_call: (0, Instant::now()),
+        })
+    }
+
+    /// Reads the whole frames that are available now.
+    fn read_now(&mut self, samples: &mut [f64]) -> usize {
+        let width = self.channels.len();
+        let frames = (self.ring.slots() / width).min(samples.len() / width);
+        for sample in &mut samples[..frames * width] {
+            // Cannot fail: that many samples are in the ring buffer.
+            *sample = self.ring.pop().unwrap_or_default();
+        }
+        frames
+    }
+
+    /// Returns the reason why no samples will follow those in the ring buffer, if there is one.
+    fn fault(&mut self) -> Option<DeviceError> {
+        if let Some(what) = self.failure.peek() {
+            return Some(failed(&self.name, what));
+        }
+        if self.heard.lost.load(Ordering::Acquire) {
+            return Some(DeviceError::Overrun {
+                source_name: self.name.clone(),
+                frames: self.delivered,
+                advice: "close other programs, lower `rate_hz`, or raise `buffer_s`".to_owned(),
+            });
+        }
+        let calls = self.heard.calls.load(Ordering::Acquire);
+        if calls != self.last_call.0 {
+            self.last_call = (calls, Instant::now());
+        }
+        let is_still = self.last_call.1.elapsed() > STILL;
+        let what = "it delivers no samples; it may have been pulled out";
+        is_still.then(|| failed(&self.name, what.to_owned()))
+    }
+}
+
+impl Source for Recorder {
+    fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    fn start(&mut self) -> Result<(), DeviceError> {
+        let Some(stream) = &self.stream else {
+            return Err(DeviceError::Closed(self.name.clone()));
+        };
+        if !self.is_running {
+            let played = stream.play();
+            played.map_err(|error| failed(&self.name, error.to_string()))?;
+            self.is_running = true;
+            self.last_call.1 = Instant::now();
+        }
+        Ok(())
+    }
+
+    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {
+        if self.stream.is_none() || !self.is_running {
+            return Err(DeviceError::Closed(self.name.clone()));
+        }
+        let since = Instant::now();
+        loop {
+            // The fault is read before the samples. Otherwise samples that arrived before the fault
+            // could be missed.
+            let fault = self.fault();
+            let frames = self.read_now(samples);
+            if frames > 0 {
+                self.delivered += frames as u64;
+                return Ok(Delivered::Frames(frames));
+            }
+            if let (Some(fault), false) = (fault, samples.is_empty()) {
+                self.stream = None;
+                return Err(fault);
+            }
+            if since.elapsed() >= timeout {
+                return Ok(Delivered::Frames(0));
+            }
+            sleep(LOOK.min(timeout.saturating_sub(since.elapsed())));
+        }
+    }
+
+    fn stop(&mut self) -> Result<(), DeviceError> {
+        self.stream = None;
+        Ok(())
+    }
+}
+
+fn build<T: SizedSample>(
+    device: &cpal::Device,
+    config: StreamConfig,
+    mut listener: Listener,
+    report: Box<dyn FnMut(cpal::Error) + Send>,
+) -> Result<cpal::Stream, cpal::Error>
+where
+    f64: FromSample<T>,
+{
+    let take = move |samples: &[T], _: &InputCallbackInfo| {
+        listener.take(samples, f64::from_sample);
+    };
+    device.build_input_stream(config, take, report, None)
+}

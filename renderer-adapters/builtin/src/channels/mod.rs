@@ -1,0 +1,114 @@
+//! Multi-channel outputs in which selected channels play the texture. The interleaved frames go to
+//! a sound card, to a WAV file, or nowhere.
+//!
+//! A DualSense controller connected by a cable is a sound card of four channels. The first two are
+//! its loudspeaker and headset, the others its left and right actuator. The actuators play samples,
+//! so nothing of a texture is lost.
+#![forbid(unsafe_code)]
+
+mod nowhere;
+mod plays;
+mod to;
+
+use crate::motor::{buffer_setting, setting};
+use htex_device::{
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Mapping, Setting,
+    SettingKind, Settings, StreamFormat,
+};
+
+use to::To;
+
+/// The multi-channel adapter. See the crate's documentation.
+pub struct Channels {
+    descriptor: Descriptor,
+}
+
+impl Channels {
+    /// Creates the adapter. Opens nothing.
+    pub fn new() -> Self {
+        Self { descriptor: descriptor() }
+    }
+}
+
+impl Default for Channels {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Adapter for Channels {
+    fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    /// Lists the outputs. Sound cards are those that the system names. Their number of channels is
+    /// checked only when one is chosen.
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        let nothing = Endpoint {
+            name: "null".to_owned(),
+            setting: "to".to_owned(),
+            summary: "nothing: the frames are taken at the pace of the clock, and forgotten"
+                .to_owned(),
+        };
+        Ok([nothing].into_iter().chain(to::cards()).collect())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        To::new(settings)?.capabilities(&plays::factors(settings.text("plays"))?)
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let factors = plays::factors(settings.text("plays"))?;
+        To::new(settings)?.open(&factors, format)
+    }
+}
+
+fn descriptor() -> Descriptor {
+    let to = SettingKind::Choice { values: to::NAMES.map(str::to_owned).to_vec() };
+    let settings = vec![
+        Setting {
+            default: None,
+            ..setting(
+                "to",
+                to,
+                "",
+                "Where the frames go: a sound card, a WAV file of 32-bit floats, or nothing.",
+            )
+        },
+        setting(
+            "plays",
+            SettingKind::Text,
+            plays::DUALSENSE,
+            "What each channel plays, with commas between: `off`, `texture`, or a factor of it from -1 to 1. The default is that of a DualSense.",
+        ),
+        setting(
+            "device",
+            SettingKind::Text,
+            to::DEFAULT_CARD,
+            "Of to=sound: the sound output, as the list of devices names it.",
+        ),
+        setting(
+            "path",
+            SettingKind::Text,
+            "",
+            "Of to=file: the file; it appears, or is replaced, when the device is finished.",
+        ),
+        buffer_setting(),
+    ];
+    Descriptor {
+        id: "org.htex.channels".to_owned(),
+        name: "Channels".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        summary: "Chosen channels of a sound card or a WAV file, such as the actuators of a DualSense.".to_owned(),
+        settings,
+        profiles: Vec::new(),
+        mapping: Some(Mapping {
+            plays: "the samples, times the factor of each channel".to_owned(),
+            loses: "nothing on the way; an actuator has its own response, and the actuators of a DualSense are one texture, not two".to_owned(),
+        }),
+    }
+}

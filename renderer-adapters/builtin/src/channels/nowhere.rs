@@ -1,0 +1,33 @@
+//! An output that discards the samples in real time, for trying settings without hardware.
+
+use crate::motor::{Block, Motor, Paced, Plan};
+use htex_device::{Capabilities, Device, DeviceError, StreamFormat};
+
+/// Duration of a block, seconds.
+const BLOCK_S: f64 = 0.01;
+
+struct Nowhere;
+
+impl Motor for Nowhere {
+    fn play(&mut self, _: &Block<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn end(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn stop(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+pub(crate) fn open(
+    buffer_s: f64,
+    can: Capabilities,
+    format: &StreamFormat,
+) -> Result<Box<dyn Device>, DeviceError> {
+    let plan = Plan { gain: 1.0, block_s: BLOCK_S, buffer_s };
+    let paced = Paced::open("Channels", Box::new(Nowhere), &plan, can, format)?;
+    Ok(Box::new(paced))
+}

@@ -1,0 +1,177 @@
+//! The NI-DAQmx functions in use, as `NIDAQmx.h` declares them.
+#![allow(unsafe_code)] // A loader: the library's functions are C.
+
+use std::ffi::{CString, c_char, c_void};
+use std::ptr::null_mut;
+
+use htex_base::native::{Library, LoadError};
+
+use crate::daq::fault::Fault;
+
+pub(super) type Handle = *mut c_void;
+
+/// Size of the buffer for names and messages of the driver, bytes.
+const ROOM: usize = 8192;
+
+/// Error: a library cannot be used as NI-DAQmx.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum TableError {
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error("it has no `{0}`")]
+    Missing(&'static str),
+}
+
+macro_rules! table {
+    ($($name:ident = $symbol:literal : ($($argument:ty),*),)*) => {
+        /// One function pointer for each symbol. Each function returns 0, a positive warning or a
+        /// negative error.
+        pub(super) struct Table {
+            $(pub(super) $name: unsafe extern "system" fn($($argument),*) -> i32,)*
+        }
+
+        impl Table {
+            /// Looks up the functions of a library.
+            ///
+            /// # Errors
+            /// Names the function that the library lacks.
+            pub(super) fn of(library: Library) -> Result<Self, TableError> {
+                $(
+                    // SAFETY: the name is NI-DAQmx's, and its header states the type.
+                    let $name = unsafe { library.symbol($symbol) };
+                    let $name = $name.ok_or(TableError::Missing($symbol))?;
+                )*
+                Ok(Self { $($name,)* })
+            }
+        }
+    };
+}
+
+table! {
+    get_device_names = "DAQmxGetSysDevNames": (*mut c_char, u32),
+    get_product = "DAQmxGetDevProductType": (*const c_char, *mut c_char, u32),
+    get_outputs = "DAQmxGetDevAOPhysicalChans": (*const c_char, *mut c_char, u32),
+    get_max_rate = "DAQmxGetDevAOMaxRate": (*const c_char, *mut f64),
+    get_min_rate = "DAQmxGetDevAOMinRate": (*const c_char, *mut f64),
+    get_inputs = "DAQmxGetDevAIPhysicalChans": (*const c_char, *mut c_char, u32),
+    get_max_input_rate = "DAQmxGetDevAIMaxMultiChanRate": (*const c_char, *mut f64),
+    get_min_input_rate = "DAQmxGetDevAIMinRate": (*const c_char, *mut f64),
+    create_input = "DAQmxCreateAIVoltageChan": (Handle, *const c_char, *const c_char, i32, f64, f64, i32, *const c_char),
+    set_input_buffer = "DAQmxCfgInputBuffer": (Handle, u32),
+    get_available = "DAQmxGetReadAvailSampPerChan": (Handle, *mut u32),
+    read_samples = "DAQmxReadAnalogF64": (Handle, i32, f64, u32, *mut f64, u32, *mut i32, *mut u32),
+    create_task = "DAQmxCreateTask": (*const c_char, *mut Handle),
+    create_voltage = "DAQmxCreateAOVoltageChan": (Handle, *const c_char, *const c_char, f64, f64, i32, *const c_char),
+    set_clock = "DAQmxCfgSampClkTiming": (Handle, *const c_char, f64, i32, i32, u64),
+    set_buffer = "DAQmxCfgOutputBuffer": (Handle, u32),
+    set_regeneration = "DAQmxSetWriteRegenMode": (Handle, i32),
+    start_task = "DAQmxStartTask": (Handle),
+    stop_task = "DAQmxStopTask": (Handle),
+    clear_task = "DAQmxClearTask": (Handle),
+    reset_device = "DAQmxResetDevice": (*const c_char),
+    is_done = "DAQmxIsTaskDone": (Handle, *mut u32),
+    get_space = "DAQmxGetWriteSpaceAvail": (Handle, *mut u32),
+    get_generated = "DAQmxGetWriteTotalSampPerChanGenerated": (Handle, *mut u64),
+    write_samples = "DAQmxWriteAnalogF64": (Handle, i32, u32, f64, u32, *const f64, *mut i32, *mut u32),
+    get_error_string = "DAQmxGetErrorString": (i32, *mut c_char, u32),
+    get_error_details = "DAQmxGetExtendedErrorInfo": (*mut c_char, u32),
+}
+
+impl Table {
+    /// Checks the result of a call. Warnings are ignored. Errors carry the driver's message.
+    pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
+        if code >= 0 {
+            return Ok(());
+        }
+        // SAFETY: both are given a buffer and its length.
+        let details = filled(|to, space| unsafe { (self.get_error_details)(to, space) });
+        let words = details.filter(|text| !text.is_empty()).or_else(|| {
+            // SAFETY: as above.
+            filled(|to, space| unsafe { (self.get_error_string)(code, to, space) })
+        });
+        Err(Fault { code, words: words.unwrap_or_default().replace(['\n', '\r'], " ") })
+    }
+
+    pub(super) fn device_names(&self) -> Result<String, Fault> {
+        // SAFETY: a buffer and its length.
+        self.text(|to, space| unsafe { (self.get_device_names)(to, space) })
+    }
+
+    pub(super) fn product(&self, card: &str) -> Result<String, Fault> {
+        let card = c_text(card);
+        // SAFETY: a string that ends in zero, a buffer and its length.
+        self.text(|to, space| unsafe { (self.get_product)(card.as_ptr(), to, space) })
+    }
+
+    pub(super) fn outputs(&self, card: &str) -> Result<String, Fault> {
+        let card = c_text(card);
+        // SAFETY: as above.
+        self.text(|to, space| unsafe { (self.get_outputs)(card.as_ptr(), to, space) })
+    }
+
+    pub(super) fn inputs(&self, card: &str) -> Result<String, Fault> {
+        let card = c_text(card);
+        // SAFETY: as above.
+        self.text(|to, space| unsafe { (self.get_inputs)(card.as_ptr(), to, space) })
+    }
+
+    /// Returns the highest total rate of all channels together, hertz.
+    pub(super) fn max_input_rate(&self, card: &str) -> Result<f64, Fault> {
+        let (card, mut rate_hz) = (c_text(card), 0.0);
+        // SAFETY: a string that ends in zero, and a place for one number.
+        self.check(unsafe { (self.get_max_input_rate)(card.as_ptr(), &mut rate_hz) })?;
+        Ok(rate_hz)
+    }
+
+    pub(super) fn min_input_rate(&self, card: &str) -> Result<f64, Fault> {
+        let (card, mut rate_hz) = (c_text(card), 0.0);
+        // SAFETY: as above.
+        self.check(unsafe { (self.get_min_input_rate)(card.as_ptr(), &mut rate_hz) })?;
+        Ok(rate_hz)
+    }
+
+    pub(super) fn max_rate(&self, card: &str) -> Result<f64, Fault> {
+        let (card, mut rate_hz) = (c_text(card), 0.0);
+        // SAFETY: a string that ends in zero, and a place for one number.
+        self.check(unsafe { (self.get_max_rate)(card.as_ptr(), &mut rate_hz) })?;
+        Ok(rate_hz)
+    }
+
+    pub(super) fn min_rate(&self, card: &str) -> Result<f64, Fault> {
+        let (card, mut rate_hz) = (c_text(card), 0.0);
+        // SAFETY: as above.
+        self.check(unsafe { (self.get_min_rate)(card.as_ptr(), &mut rate_hz) })?;
+        Ok(rate_hz)
+    }
+
+    pub(super) fn new_task(&self) -> Result<Handle, Fault> {
+        let (name, mut handle) = (c_text(""), null_mut());
+        // SAFETY: a string that ends in zero, and a place for one handle.
+        self.check(unsafe { (self.create_task)(name.as_ptr(), &mut handle) })?;
+        Ok(handle)
+    }
+
+    fn text(&self, call: impl Fn(*mut c_char, u32) -> i32) -> Result<String, Fault> {
+        let mut code = 0;
+        let text = filled(|to, space| {
+            code = call(to, space);
+            code
+        });
+        self.check(code)?;
+        Ok(text.unwrap_or_default())
+    }
+}
+
+/// Returns the text that a function writes into a buffer; `None` if the call fails.
+fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
+    let mut bytes = vec![0u8; ROOM];
+    let code = call(bytes.as_mut_ptr().cast(), ROOM as u32);
+    let end = bytes.iter().position(|b| *b == 0).unwrap_or(0);
+    (code >= 0).then(|| String::from_utf8_lossy(&bytes[..end]).into_owned())
+}
+
+/// Converts a text to a string that ends in zero. A text with a zero inside becomes empty; settings
+/// do not allow one.
+pub(super) fn c_text(text: &str) -> CString {
+    CString::new(text).unwrap_or_default()
+}

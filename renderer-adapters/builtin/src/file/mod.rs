@@ -1,0 +1,65 @@
+//! A device that writes a file: the mechanical quantity at the finger, or the drive signal of a
+//! display, as WAV, CSV, NPY or raw samples.
+//!
+//! Samples are written as fast as they are generated, through a buffer of fixed size, into a
+//! temporary file next to the named one. Finishing the device renames the temporary file. A device
+//! that is dropped before that leaves no file.
+//!
+//! A WAV file larger than 4 GiB is an error. RF64 would allow it, but few programs read RF64.
+#![allow(unsafe_code, reason = "the C functions of the device ABI")]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod describe;
+mod device;
+mod encoding;
+mod plan;
+mod sink;
+
+use htex_device::{Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint};
+use htex_device::{Settings, StreamFormat};
+
+use device::FileDevice;
+use plan::Plan;
+
+htex_device::export_device!(FileAdapter, symbols: "plugin");
+
+/// The file adapter, `org.htex.file`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FileAdapter;
+
+impl Adapter for FileAdapter {
+    fn descriptor(&self) -> &Descriptor {
+        &describe::DESCRIPTOR
+    }
+
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        Ok(Vec::new())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        Ok(Plan::new(settings)?.capabilities())
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let device = FileDevice::create(&Plan::new(settings)?, format.rate_hz)?;
+        Ok(Box::new(device))
+    }
+}
+
+/// Opens a WAV file of sound, with 32-bit floats and one channel for each factor. A channel
+/// contains each sample times its factor.
+///
+/// # Errors
+/// When a WAV file cannot have this rate, or the file cannot be created.
+pub fn open_channels(
+    path: std::path::PathBuf,
+    factors: &[f32],
+    rate_hz: f64,
+) -> Result<Box<dyn Device>, DeviceError> {
+    let plan = Plan::channels(path, factors.to_vec());
+    Ok(Box::new(FileDevice::create(&plan, rate_hz)?))
+}

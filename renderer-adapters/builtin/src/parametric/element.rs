@@ -1,0 +1,27 @@
+//! The haptic element of a hand, reserved for one open device.
+
+use std::sync::Arc;
+
+use htex_device::DeviceError;
+
+use crate::parametric::claim::Claim;
+use crate::parametric::session::{Hand, Session};
+
+/// A reserved haptic element. Dropping it releases it.
+pub(crate) struct Element {
+    pub(crate) session: Arc<Session>,
+    pub(crate) hand: Hand,
+    _claim: Claim,
+}
+
+impl Element {
+    pub(crate) fn take(runtime: &str, hand: Hand) -> Result<Self, DeviceError> {
+        let session = Session::of(runtime)?;
+        let claim = Claim::take(runtime, &format!("{} hand", hand.name()))?;
+        Ok(Self { session, hand, _claim: claim })
+    }
+
+    pub(crate) fn stop(&self) -> Result<(), String> {
+        self.session.stop(self.hand)
+    }
+}

@@ -1,0 +1,171 @@
+//! An OpenXR instance without graphics.
+#![allow(unsafe_code)] // The runtime's functions are C.
+
+use std::ffi::{CStr, c_char};
+use std::ptr::{null, null_mut};
+
+use openxr_sys::{self as xr, Handle as _, pfn};
+
+use crate::parametric::structures::{NAME as PARAMETRIC, SYSTEM_PROPERTIES, SystemProperties};
+use crate::parametric::table::{Entry, Table, VERSION, done, function};
+
+/// Names of extensions.
+const HEADLESS: &CStr = c"XR_MND_headless";
+const PCM: &CStr = c"XR_FB_haptic_pcm";
+
+/// An instance and its system. Dropping it destroys both, with everything created from them.
+pub(crate) struct Instance {
+    pub(crate) table: Table,
+    pub(crate) handle: xr::Instance,
+    pub(crate) system: xr::SystemId,
+    /// Whether the system plays points.
+    pub(crate) has_points: bool,
+    /// Whether the runtime plays samples.
+    pub(crate) has_pcm: bool,
+}
+
+impl Instance {
+    pub(crate) fn create(entry: Entry) -> Result<Self, String> {
+        let there = extensions(entry)?;
+        if !there.iter().any(|name| name == HEADLESS.to_string_lossy().as_ref()) {
+            return Err(
+                "it does not run without graphics: it has no XR_MND_headless. A program with a session of its own reduces the samples by \
+                 `htex_dsp::reduced` and hands the points over itself"
+                    .to_owned(),
+            );
+        }
+        let has = |name: &CStr| there.iter().any(|other| other.as_bytes() == name.to_bytes());
+        let names: Vec<&CStr> =
+            [HEADLESS, PARAMETRIC, PCM].into_iter().filter(|name| has(name)).collect();
+        let handle = create(entry, &names)?;
+        let table = match Table::of(entry, handle) {
+            Ok(table) => table,
+            Err(error) => {
+                // SAFETY: the handle is that of the instance, which nobody else has.
+                if let Ok(destroy) =
+                    unsafe { function::<pfn::DestroyInstance>(entry, handle, c"xrDestroyInstance") }
+                {
+                    // SAFETY: as above.
+                    unsafe { destroy(handle) };
+                }
+                return Err(error);
+            }
+        };
+        let mut instance = Self {
+            table,
+            handle,
+            system: xr::SystemId::NULL,
+            has_points: false,
+            has_pcm: has(PCM),
+        };
+        instance.find_system(has(PARAMETRIC))?;
+        Ok(instance)
+    }
+
+    fn find_system(&mut self, has_parametric: bool) -> Result<(), String> {
+        let info = xr::SystemGetInfo {
+            ty: xr::SystemGetInfo::TYPE,
+            next: null(),
+            form_factor: xr::FormFactor::HEAD_MOUNTED_DISPLAY,
+        };
+        // SAFETY: the structure is that of the header.
+        let code = unsafe { (self.table.get_system)(self.handle, &info, &mut self.system) };
+        done("xrGetSystem", code)?;
+        if !has_parametric {
+            return Ok(());
+        }
+        let mut parametric =
+            SystemProperties { ty: SYSTEM_PROPERTIES, next: null_mut(), is_supported: xr::FALSE };
+        let mut properties = xr::SystemProperties::out((&raw mut parametric).cast());
+        // SAFETY: a chain of two structures of the registry, in which the runtime writes.
+        let code = unsafe {
+            (self.table.get_system_properties)(self.handle, self.system, properties.as_mut_ptr())
+        };
+        done("xrGetSystemProperties", code)?;
+        self.has_points = parametric.is_supported.into();
+        Ok(())
+    }
+
+    /// Returns the path of a text such as `/user/hand/left`.
+    pub(crate) fn path(&self, text: &CStr) -> Result<xr::Path, String> {
+        let mut path = xr::Path::NULL;
+        // SAFETY: the text ends in zero.
+        let code = unsafe { (self.table.string_to_path)(self.handle, text.as_ptr(), &mut path) };
+        done("xrStringToPath", code).map(|()| path)
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        // SAFETY: the instance is not used afterwards.
+        unsafe { (self.table.destroy_instance)(self.handle) };
+    }
+}
+
+/// Lists the extensions of the runtime.
+fn extensions(entry: Entry) -> Result<Vec<String>, String> {
+    let call = "xrEnumerateInstanceExtensionProperties";
+    // SAFETY: the name and the type are those of the header.
+    let enumerate = unsafe {
+        function::<pfn::EnumerateInstanceExtensionProperties>(
+            entry,
+            xr::Instance::NULL,
+            c"xrEnumerateInstanceExtensionProperties",
+        )
+    }?;
+    let mut count = 0;
+    // SAFETY: no places, so that only the count is written.
+    done(call, unsafe { enumerate(null(), 0, &mut count, null_mut()) })?;
+    let empty = xr::ExtensionProperties {
+        ty: xr::ExtensionProperties::TYPE,
+        next: null_mut(),
+        extension_name: [0; xr::MAX_EXTENSION_NAME_SIZE],
+        extension_version: 0,
+    };
+    let mut all = vec![empty; count as usize];
+    // SAFETY: there are as many places as said.
+    done(call, unsafe { enumerate(null(), count, &mut count, all.as_mut_ptr()) })?;
+    all.truncate(count as usize);
+    let name = |one: &xr::ExtensionProperties| {
+        let bytes = one.extension_name.iter().take_while(|c| **c != 0);
+        let bytes: Vec<u8> = bytes.map(|c| *c as u8).collect();
+        String::from_utf8_lossy(&bytes).into_owned()
+    };
+    Ok(all.iter().map(name).collect())
+}
+
+fn create(entry: Entry, extensions: &[&CStr]) -> Result<xr::Instance, String> {
+    // SAFETY: the name and the type are those of the header.
+    let create =
+        unsafe { function::<pfn::CreateInstance>(entry, xr::Instance::NULL, c"xrCreateInstance") }?;
+    let names: Vec<*const c_char> = extensions.iter().map(|name| name.as_ptr()).collect();
+    let info = xr::InstanceCreateInfo {
+        ty: xr::InstanceCreateInfo::TYPE,
+        next: null(),
+        create_flags: xr::InstanceCreateFlags::EMPTY,
+        application_info: xr::ApplicationInfo {
+            application_name: fixed("htex"),
+            application_version: 1,
+            engine_name: fixed("htex"),
+            engine_version: 1,
+            api_version: VERSION,
+        },
+        enabled_api_layer_count: 0,
+        enabled_api_layer_names: null(),
+        enabled_extension_count: names.len() as u32,
+        enabled_extension_names: names.as_ptr(),
+    };
+    let mut instance = xr::Instance::NULL;
+    // SAFETY: the structure and its texts last until the call returns.
+    done("xrCreateInstance", unsafe { create(&info, &mut instance) })?;
+    Ok(instance)
+}
+
+/// Copies a short text into an array of fixed size, filled up with zeros.
+pub(crate) fn fixed<const N: usize>(text: &str) -> [c_char; N] {
+    let mut place = [0; N];
+    for (to, byte) in place.iter_mut().take(N - 1).zip(text.bytes()) {
+        *to = byte as c_char;
+    }
+    place
+}

@@ -1,0 +1,179 @@
+//! Controllers that take points or samples some times per second, through an OpenXR runtime.
+//!
+//! The library is a runtime itself or the installed loader. It is loaded at run time; nothing is
+//! linked. The setting `form` chooses what is played:
+//! - `form=points` plays `XR_EXT_haptic_parametric`. Each block of `block_ms` becomes a point with
+//!   the amplitude and the frequency at its end ([`htex_dsp::reduced::Points`]). Points are passed
+//!   on in frames of the duration that the runtime prefers.
+//! - `form=pcm` plays `XR_FB_haptic_pcm`: the samples themselves, at the rate of the controller.
+//! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept, through
+//!   functions of the application.
+//!
+//! The adapter has its own session, without graphics (`XR_MND_headless`), so that the command can
+//! play on a controller. A session ends with its last device. If a program hangs, the runtime ends
+//! a stream of points after 50 ms, and a stream of samples when it has no more.
+#![deny(unsafe_code)]
+
+mod claim;
+mod element;
+mod envelopes;
+mod instance;
+mod points;
+mod samples;
+mod session;
+mod settings;
+mod structures;
+mod table;
+
+use crate::motor::{Motor, Paced, rate_error};
+use htex_device::{
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Mapping, Rates, Settings,
+    StreamFormat,
+};
+
+use element::Element;
+use envelopes::{Envelopes, Vibrator, milliseconds};
+use points::Stream;
+use samples::Samples;
+use session::{Hand, Session};
+use settings::{Asked, Form};
+
+/// The adapter for parametric haptics. See the crate's documentation.
+pub struct Parametric {
+    descriptor: Descriptor,
+}
+
+impl Parametric {
+    /// Creates the adapter. A runtime is loaded on first use.
+    pub fn new() -> Self {
+        Self { descriptor: descriptor() }
+    }
+}
+
+impl Default for Parametric {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Adapter for Parametric {
+    fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    /// Lists the hands on which the installed runtime can play.
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        let session = Session::of("")?;
+        let plays = |hand: &Hand| {
+            let points = session.properties(*hand).map(|_| "points");
+            points.or_else(|_| session.pcm_rate_hz(*hand).map(|_| "samples (form=pcm)"))
+        };
+        let endpoint = |hand: Hand| {
+            let what = plays(&hand).ok()?;
+            Some(Endpoint {
+                name: hand.name().to_owned(),
+                setting: "hand".to_owned(),
+                summary: format!("controller that plays {what}"),
+            })
+        };
+        Ok(Hand::ALL.into_iter().filter_map(endpoint).collect())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        let asked = Asked::new(settings)?;
+        match asked.form {
+            Form::Pwle => asked.of_vibrator(),
+            Form::Points | Form::Pcm => asked.of_session(&*Session::of(&asked.runtime)?),
+        }
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let asked = Asked::new(settings)?;
+        match asked.form {
+            Form::Pwle => {
+                let can = asked.of_vibrator()?;
+                let motor = |_| Ok(Box::new(Envelopes::open(&asked.runtime, &asked.plan)?) as _);
+                asked.paced("Vibrator", can, format, motor)
+            }
+            Form::Points | Form::Pcm => {
+                let element = Element::take(&asked.runtime, asked.hand)?;
+                let can = asked.of_session(&element.session)?;
+                let name = format!("OpenXR, {} hand", asked.hand.name());
+                let motor = |rate_hz| asked.motor(element, rate_hz);
+                asked.paced(&name, can, format, motor)
+            }
+        }
+    }
+}
+
+impl Asked {
+    /// Returns the capabilities of a vibrator with these settings.
+    fn of_vibrator(&self) -> Result<Capabilities, DeviceError> {
+        Vibrator::load(&self.runtime)?.takes(milliseconds(&self.plan))?;
+        Ok(self.plan.capabilities())
+    }
+
+    /// Returns the capabilities of a controller with these settings. Points can have any rate.
+    /// Samples have the rate of the controller.
+    fn of_session(&self, session: &Session) -> Result<Capabilities, DeviceError> {
+        let can = self.plan.capabilities();
+        if self.form != Form::Pcm {
+            let properties = session.properties(self.hand);
+            return properties.map(|_| can).map_err(DeviceError::Missing);
+        }
+        let rate_hz = session.pcm_rate_hz(self.hand).map_err(DeviceError::Missing)?;
+        Ok(Capabilities {
+            rates: Rates::List(vec![rate_hz]),
+            default_rate_hz: rate_hz,
+            block_frames: self.plan.block_frames(rate_hz) as u32,
+            ..can
+        })
+    }
+
+    fn motor(&self, element: Element, rate_hz: f64) -> Result<Box<dyn Motor>, DeviceError> {
+        match self.form {
+            Form::Pcm => Ok(Box::new(Samples::open(element, &self.plan, rate_hz)?)),
+            _ => Ok(Box::new(Stream::open(element, &self.plan, self.range_hz, rate_hz)?)),
+        }
+    }
+
+    /// Opens a device on a motor, which is created only if the device supports the rate.
+    fn paced(
+        &self,
+        name: &str,
+        can: Capabilities,
+        format: &StreamFormat,
+        motor: impl FnOnce(f64) -> Result<Box<dyn Motor>, DeviceError>,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let rate_hz = format.rate_hz;
+        if !can.has_rate(rate_hz) {
+            return Err(rate_error(name, rate_hz, &can));
+        }
+        let paced = Paced::open(name, motor(rate_hz)?, &self.plan, can, format)?;
+        Ok(Box::new(paced))
+    }
+}
+
+fn descriptor() -> Descriptor {
+    Descriptor {
+        id: "org.htex.parametric".to_owned(),
+        name: "OpenXR controller".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        summary: "Points or samples on a controller, through an OpenXR runtime.".to_owned(),
+        settings: settings::all(),
+        profiles: Vec::new(),
+        mapping: Some(Mapping {
+            plays: "form=points: an amplitude and a frequency for each block of block_ms, between which the runtime interpolates, as frames of \
+                    XR_EXT_haptic_parametric; form=pcm: the samples, at the controller's rate; form=pwle: effects of control points, one for each block"
+                .to_owned(),
+            loses: "form=points: the spectrum, of which the level and the mean frequency remain, and changes within a block; frequencies \
+                    outside the range that the controller has; form=pcm: frequencies from half of the controller's rate; form=pwle: as form=points, and each effect of about 0.1 s \
+                    begins with a ramp from rest"
+                .to_owned(),
+        }),
+    }
+}

@@ -1,0 +1,116 @@
+//! The settings in parsed form.
+
+use crate::motor::{DEFAULT_GAIN, Plan, number, reducing_settings, setting};
+use htex_device::{DeviceError, Setting, SettingKind, Settings};
+
+use crate::parametric::session::Hand;
+use crate::parametric::structures::FREQUENCIES_HZ;
+
+/// What is passed to the runtime or vibrator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Form {
+    Points,
+    Pcm,
+    Pwle,
+}
+
+/// Settings that have been checked against each other.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Asked {
+    pub(crate) runtime: String,
+    pub(crate) form: Form,
+    pub(crate) hand: Hand,
+    pub(crate) plan: Plan,
+    /// Lowest and highest frequency of points, hertz.
+    pub(crate) range_hz: Option<(f64, f64)>,
+}
+
+pub(crate) fn all() -> Vec<Setting> {
+    let choice = |values: &[&str]| SettingKind::Choice {
+        values: values.iter().map(ToString::to_string).collect(),
+    };
+    let hz = number(0.0, FREQUENCIES_HZ.1);
+    let mut all = vec![
+        setting(
+            "runtime",
+            SettingKind::Text,
+            "",
+            "Library of an OpenXR runtime or loader, a file or a name that the system's loader finds; empty: the installed loader.",
+        ),
+        setting(
+            "form",
+            choice(&["points", "pcm", "pwle"]),
+            "points",
+            "What is handed over: points, samples at the controller's rate, or envelopes of an application's vibrator (then `runtime` names its library).",
+        ),
+        setting("hand", choice(&["left", "right"]), "right", "The controller that plays."),
+        setting(
+            "low_hz",
+            hz.clone(),
+            "0",
+            "Of points: mean frequency that is the lowest one of the controller, 1 to 1000 Hz; 0: what the controller states, else 50.",
+        ),
+        setting(
+            "high_hz",
+            hz,
+            "0",
+            "Of points: mean frequency that is the highest one of the controller, 1 to 1000 Hz; 0: what the controller states, else 500.",
+        ),
+    ];
+    all.extend(reducing_settings());
+    all
+}
+
+impl Asked {
+    /// Reads the settings.
+    ///
+    /// # Errors
+    /// When a setting has no effect together with the others.
+    pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
+        let form = match settings.text("form") {
+            "pcm" => Form::Pcm,
+            "pwle" => Form::Pwle,
+            _ => Form::Points,
+        };
+        let range_hz = range(settings)?;
+        let hand = match settings.text("hand") {
+            "left" => Hand::Left,
+            _ => Hand::Right,
+        };
+        if form != Form::Points && range_hz.is_some() {
+            return refuse("low_hz", "it is the range of points, for form=points");
+        }
+        if form == Form::Pcm && settings.text("gain") != DEFAULT_GAIN {
+            return refuse(
+                "gain",
+                "samples are played as they are; it is for form=points and form=pwle",
+            );
+        }
+        if form == Form::Pwle && hand != Hand::Right {
+            return refuse("hand", "a vibrator is in no hand; it is for form=points and form=pcm");
+        }
+        Ok(Self {
+            runtime: settings.text("runtime").to_owned(),
+            form,
+            hand,
+            plan: Plan::new(settings),
+            range_hz,
+        })
+    }
+}
+
+fn range(settings: &Settings) -> Result<Option<(f64, f64)>, DeviceError> {
+    let (low, high) = (settings.number("low_hz"), settings.number("high_hz"));
+    match (low, high) {
+        (0.0, 0.0) => Ok(None),
+        (0.0, _) => refuse("low_hz", "high_hz is given, and this one belongs to it"),
+        (_, 0.0) => refuse("high_hz", "low_hz is given, and this one belongs to it"),
+        _ if low < FREQUENCIES_HZ.0 => refuse("low_hz", "it is 0, or from 1 to 1000 Hz"),
+        _ if high < low => refuse("high_hz", "it is below low_hz"),
+        _ => Ok(Some((low, high))),
+    }
+}
+
+fn refuse<T>(name: &str, what: &str) -> Result<T, DeviceError> {
+    Err(DeviceError::Setting { name: name.to_owned(), what: what.to_owned() })
+}

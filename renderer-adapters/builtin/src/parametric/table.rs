@@ -1,0 +1,161 @@
+//! The OpenXR functions in use, from a runtime or a loader.
+#![allow(unsafe_code)] // A loader: the library's functions are C.
+
+use std::ffi::{CStr, CString};
+use std::mem::{size_of, transmute_copy};
+
+use htex_base::native::{Library, LoadError};
+use htex_device::DeviceError;
+use openxr_sys::{self as xr, pfn};
+
+use crate::parametric::structures::GetProperties;
+
+/// Names of the installed loader, which are tried in turn.
+#[cfg(windows)]
+const LOADERS: &[&str] = &["openxr_loader.dll"];
+#[cfg(target_os = "macos")]
+const LOADERS: &[&str] = &["libopenxr_loader.dylib"];
+#[cfg(not(any(windows, target_os = "macos")))]
+const LOADERS: &[&str] = &["libopenxr_loader.so.1", "libopenxr_loader.so"];
+
+/// The requested version of OpenXR: the first one, which all runtimes support.
+pub(crate) const VERSION: xr::Version = xr::Version::new(1, 0, 0);
+
+/// The function that looks up all others.
+pub(crate) type Entry = pfn::GetInstanceProcAddr;
+
+/// Loads the entry function of the library at `path`, or of the installed loader if `path` is
+/// empty.
+pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
+    if path.is_empty() {
+        // SAFETY: the loader's own names.
+        let entry = of(unsafe { Library::installed(LOADERS) });
+        return entry.map_err(|reason| {
+            DeviceError::Missing(format!(
+                "no OpenXR loader is installed: {reason}. Install one (Debian, Ubuntu: `libopenxr-loader1`) and a runtime, or name a \
+                 runtime's library by the setting `runtime`"
+            ))
+        });
+    }
+    // SAFETY: the user named this library as a runtime.
+    let entry = of(unsafe { Library::named(path) });
+    entry.map_err(|reason| DeviceError::Setting {
+        name: "runtime".to_owned(),
+        what: format!("`{path}` cannot be loaded as an OpenXR runtime: {reason}"),
+    })
+}
+
+/// Finds the entry function. A runtime exports the negotiation function, a loader the entry itself.
+fn of(library: Result<Library, LoadError>) -> Result<Entry, String> {
+    let library = library.map_err(|error| error.to_string())?;
+    // SAFETY: the name is that of `openxr_loader_negotiation.h`, which states the type.
+    let negotiate = unsafe {
+        library.symbol::<pfn::NegotiateLoaderRuntimeInterface>("xrNegotiateLoaderRuntimeInterface")
+    };
+    if let Some(negotiate) = negotiate {
+        return negotiated(negotiate);
+    }
+    // SAFETY: the name is that of `openxr.h`, which states the type.
+    let entry = unsafe { library.symbol::<Entry>("xrGetInstanceProcAddr") };
+    entry.ok_or_else(|| {
+        "it has neither `xrNegotiateLoaderRuntimeInterface` nor `xrGetInstanceProcAddr`".to_owned()
+    })
+}
+
+fn negotiated(negotiate: pfn::NegotiateLoaderRuntimeInterface) -> Result<Entry, String> {
+    let version = xr::CURRENT_LOADER_RUNTIME_VERSION as u32;
+    let info = xr::NegotiateLoaderInfo {
+        struct_type: xr::NegotiateLoaderInfo::TYPE,
+        struct_version: xr::NegotiateLoaderInfo::VERSION,
+        struct_size: size_of::<xr::NegotiateLoaderInfo>(),
+        min_interface_version: version,
+        max_interface_version: version,
+        min_api_version: VERSION,
+        max_api_version: xr::Version::new(1, 0x3ff, 0xfff),
+    };
+    let mut request = xr::NegotiateRuntimeRequest {
+        struct_type: xr::NegotiateRuntimeRequest::TYPE,
+        struct_version: xr::NegotiateRuntimeRequest::VERSION,
+        struct_size: size_of::<xr::NegotiateRuntimeRequest>(),
+        runtime_interface_version: 0,
+        runtime_api_version: xr::Version::default(),
+        get_instance_proc_addr: None,
+    };
+    // SAFETY: both structures are those of the header.
+    done("xrNegotiateLoaderRuntimeInterface", unsafe { negotiate(&info, &mut request) })?;
+    request.get_instance_proc_addr.ok_or_else(|| "it gives no `xrGetInstanceProcAddr`".to_owned())
+}
+
+/// Checks that a call succeeded. The error is the reason.
+pub(crate) fn done(call: &str, code: xr::Result) -> Result<(), String> {
+    match code {
+        xr::Result::SUCCESS => Ok(()),
+        _ => Err(format!("{call}: {code} ({})", code.into_raw())),
+    }
+}
+
+/// Looks up the function of this name.
+///
+/// # Safety
+/// `F` is the type that the header states for it.
+pub(crate) unsafe fn function<F: Copy>(
+    entry: Entry,
+    instance: xr::Instance,
+    name: &CStr,
+) -> Result<F, String> {
+    let mut found: Option<pfn::VoidFunction> = None;
+    // SAFETY: the name ends in zero.
+    let code = unsafe { entry(instance, name.as_ptr(), &mut found) };
+    let name = name.to_string_lossy();
+    done(&format!("xrGetInstanceProcAddr for {name}"), code)?;
+    let found = found.ok_or_else(|| format!("the runtime has no {name}"))?;
+    // SAFETY: both are pointers of functions, and the caller knows the type.
+    Ok(unsafe { transmute_copy::<pfn::VoidFunction, F>(&found) })
+}
+
+macro_rules! table {
+    ($($field:ident: $type:ident,)*) => {
+        /// The functions of an instance.
+        pub(crate) struct Table {
+            $(pub(crate) $field: pfn::$type,)*
+            /// `None` without the extension.
+            pub(crate) parametric_properties: Option<GetProperties>,
+            pub(crate) pcm_rate: Option<pfn::GetDeviceSampleRateFB>,
+        }
+
+        impl Table {
+            pub(crate) fn of(entry: Entry, instance: xr::Instance) -> Result<Self, String> {
+                // SAFETY: the names and types are those of the header.
+                unsafe {
+                    Ok(Self {
+                        $($field: {
+                            let name = concat!("xr", stringify!($type));
+                            let name = CString::new(name).unwrap_or_default();
+                            function::<pfn::$type>(entry, instance, &name)?
+                        },)*
+                        parametric_properties: function(entry, instance, c"xrHapticParametricGetPropertiesEXT").ok(),
+                        pcm_rate: function(entry, instance, c"xrGetDeviceSampleRateFB").ok(),
+                    })
+                }
+            }
+        }
+    };
+}
+
+table! {
+    destroy_instance: DestroyInstance,
+    get_system: GetSystem,
+    get_system_properties: GetSystemProperties,
+    create_session: CreateSession,
+    destroy_session: DestroySession,
+    begin_session: BeginSession,
+    poll_event: PollEvent,
+    string_to_path: StringToPath,
+    create_action_set: CreateActionSet,
+    create_action: CreateAction,
+    suggest_bindings: SuggestInteractionProfileBindings,
+    attach_action_sets: AttachSessionActionSets,
+    sync_actions: SyncActions,
+    apply: ApplyHapticFeedback,
+    stop: StopHapticFeedback,
+}

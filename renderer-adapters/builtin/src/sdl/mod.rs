@@ -1,0 +1,114 @@
+//! The motors of gamepads and joysticks, through SDL 2, which is loaded at run time and not linked.
+//!
+//! A gamepad has two motors with an unbalanced mass, a large and a small one. Each takes a
+//! strength. They get the level of each block of `block_ms`, divided between them by the mean
+//! frequency ([`htex_dsp::reduced::two_motors`]).
+//!
+//! Each strength is set for `HOLD_BLOCKS` blocks only. If this thread hangs in a program that polls
+//! SDL's events, SDL stops the motors after that time. If the program ends, the system stops them.
+//! SDL stays initialised, because an application may use it as well.
+#![deny(unsafe_code)]
+
+mod claim;
+mod driver;
+mod pads;
+mod rumble;
+mod table;
+
+use crate::motor::{Paced, Plan, reducing_settings, setting};
+use htex_device::{
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Mapping, SettingKind,
+    Settings, StreamFormat,
+};
+
+use driver::Driver;
+use rumble::Rumble;
+
+/// The gamepad adapter. See the crate's documentation.
+pub struct Sdl {
+    descriptor: Descriptor,
+}
+
+impl Sdl {
+    /// Creates the adapter. SDL is loaded on first use.
+    pub fn new() -> Self {
+        Self { descriptor: descriptor() }
+    }
+}
+
+impl Default for Sdl {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Adapter for Sdl {
+    fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        let pads = Driver::load("")?.pads();
+        let endpoint = |pad: pads::Pad| Endpoint {
+            name: pad.name,
+            setting: "device".to_owned(),
+            summary: "gamepad or joystick".to_owned(),
+        };
+        Ok(pads.into_iter().map(endpoint).collect())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        Driver::load(settings.text("driver"))?.find(settings.text("device"))?;
+        Ok(Plan::new(settings).capabilities())
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let plan = Plan::new(settings);
+        let can = plan.capabilities();
+        let driver = Driver::load(settings.text("driver"))?;
+        let pad = driver.find(settings.text("device"))?;
+        if !can.has_rate(format.rate_hz) {
+            return Err(crate::motor::rate_error(&pad.name, format.rate_hz, &can));
+        }
+        let rumble = Rumble::open(driver, &pad, &plan)?;
+        let paced = Paced::open(&pad.name, Box::new(rumble), &plan, can, format)?;
+        Ok(Box::new(paced))
+    }
+}
+
+fn descriptor() -> Descriptor {
+    let device = setting(
+        "device",
+        SettingKind::Text,
+        pads::FIRST,
+        "Gamepad or joystick, as the list of devices names it; `first` is the first one.",
+    );
+    let driver = setting(
+        "driver",
+        SettingKind::Text,
+        "",
+        "SDL 2's library, a file or a name that the system's loader finds; empty: the installed one.",
+    );
+    let mut settings = vec![device, driver];
+    settings.extend(reducing_settings());
+    Descriptor {
+        id: "org.htex.sdl".to_owned(),
+        name: "Gamepad".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        summary: "The two motors of a gamepad or joystick, through SDL 2.".to_owned(),
+        settings,
+        profiles: Vec::new(),
+        mapping: Some(Mapping {
+            plays: "the level of blocks of block_ms, on a large and a small motor: all on the large one up to a mean frequency of 60 Hz, \
+                    all on the small one from 420 Hz"
+                .to_owned(),
+            loses: "the waveform and the spectrum: a motor has its own frequency, which rises with its strength, and takes some \
+                    20 to 100 ms to turn"
+                .to_owned(),
+        }),
+    }
+}

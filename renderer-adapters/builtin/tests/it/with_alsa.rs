@@ -1,0 +1,28 @@
+//! Runs the tests of the feature `audio` if ALSA is installed. `cargo test` builds without the
+//! feature, so that a machine without ALSA passes all other tests.
+
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn playback_recording_and_four_channels_through_alsa() {
+    let alsa = Command::new("pkg-config").args(["--exists", "alsa"]).status();
+    if !xtask::needs::ALSA.met(alsa.is_ok_and(|status| status.success())) {
+        return;
+    }
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let tests = Command::new(cargo)
+        .args(["test", "--locked", "--features", "audio"])
+        .args(["--test", "audio_alsa", "--test", "audio_alsa_input", "--test", "channels_alsa"])
+        .arg("--manifest-path")
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(target)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&tests.stdout);
+    let errors = String::from_utf8_lossy(&tests.stderr);
+    let all = ["6 passed", "4 passed", "1 passed"].iter().all(|passed| said.contains(passed));
+    assert!(tests.status.success() && all, "{said}{errors}");
+}

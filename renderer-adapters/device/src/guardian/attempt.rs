@@ -1,0 +1,122 @@
+//! Attempts to set a display's output to zero without its guardian. Opening the device sets it to
+//! zero.
+
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::{KnownDevice, Origin, Settings, StreamFormat};
+
+use crate::guardian::decision::By;
+use crate::guardian::message::{Answer, OPEN, Opening};
+use crate::guardian::worker::{converse, thread};
+
+/// A display, and the helper program that can hold it.
+pub(crate) struct Display {
+    helper: Mutex<Command>,
+    known: KnownDevice,
+    settings: Settings,
+    format: StreamFormat,
+}
+
+impl Display {
+    pub(crate) fn new(
+        helper: Command,
+        known: &KnownDevice,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Self {
+        Self {
+            helper: Mutex::new(prepared(helper, known)),
+            known: known.clone(),
+            settings: settings.clone(),
+            format: *format,
+        }
+    }
+
+    /// Starts the helper program.
+    pub(crate) fn start(&self) -> std::io::Result<Child> {
+        let mut helper = self.helper.lock().unwrap_or_else(PoisonError::into_inner);
+        helper.spawn()
+    }
+
+    /// Returns the first message to the helper program.
+    pub(crate) fn opening(&self) -> Vec<u8> {
+        let opening = Opening {
+            device: self.known.descriptor().id.clone(),
+            settings: self.settings.to_lines(self.known.descriptor()),
+            rate_hz: self.format.rate_hz,
+            block_frames: self.format.block_frames,
+        };
+        serde_json::to_vec(&opening).unwrap_or_default()
+    }
+}
+
+/// Prepares the helper program for a device, out of reach of the terminal's keys.
+fn prepared(mut command: Command, known: &KnownDevice) -> Command {
+    if let Origin::Library(path) = &known.origin {
+        command.arg("--device-file").arg(path);
+    }
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    #[cfg(windows)]
+    std::os::windows::process::CommandExt::creation_flags(&mut command, 0x0000_0200);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    command
+}
+
+/// An attempt that runs in its own thread.
+pub(crate) struct Attempt(Arc<Mutex<Option<Child>>>);
+
+impl Attempt {
+    /// Starts the attempt. It reports its result once: nothing if the output is at zero, otherwise
+    /// the reason.
+    pub(crate) fn start(
+        display: &Arc<Display>,
+        by: By,
+        tell: impl FnOnce(Result<(), String>) + Clone + Send + 'static,
+    ) -> Self {
+        let process = Arc::new(Mutex::new(None));
+        let (display, child, told) = (Arc::clone(display), Arc::clone(&process), tell.clone());
+        let run = move || match by {
+            By::Process => {
+                told(by_process(&display, &child));
+                // The helper ends when its pipes are closed.
+                let child = child.lock().unwrap_or_else(PoisonError::into_inner).take();
+                let _ = child.map(|mut child| child.wait());
+            }
+            By::Player => told(by_player(&display)),
+        };
+        if let Err(error) = thread("htex-zero", run) {
+            tell(Err(error.to_string()));
+        }
+        Self(process)
+    }
+
+    /// Kills the attempt's process, if there is one.
+    pub(crate) fn kill(&self) {
+        let mut child = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let _ = child.as_mut().map(Child::kill);
+    }
+}
+
+/// Attempts zero by a helper process, which opens the device.
+fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), String> {
+    let mut started = display.start().map_err(|error| error.to_string())?;
+    let pipes = started.stdin.take().zip(started.stdout.take());
+    *child.lock().unwrap_or_else(PoisonError::into_inner) = Some(started);
+    let Some((mut to, mut from)) = pipes else {
+        return Err("it has no pipes".to_owned());
+    };
+    match converse(&mut to, &mut from, OPEN, &display.opening()) {
+        Ok(Answer::Done(_)) => Ok(()),
+        Ok(Answer::Failed(reason)) => Err(reason),
+        Ok(_) => Err("its answer is invalid".to_owned()),
+        Err(error) => Err(format!("the helper program ended: {error}")),
+    }
+}
+
+/// Attempts zero by opening the device in this process.
+fn by_player(display: &Display) -> Result<(), String> {
+    let opened = display.known.adapter.open(&display.settings, &display.format);
+    opened.map(drop).map_err(|error| error.to_string())
+}

@@ -1,0 +1,174 @@
+//! The app's side: a device that passes its samples to another process.
+
+use std::fmt::Display as Show;
+use std::process::Command;
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::{
+    Capabilities, Device, DeviceError, KnownDevice, Quantity, Settings, Status, StreamFormat,
+};
+
+use crate::guardian::attempt::Display;
+use crate::guardian::decision::{REQUEST, Waits};
+use crate::guardian::message::{ABORT, Answer, FINISH, MOST_SAMPLES, OPEN, STATUS, WRITE};
+use crate::guardian::worker::{Message, Reply, Worker};
+
+/// The settings in which a display states how long its output takes to reach zero, milliseconds.
+const BUFFER_SETTING: &str = "buffer_ms";
+const RAMP_SETTING: &str = "ramp_ms";
+/// Total duration of buffer and ramp for a display whose settings state neither.
+const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
+/// Longest buffer or ramp that the app waits for, milliseconds.
+const MOST_MS: f64 = 10_000.0;
+
+/// Whether a device's output could cause harm if it kept its last value.
+pub fn is_wanted(able: &Capabilities) -> bool {
+    able.paced && able.quantity == Quantity::DisplayVoltage
+}
+
+/// Returns the usual helper program: the command `htex guard`, looked up in the search path.
+pub fn htex() -> Command {
+    let mut command = Command::new("htex");
+    command.arg("guard");
+    command
+}
+
+/// Returns the error that no helper program could be started.
+pub fn not_started(error: impl Show) -> DeviceError {
+    DeviceError::Told(format!("no process to hold the output can be started: {error}"))
+}
+
+/// A device held by another process, the guardian.
+///
+/// Each call waits for that process at most buffer + ramp + 0.6 s. Opening may take 10 s more, and
+/// a write may also take its own timeout. Dropping the device waits at most as long. After that,
+/// the guardian is killed, and a second process sets the output to zero. If that is not confirmed
+/// 0.5 s later, the call returns an error that says so. A thread then prints every second that the
+/// amplifier must be switched off, until zero is confirmed ([`crate::guardian::is_unconfirmed`]).
+pub struct Guarded {
+    worker: Mutex<Sender<Message>>,
+    name: String,
+    waits: Waits,
+    ended: bool,
+}
+
+impl Guarded {
+    /// Starts the helper program, which opens the device. If the device comes from a library, the
+    /// program's last arguments are `--device-file` and the library's file.
+    ///
+    /// # Errors
+    /// When the program cannot be started or does not answer, or when it cannot open the device.
+    pub fn open(
+        known: &KnownDevice,
+        settings: &Settings,
+        format: &StreamFormat,
+        helper: Command,
+    ) -> Result<Self, DeviceError> {
+        let display = Display::new(helper, known, settings, format);
+        let opening = display.opening();
+        let mut guarded = Self {
+            worker: Mutex::new(Worker::start(display).map_err(not_started)?),
+            name: known.descriptor().name.clone(),
+            waits: waits(settings),
+            ended: false,
+        };
+        // Ended, so that dropping does not abort: a device that was not opened has no output to set
+        // to zero, and may belong to another process.
+        if let Err(error) = guarded.ask(OPEN, opening, guarded.waits.opening()) {
+            guarded.ended = true;
+            return Err(error);
+        }
+        Ok(guarded)
+    }
+
+    /// Sends a request and waits for the answer, at most `patience`. If no answer comes, waits
+    /// until the output is at zero or 0.5 s have passed.
+    fn ask(&self, tag: u8, body: Vec<u8>, patience: Duration) -> Result<Answer, DeviceError> {
+        let (reply, replied) = channel();
+        let ask = Message::Ask { tag, body, patience, reply };
+        let worker = self.worker.lock().unwrap_or_else(PoisonError::into_inner);
+        let replied = match worker.send(ask) {
+            Ok(()) => replied.recv().unwrap_or(Reply::Closed),
+            Err(_) => Reply::Closed,
+        };
+        match replied {
+            Reply::Answer(Answer::Failed(text)) => Err(DeviceError::Told(text)),
+            Reply::Answer(Answer::Dry { device, frames, advice }) => {
+                Err(DeviceError::Underflow { device, frames, advice })
+            }
+            Reply::Answer(answer) => Ok(answer),
+            Reply::Failed(error) => Err(error),
+            Reply::Closed => Err(DeviceError::Closed(self.name.clone())),
+        }
+    }
+
+    fn end(&mut self, tag: u8, patience: Duration) -> Result<(), DeviceError> {
+        if std::mem::replace(&mut self.ended, true) {
+            return Err(DeviceError::Closed(self.name.clone()));
+        }
+        self.ask(tag, vec![], patience).map(|_| ())
+    }
+
+    /// Writes the samples that fit within at most [`REQUEST`].
+    fn write_some(&self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        let samples = &samples[..samples.len().min(MOST_SAMPLES)];
+        let timeout_ms = u32::try_from(timeout.min(REQUEST).as_millis()).unwrap_or(u32::MAX);
+        let mut body = timeout_ms.to_le_bytes().to_vec();
+        body.extend(samples.iter().flat_map(|sample| sample.to_le_bytes()));
+        match self.ask(WRITE, body, self.waits.answer())? {
+            Answer::Done(taken) => Ok((taken as usize).min(samples.len())),
+            _ => Ok(0),
+        }
+    }
+}
+
+/// Computes the waits from a display's buffer and ramp, if its settings state them.
+fn waits(settings: &Settings) -> Waits {
+    let stated = [BUFFER_SETTING, RAMP_SETTING]
+        .map(|name| settings.number(name))
+        .into_iter()
+        .filter(|ms| ms.is_finite());
+    let to_zero = stated.map(|ms| Duration::from_secs_f64(ms.clamp(0.0, MOST_MS) / 1e3));
+    Waits { to_zero: to_zero.reduce(|a, b| a + b).unwrap_or(USUAL_TO_ZERO) }
+}
+
+impl Device for Guarded {
+    fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        let (begun, mut taken) = (Instant::now(), 0);
+        loop {
+            let left = timeout.saturating_sub(begun.elapsed());
+            taken += self.write_some(&samples[taken..], left)?;
+            if taken == samples.len() || left.is_zero() {
+                return Ok(taken);
+            }
+        }
+    }
+
+    fn status(&self) -> Status {
+        match self.ask(STATUS, vec![], self.waits.answer()) {
+            Ok(Answer::Status(numbers)) => numbers.into(),
+            _ => Status::default(),
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), DeviceError> {
+        self.end(FINISH, self.waits.answer())
+    }
+}
+
+impl Drop for Guarded {
+    fn drop(&mut self) {
+        let begun = Instant::now();
+        if !self.ended {
+            let _ = self.end(ABORT, self.waits.abort());
+        }
+        let (reply, replied) = channel();
+        let patience = self.waits.answer().saturating_sub(begun.elapsed());
+        let worker = self.worker.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if worker.send(Message::Close { patience, reply }).is_ok() {
+            let _ = replied.recv();
+        }
+    }
+}

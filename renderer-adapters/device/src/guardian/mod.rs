@@ -1,0 +1,39 @@
+//! The guardian: a second process that holds the output of a display that a finger touches. However
+//! the first process ends, no voltage stays at the output.
+//!
+//! A signal that kills, stops or hangs the app reaches only the app. The guardian is in its own
+//! process group, receives no signals from the terminal's keys, and ends when its pipe does. It
+//! then plays what it has (at most the device's buffer), sets the output to zero, and exits. A
+//! device whose buffer runs dry sets its output to zero by itself.
+//!
+//! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper
+//! process, which sets the output to zero. [`decision`] decides when and how.
+//!
+//! An app opens a device as [`Guarded`] if [`is_wanted`] says so. The helper program is [`htex`] or
+//! the app's own, which calls [`hold`]. An app needs its own for devices that `htex` does not have.
+//!
+//! ```no_run
+//! use std::time::Duration;
+//! use htex_device::{Device, DeviceError, KnownDevice, Settings, StreamFormat};
+//! use htex_device::guardian::{Guarded, htex, is_wanted};
+//!
+//! fn open(known: &KnownDevice, settings: &Settings) -> Result<Box<dyn Device>, DeviceError> {
+//!     let format = StreamFormat { rate_hz: 20_000.0, block_frames: 256 };
+//!     Ok(match is_wanted(&known.adapter.capabilities(settings)?) {
+//!         true => Box::new(Guarded::open(known, settings, &format, htex())?),
+//!         false => known.adapter.open(settings, &format)?,
+//!     })
+//! }
+//! ```
+#![forbid(unsafe_code)]
+
+mod attempt;
+pub mod decision;
+mod guarded;
+mod hold;
+mod message;
+mod worker;
+
+pub use guarded::{Guarded, htex, is_wanted, not_started};
+pub use hold::hold;
+pub use worker::{NOT_ZERO, is_unconfirmed};

@@ -1,0 +1,6 @@
+//! Integration tests, in one program.
+#![allow(clippy::panic, clippy::unwrap_used, unexpected_cfgs, reason = "a failed test may panic")]
+
+mod crossing;
+mod guardian_zero;
+mod source_crossing;

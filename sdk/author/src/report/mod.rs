@@ -1,0 +1,43 @@
+//! SVG plots, heat tables and self-contained HTML reports.
+//!
+//! This crate converts data to text. It reads no files and no clock and does no signal processing,
+//! so equal data gives equal bytes. Pages contain their own style, use no scripts and load nothing.
+//!
+//! ```
+//! use htex_author::report::{Axis, Plot, Series};
+//! let mut plot = Plot::new("Vinyl", Axis::log("frequency / Hz"), Axis::linear("magnitude / mN"));
+//! plot.series.push(Series::line("recording", vec![(20.0, 1.5), (200.0, 4.0), (1000.0, 0.2)]));
+//! assert!(plot.to_svg().starts_with("<svg "));
+//! ```
+#![forbid(unsafe_code)]
+
+mod axis;
+mod chain;
+mod color;
+mod curves;
+mod legend;
+mod markup;
+mod number;
+mod page;
+mod plot;
+mod projection;
+mod series;
+mod stack;
+mod svg;
+mod table;
+mod textures;
+mod ticks;
+
+pub use axis::{Axis, Scale};
+pub use chain::{Chain, ChainStage};
+pub use color::{RECORDING_COLOR, model_color, series_color};
+pub use number::fixed;
+pub use page::{Page, code_block, details, figures, list, paragraph};
+pub use plot::Plot;
+pub use series::{Line, Series};
+pub use stack::stacked;
+pub use table::{Cell, HeatScale, Row, Table};
+pub use textures::{
+    Measure, ModelResult, Share, Texture, TextureReport, spectra_picture, texture_report,
+};
+pub use ticks::{Tick, ticks};

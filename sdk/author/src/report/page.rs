@@ -1,0 +1,76 @@
+//! Self-contained HTML pages: one file with its style, without scripts or external resources.
+
+use crate::report::markup::{Element, escape};
+
+const STYLE: &str = include_str!("page.css");
+
+/// A self-contained HTML page, written from top to bottom.
+#[derive(Debug, Clone)]
+pub struct Page {
+    title: String,
+    body: String,
+}
+
+impl Page {
+    /// Creates a page with `title` as its heading.
+    pub fn new(title: &str) -> Self {
+        let heading = Element::new("h1").text(title);
+        Self { title: title.to_owned(), body: heading.render() }
+    }
+
+    /// Starts a section.
+    pub fn heading(&mut self, text: &str) {
+        self.html(&Element::new("h2").text(text).render());
+    }
+
+    /// Appends HTML without escaping, such as the result of [`Plot::to_svg`](crate::report::Plot::to_svg),
+    /// [`Table::to_html`](crate::report::Table::to_html) or [`paragraph`].
+    pub fn html(&mut self, html: &str) {
+        self.body.push('\n');
+        self.body.push_str(html);
+    }
+
+    /// Returns the page as text, which must be stored as UTF-8.
+    pub fn render(&self) -> String {
+        let (title, body) = (escape(&self.title), &self.body);
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light\">\n<title>{title}</title>\n\
+             <style>\n{STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n"
+        )
+    }
+}
+
+/// Returns `text` as a paragraph.
+pub fn paragraph(text: &str) -> String {
+    Element::new("p").text(text).render()
+}
+
+/// Returns `items` as a list, or nothing if there are none.
+pub fn list(items: &[impl ToString]) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let items = items.iter().map(|item| Element::new("li").text(&item.to_string()));
+    Element::new("ul").children(items).render()
+}
+
+/// Returns `text` as preformatted text.
+pub fn code_block(text: &str) -> String {
+    let code = Element::new("code").text(text);
+    Element::new("pre").child(&code).render()
+}
+
+/// Places SVG pictures side by side, or below one another if the page is narrow.
+pub fn figures(pictures: &[String]) -> String {
+    let one = |svg: &String| Element::new("figure").set("class", "wide").raw(svg);
+    let figures = Element::new("div").set("class", "figures");
+    figures.children(pictures.iter().map(one)).render()
+}
+
+/// Returns HTML that expands when `summary` is clicked.
+pub fn details(summary: &str, html: &str) -> String {
+    let details = Element::new("details").child(&Element::new("summary").text(summary));
+    details.raw(html).render()
+}

@@ -1,0 +1,42 @@
+//! Table of how many textures a model keeps below the difference threshold, and how many within the
+//! recording's own variation.
+
+use super::data::{Share, TextureReport};
+use crate::report::page::paragraph;
+use crate::report::table::{Cell, HeatScale, Row, Table};
+
+const CAPTION: &str = "Textures whose difference is below the difference threshold, and textures within what the recording varies";
+const NOTE: &str = "Below the difference threshold: what is above a fingertip's detection threshold differs by less than \
+    1.6 dB (20 %) in every third octave, and in all together. Sensitive finger: the same for a threshold 10 dB lower and a skin that yields \
+    twice as far. Neither is a rating by a person. Within repeatability: the nine-band error is at or below the difference between parts \
+    of the recording, which says how well the recording repeats and not what is felt.";
+
+/// Returns the table with an explanation; empty if there are no shares.
+pub(super) fn table(report: &TextureReport) -> String {
+    if report.shares.is_empty() {
+        return String::new();
+    }
+    let columns =
+        ["below the difference threshold", "the same, sensitive finger", "within repeatability"];
+    let table = Table {
+        caption: CAPTION.to_owned(),
+        corner: "model".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: report.shares.iter().map(|share| row(report, share)).collect(),
+        scale: HeatScale::None,
+        decimals: 0,
+    };
+    table.to_html() + "\n" + &paragraph(NOTE)
+}
+
+fn row(report: &TextureReport, share: &Share) -> Row {
+    let models = report.models();
+    let known = models.iter().find(|model| model.short_name == share.short_name);
+    let counts =
+        [share.below_difference_threshold, share.below_if_sensitive, share.within_repeatability];
+    let cell = |count: usize| Cell::Text(format!("{count} of {}", share.textures), String::new());
+    Row {
+        header: known.map_or(&share.short_name, |model| &model.model).to_owned(),
+        cells: counts.map(cell).to_vec(),
+    }
+}

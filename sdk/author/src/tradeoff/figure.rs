@@ -1,0 +1,128 @@
+//! Plots of error against cost.
+
+use crate::report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
+use htex_format::{By, Measure};
+use htex_host::Registry;
+
+use crate::tradeoff::against::{Against, Cost};
+use crate::tradeoff::knee::along_front;
+use crate::tradeoff::point::{Point, QUANTISED, RECORDING, errors, others};
+
+pub(crate) fn mark_front(points: &mut [Point], against: Against) {
+    let compared: Vec<usize> =
+        (0..points.len()).filter(|&i| against.cost.compares(&points[i])).collect();
+    let shown: Vec<&Point> = compared.iter().map(|&i| &points[i]).collect();
+    let on_front = against.on_front(&shown);
+    for (&i, on) in compared.iter().zip(on_front) {
+        match against.cost {
+            Cost::Bytes => points[i].on_front = on,
+            Cost::Time => points[i].on_time_front = on,
+        }
+    }
+}
+
+/// Plots error against cost: all settings as small dots, the points on each model's own front as
+/// larger dots, both baselines, the front of all models, and the error of a second recording as a
+/// floor. Both axes are logarithmic.
+pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
+    let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
+    let mut plot = Plot::new(
+        title,
+        against.cost.axis(),
+        Axis::log(&format!("{} / {}", against.error, against.error.unit())),
+    );
+    // Narrow, so that text stays readable on a phone.
+    (plot.width, plot.height) = (440.0, 380.0);
+    let front = along_front(&shown, against);
+    let mut line = Series::line("front of all", steps(&front, against));
+    line.line_width_px = 2.0;
+    line.hover = false;
+    plot.series.push(line.colored("#b8b8b8"));
+    plot.series.extend(floor(&shown, against));
+    let builtin = Registry::builtin_names();
+    for model in models {
+        let color = model_color(model, &builtin);
+        let own: Vec<&Point> = shown.iter().copied().filter(|p| p.model == *model).collect();
+        let places =
+            |points: &[&Point]| points.iter().map(|p| against.place(p)).collect::<Vec<_>>();
+        let mut dots = Series::scatter("", places(&own)).colored(color).behind();
+        dots.marker_radius_px = Some(1.0);
+        plot.series.push(dots);
+        let best = along_front(&own, against);
+        let mut best_dots = Series::scatter(model, places(&best)).colored(color);
+        best_dots.notes = best.iter().map(|p| note(p)).collect();
+        plot.series.push(best_dots);
+    }
+    for point in shown.iter().filter(|p| p.is_baseline()) {
+        let quantised = point.model == QUANTISED;
+        let name = match point.setting.as_str() {
+            "default" => point.model.replace('-', " "),
+            other => format!("{} {other}", point.model.replace('-', " ")),
+        };
+        let color = if quantised { "#000000" } else { RECORDING_COLOR };
+        let mut series = Series::scatter(&name, vec![against.place(point)]).colored(color);
+        series.marker_radius_px = Some(5.0);
+        series.line = Line::None;
+        series.marker_hollow = !quantised || point.setting != "default";
+        series.notes = vec![note(point)];
+        plot.series.push(series);
+    }
+    plot
+}
+
+/// Line at the error of the recording against itself, across all costs. Below it, errors do not
+/// distinguish models.
+fn floor(shown: &[&Point], against: Against) -> Option<Series> {
+    let recording = shown.iter().find(|p| p.model == RECORDING)?;
+    let error = against.place(recording).1;
+    let costs = || shown.iter().map(|p| against.place(p).0);
+    let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
+    let mut line = Series::line("floor: a second recording", ends.map(|x| (x, error)).to_vec())
+        .colored(RECORDING_COLOR)
+        .behind();
+    line.line = Line::Dashed;
+    Some(line)
+}
+
+/// Converts a front to steps: each error can be reached from its cost on.
+fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
+    let mut steps = Vec::new();
+    for point in front {
+        let place = against.place(point);
+        if let Some(&(_, before)) = steps.last() {
+            steps.push((place.0, before));
+        }
+        steps.push(place);
+    }
+    steps
+}
+
+fn note(p: &Point) -> String {
+    let all = errors().chain(others());
+    let held_out = p.held_out_error.map(|error| format!("held out {error:.2}"));
+    let fitted = all.flat_map(|measure| measured(p, measure));
+    let measures: Vec<String> = held_out.into_iter().chain(fitted).collect();
+    format!(
+        "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; {}",
+        p.name(),
+        p.bytes,
+        p.ns_per_sample,
+        100.0 * p.spread,
+        p.first_sample_us,
+        p.fit_ms,
+        measures.join(", ")
+    )
+}
+
+/// Returns a measure as text, such as `nine bands 1.20 dB`, and also the measure of rendered
+/// samples if it has a column.
+fn measured(p: &Point, measure: Measure) -> impl Iterator<Item = String> {
+    let row = measure.row();
+    let words = |name: &str, by| {
+        let text = format!("{name} {:.*} {}", row.decimals, p.get(by, measure), row.unit);
+        text.trim_end().to_owned()
+    };
+    let own = row.column.map(|_| words(row.short, By::Magnitude));
+    let played = row.played.map(|_| words(&format!("played {}", row.short), By::Samples));
+    own.into_iter().chain(played)
+}

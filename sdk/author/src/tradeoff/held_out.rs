@@ -1,0 +1,66 @@
+//! The halves of a recording for held-out errors: contenders are fitted to the odd blocks and
+//! compared with the even blocks.
+
+use crate::{OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
+
+use crate::tradeoff::accuracy::{Accuracy, FAR_DB, accuracy};
+use crate::tradeoff::contender::{Contender, ContenderKind};
+use crate::tradeoff::error_axis::HELD_OUT_MEASURE;
+use crate::tradeoff::measured::rms_of;
+use crate::tradeoff::{Subject, TradeoffError};
+
+/// The halves of a recording and the difference between them.
+#[derive(Debug, Clone)]
+pub(crate) struct HeldOut {
+    pub(crate) halves: OddAndEven,
+    /// Third-octave difference between the odd and the even blocks, decibels; always above 0.
+    pub(crate) floor_db: f64,
+    /// All measures of that difference.
+    pub(crate) repeats: Accuracy,
+}
+
+impl HeldOut {
+    /// Cuts what is read of a recording into odd and even blocks.
+    ///
+    /// # Errors
+    /// When nothing can be held out; the error is the reason.
+    pub(crate) fn new(
+        part: &SegmentSpectra,
+        options: &SpectrumOptions,
+    ) -> Result<Self, &'static str> {
+        let halves = odd_and_even(std::slice::from_ref(part), options.averaging)
+            .ok_or("fewer than four blocks of 0.2 s are read of it")?;
+        let mut repeats = accuracy(&halves.even, &halves.odd.magnitude);
+        // This difference is the repeatability itself, so it is within it by definition.
+        repeats.felt.within_repeatability = true;
+        let found = agreement(halves.even.as_ref(), &halves.odd.magnitude).get(HELD_OUT_MEASURE);
+        let floor_db = found.filter(|db| db.is_finite()).ok_or("half of its blocks are silent")?;
+        if floor_db <= 0.0 {
+            return Err("all its blocks are equal");
+        }
+        Ok(Self { halves, floor_db, repeats })
+    }
+}
+
+impl Contender {
+    /// Fits the contender to the odd blocks, plays it, and returns the third-octave difference from
+    /// the even blocks in decibels; `None` if the recording has no blocks. For the recording as a
+    /// contender, it is the difference between the odd and the even blocks.
+    pub(crate) fn held_out_error_db(
+        &self,
+        subject: &Subject,
+        quick: bool,
+    ) -> Result<Option<f64>, TradeoffError> {
+        let Ok(held_out) = &subject.held_out else {
+            return Ok(None);
+        };
+        if matches!(self.kind, ContenderKind::Recording) {
+            return Ok(Some(held_out.floor_db));
+        }
+        let OddAndEven { odd, even, .. } = &held_out.halves;
+        let stored = self.store(subject, odd, &self.fit(odd)?)?;
+        let rendered = self.rendered(subject, &stored, quick)?;
+        let found = agreement(even.as_ref(), &rms_of(&rendered.spectra)).get(HELD_OUT_MEASURE);
+        Ok(Some(found.unwrap_or(FAR_DB).min(FAR_DB)))
+    }
+}

@@ -1,0 +1,79 @@
+//! Subjects of a sweep: the recordings.
+
+use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_base::finding::Notice;
+
+use crate::tradeoff::TradeoffError;
+use crate::tradeoff::held_out::HeldOut;
+
+/// A recording, with its spectrum and its variation.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// Name of the file, or of the simulated surface.
+    pub name: String,
+    /// Whether it was computed instead of recorded.
+    pub simulated: bool,
+    /// The spectrum to which models are fitted.
+    pub spectrum: TextureSpectrum,
+    /// Warnings, as sentences.
+    pub warnings: Vec<Notice>,
+    /// Its odd and even blocks, or the reason why it has none.
+    pub(crate) held_out: Result<HeldOut, &'static str>,
+    /// The first lateral axis.
+    pub(crate) samples: Vec<f32>,
+    pub(crate) rate_hz: f64,
+    pub(crate) bytes: usize,
+    pub(crate) digest: blake3::Hash,
+}
+
+impl Subject {
+    /// Reads the texture of a recording. With `strict`, refuses findings that are errors or
+    /// warnings.
+    ///
+    /// # Errors
+    /// When the recording cannot be used.
+    pub fn new(take: &Take, options: &SpectrumOptions, strict: bool) -> Result<Self, AuthorError> {
+        let recording = &take.recording;
+        let reading = read_take(take, options, strict)?;
+        let (part, warnings) = (reading.part, reading.warnings);
+        let held_out = HeldOut::new(&part, options);
+        let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
+        let axes = &recording.axes;
+        let samples = |axis: &Vec<f64>| axis.iter().map(|&x| x as f32).collect();
+        Ok(Self {
+            name: recording.source.clone(),
+            simulated: recording.simulated,
+            held_out,
+            samples: axes.first().map(samples).unwrap_or_default(),
+            rate_hz: recording.rate_hz,
+            bytes: axes.iter().map(|axis| size_of::<f32>() * axis.len()).sum(),
+            digest: digest(axes, recording.rate_hz, &spectrum),
+            spectrum,
+            warnings,
+        })
+    }
+
+    /// Returns an error if nothing can be held out of the recording.
+    pub(crate) fn check_held_out(&self) -> Result<(), TradeoffError> {
+        match &self.held_out {
+            Ok(_) => Ok(()),
+            Err(reason) => {
+                Err(TradeoffError::NothingHeldOut { recording: self.name.clone(), reason })
+            }
+        }
+    }
+}
+
+/// Returns a hash of everything on which results depend: the samples and their spectrum.
+fn digest(axes: &[Vec<f64>], rate_hz: f64, spectrum: &TextureSpectrum) -> blake3::Hash {
+    let mut hasher = blake3::Hasher::new();
+    let parts = axes.iter().chain([&spectrum.magnitude, &spectrum.signal]);
+    for part in parts {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        part.iter().for_each(|x| {
+            hasher.update(&x.to_le_bytes());
+        });
+    }
+    hasher.update(&rate_hz.to_le_bytes());
+    hasher.finalize()
+}

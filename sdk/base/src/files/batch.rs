@@ -1,0 +1,131 @@
+//! Writes many files at once. As with a single file, each one is written completely or not at all.
+//! The disk is waited for only once per group of files.
+//!
+//! A flush takes the disk some milliseconds, so two flushes for each file would take minutes for
+//! 100,000 files. Instead, files are written next to their targets, then the file system is flushed
+//! (on Linux; on other systems each file), and then all files are renamed.
+
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempPath;
+
+use crate::files::{Readers, Target, folder, sync_folder, unfinished};
+
+/// Number of files in a group.
+const GROUP: usize = 32_768;
+
+/// A batch of files that are being written. If it is dropped before [`Self::finish`], the files
+/// that are not yet in their places are removed.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let mut batch = htex_base::files::Batch::default();
+/// for name in ["a", "b"] {
+///     batch.write(&folder.path().join(name), name.as_bytes())?;
+/// }
+/// batch.finish()?;
+/// assert_eq!(std::fs::read(folder.path().join("b"))?, b"b");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct Batch {
+    written: Vec<(TempPath, PathBuf)>,
+    folders: BTreeSet<PathBuf>,
+}
+
+impl Batch {
+    /// Writes a file. It is in its place after [`Self::finish`], or earlier.
+    ///
+    /// # Errors
+    /// The errors of [`crate::files::write_file`], and the errors of earlier files if this file completes
+    /// their group.
+    pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.write_to(Target::of(path, Readers::All)?, bytes)
+    }
+
+    /// Like [`Self::write`], but a link at `path` is replaced and not followed.
+    pub(crate) fn write_in_place_of(
+        &mut self,
+        path: PathBuf,
+        readable_by: Readers,
+        bytes: &[u8],
+    ) -> io::Result<()> {
+        self.write_to(Target::in_place_of(path, readable_by)?, bytes)
+    }
+
+    fn write_to(&mut self, target: Target, bytes: &[u8]) -> io::Result<()> {
+        match target {
+            Target::Direct(mut file) => file.write_all(bytes)?,
+            Target::Beside(mut beside, path) => {
+                let written = beside.write_all(bytes);
+                self.folders.insert(folder(&path).to_owned());
+                // The file is closed, because a process may only have a few open files.
+                self.written.push((beside.into_temp_path(), path));
+                written.inspect_err(|_| self.forget_last())?;
+            }
+        }
+        if self.written.len() < GROUP { Ok(()) } else { self.keep() }
+    }
+
+    /// Moves the files to their places, and flushes this to disk.
+    ///
+    /// # Errors
+    /// Errors of the system. Each file is then either the old one or complete.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.keep()
+    }
+
+    fn forget_last(&mut self) {
+        if let Some((beside, _)) = self.written.pop() {
+            unfinished(|all| all.remove(&*beside));
+        }
+    }
+
+    fn keep(&mut self) -> io::Result<()> {
+        flush(&self.written, &self.folders)?;
+        for (mut beside, path) in self.written.drain(..) {
+            // Renamed while the set is locked. A signal handler that ends the process has then
+            // either removed the file before, or finds it complete.
+            unfinished(|all| {
+                std::fs::rename(&beside, &path)?;
+                all.remove(&*beside);
+                Ok::<(), io::Error>(())
+            })?;
+            beside.disable_cleanup(true);
+        }
+        std::mem::take(&mut self.folders).iter().try_for_each(|folder| sync_folder(folder))
+    }
+}
+
+impl Drop for Batch {
+    fn drop(&mut self) {
+        unfinished(|all| {
+            for (beside, _) in &self.written {
+                all.remove(&**beside);
+            }
+        });
+    }
+}
+
+/// Flushes the contents of files to disk.
+#[cfg(target_os = "linux")]
+fn flush(_: &[(TempPath, PathBuf)], folders: &BTreeSet<PathBuf>) -> io::Result<()> {
+    use std::os::linux::fs::MetadataExt;
+    let mut systems = BTreeSet::new();
+    for folder in folders {
+        let folder = std::fs::File::open(folder)?;
+        if systems.insert(folder.metadata()?.st_dev()) {
+            rustix::fs::syncfs(&folder)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn flush(written: &[(TempPath, PathBuf)], _: &BTreeSet<PathBuf>) -> io::Result<()> {
+    written
+        .iter()
+        .try_for_each(|(beside, _)| std::fs::File::options().write(true).open(beside)?.sync_all())
+}

@@ -1,0 +1,126 @@
+//! File errors that include the name of the file.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Error for a file that could not be read or written.
+///
+/// ```
+/// use htex_base::files::{AtFile, FileError};
+///
+/// fn read(file: &std::path::Path) -> Result<String, FileError> {
+///     std::fs::read_to_string(file).reading(file)
+/// }
+/// let error = read("absent.csv".as_ref()).unwrap_err();
+/// assert!(error.to_string().starts_with("cannot read absent.csv: "));
+/// ```
+#[derive(Debug)]
+pub struct FileError {
+    /// The file or folder.
+    pub file: PathBuf,
+    /// Whether the file was being written, not read.
+    pub is_output: bool,
+    pub error: io::Error,
+}
+
+impl FileError {
+    /// Creates the error for a file that could not be read.
+    pub fn reading(file: impl AsRef<Path>, error: impl Into<io::Error>) -> Self {
+        Self::new(file.as_ref(), false, error.into())
+    }
+
+    /// Creates the error for a file that could not be written.
+    pub fn writing(file: impl AsRef<Path>, error: impl Into<io::Error>) -> Self {
+        Self::new(file.as_ref(), true, error.into())
+    }
+
+    fn new(file: &Path, is_output: bool, error: io::Error) -> Self {
+        let file = file.to_owned();
+        Self { file, is_output, error }
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verb = if self.is_output { "write" } else { "read" };
+        write!(f, "cannot {verb} {}: {}", self.file.display(), self.error)
+    }
+}
+
+impl std::error::Error for FileError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.error)
+    }
+}
+
+/// Error for a file whose content cannot be used.
+///
+/// ```
+/// use htex_base::files::InFile;
+///
+/// let error = "a".parse::<f64>().in_file("gain.txt").unwrap_err();
+/// assert_eq!(error.to_string(), "gain.txt: invalid float literal");
+/// ```
+#[derive(Debug)]
+pub struct ContentError {
+    /// The file or folder.
+    pub file: PathBuf,
+    /// What is wrong and what to do.
+    pub problem: String,
+}
+
+impl ContentError {
+    /// Creates the error for a file with this problem.
+    pub fn new(file: impl AsRef<Path>, problem: impl fmt::Display) -> Self {
+        Self { file: file.as_ref().to_owned(), problem: problem.to_string() }
+    }
+}
+
+impl fmt::Display for ContentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.file.display(), self.problem)
+    }
+}
+
+impl std::error::Error for ContentError {}
+
+/// Adds the name of the file to an error about its content.
+pub trait InFile<T> {
+    /// Says that the error is in this file.
+    ///
+    /// # Errors
+    /// The error of the result.
+    fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError>;
+}
+
+impl<T, E: fmt::Display> InFile<T> for Result<T, E> {
+    fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError> {
+        self.map_err(|problem| ContentError::new(file, problem))
+    }
+}
+
+/// Adds the name of the file to an error of the system.
+pub trait AtFile<T> {
+    /// Says that the file was being read.
+    ///
+    /// # Errors
+    /// The error of the result.
+    fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError>;
+
+    /// Says that the file was being written.
+    ///
+    /// # Errors
+    /// The error of the result.
+    fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError>;
+}
+
+impl<T, E: Into<io::Error>> AtFile<T> for Result<T, E> {
+    fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError> {
+        self.map_err(|error| FileError::reading(file, error))
+    }
+
+    fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError> {
+        self.map_err(|error| FileError::writing(file, error))
+    }
+}

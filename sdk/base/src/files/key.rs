@@ -1,0 +1,92 @@
+//! Keys that authenticate stored data of this user's programs: compiled modules and fits.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use crate::files::private;
+
+/// A secret key of this user.
+///
+/// Data that is stored in a folder which others may have filled begins with a keyed hash of its
+/// name and content. Data that this user has not made is not used.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let key = htex_base::files::Key::of(folder.path(), "wasm.key")?;
+/// let tag = key.tag("module", b"content");
+/// assert_eq!(htex_base::files::Key::of(folder.path(), "wasm.key")?.tag("module", b"content"), tag);
+/// assert_ne!(key.tag("other", b"content"), tag);
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Key([u8; blake3::KEY_LEN]);
+
+impl Key {
+    /// Reads the key with this name in a folder. Creates a random key if there is none.
+    ///
+    /// # Errors
+    /// If the folder belongs to another user or is writable by others, or the file belongs to
+    /// another user or is not private; and errors of the system.
+    pub fn of(folder: &Path, name: &str) -> io::Result<Self> {
+        private::folder(folder)?;
+        let path = folder.join(name);
+        if !path.try_exists()? {
+            make(folder, &path)?;
+        }
+        let mut key = [0; blake3::KEY_LEN];
+        private::file(&path)?.read_exact(&mut key)?;
+        Ok(Self(key))
+    }
+
+    /// Creates a temporary key that ends with this value, for a user without a folder for keys.
+    ///
+    /// # Errors
+    /// If the system provides no random numbers.
+    pub fn passing() -> io::Result<Self> {
+        Ok(Self(random()?))
+    }
+
+    /// Returns the keyed hash of a file's name and content.
+    pub fn tag(&self, name: &str, content: &[u8]) -> [u8; blake3::OUT_LEN] {
+        let mut hasher = blake3::Hasher::new_keyed(&self.0);
+        hasher.update(&(name.len() as u64).to_le_bytes());
+        hasher.update(name.as_bytes());
+        hasher.update(content);
+        *hasher.finalize().as_bytes()
+    }
+}
+
+/// Writes a new key to a temporary file and links it to its path, unless another process has
+/// already created one.
+fn make(folder: &Path, path: &Path) -> io::Result<()> {
+    let key = random()?;
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = folder.join(beside);
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let written = options
+        .open(&beside)
+        .and_then(|mut file| file.write_all(&key))
+        .and_then(|()| std::fs::hard_link(&beside, path));
+    let removed = std::fs::remove_file(&beside);
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
+        _ => removed,
+    }
+}
+
+fn random() -> io::Result<[u8; blake3::KEY_LEN]> {
+    let mut key = [0; blake3::KEY_LEN];
+    getrandom::fill(&mut key).map_err(io::Error::other)?;
+    Ok(key)
+}
+
+impl std::fmt::Debug for Key {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Key(…)")
+    }
+}

@@ -1,0 +1,117 @@
+//! Reads every TOML file: recipes, studies, calibrations and the profiles of actuators.
+//!
+//! The parser of the crate `toml` is recursive. Its own limit (80 levels) has two gaps. After an
+//! error it counts wrongly: a closing bracket without an opening one lowers its count, so that
+//! 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. And it counts the dots of each
+//! dotted key separately, so that 80 nested tables with 80 names each make 6,400 levels.
+//!
+//! Therefore the brackets and dots of the text are counted before it is parsed (`nesting.rs`), and
+//! a text with more than [`MOST_LEVELS`] levels is an error. No other module may call the crate
+//! (`clippy.toml`; no other crate depends on it).
+#![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
+
+mod nesting;
+
+use std::fmt;
+
+use serde::de::DeserializeOwned;
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, de};
+
+pub use nesting::MOST_LEVELS;
+use nesting::check_nesting;
+
+/// What is wrong with a TOML text and where. It is displayed as `line 3, column 5: …`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TomlError {
+    /// The line, counted from 1.
+    pub line: usize,
+    /// The column in characters, counted from 1.
+    pub column: usize,
+    /// What is wrong, in one line.
+    pub message: String,
+}
+
+impl fmt::Display for TomlError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { line, column, .. } = self;
+        write!(f, "line {line}, column {column}: {}", self.message)
+    }
+}
+
+impl std::error::Error for TomlError {}
+
+impl TomlError {
+    /// Creates an error at a byte of the text.
+    fn at(text: &str, byte: usize, message: String) -> Self {
+        let (line, column) = place(text, byte);
+        Self { line, column, message }
+    }
+
+    fn of(text: &str, error: &de::Error) -> Self {
+        let byte = error.span().map_or(0, |span| span.start);
+        Self::at(text, byte, error.message().replace('\n', "; "))
+    }
+}
+
+/// Reads a TOML text into a value. Needs less than 256 KiB of stack, whatever the text is.
+///
+/// ```
+/// # use std::collections::BTreeMap;
+/// let read = htex_base::files::toml::from_str::<BTreeMap<String, f64>>;
+/// assert_eq!(read("gain = 2.5"), Ok(BTreeMap::from([("gain".to_owned(), 2.5)])));
+/// let error = read("gain = 2.5\nlimit = { volts = 3").unwrap_err().to_string();
+/// assert_eq!(error, "line 2, column 20: unclosed inline table, expected `}`");
+/// ```
+///
+/// # Errors
+/// If the text is not TOML, holds another type of value, or is nested deeper than [`MOST_LEVELS`].
+pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
+    check_nesting(text)?;
+    toml::from_str(text).map_err(|error| TomlError::of(text, &error))
+}
+
+/// Returns the line of each key, counted from 1, or `None` if the text has no such key. A path
+/// consists of the names of the tables that contain the key, the indices of arrays, and the key.
+pub fn lines_of_keys<'p>(
+    text: &str,
+    paths: impl IntoIterator<Item = &'p [String]>,
+) -> Vec<Option<usize>> {
+    let table = check_nesting(text).ok().and_then(|()| DeTable::parse(text).ok());
+    let line = |path| {
+        let at = place_of_key(table.as_ref()?.get_ref(), path)?;
+        Some(place(text, at).0)
+    };
+    paths.into_iter().map(line).collect()
+}
+
+/// Returns the byte at which a key begins.
+fn place_of_key(table: &DeTable<'_>, path: &[String]) -> Option<usize> {
+    let (key, folders) = path.split_last()?;
+    let mut inside = table;
+    let mut items: &[Spanned<DeValue<'_>>] = &[];
+    for folder in folders {
+        let value = match folder.parse::<usize>() {
+            Ok(index) if index < items.len() => items.get(index),
+            _ => inside.get(&folder[..]),
+        };
+        match value?.get_ref() {
+            DeValue::Table(table) => (inside, items) = (table, &[]),
+            DeValue::Array(array) => items = array,
+            _ => return None,
+        }
+    }
+    let (key, _) = inside.get_key_value(&key[..])?;
+    Some(key.span().start)
+}
+
+/// Returns the line and column of a byte, counted from 1.
+fn place(text: &str, byte: usize) -> (usize, usize) {
+    let before = text.get(..byte).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    (line, before[start..].chars().count() + 1)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,36 @@
+//! Results of validation: rules with stable codes, findings, reports and hints. Each kind of file
+//! has a table of rules in its own crate; this crate does not know any kind of file.
+//!
+//! ```
+//! use htex_base::finding::{Findings, Severity};
+//!
+//! htex_base::finding::rule_table! {
+//!     CLOTH_TORN Error ("needle"): "The cloth is torn.", "Torn cloth snags.", "Mend it.";
+//! }
+//! let mut findings = Findings::default();
+//! findings.add(CLOTH_TORN, "/sleeve", "a hole of 3 mm; mend it".to_owned());
+//! let report = findings.into_report();
+//! assert!(!report.valid);
+//! assert_eq!(report.findings[0].to_string(), "CLOTH_TORN at /sleeve: a hole of 3 mm; mend it");
+//! assert_eq!(report.findings[0].hint.settings(), ["needle"]);
+//! ```
+#![forbid(unsafe_code)]
+
+mod cell;
+mod finding;
+mod hint;
+mod page;
+mod plain;
+mod pointer;
+mod report;
+mod rule;
+
+pub use crate::rule_table;
+pub use cell::as_text;
+pub use finding::{Finding, Severity, listed, summary};
+pub use hint::{Hint, Notice};
+pub use page::rules_page;
+pub use plain::{plain, steers};
+pub use pointer::{Place, escape};
+pub use report::{FileReport, Findings, Report};
+pub use rule::{COUNT, FINDINGS_TRUNCATED, Rule, Stage};

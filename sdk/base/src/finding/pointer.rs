@@ -1,0 +1,41 @@
+//! JSON pointers (RFC 6901).
+
+use std::borrow::Cow;
+
+/// A place in a document, stored as a chain up to its root. It is only formatted as a pointer when
+/// needed.
+///
+/// ```
+/// use htex_base::finding::Place;
+///
+/// let fields = Place::Key(&Place::Root, "fields");
+/// assert_eq!(Place::Index(&fields, 2).pointer(), "/fields/2");
+/// ```
+pub enum Place<'p> {
+    /// The whole document.
+    Root,
+    /// A key of an object.
+    Key(&'p Place<'p>, &'p str),
+    /// An element of an array.
+    Index(&'p Place<'p>, usize),
+}
+
+impl Place<'_> {
+    /// Returns the JSON pointer of the place; empty for the root.
+    pub fn pointer(&self) -> String {
+        match self {
+            Self::Root => String::new(),
+            Self::Key(parent, key) => format!("{}/{}", parent.pointer(), escape(key)),
+            Self::Index(parent, index) => format!("{}/{index}", parent.pointer()),
+        }
+    }
+}
+
+/// Escapes a key for a JSON pointer (RFC 6901, section 3).
+pub fn escape(key: &str) -> Cow<'_, str> {
+    if key.contains(['~', '/']) {
+        key.replace('~', "~0").replace('/', "~1").into()
+    } else {
+        key.into()
+    }
+}

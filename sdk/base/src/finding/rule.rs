@@ -1,0 +1,85 @@
+//! Rules of validation, and the macro that defines tables of rules.
+
+use crate::finding::{Hint, Severity};
+
+/// A rule of validation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rule {
+    /// Stable code; its meaning never changes.
+    pub code: &'static str,
+    /// Severity of a finding for this rule.
+    pub severity: Severity,
+    /// The stages of reading in which it is applied, if reading the file has stages.
+    pub stages: &'static [Stage],
+    pub hint: Hint,
+    /// The setting that turns the rule on; without it, the rule is not applied.
+    pub checked_by: Hint,
+    /// What was found, in one line.
+    pub summary: &'static str,
+    /// Why it matters.
+    pub explanation: &'static str,
+    /// How to correct it.
+    pub fix: &'static str,
+}
+
+/// A stage of reading a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stage {
+    /// What the stage checks.
+    pub of: &'static str,
+    /// Whether reading ends after the stage if it found an error.
+    pub ends: bool,
+}
+
+/// The stage that counts the findings after the first hundred.
+pub const COUNT: Stage =
+    Stage { of: "the count of findings beyond the first hundred", ends: false };
+
+/// The rule that ends every report with more than a hundred findings.
+pub const FINDINGS_TRUNCATED: &Rule = &Rule {
+    code: "FINDINGS_TRUNCATED",
+    severity: Severity::Info,
+    stages: &[COUNT],
+    hint: Hint::NONE,
+    checked_by: Hint::NONE,
+    summary: "There are more findings than are shown.",
+    explanation: "Only the first hundred are reported.",
+    fix: "Correct those and validate again.",
+};
+
+/// Defines a table of rules: a constant for each rule, and `RULES` with all of them in order. Three
+/// optional parts can follow the severity: the stages in `[]`, the settings that help in `()`, and
+/// after `by` the setting that turns the rule on. A last line `+ RULE;` adds a rule that is defined
+/// elsewhere.
+///
+/// ```
+/// htex_base::finding::rule_table! {
+///     CLOTH_TORN Error ("needle"): "The cloth is torn.", "Torn cloth snags.", "Mend it.";
+/// }
+/// assert_eq!(RULES[0].code, "CLOTH_TORN");
+/// assert_eq!(*CLOTH_TORN, RULES[0]);
+/// ```
+#[macro_export]
+macro_rules! rule_table {
+    ($(
+        $name:ident $severity:ident $([$($stage:ident),*])? $(($($setting:literal),*))? $(by $check:literal)?:
+        $summary:literal, $explanation:literal, $fix:literal;
+    )* $(+ $other:path;)?) => {
+        $(
+            #[doc = $summary]
+            pub const $name: &$crate::finding::Rule = &$crate::finding::Rule {
+                code: stringify!($name),
+                severity: $crate::finding::Severity::$severity,
+                stages: &[$($($stage),*)?],
+                hint: $crate::finding::Hint::new(&[$($($setting),*)?]),
+                checked_by: $crate::finding::Hint::new(&[$($check)?]),
+                summary: $summary,
+                explanation: $explanation,
+                fix: $fix,
+            };
+        )*
+
+        /// All rules, in the order of validation.
+        pub const RULES: &[$crate::finding::Rule] = &[$(*$name,)* $(*$other)?];
+    };
+}

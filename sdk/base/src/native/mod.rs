@@ -1,0 +1,188 @@
+//! Loads native libraries (`.so`, `.dylib`, `.dll`), from a file or by a name that the system's
+//! loader searches for.
+//!
+//! A library is never unloaded, because function pointers, open devices and voices point into it.
+//!
+//! Apart from tests, this crate is the only place that loads libraries. A bare name is a file in
+//! the current folder, as it is for every other argument. The system's loader is asked only for the
+//! names of NI-DAQmx, and for a `driver` that is not a file.
+
+pub mod folders;
+
+pub use crate::table_of_symbols;
+
+#[cfg(any(unix, windows))]
+use std::error::Error;
+use std::ffi::OsStr;
+use std::path::{Path, absolute};
+
+/// Error: a library cannot be loaded. Contains the message of the system's loader.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct LoadError(String);
+
+#[derive(Debug, Clone, Copy)]
+pub struct Library(&'static Loaded);
+
+/// The places where a bare name was searched for.
+const SEARCHED: &str = if cfg!(windows) {
+    "; the current folder has no such file, and the system finds none in its folders and those of PATH"
+} else {
+    "; the current folder has no such file, and the system's loader was asked for it (LD_LIBRARY_PATH, the cache of \
+     ldconfig, /lib, /usr/lib)"
+};
+
+#[cfg(any(unix, windows))]
+use libloading::Library as Loaded;
+
+/// Stands for a loaded library on systems that have no native libraries.
+#[cfg(not(any(unix, windows)))]
+#[derive(Debug)]
+enum Loaded {}
+
+impl Library {
+    /// Loads the library in a file. A relative path, including a bare file name, starts at the
+    /// current folder. The search path of the loader is not used.
+    ///
+    /// # Safety
+    /// Runs the library's initialisers with all rights of this program.
+    ///
+    /// # Errors
+    /// If the file does not exist, or is not a library for this machine.
+    pub unsafe fn from_file(path: &Path) -> Result<Self, LoadError> {
+        let path = absolute(path).map_err(|error| LoadError(error.to_string()))?;
+        // SAFETY: guaranteed by the caller.
+        unsafe { load(path.as_os_str()) }
+    }
+
+    /// Loads the library that the system's loader finds by this name, such as `libnidaqmx.so.1`.
+    ///
+    /// # Safety
+    /// Runs the library's initialisers with all rights of this program.
+    ///
+    /// # Errors
+    /// If the loader does not find a library, or cannot load it.
+    pub unsafe fn from_system(name: &str) -> Result<Self, LoadError> {
+        // SAFETY: guaranteed by the caller.
+        unsafe { load(OsStr::new(name)) }
+    }
+
+    /// Loads the library that a setting names: a path, or a bare name. A bare name is a file in the
+    /// current folder, or, if there is none, a library of the system.
+    ///
+    /// # Safety
+    /// Runs the library's initialisers with all rights of this program.
+    ///
+    /// # Errors
+    /// If there is no such library, or it cannot be loaded.
+    pub unsafe fn named(path: &str) -> Result<Self, LoadError> {
+        let file = Path::new(path);
+        let is_bare = file.components().count() == 1 && !file.is_absolute();
+        if !is_bare || file.is_file() {
+            // SAFETY: guaranteed by the caller.
+            return unsafe { Self::from_file(file) };
+        }
+        // SAFETY: guaranteed by the caller.
+        let found = unsafe { Self::from_system(path) };
+        found.map_err(|LoadError(reason)| LoadError(format!("{reason}{SEARCHED}")))
+    }
+
+    /// Loads the first of several libraries that the system's loader finds.
+    ///
+    /// # Safety
+    /// Runs the library's initialisers with all rights of this program.
+    ///
+    /// # Errors
+    /// If the loader finds none; says for each of them why.
+    pub unsafe fn installed(names: &[&str]) -> Result<Self, LoadError> {
+        let mut reasons = Vec::new();
+        for name in names {
+            // SAFETY: guaranteed by the caller.
+            match unsafe { Self::from_system(name) } {
+                Ok(library) => return Ok(library),
+                Err(LoadError(reason)) => reasons.push(reason),
+            }
+        }
+        Err(LoadError(reasons.join("; ")))
+    }
+
+    /// Returns the function or variable with this name.
+    ///
+    /// # Safety
+    /// The symbol has the type `T`.
+    #[must_use]
+    pub unsafe fn symbol<T: Copy>(self, name: &str) -> Option<T> {
+        // SAFETY: guaranteed by the caller.
+        unsafe { symbol(self.0, name) }
+    }
+}
+
+/// Gets functions that a library must have. `missing` makes the error for a function that is
+/// missing.
+pub struct Symbols<'a, E> {
+    pub library: Library,
+    pub missing: &'a dyn Fn(&'static str) -> E,
+}
+
+impl<E> Symbols<'_, E> {
+    /// Returns the function with this name.
+    ///
+    /// # Safety
+    /// The symbol has the type `T`.
+    ///
+    /// # Errors
+    /// If the library does not have the function.
+    pub unsafe fn get<T: Copy>(&self, name: &'static str) -> Result<T, E> {
+        // SAFETY: guaranteed by the caller.
+        unsafe { self.library.symbol(name) }.ok_or_else(|| (self.missing)(name))
+    }
+}
+
+/// Makes a table of a library's functions from [`Symbols`]. The name of each function is the prefix
+/// followed by the name of the field. Unsafe, because each symbol must have the type of its field.
+/// An error returns from the function that uses the macro.
+#[macro_export]
+macro_rules! table_of_symbols {
+    ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)*) => {
+        $table { $($field: $symbols.get(concat!($prefix, stringify!($field)))?),* }
+    };
+}
+
+/// # Safety
+/// The symbol has the type `T`.
+#[cfg(any(unix, windows))]
+unsafe fn symbol<T: Copy>(loaded: &Loaded, name: &str) -> Option<T> {
+    // SAFETY: guaranteed by the caller.
+    let found = unsafe { loaded.get::<T>(name) };
+    found.ok().map(|symbol| *symbol)
+}
+
+#[cfg(not(any(unix, windows)))]
+unsafe fn symbol<T>(loaded: &Loaded, _: &str) -> Option<T> {
+    match *loaded {}
+}
+
+#[cfg(not(any(unix, windows)))]
+unsafe fn load(_: &OsStr) -> Result<Library, LoadError> {
+    let none = "there are no native libraries on this platform; use a WASM module";
+    Err(LoadError(none.to_owned()))
+}
+
+/// # Safety
+/// Runs the library's initialisers.
+#[cfg(any(unix, windows))]
+unsafe fn load(name: &OsStr) -> Result<Library, LoadError> {
+    // SAFETY: guaranteed by the caller.
+    let loaded = unsafe { libloading::Library::new(name) };
+    let library = loaded.map_err(|error| LoadError(reason(&error)))?;
+    Ok(Library(Box::leak(Box::new(library))))
+}
+
+/// Returns the message of the system's loader, which is the source of libloading's error.
+#[cfg(any(unix, windows))]
+fn reason(error: &libloading::Error) -> String {
+    match error.source() {
+        Some(source) => source.to_string(),
+        None => error.to_string(),
+    }
+}

@@ -1,0 +1,81 @@
+//! Validation of documents against JSON Schemas. Nothing is downloaded: a `$ref` must refer to the
+//! schema itself.
+
+use std::error::Error;
+
+use jsonschema::{Retrieve, Uri, Validator};
+use serde_json::Value;
+
+/// Largest number of violations that are reported. A hostile document could have millions of them.
+const MOST: usize = 1000;
+
+/// A compiled JSON Schema.
+///
+/// ```
+/// use serde_json::json;
+/// let schema = json!({ "properties": { "threads": { "minimum": 1 } } });
+/// let schema = htex_base::schema::Schema::new(&schema)?;
+/// let violations = schema.violations(&json!({ "threads": 0 }));
+/// assert_eq!(violations[0].pointer, "/threads");
+/// assert_eq!(violations[0].rule, "/properties/threads/minimum");
+/// # Ok::<(), htex_base::schema::SchemaError>(())
+/// ```
+#[derive(Debug)]
+pub struct Schema(Validator);
+
+/// Error: a schema cannot be compiled.
+#[derive(Debug)]
+pub struct SchemaError(String);
+
+/// A violation of a schema.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Violation {
+    /// JSON pointer into the document.
+    pub pointer: String,
+    /// JSON pointer into the schema; it ends with the violated keyword.
+    pub rule: String,
+    pub message: String,
+}
+
+/// A retriever that refuses all references outside the schema.
+struct Nothing;
+
+impl Retrieve for Nothing {
+    fn retrieve(&self, _uri: &Uri<String>) -> Result<Value, Box<dyn Error + Send + Sync>> {
+        Err("nothing is fetched; copy the target of the reference into the schema's own $defs"
+            .into())
+    }
+}
+
+impl Schema {
+    /// Compiles a schema, of draft 2020-12 or of the draft that its `$schema` names.
+    ///
+    /// # Errors
+    /// If it is not a valid schema, or refers to another schema.
+    pub fn new(schema: &Value) -> Result<Self, SchemaError> {
+        let validator = jsonschema::options().with_retriever(Nothing).build(schema);
+        validator.map(Self).map_err(|e| SchemaError(e.to_string()))
+    }
+
+    /// Returns the violations of a document, in the order of the schema: at most the first
+    /// thousand.
+    pub fn violations(&self, document: &Value) -> Vec<Violation> {
+        let errors = self.0.iter_errors(document);
+        errors
+            .take(MOST)
+            .map(|error| Violation {
+                pointer: error.instance_path().to_string(),
+                rule: error.schema_path().to_string(),
+                message: error.to_string(),
+            })
+            .collect()
+    }
+}
+
+impl std::fmt::Display for SchemaError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Error for SchemaError {}

@@ -1,0 +1,197 @@
+//! Reads ranges of one version of a file.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::storage::cloud::{Store, Version};
+use crate::storage::error::AtPlace;
+use crate::storage::{Location, StorageError, StorageProblem, local};
+
+/// Cost of reading so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Usage {
+    /// Number of requests that were sent, including retries; for a local file, the number of reads.
+    pub requests: u64,
+    /// Number of bytes received.
+    pub bytes: u64,
+}
+
+/// One version of a file, from which ranges can be read. If the file is replaced, reads fail with
+/// [`StorageProblem::Changed`] and never mix two versions.
+///
+/// ```
+/// use htex_base::storage::{Location, Storage};
+///
+/// let folder = tempfile::tempdir()?;
+/// let location = Location::from(folder.path().join("library"));
+/// let storage = Storage::from_environment()?;
+/// storage.write(&location, b"0123456789")?;
+/// let file = storage.open(&location, 4)?;
+/// let mut buffer = [0; 3];
+/// file.read_at(6, &mut buffer)?;
+/// assert_eq!((file.len(), &buffer), (10, b"678"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Remote {
+    location: Location,
+    of: Of,
+    len: u64,
+    etag: Option<String>,
+    /// The bytes that the first request returned, and the offset of the first of them.
+    head: Vec<u8>,
+    head_start: u64,
+}
+
+enum Of {
+    File { file: Mutex<File>, requests: AtomicU64, bytes: AtomicU64 },
+    Store { store: Box<Store>, version: Version },
+}
+
+impl Remote {
+    pub(crate) fn of_store(
+        location: &Location,
+        store: Store,
+        head: Range<u64>,
+    ) -> Result<Self, StorageError> {
+        let head_start = head.start;
+        let part = store.part(head, None)?;
+        Ok(Self {
+            location: location.clone(),
+            len: part.version.bytes,
+            etag: part.version.etag.clone(),
+            head: part.bytes,
+            head_start,
+            of: Of::Store { store: Box::new(store), version: part.version },
+        })
+    }
+
+    pub(crate) fn of_file(
+        location: &Location,
+        path: &Path,
+        head: Range<u64>,
+    ) -> Result<Self, StorageError> {
+        let file = local::opened(path)?;
+        let len = file.metadata().at(path.display())?.len();
+        let mut remote = Self {
+            location: location.clone(),
+            of: Of::File {
+                file: Mutex::new(file),
+                requests: AtomicU64::new(0),
+                bytes: AtomicU64::new(0),
+            },
+            len,
+            etag: None,
+            head: Vec::new(),
+            head_start: head.start,
+        };
+        let end = head.end.min(len);
+        if head.start < end {
+            remote.head = remote.fetch(head.start..end)?;
+        }
+        Ok(remote)
+    }
+
+    /// Returns the size of the file, bytes.
+    pub fn len(&self) -> u64 {
+        self.len
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Returns the entity tag of the version that is read, if the store has one.
+    pub fn etag(&self) -> Option<&str> {
+        self.etag.as_deref()
+    }
+
+    /// Returns the requests and bytes so far, including those for opening.
+    pub fn usage(&self) -> Usage {
+        let (requests, bytes) = match &self.of {
+            Of::Store { store, .. } => store.usage(),
+            Of::File { requests, bytes, .. } => {
+                (requests.load(Ordering::Relaxed), bytes.load(Ordering::Relaxed))
+            }
+        };
+        Usage { requests, bytes }
+    }
+
+    /// Fills the buffer with the bytes from `offset` on. Sends one request, or none if the bytes
+    /// were received when the file was opened.
+    ///
+    /// # Errors
+    /// If the range ends after the end of the file, the file was replaced, or it cannot be read.
+    pub fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), StorageError> {
+        let end = offset.saturating_add(buffer.len() as u64);
+        if end > self.len {
+            return Err(self.out_of_range(offset..end));
+        }
+        if buffer.is_empty() {
+            return Ok(());
+        }
+        match self.in_head(offset, buffer.len()) {
+            Some(bytes) => buffer.copy_from_slice(bytes),
+            None => buffer.copy_from_slice(&self.fetch(offset..end)?),
+        }
+        Ok(())
+    }
+
+    fn in_head(&self, offset: u64, len: usize) -> Option<&[u8]> {
+        let from = usize::try_from(offset.checked_sub(self.head_start)?).ok()?;
+        self.head.get(from..)?.get(..len)
+    }
+
+    /// Returns exactly the bytes of a range within the file.
+    fn fetch(&self, range: Range<u64>) -> Result<Vec<u8>, StorageError> {
+        let wanted = range.end - range.start;
+        let found = match &self.of {
+            Of::Store { store, version } => store.part(range, Some(version.clone()))?.bytes,
+            Of::File { file, requests, bytes } => {
+                let read =
+                    read_file(&mut file.lock().unwrap_or_else(PoisonError::into_inner), &range);
+                let read = read.at(&self.location)?;
+                requests.fetch_add(1, Ordering::Relaxed);
+                bytes.fetch_add(read.len() as u64, Ordering::Relaxed);
+                read
+            }
+        };
+        // The range was inside the file when it was opened, so a shorter answer means that it was
+        // replaced.
+        if found.len() as u64 == wanted {
+            Ok(found)
+        } else {
+            Err(StorageProblem::Changed.at(&self.location))
+        }
+    }
+
+    pub(crate) fn head(&self) -> &[u8] {
+        &self.head
+    }
+
+    pub(crate) fn into_head(self) -> Vec<u8> {
+        self.head
+    }
+
+    pub(crate) fn out_of_range(&self, range: Range<u64>) -> StorageError {
+        let (offset, end, len) = (range.start, range.end, self.len);
+        StorageProblem::Range { offset, end, len }.at(&self.location)
+    }
+}
+
+fn read_file(file: &mut File, range: &Range<u64>) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.seek(SeekFrom::Start(range.start))?;
+    file.take(range.end - range.start).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+impl std::fmt::Debug for Remote {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({} bytes)", self.location, self.len)
+    }
+}

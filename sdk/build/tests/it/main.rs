@@ -1,0 +1,6 @@
+//! Integration tests, in one program.
+#![allow(clippy::unwrap_used, reason = "a failed test may panic")]
+
+mod data_sets;
+mod imports;
+mod schemas;

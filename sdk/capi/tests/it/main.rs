@@ -1,0 +1,14 @@
+//! Integration tests, in one program.
+#![allow(clippy::panic, clippy::unwrap_used, unsafe_code, reason = "a failed test may panic")]
+
+mod common;
+#[cfg(target_os = "linux")]
+mod fmod;
+mod header;
+#[cfg(target_os = "linux")]
+mod hosts;
+mod misuse;
+mod programs;
+mod readers;
+#[cfg(target_os = "linux")]
+mod unity;

@@ -1,0 +1,198 @@
+//! Checks of the marker, exports, descriptor, endpoints and capabilities. Checks that also apply to
+//! sources are generic over the kind of adapter.
+
+use crate::harness::{Finding, Found, made_up_extensions};
+use htex_device::abi::Code;
+use htex_device::{Descriptor, DeviceError, Setting, SettingKind, Settings, StreamFormat};
+
+use crate::device::case::{self, CheckedKind};
+use crate::device::device::Case;
+
+const INVALID_SETTING: i64 = Code::InvalidSetting as i64;
+/// Block size of a device that is opened only to test its settings, frames.
+const BLOCK: u32 = 256;
+
+/// The finding when arrays are used as the ABI demands.
+pub(crate) const KEPT: &str =
+    "null and misaligned arrays are refused, and nothing is written beyond an array";
+
+/// A library that could be loaded has the marker and the exports.
+pub(crate) fn loaded<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+    case.native()?;
+    Ok(Finding::passed("the library was loaded"))
+}
+
+/// Checks the descriptor of a built-in device. For a library, loading has already checked it.
+pub(crate) fn descriptor(case: &Case) -> Found {
+    let descriptor = case.adapter.descriptor();
+    descriptor.check()?;
+    Ok(described(descriptor))
+}
+
+/// Reports a valid descriptor.
+pub(crate) fn described(descriptor: &Descriptor) -> Finding {
+    let (id, version) = (&descriptor.id, &descriptor.version);
+    let (settings, profiles) = (descriptor.settings.len(), descriptor.profiles.len());
+    let message = format!("{id} {version}: {settings} settings, {profiles} profiles");
+    Finding::passed(message).with("settings", settings as f64)
+}
+
+/// Made-up extensions must be reported as absent.
+pub(crate) fn extensions<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+    let native = case.native()?;
+    made_up_extensions(|id| native.has_extension(id))
+}
+
+/// Endpoints must choose settings of the descriptor. An empty list or a missing driver is valid.
+pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+    let descriptor = case.adapter.about();
+    let known = |name: &str| descriptor.settings.iter().any(|setting| setting.name == name);
+    match case.adapter.connected() {
+        Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
+            Some(lost) => {
+                let (name, setting) = (&lost.name, &lost.setting);
+                let message = format!("`{name}` is chosen by `{setting}`, which is not a setting");
+                Err(Finding::failed(message))
+            }
+            None => Ok(Finding::passed(format!("{} are connected", all.len()))),
+        },
+        Err(DeviceError::Missing(what)) => Ok(Finding::warning(what)),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Checks the capabilities with the given settings and with each profile.
+pub(crate) fn capabilities(case: &Case) -> Found {
+    let can = case.capabilities()?;
+    let checked = can.check();
+    checked.map_err(|error| Finding::failed(error.to_string()))?;
+    let profiles = &case.adapter.descriptor().profiles;
+    for profile in profiles {
+        let settings = case.settings_of(Some(&profile.name))?;
+        let can = case.adapter.capabilities(&settings);
+        let name = &profile.name;
+        let wrong =
+            |error: &dyn std::fmt::Display| Finding::failed(format!("profile `{name}`: {error}"));
+        let can = can.map_err(|error| wrong(&error))?;
+        can.check().map_err(|error| wrong(&error))?;
+    }
+    let unit = can.quantity.unit();
+    let limit = can.limit.map_or("no limit".to_owned(), |limit| format!("limit {limit} {unit}"));
+    Ok(Finding::passed(format!("{limit}, {}", can.rates)))
+}
+
+/// Unusable settings must be refused, both in `capabilities` and in `open`.
+pub(crate) fn bad_settings(case: &Case) -> Found {
+    let native = case.native()?;
+    let (descriptor, settings) = (case.adapter.descriptor(), case.settings()?);
+    let rate_hz = case.capabilities()?.default_rate_hz;
+    let asked = refused(descriptor, &settings, |lines| {
+        match native.capabilities_of(lines) {
+            Ok(_) => None,
+            // An error text without a setting's name is entirely in `what`.
+            Err(DeviceError::Setting { name, what }) if name.is_empty() => {
+                Some((INVALID_SETTING, what))
+            }
+            Err(DeviceError::Setting { name, what }) => {
+                Some((INVALID_SETTING, format!("{name}: {what}")))
+            }
+            Err(error) => Some((0, error.to_string())),
+        }
+    });
+    let asked = asked.map_err(|finding| of_call("capabilities", finding))?;
+    refused(descriptor, &settings, |lines| native.refusal_of_open(lines, rate_hz, BLOCK))
+        .map_err(|finding| of_call("open", finding))?;
+    Ok(asked)
+}
+
+fn of_call(call: &str, finding: Finding) -> Finding {
+    Finding::failed(format!("`{call}`: {}", finding.message))
+}
+
+/// Unusable lines of settings, and how the text of their refusal must begin.
+struct WrongLines {
+    what: String,
+    lines: String,
+    /// A setting's name or a line; empty for an empty line.
+    begins: String,
+}
+
+/// Checks that unusable lines are refused with a text that begins with the setting's name.
+/// `refusal` returns the status and the text, or `None` if the adapter accepts the lines.
+pub(crate) fn refused(
+    descriptor: &Descriptor,
+    settings: &Settings,
+    refusal: impl Fn(&str) -> Option<(i64, String)>,
+) -> Found {
+    let wrong = wrong(descriptor, &settings.to_lines(descriptor));
+    for WrongLines { what, lines, begins } in &wrong {
+        let Some((status, text)) = refusal(lines) else {
+            return Err(Finding::failed(format!("it takes {what}")));
+        };
+        let is_named = text
+            .strip_prefix(begins.as_str())
+            .is_some_and(|rest| rest.starts_with(": ") || begins.is_empty());
+        if status != INVALID_SETTING {
+            return Err(Finding::failed(format!(
+                "{what} is refused, but not as an invalid setting: {text}"
+            )));
+        }
+        if !is_named || text.is_empty() {
+            return Err(Finding::failed(format!(
+                "{what} is refused with the text `{text}`; it must begin with `{begins}: `"
+            )));
+        }
+    }
+    let count = wrong.len();
+    Ok(Finding::passed(format!("{count} wrong settings are refused by name"))
+        .with("settings", count as f64))
+}
+
+/// Builds settings with exactly one error each, among valid ones.
+fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
+    let mut single = vec![
+        "no_such_setting_=1\n".to_owned(),
+        "no line of settings\n".to_owned(),
+        "\n".to_owned(),
+    ];
+    single.extend(descriptor.settings.iter().flat_map(wrong_lines));
+    let in_place = single.into_iter().map(|line| {
+        let begins = line.trim_end().split('=').next().unwrap_or_default();
+        let others = good.lines().filter(|l| !l.starts_with(&format!("{begins}=")));
+        let others: String = others.flat_map(|l| [l, "\n"]).collect();
+        WrongLines {
+            what: format!("the line `{}`", line.trim_end()),
+            lines: format!("{others}{line}"),
+            begins: begins.to_owned(),
+        }
+    });
+    let twice = good.lines().map(|line| WrongLines {
+        what: format!("a second line `{line}`"),
+        lines: format!("{good}{line}\n"),
+        begins: line.split('=').next().unwrap_or_default().to_owned(),
+    });
+    in_place.chain(twice).collect()
+}
+
+/// Returns lines that give a setting an invalid value.
+fn wrong_lines(setting: &Setting) -> Vec<String> {
+    let values = match &setting.kind {
+        SettingKind::Number { max, .. } => {
+            vec!["".to_owned(), "NaN".to_owned(), "one".to_owned(), format!("{}", max * 2.0 + 1.0)]
+        }
+        SettingKind::Choice { .. } => vec!["".to_owned(), "no such choice".to_owned()],
+        SettingKind::Path | SettingKind::Text => Vec::new(),
+    };
+    let line = |value: &String| format!("{}={value}\n", setting.name);
+    values.iter().map(line).collect()
+}
+
+/// Unusable arrays must be refused, and no call may write beyond the arrays that it gets.
+pub(crate) fn arrays(case: &Case) -> Found {
+    let native = case.native()?;
+    let format =
+        StreamFormat { rate_hz: case.capabilities()?.default_rate_hz, block_frames: BLOCK };
+    let checked = native.check_arrays(&case.settings()?, &format);
+    checked.map_err(Finding::failed)?;
+    Ok(Finding::passed(KEPT))
+}

@@ -1,0 +1,56 @@
+//! Checks of samples that must be refused.
+
+use std::time::Duration;
+
+use crate::harness::{Finding, Found};
+use htex_device::DeviceError;
+
+use crate::device::device::{Case, write_all};
+
+/// Samples beyond the limit must be refused, both positive and negative.
+pub(crate) fn over(case: &Case) -> Found {
+    let Some(limit) = case.capabilities()?.limit else {
+        return Ok(Finding::skipped("it has no limit"));
+    };
+    for sample in [1.01 * limit, -1.01 * limit, 1e6 * limit] {
+        refuses(case, sample as f32)?;
+    }
+    Ok(Finding::passed(format!("samples over {limit} are refused, and the output stays at zero")))
+}
+
+/// NaN and infinities must be refused.
+pub(crate) fn no_number(case: &Case) -> Found {
+    for sample in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        refuses(case, sample)?;
+    }
+    Ok(Finding::passed("NaN and infinities are refused, and the output stays at zero"))
+}
+
+/// Writes one invalid sample among valid ones. The device must refuse it and be closed afterwards.
+fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
+    let wrong = |what: String| Err(Finding::failed(format!("a sample of {bad}: {what}")));
+    let (mut device, _) = case.open()?;
+    let tone = case.tone(64)?;
+    write_all(device.as_mut(), &tone)?;
+    match device.write(&[tone[1], bad, tone[2]], Duration::ZERO) {
+        Err(DeviceError::OverLimit { .. }) => {}
+        Err(error) => return wrong(format!("it is refused with another error: {error}")),
+        Ok(0) => return wrong("it is neither taken nor refused".to_owned()),
+        Ok(_) => return wrong("it is taken".to_owned()),
+    }
+    let status = device.status();
+    if status.frames_written != 64 {
+        let counted = status.frames_written;
+        return wrong(format!("64 frames were taken before, and it counts {counted}"));
+    }
+    let after =
+        [("a write", device.write(&tone, Duration::ZERO).map(drop)), ("finish", device.finish())];
+    for (call, answer) in after {
+        match answer {
+            Err(DeviceError::Closed(_)) => {}
+            Err(error) => return wrong(format!("{call} afterwards: {error}")),
+            Ok(()) => return wrong(format!("{call} afterwards succeeds")),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,89 @@
+//! Checks of opening.
+
+use crate::harness::{Finding, Found};
+use htex_device::DeviceError;
+use htex_device::abi::{Code, MAX_BLOCK_FRAMES};
+
+use crate::device::device::{Case, rates, write_all};
+
+const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
+
+/// The device must open at each of its rates, and accept silence.
+pub(crate) fn opens(case: &Case) -> Found {
+    let rates = rates(&case.capabilities()?);
+    for rate_hz in &rates {
+        let opened = case.open_at(&case.settings()?, *rate_hz);
+        let mut device = opened.map_err(|e| Finding::failed(format!("at {rate_hz} Hz: {e}")))?;
+        write_all(device.as_mut(), &[0.0; 16])?;
+    }
+    let count = rates.len();
+    Ok(Finding::passed(format!("it opens at {count} rates")).with("rates", count as f64))
+}
+
+/// Rates that the device does not support must be refused.
+pub(crate) fn bad_rate(case: &Case) -> Found {
+    let can = case.capabilities()?;
+    let (lowest, highest) = match rates(&can)[..] {
+        [first, .., last] => (first, last),
+        [only] => (only, only),
+        [] => return Err(Finding::failed("it has no rates")),
+    };
+    let mut wrong = vec![f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12, 0.5 * lowest, 2.0 * highest];
+    wrong.push(lowest + 0.123);
+    wrong.retain(|rate_hz| !can.rates.has(*rate_hz));
+    for rate_hz in &wrong {
+        match case.open_at(&case.settings()?, *rate_hz) {
+            Err(DeviceError::Rate { .. }) => {}
+            Err(error) => return Err(Finding::failed(format!("{rate_hz} Hz: {error}"))),
+            Ok(_) => return Err(Finding::failed(format!("it opens at {rate_hz} Hz"))),
+        }
+    }
+    let count = wrong.len();
+    Ok(Finding::passed(format!("{count} wrong rates are refused")).with("rates", count as f64))
+}
+
+/// Block sizes outside the ABI's range must be refused.
+pub(crate) fn bad_block(case: &Case) -> Found {
+    let native = case.native()?;
+    let rate_hz = case.capabilities()?.default_rate_hz;
+    let wrong = [0, MAX_BLOCK_FRAMES + 1, u32::MAX];
+    for block in wrong {
+        let lines = case.settings()?.to_lines(case.adapter.descriptor());
+        match native.refusal_of_open(&lines, rate_hz, block) {
+            None => {
+                let message = format!("it opens for blocks of {block} frames");
+                return Err(Finding::failed(message));
+            }
+            Some((INVALID_ARGUMENT, _)) => {}
+            Some((status, text)) => {
+                let message = format!(
+                    "blocks of {block} frames are refused with {status}, not {INVALID_ARGUMENT}: {text}"
+                );
+                return Err(Finding::failed(message));
+            }
+        }
+    }
+    let count = wrong.len();
+    Ok(Finding::passed(format!("{count} wrong block sizes are refused")))
+}
+
+/// Two devices must open at the same time, or the second must be refused as busy.
+pub(crate) fn two(case: &Case) -> Found {
+    let (mut first, settings) = case.open()?;
+    let rate_hz = case.adapter.capabilities(&settings)?.default_rate_hz;
+    let tone = case.tone(64)?;
+    let mut second = match case.open_at(&case.settings()?, rate_hz) {
+        Err(DeviceError::Busy(why)) => {
+            return Ok(Finding::passed(format!("one at a time: {why}")));
+        }
+        other => other?,
+    };
+    write_all(first.as_mut(), &tone)?;
+    write_all(second.as_mut(), &tone[..10])?;
+    let counts = [first, second].map(|device| device.status().frames_written);
+    if counts == [64, 10] {
+        return Ok(Finding::passed("two are open, each with its own count"));
+    }
+    let message = format!("64 and 10 frames were written, and it counts {counts:?}");
+    Err(Finding::failed(message))
+}

@@ -1,0 +1,42 @@
+//! The common part of the checkers for models and for devices: a table of checks ([`checks!`]), a
+//! runner, and the report. The runner runs each check in a separate process ([`run_all`]), so that
+//! a crash or an endless loop becomes a finding.
+//!
+//! ```
+//! use htex_check::harness::{Finding, Found, Owner, run_one};
+//!
+//! fn positive(number: &i32) -> Found {
+//!     if *number > 0 {
+//!         Ok(Finding::passed("it is positive"))
+//!     } else {
+//!         Err(Finding::failed(format!("{number} is not positive")))
+//!     }
+//! }
+//!
+//! htex_check::harness::checks! { i32;
+//!     "positive" needs [] positive:
+//!         "The number is positive.",
+//!         "It is compared with 0.";
+//! }
+//!
+//! let load = || "-1".parse::<i32>();
+//! let finding = run_one(CHECKS, "positive", load, |_| Owner::reached("positive"))?;
+//! assert_eq!(finding.message, "-1 is not positive");
+//! # Ok::<(), htex_check::harness::UnknownCheck>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod common;
+mod finding;
+mod process;
+mod report;
+mod runner;
+mod table;
+
+pub use crate::checks;
+pub use common::{Growth, made_up_extensions, memory, resident_bytes};
+pub use finding::{Finding, Found, Outcome};
+pub use process::run_process;
+pub use report::{CheckReport, Report};
+pub use runner::{Owner, Runner, run_all, run_one};
+pub use table::{Check, UnknownCheck, select};

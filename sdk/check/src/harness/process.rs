@@ -1,0 +1,98 @@
+//! Runs one check in a separate process.
+
+use std::collections::VecDeque;
+use std::io::Read;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::harness::{Finding, Outcome};
+
+/// Maximum number of bytes of a child's output that are kept.
+const MOST_OUTPUT: usize = 1 << 20;
+
+/// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds
+/// `timeout`, the finding says so.
+pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = match command.spawn() {
+        Ok(child) => child,
+        Err(error) => return Finding::skipped(format!("the check cannot be started: {error}")),
+    };
+    let (out, err) = (drain(child.stdout.take()), drain(child.stderr.take()));
+    match wait(&mut child, timeout) {
+        None => {
+            let seconds = timeout.as_secs_f64();
+            let message = format!("it did not end within {seconds} s");
+            let finding = Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds);
+            announced(finding, last_finding(&text(out)))
+        }
+        Some(status) => match last_finding(&text(out)) {
+            // A finding that the check printed before a step that may crash.
+            Some(finding) if finding.outcome == Outcome::Crashed => {
+                announced(crashed(status, &text(err)), Some(finding))
+            }
+            Some(finding) => finding,
+            None => crashed(status, &text(err)),
+        },
+    }
+}
+
+/// Completes the finding of a check that ended without a result, with what it had printed before.
+fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
+    if let Some(said) = said {
+        finding.message = format!("{}; {}", finding.message, said.message);
+        finding.numbers.extend(said.numbers);
+    }
+    finding
+}
+
+/// Reads a pipe to its end, so that the child never blocks on it. Keeps the last [`MOST_OUTPUT`]
+/// bytes.
+fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
+    std::thread::spawn(move || {
+        let mut kept = VecDeque::new();
+        let mut part = vec![0; 65_536];
+        if let Some(mut pipe) = pipe {
+            // A pipe that cannot be read counts as ended. The finding then has only the exit
+            // status.
+            while let Ok(len @ 1..) = pipe.read(&mut part) {
+                kept.extend(&part[..len]);
+                kept.drain(..kept.len().saturating_sub(MOST_OUTPUT));
+            }
+        }
+        kept.into()
+    })
+}
+
+fn text(drained: JoinHandle<Vec<u8>>) -> String {
+    String::from_utf8_lossy(&drained.join().unwrap_or_default()).into_owned()
+}
+
+/// Waits for the child to end; kills it after `timeout`.
+fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
+    let end = Instant::now() + timeout;
+    loop {
+        if let Ok(Some(status)) = child.try_wait() {
+            return Some(status);
+        }
+        if Instant::now() >= end {
+            // Both fail if the child has already ended.
+            let _ = child.kill();
+            let _ = child.wait();
+            return None;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Returns the last line that is a finding. The model or device may print other lines.
+fn last_finding(out: &str) -> Option<Finding> {
+    out.lines().rev().find_map(|line| serde_json::from_str(line).ok())
+}
+
+fn crashed(status: ExitStatus, err: &str) -> Finding {
+    let last = err.lines().rev().find(|line| !line.trim().is_empty());
+    let said = last.map(|line| format!("; its last line: {line}")).unwrap_or_default();
+    Finding::new(Outcome::Crashed, format!("the process ended with {status}{said}"))
+}

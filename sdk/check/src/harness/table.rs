@@ -1,0 +1,76 @@
+//! Tables of checks.
+
+use thiserror::Error;
+
+use crate::harness::Found;
+
+/// One check. `Case` is a loaded model or device with the checker's settings.
+pub struct Check<Case> {
+    /// Stable name, unique in its table.
+    pub name: &'static str,
+    /// The guarantee, in one sentence.
+    pub summary: &'static str,
+    /// The test method with its tolerances; empty if the summary is sufficient.
+    pub method: &'static str,
+    /// Checks that must not fail for this one to be meaningful.
+    pub needs: &'static [&'static str],
+    pub run: fn(&Case) -> Found,
+}
+
+/// Error: the table has no check of this name.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("there is no check `{name}`; there are {}", known.join(", "))]
+pub struct UnknownCheck {
+    pub name: String,
+    /// The names in the table.
+    pub known: Vec<&'static str>,
+}
+
+/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check must come after
+/// the ones that it needs. A row is
+/// `"name" needs ["name", …] path::of::function: "summary", "method";`. The method is optional.
+#[macro_export]
+macro_rules! checks {
+    ($case:ty; $($name:literal needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
+        /// All checks, in the order in which they run. A check comes after the ones that it needs.
+        pub const CHECKS: &[$crate::harness::Check<$case>] = &[$($crate::harness::Check {
+            name: $name,
+            summary: $summary,
+            method: concat!($($method)?),
+            needs: &[$($need),*],
+            run: $run,
+        }),*];
+    };
+}
+
+pub(crate) fn find<'a, Case>(
+    checks: &'a [Check<Case>],
+    name: &str,
+) -> Result<&'a Check<Case>, UnknownCheck> {
+    let found = checks.iter().find(|check| check.name == name);
+    found.ok_or_else(|| UnknownCheck {
+        name: name.to_owned(),
+        known: checks.iter().map(|check| check.name).collect(),
+    })
+}
+
+/// Returns the checks with these names and all checks that they need, in the table's order.
+///
+/// # Errors
+/// When a name is not in the table.
+pub fn select<'a, Case>(
+    checks: &'a [Check<Case>],
+    names: &[String],
+) -> Result<Vec<&'a Check<Case>>, UnknownCheck> {
+    let mut chosen = Vec::new();
+    let mut open: Vec<&str> = names.iter().map(String::as_str).collect();
+    while let Some(name) = open.pop() {
+        let check = find(checks, name)?;
+        if !chosen.contains(&check.name) {
+            chosen.push(check.name);
+            open.extend(check.needs);
+        }
+    }
+    let is_chosen = |check: &&Check<Case>| chosen.contains(&check.name);
+    Ok(checks.iter().filter(is_chosen).collect())
+}

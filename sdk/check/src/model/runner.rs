@@ -1,0 +1,84 @@
+//! Runs the checks of a model.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use crate::harness::{Finding, Runner, UnknownCheck, run_all, select};
+
+use crate::model::case::{Case, Settings};
+use crate::model::checks::abi::owner;
+use crate::model::report::{ModelFile, Report};
+use crate::model::table::CHECKS;
+
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// A program that calls [`run_one`]. After its own arguments it receives the file, the check's
+    /// name and the options for the seed and for the other file, if there is one.
+    pub runner: Runner,
+    /// Seed of the voices.
+    pub seed: u64,
+    /// Names of the checks to run, together with the ones they need; all if `None`.
+    pub only: Option<Vec<String>>,
+    /// The same model as a file of the other kind (native library or WASM module).
+    pub against: Option<PathBuf>,
+    /// Duration of the check `fuzz`. If `None`, it plays a fixed number of sequences.
+    pub fuzz: Option<Duration>,
+}
+
+/// Error: the checks cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckError {
+    #[error(transparent)]
+    Unknown(#[from] UnknownCheck),
+    /// The model cannot be read.
+    #[error("{}: {error}", path.display())]
+    File { path: PathBuf, error: std::io::Error },
+}
+
+/// Fails unless the file can be read. Otherwise a check would blame the model for it.
+fn readable(file: &Path) -> Result<(), CheckError> {
+    let is_file = std::fs::File::open(file).and_then(|opened| opened.metadata());
+    let error = match is_file {
+        Ok(metadata) if metadata.is_file() => return Ok(()),
+        Ok(_) => std::io::Error::other("it is not a file"),
+        Err(error) => error,
+    };
+    let path = file.to_owned();
+    Err(CheckError::File { path, error })
+}
+
+/// Runs the checks, each in a separate process.
+///
+/// # Errors
+/// When the file cannot be read, or `only` names an unknown check.
+pub fn check(file: &Path, options: &Options) -> Result<Report, CheckError> {
+    readable(file)?;
+    let chosen = match &options.only {
+        Some(names) => select(CHECKS, names)?,
+        None => CHECKS.iter().collect(),
+    };
+    let mut runner = options.runner.clone();
+    runner.timeout += options.fuzz.unwrap_or_default();
+    let checks = run_all(chosen, &runner, |command, name| {
+        command.arg(file).arg(name);
+        command.args(["--seed", &options.seed.to_string()]);
+        if let Some(against) = &options.against {
+            command.arg("--against").arg(against);
+        }
+        if let Some(time) = options.fuzz {
+            command.args(["--fuzz", &time.as_secs_f64().to_string()]);
+        }
+    });
+    let subject = ModelFile { file: file.display().to_string(), seed: options.seed };
+    Ok(Report::new(subject, checks))
+}
+
+/// Runs one check in this process. A crash ends the process.
+///
+/// # Errors
+/// When the file cannot be read, or no check has this name.
+pub fn run_one(file: &Path, name: &str, settings: Settings<'_>) -> Result<Finding, CheckError> {
+    readable(file)?;
+    let load = || Case::load(file, settings);
+    Ok(crate::harness::run_one(CHECKS, name, load, owner)?)
+}

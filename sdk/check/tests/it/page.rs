@@ -1,0 +1,26 @@
+//! Tests `spec/model-checks.md`, the order of the table that it lists, and the templates' headers.
+
+use htex_check::model::{CHECKS, model_checks_page};
+
+#[test]
+fn generated_page_is_fresh() {
+    xtask::generated::file("spec/model-checks.md", model_checks_page().as_bytes());
+}
+
+#[test]
+fn generated_headers_of_the_templates_are_those_of_the_specification() {
+    for header in ["htex_model.h", "htex_model_parts.h", "htex_model_wasm.h", "htex_motion_1.h"] {
+        let bytes = std::fs::read(format!("../../spec/include/{header}")).unwrap();
+        xtask::generated::file(format!("sdk/check/templates/include/{header}"), &bytes);
+    }
+}
+
+#[test]
+fn checks_stand_behind_those_that_they_need() {
+    for (i, check) in CHECKS.iter().enumerate() {
+        for need in check.needs {
+            let earlier = CHECKS[..i].iter().any(|other| other.name == *need);
+            assert!(earlier, "{} needs {need}", check.name);
+        }
+    }
+}

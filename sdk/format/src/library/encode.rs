@@ -1,0 +1,185 @@
+//! Encodes the index: turns sorted entries into leaf pages and a root page.
+
+use std::collections::BTreeSet;
+
+use crate::library::entry::{Conditions, Entry, Interval};
+use crate::library::leaf::{CONTACTS, FORCE, ONE_FORCE, ONE_SPEED, SOURCES, SPEED, length};
+use crate::library::page;
+use crate::library::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
+
+/// Unpacked size of a leaf, bytes, at which the next leaf begins. With this size, the first read
+/// and a packed leaf together stay below 64 kB, and the root page of a million textures fits into
+/// the first read.
+const LEAF_BYTES: usize = 40 << 10;
+
+/// The pages of an index.
+#[derive(Debug, Default)]
+pub(crate) struct Pages {
+    leaves: Vec<u8>,
+    lengths: Vec<u64>,
+    /// Separators between the leaves, as the root page stores them.
+    separators: Vec<Vec<u8>>,
+    /// Entries of the leaf that is being filled.
+    entries: Vec<Entry>,
+    words: BTreeSet<String>,
+    size: usize,
+    last: Vec<u8>,
+}
+
+impl Pages {
+    /// Adds an entry. Its name must sort after all names added before.
+    pub(crate) fn add(&mut self, entry: Entry) {
+        let size = self.size_of(&entry);
+        if !self.entries.is_empty() && self.size + size > LEAF_BYTES {
+            self.end_leaf();
+        }
+        if self.entries.is_empty() {
+            let shared = common_prefix(&self.last, entry.name.as_bytes());
+            // The shortest start of this name that sorts after the last name of the leaf before. It
+            // keeps the root page small.
+            let is_first = self.separators.is_empty();
+            let separator = if is_first { 0 } else { shared + 1 };
+            self.separators.push(entry.name.as_bytes()[..separator].to_vec());
+        }
+        // Computed again, because a new leaf cannot share words or the start of a name with an
+        // earlier one.
+        self.size += self.size_of(&entry);
+        let words = entry.tags.iter().chain(&entry.models);
+        for word in words.filter(|word| !self.words.contains(*word)).cloned().collect::<Vec<_>>() {
+            self.words.insert(word);
+        }
+        self.last = entry.name.clone().into_bytes();
+        self.entries.push(entry);
+    }
+
+    /// Returns an upper bound of the bytes that an entry adds to the leaf. Indices of words are
+    /// below 2^14, so they take two bytes.
+    fn size_of(&self, entry: &Entry) -> usize {
+        let before: &[u8] = if self.entries.is_empty() { &[] } else { &self.last };
+        let name = entry.name.as_bytes();
+        let name = name.len() - common_prefix(before, name) + 4;
+        let words = entry.tags.iter().chain(&entry.models);
+        let new = words.clone().filter(|word| !self.words.contains(*word));
+        let words = new.map(|word| word.len() + 2).sum::<usize>() + 2 * words.count() + 2;
+        let cuts = entry
+            .place
+            .cuts
+            .iter()
+            .map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
+        // After the name and words: conditions (33), own length, number of cuts (2), cuts, hash
+        // (32), and contact and law (25).
+        name + words
+            + 33
+            + varint_bytes(length(&entry.place.own))
+            + 2
+            + cuts.sum::<usize>()
+            + 32
+            + 25
+    }
+
+    /// Finishes the index. Returns the packed root page, the packed leaf pages, and the number of
+    /// leaves.
+    pub(crate) fn finish(mut self, name: &str) -> (Vec<u8>, Vec<u8>, u32) {
+        if !self.entries.is_empty() {
+            self.end_leaf();
+        }
+        let mut root = Vec::new();
+        put_text(&mut root, name);
+        put_varint(&mut root, self.lengths.len() as u64);
+        let mut before: &[u8] = &[];
+        for separator in &self.separators {
+            put_following(&mut root, before, separator);
+            before = separator;
+        }
+        for length in &self.lengths {
+            put_varint(&mut root, *length);
+        }
+        (page::pack(&root), self.leaves, self.lengths.len() as u32)
+    }
+
+    fn end_leaf(&mut self) {
+        let page = page::pack(&leaf(&self.entries));
+        self.lengths.push(page.len() as u64);
+        self.leaves.extend(page);
+        self.entries.clear();
+        self.words.clear();
+        self.size = 0;
+    }
+}
+
+/// Encodes the entries of a leaf. There must be at least one.
+fn leaf(entries: &[Entry]) -> Vec<u8> {
+    let words = entries.iter().flat_map(|e| e.tags.iter().chain(&e.models));
+    let mut distinct = BTreeSet::new();
+    distinct.extend(words.map(String::as_str));
+    let words: Vec<&str> = distinct.into_iter().collect();
+    let mut page = Vec::with_capacity(LEAF_BYTES);
+    put_varint(&mut page, entries.len() as u64);
+    put_varint(&mut page, words.len() as u64);
+    words.iter().for_each(|word| put_text(&mut page, word));
+    let mut before: &[u8] = &[];
+    for entry in entries {
+        put_following(&mut page, before, entry.name.as_bytes());
+        before = entry.name.as_bytes();
+    }
+    entries.iter().for_each(|e| put_words(&mut page, &words, &e.tags));
+    entries.iter().for_each(|e| put_words(&mut page, &words, &e.models));
+    entries.iter().for_each(|e| put_conditions(&mut page, &e.conditions));
+    entries.iter().for_each(|e| put_law(&mut page, e));
+    // Own bytes of the textures follow each other, so the start of the first and the lengths
+    // suffice.
+    put_varint(&mut page, entries.first().map_or(0, |e| e.place.own.start));
+    entries.iter().for_each(|e| put_varint(&mut page, length(&e.place.own)));
+    entries.iter().for_each(|e| put_cuts(&mut page, e));
+    entries.iter().for_each(|e| page.extend(e.blake3));
+    page
+}
+
+fn put_words(page: &mut Vec<u8>, words: &[&str], chosen: &[String]) {
+    put_varint(page, chosen.len() as u64);
+    for word in chosen {
+        let index = words.binary_search(&word.as_str()).unwrap_or_else(|at| at);
+        put_varint(page, index as u64);
+    }
+}
+
+fn put_conditions(page: &mut Vec<u8>, conditions: &Conditions) {
+    let bits = |interval: Option<Interval>, known, one| match interval {
+        None => 0,
+        Some(Interval { min, max }) if min == max => known | one,
+        Some(_) => known,
+    };
+    page.push(
+        bits(conditions.speed_mm_s, SPEED, ONE_SPEED) | bits(conditions.force_n, FORCE, ONE_FORCE),
+    );
+    for interval in [conditions.speed_mm_s, conditions.force_n].into_iter().flatten() {
+        page.extend(interval.min.to_le_bytes());
+        if interval.min != interval.max {
+            page.extend(interval.max.to_le_bytes());
+        }
+    }
+}
+
+fn put_law(page: &mut Vec<u8>, entry: &Entry) {
+    fn number<T: PartialEq>(all: &[T], one: &T) -> u8 {
+        all.iter().position(|x| x == one).unwrap_or_default() as u8
+    }
+    let exponents = entry.law.exponents();
+    let sources = exponents.iter().enumerate();
+    let bits = sources.map(|(i, one)| number(&SOURCES, &one.source) << (2 * i + 2));
+    page.push(number(&CONTACTS, &entry.contact) | bits.fold(0, |all, bits| all | bits));
+    for one in exponents {
+        page.extend(one.exponent.to_le_bytes());
+    }
+}
+
+fn put_cuts(page: &mut Vec<u8>, entry: &Entry) {
+    put_varint(page, entry.place.cuts.len() as u64);
+    let mut at = 0;
+    for cut in &entry.place.cuts {
+        put_varint(page, cut.at - at);
+        put_varint(page, cut.object.start);
+        put_varint(page, length(&cut.object));
+        at = cut.at;
+    }
+}

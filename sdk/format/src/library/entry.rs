@@ -1,0 +1,139 @@
+//! An entry of the index: what the library knows about a texture without opening it.
+
+use std::ops::Range;
+
+use crate::{Contact, Exponent, ExponentSource, Law};
+use serde::{Serialize, Serializer};
+
+/// What the index states about a texture.
+///
+/// ```no_run
+/// let library = htex_format::library::Library::open("cloth.htexlib".as_ref())?;
+/// if let Some(entry) = library.entry("woven/cotton")? {
+///     println!("{} bytes, recorded at {:?} mm/s", entry.bytes, entry.conditions.speed_mm_s);
+/// }
+/// # Ok::<(), htex_format::library::LibraryError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Entry {
+    /// Name in the library, with `/` between its parts ([`crate::library::check_name`]).
+    pub name: String,
+    /// Search terms, in the texture's own order.
+    pub tags: Vec<String>,
+    /// Range of the conditions at which the texture was recorded.
+    pub conditions: Conditions,
+    /// What slid over the surface.
+    pub contact: Contact,
+    /// How frequencies and level change at a motion outside these conditions.
+    pub law: IndexedLaw,
+    /// Ids of the models that describe the texture, in the texture's own order.
+    pub models: Vec<String>,
+    /// Size of the texture's `.htex` file, bytes.
+    pub bytes: u64,
+    /// BLAKE3 of the texture's `.htex` file; hexadecimal in JSON.
+    #[serde(serialize_with = "hexadecimal")]
+    pub blake3: [u8; 32],
+    #[serde(skip)]
+    pub(crate) place: TexturePlace,
+}
+
+/// Range of the recorded conditions: the smallest and the greatest known speed and force.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Conditions {
+    /// Scanning speeds, mm/s; `None` if no speed is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_mm_s: Option<Interval>,
+    /// Normal forces, newtons; `None` if no force is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_n: Option<Interval>,
+}
+
+/// A motion law ([`htex_format::Law`]) without its measurements.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct IndexedLaw {
+    /// How frequencies change with the speed.
+    pub frequency_speed: IndexedExponent,
+    /// How the level changes with the speed.
+    pub level_speed: IndexedExponent,
+    /// How the level changes with the normal force.
+    pub level_force: IndexedExponent,
+}
+
+/// An exponent of a law and where it comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct IndexedExponent {
+    /// The exponent, from -4 to 4.
+    pub exponent: f64,
+    pub source: ExponentSource,
+}
+
+impl IndexedLaw {
+    pub(crate) const fn new(exponents: [IndexedExponent; 3]) -> Self {
+        let [frequency_speed, level_speed, level_force] = exponents;
+        Self { frequency_speed, level_speed, level_force }
+    }
+
+    /// The exponents in the order of the index.
+    #[cfg(feature = "write")]
+    pub(crate) const fn exponents(&self) -> [IndexedExponent; 3] {
+        [self.frequency_speed, self.level_speed, self.level_force]
+    }
+}
+
+impl From<Law> for IndexedLaw {
+    fn from(law: Law) -> Self {
+        // Adding zero turns -0 into 0.
+        let indexed = |(_, Exponent { exponent, source, .. }): (_, Exponent)| IndexedExponent {
+            exponent: exponent + 0.0,
+            source,
+        };
+        Self::new(law.exponents().map(indexed))
+    }
+}
+
+/// A closed interval. Both ends are finite and not negative.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    pub min: f64,
+    pub max: f64,
+}
+
+/// Where the bytes of a texture are.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct TexturePlace {
+    /// Range of the texture's own bytes, counted from the start of the payload.
+    pub own: Range<u64>,
+    /// Shared objects to insert into its own bytes, in order.
+    pub cuts: Vec<Cut>,
+}
+
+/// A shared object inside a texture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Cut {
+    /// Number of the texture's own bytes before the object.
+    pub at: u64,
+    /// Range of the object, counted from the start of the shared part.
+    pub object: Range<u64>,
+}
+
+impl Entry {
+    /// Returns the BLAKE3 of the texture as 64 hexadecimal digits.
+    pub fn blake3_hex(&self) -> String {
+        blake3::Hash::from_bytes(self.blake3).to_hex().to_string()
+    }
+}
+
+impl Interval {
+    /// Returns the smallest interval that contains all numbers; `None` if there are no numbers.
+    pub(crate) fn of(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
+        numbers.into_iter().fold(None, |interval, x| {
+            let Self { min, max } = interval.unwrap_or(Self { min: x, max: x });
+            Some(Self { min: min.min(x), max: max.max(x) })
+        })
+    }
+}
+
+fn hexadecimal<S: Serializer>(hash: &[u8; 32], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&blake3::Hash::from_bytes(*hash).to_hex())
+}

@@ -1,0 +1,107 @@
+//! Errors of reading and writing libraries.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::ReadError;
+use htex_base::finding::{Finding, plain, summary};
+
+use crate::library::name::InvalidName;
+
+/// Error of reading or writing a library.
+///
+/// ```
+/// use htex_format::library::{Library, LibraryError};
+/// let error = Library::open_source(&b"not a library"[..]).map(|_| ()).unwrap_err();
+/// assert!(matches!(&error, LibraryError::Invalid { findings } if findings[0].code == "LIBRARY_UNRECOGNISED"));
+/// ```
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LibraryError {
+    /// The file could not be opened.
+    #[error("cannot open {}: {error}", .path.display())]
+    Open {
+        path: PathBuf,
+        #[source]
+        error: io::Error,
+    },
+    /// Bytes of the library could not be read.
+    #[error("cannot read {length} bytes at byte {at} of the library: {error}")]
+    Read {
+        /// Offset in the file.
+        at: u64,
+        length: u64,
+        #[source]
+        error: io::Error,
+    },
+    /// The file breaks a rule of the format.
+    #[error("not a valid library: {}", summary(.findings))]
+    Invalid {
+        /// The broken rule, with its code.
+        findings: Vec<Finding>,
+    },
+    /// The library has no texture with this name.
+    #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
+    Absent { name: String },
+    /// The library could not be written; an existing file is unchanged.
+    #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
+    Write {
+        path: PathBuf,
+        #[source]
+        error: io::Error,
+    },
+    /// A name is not allowed.
+    #[error("{:?} is not a name: {problem}", plain(.name))]
+    Name {
+        name: String,
+        /// The broken rule.
+        #[source]
+        problem: InvalidName,
+    },
+    /// Two textures have the same name.
+    #[error("two textures have the name {}; rename one", plain(.name))]
+    Duplicate { name: String },
+    /// Two names differ only in case or normalisation.
+    #[error("{} and {} differ only in case or in Unicode normalisation, and are one file on some systems; rename one", plain(.name), plain(.other))]
+    Alike {
+        name: String,
+        /// The name that was added before.
+        other: String,
+    },
+    /// Textures state no licence, and packing them was not allowed.
+    #[error("{}{} no licence, and a library is passed on; state it, or pack it as unlicensed", plain(.name), states(.others))]
+    Unlicensed {
+        /// Name of the first of these textures.
+        name: String,
+        /// How many more textures state no licence.
+        others: usize,
+    },
+    /// A texture to be added is not a valid asset.
+    #[error("{}: {error}", plain(.name))]
+    Asset {
+        name: String,
+        #[source]
+        error: Box<ReadError>,
+    },
+    /// A remote file could not be opened.
+    #[cfg(feature = "storage")]
+    #[error(transparent)]
+    Storage(#[from] htex_base::storage::StorageError),
+    /// A texture or the library exceeds a limit of the index.
+    #[error("{}: {problem}", plain(.name))]
+    Limit {
+        /// Name of the texture, or of the library.
+        name: String,
+        /// The limit and what to do.
+        problem: String,
+    },
+}
+
+/// Returns the words that continue the message: the other textures, with the matching verb.
+fn states(others: &usize) -> String {
+    match others {
+        0 => " states".to_owned(),
+        1 => " and another texture state".to_owned(),
+        others => format!(" and {others} other textures state"),
+    }
+}

@@ -1,0 +1,38 @@
+//! Facts about an asset that the index states, taken from its manifest.
+
+use crate::{Contact, Manifest};
+
+use crate::library::entry::{Conditions, IndexedLaw, Interval};
+
+/// Largest number of tags, and of models, that a texture may have in the index.
+pub(crate) const MOST_WORDS: usize = 64;
+
+/// Tags, models, conditions and law of an asset.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Facts {
+    pub tags: Vec<String>,
+    pub models: Vec<String>,
+    pub conditions: Conditions,
+    pub contact: Contact,
+    pub law: IndexedLaw,
+}
+
+impl Facts {
+    pub(crate) fn of(manifest: &Manifest) -> Self {
+        let representations = manifest.representations.iter();
+        let known = manifest.conditions.iter();
+        // Adding zero turns -0, which a manifest may have, into 0.
+        let speeds = known.clone().filter_map(|c| c.speed_mm_s).map(|x| x + 0.0);
+        let forces = known.filter_map(|c| c.force_n).map(|x| x + 0.0);
+        Self {
+            tags: manifest.tags.clone(),
+            models: representations.map(|r| r.model.clone()).collect(),
+            conditions: Conditions {
+                speed_mm_s: Interval::of(speeds),
+                force_n: Interval::of(forces),
+            },
+            contact: manifest.contact,
+            law: manifest.law().into(),
+        }
+    }
+}

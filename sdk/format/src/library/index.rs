@@ -1,0 +1,168 @@
+//! The index of an open library. It does no input or output: it says where pages and textures are,
+//! and decodes their bytes.
+
+use std::ops::Range;
+
+use htex_base::finding::{Finding, Findings};
+
+use crate::library::entry::Entry;
+use crate::library::error::LibraryError;
+use crate::library::fault::{Fault, leaf_place};
+use crate::library::header::{Header, MAJOR, MINOR};
+use crate::library::leaf::LeafReader;
+use crate::library::limits::Limits;
+use crate::library::page;
+use crate::library::ratio::Ratio;
+use crate::library::root::Root;
+use crate::library::rules as rule;
+
+/// The header and the root page of an open library.
+///
+/// A texture is opened in three steps:
+///
+/// 1. [`Self::leaf_of`] its name and [`Self::leaf_range`] say which page of the index to read.
+/// 2. [`Self::read_leaf`] decodes that page, which contains the texture's entry.
+/// 3. [`Self::asset_ranges`] says which bytes to read, and [`Self::assemble`] makes the texture
+///    from them.
+///
+/// [`crate::library::Library`] does all this with a [`crate::library::LibrarySource`].
+#[derive(Debug, Clone)]
+pub struct Index {
+    header: Header,
+    root: Root,
+    limits: Limits,
+}
+
+impl Index {
+    pub(crate) fn new(header: Header, root: Root, limits: Limits) -> Self {
+        Self { header, root, limits }
+    }
+
+    pub(crate) fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// Returns the name of the library; it may be empty.
+    pub fn name(&self) -> &str {
+        &self.root.name
+    }
+
+    /// Returns the number of textures.
+    #[allow(clippy::len_without_is_empty)] // The library has `is_empty`.
+    pub fn len(&self) -> u64 {
+        self.header.entries
+    }
+
+    /// Returns the BLAKE3 of the index, which identifies the library: equal hashes mean equal
+    /// textures with equal names.
+    pub fn blake3(&self) -> [u8; 32] {
+        self.header.index_blake3
+    }
+
+    /// Returns all findings that are not errors, such as a newer minor version.
+    pub fn notes(&self) -> Vec<Finding> {
+        let mut findings = Findings::default();
+        if self.header.minor > MINOR {
+            let message = format!(
+                "the library has version {MAJOR}.{} and this program supports {MAJOR}.{MINOR}; what is new is ignored",
+                self.header.minor
+            );
+            findings.add(rule::LIBRARY_VERSION_NEWER, "/header", message);
+        }
+        findings.into_list()
+    }
+
+    pub(crate) fn ratio(&self) -> Ratio {
+        Ratio::new(self.header.payload.end, self.limits.ratio)
+    }
+
+    /// Returns the number of leaf pages.
+    pub fn leaves(&self) -> usize {
+        self.root.leaves()
+    }
+
+    /// Returns the leaf page that may contain the entry with this name; `None` if no page can.
+    pub fn leaf_of(&self, name: &str) -> Option<usize> {
+        self.root.leaf_of(name.as_bytes())
+    }
+
+    /// Returns the byte range of a leaf page in the file; `None` if there is no such page.
+    pub fn leaf_range(&self, leaf: usize) -> Option<Range<u64>> {
+        self.root.leaf(leaf)
+    }
+
+    /// Decodes the entries of a leaf page from its bytes. They are sorted by name.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] if the page breaks a rule.
+    pub fn read_leaf(&self, leaf: usize, bytes: &[u8]) -> Result<Vec<Entry>, LibraryError> {
+        Ok(self.leaf(leaf, bytes)?)
+    }
+
+    pub(crate) fn leaf(&self, leaf: usize, bytes: &[u8]) -> Result<Vec<Entry>, Fault> {
+        let page = page::unpack(bytes, self.limits.leaf_bytes, &leaf_place(leaf))?;
+        let reader =
+            LeafReader { leaf, root: &self.root, header: &self.header, limits: &self.limits };
+        reader.read(&page)
+    }
+
+    /// Returns the byte ranges of the file that make up a texture: first its own bytes, then each
+    /// object that it shares.
+    pub fn asset_ranges(&self, entry: &Entry) -> Vec<Range<u64>> {
+        let in_part = |part: &Range<u64>, range: &Range<u64>| {
+            part.start.saturating_add(range.start)..part.start.saturating_add(range.end)
+        };
+        let own = in_part(&self.header.payload, &entry.place.own);
+        let cuts = entry.place.cuts.iter();
+        let shared = cuts.map(|cut| in_part(&self.header.shared, &cut.object));
+        std::iter::once(own).chain(shared).collect()
+    }
+
+    /// Assembles a texture from the bytes of its ranges, in the order of [`Self::asset_ranges`],
+    /// and compares the result with the texture's hash.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] if the bytes do not have the texture's hash.
+    pub fn assemble<B: AsRef<[u8]>>(
+        &self,
+        entry: &Entry,
+        parts: &[B],
+    ) -> Result<Vec<u8>, LibraryError> {
+        let asset = assembled(entry, parts).unwrap_or_default();
+        if blake3::hash(&asset).as_bytes() == &entry.blake3 {
+            return Ok(asset);
+        }
+        Err(changed(entry, "").into())
+    }
+}
+
+/// Inserts the shared objects into the texture's own bytes; `None` if a part is missing or has the
+/// wrong length.
+pub(crate) fn assembled<B: AsRef<[u8]>>(entry: &Entry, parts: &[B]) -> Option<Vec<u8>> {
+    let (own, objects) = parts.split_first()?;
+    let (own, cuts) = (own.as_ref(), &entry.place.cuts);
+    if cuts.is_empty() {
+        return Some(own.to_vec());
+    }
+    let mut asset = Vec::with_capacity(usize::try_from(entry.bytes).ok()?);
+    let mut at = 0;
+    for (cut, object) in cuts.iter().zip(objects) {
+        let next = usize::try_from(cut.at).ok()?;
+        asset.extend_from_slice(own.get(at..next)?);
+        asset.extend_from_slice(object.as_ref());
+        at = next;
+    }
+    asset.extend_from_slice(own.get(at..)?);
+    let is_complete = objects.len() == cuts.len() && asset.len() as u64 == entry.bytes;
+    is_complete.then_some(asset)
+}
+
+/// Returns the fault for bytes that do not have the texture's hash.
+pub(crate) fn changed(entry: &Entry, place: &str) -> Fault {
+    let message = format!(
+        "the bytes of {} do not have its hash {}; get the file again",
+        entry.name,
+        entry.blake3_hex()
+    );
+    Fault::new(rule::LIBRARY_ASSET_CHANGED, place, message)
+}

@@ -1,0 +1,91 @@
+//! Reads, writes and validates `.htexlib` files: thousands of textures in one file, opened one at a
+//! time.
+//!
+//! `spec/htexlib-1.md` is the normative text. The index comes first, in compressed pages sorted by
+//! name. So opening one texture takes three reads however large the library is: the start of the
+//! file, a page of the index, and the texture.
+//!
+//! ```
+//! use htex_format::library::{Library, Writer};
+//! # use htex_format::{Asset, Manifest};
+//! # let manifest: Manifest = serde_json::from_str(r#"{
+//! #     "htex": "1.0", "name": "Cotton", "license": "CC0-1.0", "quantity": "lateral_force", "unit": "N",
+//! #     "tags": ["textile"], "band": { "low_hz": 20, "high_hz": 1000 },
+//! #     "conditions": [{ "speed_mm_s": 80, "force_n": 0.4 }],
+//! #     "representations": [{ "model": "org.htex.sbeta", "model_version": "1.0.0",
+//! #         "fields": [{ "name": "alpha", "store": "f32" }, { "name": "beta", "store": "f32" }],
+//! #         "at": [{ "condition": 0, "level_rms": 0.02 }], "parameters": "parameters/sbeta.bin" }] }"#)?;
+//! # let asset = Asset { manifest, parameters: vec![vec![vec![1.5, 4.0]]], reference: None, plugins: vec![], notes: vec![] };
+//! # let cotton = asset.to_bytes()?;
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("cloth.htexlib");
+//! let mut writer = Writer::create(&path, "Cloth")?;
+//! writer.add("woven/cotton", &cotton)?;
+//! writer.finish()?;
+//!
+//! let library = Library::open(&path)?;
+//! assert_eq!(library.get("woven/cotton")?, cotton);
+//! for entry in library.entries() {
+//!     let entry = entry?;
+//!     println!("{}: {} bytes, {:?}", entry.name, entry.bytes, entry.tags);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and
+//! [`Opening`] do no input or output and only say which bytes of the file they need. [`Library`]
+//! reads these bytes from a [`LibrarySource`]; a browser fetches them.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "write")]
+mod encode;
+mod entry;
+mod error;
+mod facts;
+mod fault;
+mod header;
+mod index;
+mod leaf;
+mod library;
+mod limits;
+#[cfg(feature = "storage")]
+mod located;
+mod name;
+mod opening;
+#[cfg(feature = "write")]
+mod packer;
+mod page;
+mod query;
+mod ratio;
+mod root;
+mod rules;
+#[cfg(feature = "write")]
+mod sharing;
+mod source;
+#[cfg(feature = "write")]
+mod spool;
+mod validate;
+mod wire;
+#[cfg(feature = "write")]
+mod writer;
+
+pub use entry::{Conditions, Entry, IndexedExponent, IndexedLaw, Interval};
+pub use error::LibraryError;
+pub use header::{EXTENSION, MAGIC};
+pub use index::Index;
+pub use library::{Entries, Library};
+pub use limits::Limits;
+#[cfg(feature = "storage")]
+pub use located::Located;
+pub use name::{InvalidName, Names, check_name};
+pub use opening::{FIRST_READ, Opening, Progress};
+#[cfg(feature = "write")]
+pub use packer::Packed;
+pub use query::Query;
+pub use ratio::Ratio;
+pub use rules::{RULES, findings_page};
+pub use source::{LibrarySource, LocalFile};
+pub use validate::{validate, validate_source};
+#[cfg(feature = "write")]
+pub use writer::{MemoryWriter, Writer};

@@ -1,0 +1,109 @@
+//! Opens a library without doing input or output: it says which bytes it needs next.
+
+use std::ops::Range;
+
+use crate::library::error::LibraryError;
+use crate::library::fault::Fault;
+use crate::library::header::{HEADER_BYTES, Header};
+use crate::library::index::Index;
+use crate::library::limits::Limits;
+use crate::library::page;
+use crate::library::root::{PLACE, Root};
+use crate::library::rules as rule;
+
+/// Size of the first read, bytes. It contains the header and the root page of all but huge
+/// libraries.
+pub const FIRST_READ: u64 = 16 << 10;
+
+/// A library that is being opened. The caller gives it bytes until it becomes an [`Index`].
+///
+/// ```
+/// use htex_format::library::{Index, LibraryError, Limits, Opening, Progress};
+///
+/// fn open(file: &[u8]) -> Result<Index, LibraryError> {
+///     let mut opening = Opening::new(Limits::default());
+///     loop {
+///         let wanted = opening.wanted();
+///         let end = (wanted.end as usize).min(file.len());
+///         let bytes = file.get(wanted.start as usize..end).unwrap_or_default();
+///         match opening.give(bytes, file.len() as u64)? {
+///             Progress::More(next) => opening = next,
+///             Progress::Open(index) => return Ok(index),
+///         }
+///     }
+/// }
+/// assert!(open(b"not a library").is_err());
+/// ```
+#[derive(Debug)]
+pub struct Opening {
+    limits: Limits,
+    /// The start of the file, as far as the caller has given it.
+    start: Vec<u8>,
+    header: Option<Header>,
+}
+
+/// The result of giving bytes.
+#[derive(Debug)]
+pub enum Progress {
+    /// More bytes are needed: [`Opening::wanted`].
+    More(Opening),
+    /// The library is open.
+    Open(Index),
+}
+
+impl Opening {
+    /// Starts opening a library.
+    pub fn new(limits: Limits) -> Self {
+        Self { limits, start: Vec::new(), header: None }
+    }
+
+    /// Returns which bytes of the file are needed next. The file may end before the end of this
+    /// range.
+    pub fn wanted(&self) -> Range<u64> {
+        let have = self.start.len() as u64;
+        match &self.header {
+            None => 0..FIRST_READ,
+            Some(header) => have..header.root.end,
+        }
+    }
+
+    /// Takes the wanted bytes, or fewer if the file ends earlier. `file_bytes` is the length of the
+    /// whole file.
+    ///
+    /// # Errors
+    /// [`LibraryError::Invalid`] if the header or the root page breaks a rule.
+    pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
+        let wanted = self.wanted();
+        let most = usize::try_from(wanted.end - wanted.start).unwrap_or(usize::MAX);
+        self.start.extend_from_slice(&bytes[..bytes.len().min(most)]);
+        let header = match self.header.take() {
+            Some(header) => header,
+            None => self.read_header(file_bytes)?,
+        };
+        let is_complete = self.start.len() as u64 >= header.root.end;
+        if !is_complete && self.start.len() as u64 == wanted.start {
+            let message = format!("no bytes follow byte {}; get it again", wanted.start);
+            return Err(Fault::new(rule::LIBRARY_TRUNCATED, "", message).into());
+        }
+        if is_complete {
+            return Ok(Progress::Open(self.read_root(header)?));
+        }
+        self.header = Some(header);
+        Ok(Progress::More(self))
+    }
+
+    fn read_header(&self, file_bytes: u64) -> Result<Header, Fault> {
+        let header = Header::read(&self.start, file_bytes, &self.limits)?;
+        let packed = header.root.end - header.root.start;
+        page::check_packed_size(packed, self.limits.root_bytes, PLACE)?;
+        Ok(header)
+    }
+
+    fn read_root(&self, header: Header) -> Result<Index, Fault> {
+        // The bytes up to the end of the root are in memory, so the end fits into `usize`.
+        let packed = self.start.get(HEADER_BYTES..header.root.end as usize).unwrap_or_default();
+        let root = page::unpack(packed, self.limits.root_bytes, PLACE)?;
+        let root = Root::read(&root, &header, self.limits.leaf_bytes)?;
+        Ok(Index::new(header, root, self.limits))
+    }
+}

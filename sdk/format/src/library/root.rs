@@ -1,0 +1,149 @@
+//! The root page: the library's name, and for every leaf page its first name and its length.
+//!
+//! The root page of a million textures fits into the first 16 KiB of the file, so that the first
+//! read contains it.
+
+use std::ops::Range;
+
+use crate::library::fault::{Fault, leaf_place};
+use crate::library::header::Header;
+use crate::library::name::check_library_name;
+use crate::library::page;
+use crate::library::rules as rule;
+use crate::library::wire::Cursor;
+
+/// Place of the root page, as written in findings.
+pub(crate) const PLACE: &str = "/root";
+
+#[derive(Debug, Clone)]
+pub(crate) struct Root {
+    /// Name of the library.
+    pub name: String,
+    /// A separator for each leaf. It does not sort after any name of the leaf, and sorts after all
+    /// names of the leaves before.
+    separators: Texts,
+    /// Offsets of the leaves in the file, followed by the end of the last leaf.
+    offsets: Vec<u64>,
+}
+
+impl Root {
+    /// Decodes the unpacked page.
+    pub(crate) fn read(page: &[u8], header: &Header, leaf_bytes: u64) -> Result<Self, Fault> {
+        let mut cursor = Cursor::new(page);
+        let malformed = |m| Fault::page(PLACE, m);
+        let name = cursor.text().map_err(malformed)?.to_owned();
+        if let Err(problem) = check_library_name(&name) {
+            let message = format!("the library's name is not allowed: {problem}");
+            return Err(Fault::new(rule::LIBRARY_NAME_INVALID, PLACE, message));
+        }
+        let count = cursor.count(3).map_err(malformed)?;
+        if count as u64 != u64::from(header.leaf_count) {
+            let message = format!(
+                "it has {count} leaves and the header states {}; pack the library again",
+                header.leaf_count
+            );
+            return Err(Fault::new(rule::LIBRARY_COUNT_WRONG, PLACE, message));
+        }
+        let separators = Texts::read(&mut cursor, count)?;
+        let offsets = offsets(&mut cursor, count, header, leaf_bytes)?;
+        if header.minor == crate::library::header::MINOR && cursor.rest() > 0 {
+            return Err(malformed(cursor.malformed("bytes follow the last value")));
+        }
+        Ok(Self { name, separators, offsets })
+    }
+
+    pub(crate) fn leaves(&self) -> usize {
+        self.separators.len()
+    }
+
+    /// Returns the byte range of a leaf in the file.
+    pub(crate) fn leaf(&self, leaf: usize) -> Option<Range<u64>> {
+        Some(*self.offsets.get(leaf)?..*self.offsets.get(leaf + 1)?)
+    }
+
+    /// Returns the leaf that contains the name, if any leaf does.
+    pub(crate) fn leaf_of(&self, name: &[u8]) -> Option<usize> {
+        let count = self.leaves();
+        let (mut low, mut high) = (0, count);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.separators.get(middle).is_some_and(|s| s <= name) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        low.checked_sub(1)
+    }
+
+    /// Returns the smallest name that a leaf may contain, and the smallest name that belongs to the
+    /// next leaf (`None` for the last leaf).
+    pub(crate) fn bounds(&self, leaf: usize) -> (&[u8], Option<&[u8]>) {
+        let low = self.separators.get(leaf).unwrap_or_default();
+        (low, self.separators.get(leaf + 1))
+    }
+}
+
+/// Reads the lengths of the leaves and returns their offsets.
+fn offsets(
+    cursor: &mut Cursor<'_>,
+    count: usize,
+    header: &Header,
+    leaf_bytes: u64,
+) -> Result<Vec<u64>, Fault> {
+    let mut offsets = vec![header.leaves.start];
+    let mut at = header.leaves.start;
+    for leaf in 0..count {
+        let length = cursor.varint().map_err(|m| Fault::page(PLACE, m))?;
+        // Checked here for all leaves, so that reading one later needs no check of its size.
+        page::check_packed_size(length, leaf_bytes, &leaf_place(leaf))?;
+        at = at.saturating_add(length);
+        offsets.push(at);
+    }
+    if at == header.leaves.end {
+        return Ok(offsets);
+    }
+    let message = format!(
+        "the leaves end at byte {at} and the header states {}; pack the library again",
+        header.leaves.end
+    );
+    Err(Fault::new(rule::LIBRARY_HEADER_INVALID, PLACE, message))
+}
+
+/// Sorted texts, all in one buffer.
+#[derive(Debug, Clone)]
+struct Texts {
+    bytes: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+impl Texts {
+    /// Reads `count` texts. The first must be empty, and each must sort after the one before.
+    fn read(cursor: &mut Cursor<'_>, count: usize) -> Result<Self, Fault> {
+        let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(count));
+        let mut text = Vec::new();
+        for leaf in 0..count {
+            let before = text.clone();
+            cursor.following(&mut text).map_err(|m| Fault::page(PLACE, m))?;
+            if (leaf == 0) != text.is_empty() || leaf > 0 && text <= before {
+                let message = format!(
+                    "the first name of leaf {leaf} is not above the one before; pack the library again"
+                );
+                return Err(Fault::new(rule::LIBRARY_ORDER_INVALID, PLACE, message));
+            }
+            bytes.extend_from_slice(&text);
+            ends.push(bytes.len());
+        }
+        Ok(Self { bytes, ends })
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn get(&self, index: usize) -> Option<&[u8]> {
+        let end = *self.ends.get(index)?;
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.bytes.get(start..end)
+    }
+}

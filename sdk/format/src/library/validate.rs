@@ -1,0 +1,253 @@
+//! Validates a whole library: the index page by page, and every texture.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::Asset;
+use htex_base::finding::{Findings, Report};
+
+use crate::library::entry::Entry;
+use crate::library::error::LibraryError;
+use crate::library::facts::Facts;
+use crate::library::fault::entry_place;
+use crate::library::index::{assembled, changed};
+use crate::library::leaf::length;
+use crate::library::library::Library;
+use crate::library::limits::Limits;
+use crate::library::name::Names;
+use crate::library::ratio::Ratio;
+use crate::library::rules as rule;
+use crate::library::source::{LibrarySource, LocalFile};
+
+/// Validates a library file within the default limits: every page of the index, and every texture
+/// as [`htex_format::validate`] does.
+///
+/// # Errors
+/// If the file cannot be read. Anything wrong with its contents is a finding.
+pub fn validate(path: &Path) -> Result<Report, LibraryError> {
+    validate_source(LocalFile::open(path)?, &Limits::default())
+}
+
+/// Validates a library from any source, within the given limits.
+///
+/// # Errors
+/// The errors of [`validate`].
+pub fn validate_source(
+    source: impl LibrarySource,
+    limits: &Limits,
+) -> Result<Report, LibraryError> {
+    let library = match Library::open_source_with(source, *limits) {
+        Ok(library) => library,
+        Err(LibraryError::Invalid { findings }) => {
+            return Ok(Report::new(findings));
+        }
+        Err(error) => return Err(error),
+    };
+    let mut validation = Validation::new(&library, limits);
+    validation.run()?;
+    let mut findings = library.notes();
+    findings.extend(validation.findings.into_list());
+    Ok(Report::new(findings))
+}
+
+/// State of a validation.
+struct Validation<'a, S> {
+    library: &'a Library<S>,
+    limits: &'a Limits,
+    findings: Findings,
+    /// Where the next texture's own bytes must start; `None` after a leaf that could not be read.
+    next: Option<u64>,
+    /// Shared objects seen so far: end by start.
+    objects: BTreeMap<u64, u64>,
+    /// Names seen so far, as 128-bit hashes that ignore case, however long a name is.
+    names: Names,
+    entries: u64,
+    /// Counts the bytes of all textures so far.
+    ratio: Ratio,
+    /// Whether all leaves could be read.
+    is_whole: bool,
+}
+
+impl<'a, S: LibrarySource> Validation<'a, S> {
+    fn new(library: &'a Library<S>, limits: &'a Limits) -> Self {
+        Self {
+            library,
+            limits,
+            findings: Findings::default(),
+            next: Some(0),
+            objects: BTreeMap::new(),
+            names: Names::default(),
+            entries: 0,
+            ratio: library.ratio(),
+            is_whole: true,
+        }
+    }
+
+    fn run(&mut self) -> Result<(), LibraryError> {
+        let index = self.library.index();
+        let mut hash = blake3::Hasher::new();
+        hash.update(&self.library.read_range(index.header().root.clone())?);
+        for leaf in 0..index.leaves() {
+            let range = index.leaf_range(leaf).unwrap_or_default();
+            let bytes = self.library.read_range(range)?;
+            hash.update(&bytes);
+            match index.leaf(leaf, &bytes) {
+                Ok(entries) => {
+                    if !self.check_leaf(leaf, &entries)? {
+                        return Ok(());
+                    }
+                }
+                Err(fault) => {
+                    fault.add_to(&mut self.findings);
+                    (self.next, self.is_whole) = (None, false);
+                }
+            }
+        }
+        if hash.finalize().as_bytes() != &index.blake3() {
+            let message =
+                "the index does not have the header's hash; get the file again".to_owned();
+            self.findings.add(rule::LIBRARY_INDEX_CHANGED, "/header", message);
+        }
+        self.check_end();
+        Ok(())
+    }
+
+    /// Checks the entries of a leaf and their textures. Returns false if no further texture must be
+    /// read.
+    fn check_leaf(&mut self, leaf: usize, entries: &[Entry]) -> Result<bool, LibraryError> {
+        for (i, entry) in entries.iter().enumerate() {
+            let place = entry_place(leaf, i);
+            self.entries += 1;
+            // Counted before the texture is read, which limits how much is read in all.
+            if let Err(fault) = self.ratio.count(entry, &place) {
+                fault.add_to(&mut self.findings);
+                return Ok(false);
+            }
+            self.check_name(entry, &place);
+            self.check_gap(entry, &place);
+            if !self.check_objects(entry, &place) {
+                return Ok(false);
+            }
+            self.check_asset(entry, &place)?;
+        }
+        Ok(true)
+    }
+
+    /// Checks that no earlier name is the same file on some system.
+    fn check_name(&mut self, entry: &Entry, place: &str) {
+        let is_other = self.names.insert(&entry.name);
+        self.findings
+            .require(is_other, rule::LIBRARY_NAMES_ALIKE, place, || {
+                format!(
+                    "{} differs from another name only in case or in Unicode normalisation; rename one and pack the library again",
+                    entry.name
+                )
+            });
+    }
+
+    /// Checks that the own bytes directly follow those of the texture before.
+    fn check_gap(&mut self, entry: &Entry, place: &str) {
+        let (expected, own) = (self.next, &entry.place.own);
+        self.next = Some(own.end);
+        if expected.is_some_and(|expected| expected != own.start) {
+            let message = format!(
+                "{} begins at byte {} of the payload and the texture before it ends at {}; pack the library again",
+                entry.name,
+                own.start,
+                expected.unwrap_or(0)
+            );
+            self.findings.add(rule::LIBRARY_RANGE_INVALID, place, message);
+        }
+    }
+
+    /// Checks that shared objects are either equal or do not overlap. Returns false if there are
+    /// too many.
+    fn check_objects(&mut self, entry: &Entry, place: &str) -> bool {
+        for cut in &entry.place.cuts {
+            let (start, end) = (cut.object.start, cut.object.end);
+            if self.objects.get(&start) == Some(&end) {
+                continue;
+            }
+            // Known objects do not overlap, so only the last one that begins before `end` can
+            // overlap this one.
+            let before = self.objects.range(..end).next_back();
+            if before.is_some_and(|(_, other)| *other > start) {
+                let message = format!(
+                    "a shared object of {} overlaps another one; pack the library again",
+                    entry.name
+                );
+                self.findings.add(rule::LIBRARY_RANGE_INVALID, place, message);
+                continue;
+            }
+            if self.objects.len() as u64 == self.limits.objects {
+                let message = format!(
+                    "there are more than {} shared objects; raise the limit if you trust the file",
+                    self.limits.objects
+                );
+                self.findings.add(rule::LIBRARY_OBJECTS_TOO_MANY, place, message);
+                return false;
+            }
+            self.objects.insert(start, end);
+        }
+        true
+    }
+
+    fn check_asset(&mut self, entry: &Entry, place: &str) -> Result<(), LibraryError> {
+        let ranges = self.library.index().asset_ranges(entry).into_iter();
+        let parts: Result<Vec<_>, _> = ranges.map(|r| self.library.read_range(r)).collect();
+        let asset = assembled(entry, &parts?).unwrap_or_default();
+        if blake3::hash(&asset).as_bytes() != &entry.blake3 {
+            changed(entry, place).add_to(&mut self.findings);
+            return Ok(());
+        }
+        match Asset::from_bytes(&asset) {
+            Ok(asset) => self.check_facts(entry, &Facts::of(&asset.manifest), place),
+            Err(error) => {
+                let message = format!("{}: {error}", entry.name);
+                self.findings.add(rule::LIBRARY_ASSET_INVALID, place, message);
+            }
+        }
+        Ok(())
+    }
+
+    /// Compares the texture with what the index states about it.
+    fn check_facts(&mut self, entry: &Entry, facts: &Facts, place: &str) {
+        for (what, is_same) in [
+            ("tags", entry.tags == facts.tags),
+            ("models", entry.models == facts.models),
+            ("conditions", entry.conditions == facts.conditions),
+            ("contact", entry.contact == facts.contact),
+            ("exponents of the law", entry.law == facts.law),
+        ] {
+            self.findings.require(is_same, rule::LIBRARY_ENTRY_WRONG, place, || {
+                format!(
+                    "{}: the index states other {what} than the texture; pack the library again",
+                    entry.name
+                )
+            });
+        }
+    }
+
+    /// Checks what can only be known after the last leaf.
+    fn check_end(&mut self) {
+        if !self.is_whole {
+            return;
+        }
+        let header = self.library.index().header();
+        let (counted, stated) = (self.entries, header.entries);
+        self.findings
+            .require(counted == stated, rule::LIBRARY_COUNT_WRONG, "/header", || {
+                format!("the index has {counted} textures and the header states {stated}; pack the library again")
+            });
+        let (end, payload) = (self.next.unwrap_or(0), length(&header.payload));
+        self.findings
+            .require(end == payload, rule::LIBRARY_RANGE_INVALID, "/header", || {
+                format!("the last texture ends at byte {end} of the payload, which has {payload}; pack the library again")
+            });
+        let used: u64 = self.objects.iter().map(|(start, end)| end - start).sum();
+        let unused = length(&header.shared).saturating_sub(used);
+        self.findings.require(unused == 0, rule::LIBRARY_OBJECT_UNUSED, "/header", || {
+            format!("no texture uses {unused} bytes of the shared part; pack the library again")
+        });
+    }
+}

@@ -1,0 +1,122 @@
+//! Writes libraries to a file or to memory.
+
+use std::io::{BufWriter, Cursor, Write};
+use std::path::Path;
+
+use htex_base::files::{Scratch, Unfinished};
+
+use crate::library::error::LibraryError;
+use crate::library::packer::{Packed, Packer, Unchanged};
+use crate::library::spool::ScratchFile;
+
+/// Number of bytes collected in memory before they are written.
+const BUFFER_BYTES: usize = 1 << 20;
+
+/// Writes a library file. Textures may be added in any order; the same textures give the same
+/// bytes.
+///
+/// Added textures are stored in a temporary file next to the target, so that only the index is in
+/// memory: about 500 bytes for each texture. [`Self::finish`] writes the target and renames it into
+/// place. A writer that is dropped before that leaves no file behind.
+///
+/// ```no_run
+/// let mut writer = htex_format::library::Writer::create("cloth.htexlib".as_ref(), "Cloth")?;
+/// writer.add("woven/cotton", &std::fs::read("cotton.htex")?)?;
+/// let packed = writer.finish()?;
+/// println!("{} textures in {} bytes", packed.entries, packed.bytes);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Writer {
+    target: Unfinished,
+    path: std::path::PathBuf,
+    packer: Packer<ScratchFile>,
+}
+
+impl Writer {
+    /// Starts a library. `path` is the file. `name` is shown to users and may be empty.
+    ///
+    /// # Errors
+    /// If the name has a control character or more than 255 bytes, or no file can be written there.
+    #[allow(clippy::disallowed_methods, reason = "the user named this file")]
+    pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
+        let target = Unfinished::create(path).unchanged(path)?;
+        let scratch = ScratchFile(Scratch::beside(path).unchanged(path)?);
+        Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
+    }
+
+    /// Allows textures that state no licence. Otherwise [`Self::finish`] refuses them, because only
+    /// the people who made them may pass them on.
+    pub fn allow_unlicensed(&mut self) {
+        self.packer.allows_unlicensed = true;
+    }
+
+    /// Adds a texture. `asset` holds the bytes of a `.htex` file, which are stored unchanged.
+    ///
+    /// # Errors
+    /// - The name breaks a rule of [`check_name`](crate::library::check_name), or was added before in the
+    ///   same or another case.
+    /// - The asset is not valid, or has more tags or longer tags than the index can hold (64 tags
+    ///   of 255 bytes).
+    /// - The bytes cannot be written.
+    pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
+        self.packer.add(name, asset)
+    }
+
+    /// Writes the library and renames it into place.
+    ///
+    /// # Errors
+    /// If a texture states no licence, a file cannot be written, or the library exceeds the default
+    /// limits of readers.
+    pub fn finish(self) -> Result<Packed, LibraryError> {
+        let Self { mut target, path, packer } = self;
+        let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());
+        let packed = packer.finish(&mut file)?;
+        let written = file.flush();
+        drop(file);
+        written.and_then(|()| target.keep()).unchanged(&path)?;
+        Ok(packed)
+    }
+}
+
+/// Writes a library in memory like [`Writer`], for programs without a file system.
+///
+/// ```
+/// let writer = htex_format::library::MemoryWriter::new("Cloth")?;
+/// let (packed, bytes) = writer.finish()?;
+/// assert_eq!((packed.entries, packed.bytes), (0, bytes.len() as u64));
+/// # Ok::<(), htex_format::library::LibraryError>(())
+/// ```
+pub struct MemoryWriter(Packer<Cursor<Vec<u8>>>);
+
+impl MemoryWriter {
+    /// Starts a library. `name` may be empty.
+    ///
+    /// # Errors
+    /// The errors of [`Writer::create`].
+    pub fn new(name: &str) -> Result<Self, LibraryError> {
+        Packer::new(Path::new(""), name, Cursor::default()).map(Self)
+    }
+
+    /// Allows textures that state no licence, like [`Writer::allow_unlicensed`].
+    pub fn allow_unlicensed(&mut self) {
+        self.0.allows_unlicensed = true;
+    }
+
+    /// Adds a texture, like [`Writer::add`].
+    ///
+    /// # Errors
+    /// The errors of [`Writer::add`].
+    pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
+        self.0.add(name, asset)
+    }
+
+    /// Returns the library's bytes.
+    ///
+    /// # Errors
+    /// If a texture states no licence, or the library exceeds the default limits of readers.
+    pub fn finish(self) -> Result<(Packed, Vec<u8>), LibraryError> {
+        let mut bytes = Vec::new();
+        let packed = self.0.finish(&mut bytes)?;
+        Ok((packed, bytes))
+    }
+}

@@ -1,0 +1,7 @@
+//! Integration tests, in one program.
+#![allow(clippy::unwrap_used, reason = "a failed test may panic")]
+
+#[cfg(all(feature = "library", feature = "write"))]
+mod library;
+#[cfg(all(feature = "author", not(feature = "wasm")))]
+mod small_player;

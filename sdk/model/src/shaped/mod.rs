@@ -1,0 +1,257 @@
+//! Shared code of models that describe a spectrum by a curve and play it as noise.
+//!
+//! A model implements [`Curve`]. This module then provides the rest of a model: the magnitude at
+//! unit RMS ([`magnitude`]), the rate of a voice ([`voice_rate_hz`]) and the voice itself
+//! ([`ShapedVoice`]).
+mod places;
+
+use crate::{Error, Values, Voice};
+use htex_dsp::grid::Band;
+use htex_dsp::shaped_noise::{ComponentsKey, ShapedNoise, economical_rate_hz};
+
+pub use places::Places;
+
+/// A magnitude curve that a model's parameters define.
+///
+/// Implement this trait for a model that plays random-phase noise with the spectrum of the curve.
+/// Use [`ShapedVoice`] as the model's voice, and call [`magnitude`] and [`voice_rate_hz`] for the
+/// methods of the same names.
+///
+/// # How it is used
+///
+/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`at`](Self::at) by
+///   [`level`](Self::level).
+/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `at`. It then calls
+///   [`prepare`](Self::prepare) once, with the frequencies of the noise. Both may allocate.
+/// * Every retune of the voice calls [`set`](Self::set). [`fill`](Self::fill) follows at once, or
+///   at the end of the cross-fade of 10 ms that is in progress. Both run on the render thread and
+///   do not allocate.
+///
+/// The scale of `at` and `fill` does not matter, and they may have different scales: the voice
+/// always normalises to unit RMS in the band.
+///
+/// # Example
+///
+/// Flat noise between two frequencies:
+///
+/// ```
+/// use htex_dsp::grid::curve_level_rms;
+/// use htex_model::{
+///     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
+/// };
+/// use htex_model::shaped::{Curve, ShapedVoice};
+///
+/// struct Plateau;
+///
+/// struct Edges {
+///     low_hz: f64,
+///     high_hz: f64,
+///     band: Band,
+/// }
+///
+/// impl Curve for Edges {
+///     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+///         let mut edges = Self { low_hz: 0.0, high_hz: 0.0, band };
+///         edges.set(parameters)?;
+///         Ok(edges)
+///     }
+///
+///     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+///         (self.low_hz, self.high_hz) = (parameters.scalar(0), parameters.scalar(1));
+///         if self.level() > 0.0 {
+///             return Ok(());
+///         }
+///         Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
+///     }
+///
+///     fn at(&self, frequency_hz: f64) -> f64 {
+///         f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
+///     }
+///
+///     fn level(&self) -> f64 {
+///         curve_level_rms(self.band, |hz| self.at(hz))
+///     }
+/// }
+///
+/// impl Model for Plateau {
+///     type Voice = ShapedVoice<Edges>;
+///
+///     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+///         "org.example.plateau",
+///         "Plateau",
+///         "1.0.0",
+///         "Flat noise between two frequencies.",
+///     )
+///     .fields(&[
+///         StaticField::scalar("low_hz", "Hz", (0.0, 2_000.0), "Lowest frequency."),
+///         StaticField::scalar("high_hz", "Hz", (0.0, 2_000.0), "Highest frequency."),
+///     ]);
+///
+///     /// Finds the two frequencies between which 90 % of the power lies.
+///     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+///         let power = || input.magnitude.iter().map(|m| m * m);
+///         let total: f64 = power().sum();
+///         if total == 0.0 {
+///             return Err(Error::cannot_fit("the spectrum is zero"));
+///         }
+///         let below = |part: f64| {
+///             let mut sum = 0.0;
+///             let bin = power().position(|p| {
+///                 sum += p;
+///                 sum >= part * total
+///             });
+///             input.frequency_hz[bin.unwrap_or(input.frequency_hz.len() - 1)]
+///         };
+///         Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
+///     }
+///
+///     fn magnitude(
+///         parameters: &Values<'_>,
+///         band: Band,
+///         frequency_hz: &[f64],
+///         magnitude: &mut [f64],
+///     ) -> Result<(), Error> {
+///         htex_model::shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
+///     }
+///
+///     fn interpolate(
+///         sets: &[Values<'_>],
+///         weights: &[f64],
+///         mixed: &mut Numbers<'_>,
+///     ) -> Result<(), Error> {
+///         mix::linear(sets, weights, mixed)
+///     }
+///
+///     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+///         htex_model::shaped::voice_rate_hz(band, wanted_hz)
+///     }
+///
+///     fn voice(
+///         parameters: &Values<'_>,
+///         band: Band,
+///         rate_hz: f64,
+///         seed: u64,
+///     ) -> Result<Self::Voice, Error> {
+///         ShapedVoice::new(parameters, band, rate_hz, seed)
+///     }
+/// }
+///
+/// let values = Values::read(&Plateau::DESCRIPTOR, &[80.0, 250.0])?;
+/// let mut magnitude = [0.0; 2];
+/// Plateau::magnitude(&values, Band::TACTILE, &[100.0, 500.0], &mut magnitude)?;
+/// assert!(magnitude[0] > 0.0 && magnitude[1] == 0.0);
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// # Known doubt
+///
+/// When a retune arrives during the cross-fade of an earlier one, the voice accepts the parameters
+/// before it knows whether [`fill`](Self::fill) can describe them. If `fill` then writes no power,
+/// the old spectrum continues without an error. Detect invalid parameters in [`set`](Self::set) if
+/// that is cheap.
+pub trait Curve: Sized + Send + 'static {
+    /// Makes the curve of these parameters in a band. May allocate.
+    ///
+    /// # Errors
+    /// If the parameters describe no spectrum, i.e. the curve is zero or not finite everywhere in
+    /// the band.
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error>;
+
+    /// Changes the parameters. `[render thread, no allocation]`
+    ///
+    /// # Errors
+    /// As [`Self::new`]. After an error the curve may be unusable.
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
+
+    /// Returns the curve at a frequency in the band, in any scale. The value is finite and not
+    /// negative.
+    fn at(&self, frequency_hz: f64) -> f64;
+
+    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::at`]; above 0.
+    fn level(&self) -> f64;
+
+    /// Prepares [`Self::fill`] for these frequencies, hertz, e.g. by computing tables. Curves with
+    /// the same `key` have the same frequencies and can share the tables.
+    fn prepare(&mut self, _frequency_hz: &[f64], _key: ComponentsKey) {}
+
+    /// Writes the curve at the prepared frequencies, in any scale. If the parameters describe no
+    /// spectrum, all values are zero or not finite. `[render thread, no allocation]`
+    ///
+    /// A voice calls [`Self::set`] with every retune, but does not call this while it cross-fades
+    /// (10 ms). So slow computations belong here and not in `set`.
+    fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = self.at(f);
+        }
+    }
+}
+
+/// Writes a curve's magnitude at unit RMS, as [`htex_model::Model::magnitude`] requires it.
+/// Frequencies outside the band get zero.
+///
+/// # Errors
+/// If the parameters describe no spectrum.
+pub fn magnitude<C: Curve>(
+    parameters: &Values<'_>,
+    band: Band,
+    frequency_hz: &[f64],
+    magnitude: &mut [f64],
+) -> Result<(), Error> {
+    let curve = C::new(parameters, band)?;
+    let level = curve.level();
+    for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+        *m = if band.contains(f) { curve.at(f) / level } else { 0.0 };
+    }
+    Ok(())
+}
+
+/// Returns the rate in hertz at which a [`ShapedVoice`] renders: an integer fraction of
+/// `wanted_hz`, as low as the band allows.
+pub fn voice_rate_hz(band: Band, wanted_hz: f64) -> f64 {
+    economical_rate_hz(wanted_hz, band)
+}
+
+/// The voice of a model with a [`Curve`]: random-phase noise with the spectrum of the curve.
+pub struct ShapedVoice<C> {
+    curve: C,
+    noise: ShapedNoise,
+}
+
+impl<C: Curve> ShapedVoice<C> {
+    /// Makes a voice with unit RMS.
+    ///
+    /// # Errors
+    /// If the parameters describe no spectrum.
+    pub fn new(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let mut curve = C::new(parameters, band)?;
+        let mut noise = ShapedNoise::new(rate_hz, band, seed);
+        // `at` and not `fill`, which needs the frequencies that `prepare` gets only now.
+        noise.start(|_, f| curve.at(f));
+        curve.prepare(noise.component_hz(), noise.components_key());
+        Ok(Self { curve, noise })
+    }
+}
+
+impl<C: Curve> Voice for ShapedVoice<C> {
+    fn render(&mut self, out: &mut [f32]) {
+        let Self { curve, noise } = self;
+        noise.render_with(out, &mut |hz, magnitude| curve.fill(hz, magnitude));
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let Self { curve, noise } = self;
+        curve.set(parameters)?;
+        if noise.retune_with(|hz, magnitude| curve.fill(hz, magnitude)) {
+            Ok(())
+        } else {
+            Err(Error::parameters(
+                "these parameters describe no spectrum: nothing in the band, or nothing finite",
+            ))
+        }
+    }
+}

@@ -1,0 +1,447 @@
+//! Bakes a representation of an asset to a block.
+
+use std::rc::Rc;
+
+use crate::{Asset, Motion, Quantity, Rights};
+use htex_dsp::grid::GRID_HZ;
+use htex_player::layout::{CHECKSUM, HEADER, MOST_FILTERS, MOST_HALF, MOST_LEVEL};
+use htex_player::{Block, Law};
+
+use crate::bake::compress::{Factors, Stored};
+use crate::bake::encode::{Content, Encoded, encode};
+use crate::bake::filter::Design;
+use crate::bake::interpolator::Interpolator;
+use crate::bake::noise::Designer;
+use crate::bake::shape::{Shape, Spectra};
+use crate::bake::texture::{Moment, Texture};
+use crate::bake::tones::{self, Tone};
+use crate::bake::{BakeError, Grid};
+
+/// Largest error of the nine bands at a condition, dB. The shortest filter with at most this error
+/// is used.
+const TOLERANCE_DB: f64 = 0.1;
+/// If the tolerance cannot be met, filters may be left out as long as they add at most this error
+/// at a condition, dB.
+const LEFT_OUT_DB: f64 = 0.01;
+/// As [`LEFT_OUT_DB`], for a block that would otherwise take more than [`WANTED_BYTES`].
+const MORE_LEFT_OUT_DB: f64 = 0.1;
+/// Wanted size of a block, bytes. To reach it, accuracy is reduced if it is not within the
+/// tolerance anyway.
+const WANTED_BYTES: usize = 16 * 1024;
+/// Largest number of conditions after conditions were inserted between the wanted ones.
+const MOST_CONDITIONS: usize = 64;
+/// Lengths of one side of the filter, in the order in which they are tried.
+const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
+/// Magnitude that one of a million samples of noise exceeds, relative to the level. Determines the
+/// full scale of a block.
+const CREST: f64 = 5.0;
+
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Baked {
+    pub bytes: Vec<u8>,
+    /// Number of 32-bit values that the player in C needs for the block, in addition to the struct
+    /// `htex_player`.
+    pub numbers: usize,
+    /// The conditions of the block: the wanted ones, and those that were inserted between them for
+    /// accuracy.
+    pub grid: Grid,
+    /// The id of the model that was baked.
+    pub model: String,
+    /// The rights of the asset. Source code contains them as comments; a block has no place for
+    /// them.
+    pub rights: Rights,
+    /// Physical quantity of the samples, which determines their unit.
+    pub quantity: Quantity,
+    /// The law that the texture follows beyond the grid.
+    pub law: Law,
+    /// Largest level to which the law may raise a level of the grid.
+    pub ceiling: f64,
+    /// A magnitude that samples at the motions of the grid rarely exceed.
+    pub full_scale: f64,
+    /// Rate at which noise or sinusoids are computed, hertz.
+    pub internal_rate_hz: f64,
+    /// Number of coefficients of the noise filter; 0 for sinusoids.
+    pub taps: usize,
+    /// Number of noise filters that the conditions mix; 0 for sinusoids.
+    pub filters: usize,
+    /// Number of sinusoids; 0 for noise.
+    pub tones: usize,
+    /// Largest error of the nine bands at the conditions, dB. Only bands within 40 dB of the
+    /// strongest one count.
+    pub at_conditions_db: f64,
+    /// The same midway between conditions. There the model interpolates parameters, but the player
+    /// mixes filters or sinusoids.
+    pub between_db: f64,
+    /// The same at half the lowest speed and at twice the highest one. There the law changes the
+    /// frequencies of the texture, which a filter cannot follow. `None` if the law does not change
+    /// frequencies, and for sinusoids, which follow it.
+    pub beyond_db: Option<f64>,
+    /// Lowest and highest recorded speed, mm/s, if the asset states them.
+    pub recorded_speeds_mm_s: Option<(f64, f64)>,
+}
+
+/// How accurate a block has to be, and how much it may cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct BakeLimits {
+    /// Largest error of the nine bands between conditions, dB. Conditions are inserted until it is
+    /// reached.
+    pub within_db: f64,
+    /// Largest number of coefficients of a noise filter, which bounds the time per sample.
+    pub longest: usize,
+}
+
+impl BakeLimits {
+    /// Smallest number of coefficients of a filter.
+    pub const FEWEST: usize = 2 * HALVES[0] + 1;
+    /// Largest number of coefficients of a filter.
+    pub const MOST: usize = 2 * MOST_HALF + 1;
+
+    /// Limits the error between conditions, dB.
+    pub fn within_db(within_db: f64) -> Self {
+        Self { within_db, longest: Self::MOST }
+    }
+
+    /// Limits the number of coefficients of a filter. At least [`Self::FEWEST`] are used.
+    #[must_use]
+    pub fn with_longest(self, longest: usize) -> Self {
+        Self { longest, ..self }
+    }
+
+    /// Returns how many of the lengths may be tried.
+    fn lengths(self) -> usize {
+        let longest = self.longest.max(Self::FEWEST);
+        HALVES.iter().take_while(|half| 2 * **half < longest).count()
+    }
+}
+
+impl From<f64> for BakeLimits {
+    fn from(within_db: f64) -> Self {
+        Self::within_db(within_db)
+    }
+}
+
+/// Bakes a representation at the conditions of a grid, to a block that plays at `rate_hz`.
+///
+/// `model` is the id or the short name of the representation's model; `None` selects the best
+/// representation. `limits` may be a number of decibels. Conditions are inserted midway between
+/// neighbours until the error there is within the limits, or until the block has 64 conditions.
+///
+/// # Errors
+/// If the asset cannot be played, or if a condition or the rate is out of range.
+pub fn bake(
+    asset: &Asset,
+    model: Option<&str>,
+    grid: &Grid,
+    rate_hz: f64,
+    limits: impl Into<BakeLimits>,
+) -> Result<Baked, BakeError> {
+    let limits = limits.into();
+    let within_db = limits.within_db;
+    let texture = Texture::new(asset, model)?;
+    let mut designs = Designs::new(limits.lengths());
+    let mut grid = grid.clone();
+    loop {
+        let designed = Designed::new(&texture, &grid, rate_hz, &mut designs)?;
+        let between_db = designed.between_db();
+        // More conditions do not help if the filters themselves are less accurate.
+        let reachable_db = within_db.max(1.1 * designed.shape.at_conditions_db);
+        let refined = grid.refined(&designed.between, reachable_db);
+        let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
+        if between_db <= within_db || is_last {
+            let baked = designed.baked(&texture, grid, within_db)?;
+            let rights = Rights::of(asset.manifest());
+            return Ok(Baked { rights, ..baked });
+        }
+        grid = refined;
+    }
+}
+
+/// What stays the same while conditions are inserted.
+struct Designs {
+    designer: Option<Rc<Designer>>,
+    /// Number of lengths that may be tried.
+    lengths: usize,
+    /// Index of the length of the filters.
+    length: usize,
+    /// Whether no length is within the tolerance, so that the most accurate one is used.
+    is_best: bool,
+}
+
+impl Designs {
+    fn new(lengths: usize) -> Self {
+        Self { designer: None, lengths, length: 0, is_best: false }
+    }
+
+    /// Returns the designer for a design; makes a new one if the design has changed.
+    fn designer(&mut self, design: Design, texture: &Texture<'_>) -> Rc<Designer> {
+        match &self.designer {
+            Some(designer) if designer.is_of(&design) => Rc::clone(designer),
+            _ => {
+                let designer = Rc::new(Designer::new(design, texture.band()));
+                *self = Self { designer: Some(Rc::clone(&designer)), ..Self::new(self.lengths) };
+                designer
+            }
+        }
+    }
+
+    /// Returns the shortest filters within the tolerance, or the most accurate ones if there are
+    /// none.
+    fn shape(
+        &mut self,
+        designer: &Rc<Designer>,
+        texture: &Texture<'_>,
+        moments: &[Rc<Moment>],
+    ) -> Result<Shape, BakeError> {
+        let with = |length: usize, within_db: f64| {
+            let filter = |m: &Rc<Moment>| designer.filter(texture, m, HALVES[length]);
+            let mut filters = Vec::new();
+            for (i, moment) in moments.iter().enumerate() {
+                filters.push(filter(moment)?);
+                // A single condition may exceed the limit.
+                let spectra = Spectra::Noise(Rc::clone(designer), vec![Rc::clone(&filters[i])]);
+                let alone = std::slice::from_ref(moment);
+                if Shape::within(spectra, texture, alone, within_db)?.is_none() {
+                    return Ok::<_, BakeError>(None);
+                }
+            }
+            let spectra = Spectra::Noise(Rc::clone(designer), filters);
+            Shape::within(spectra, texture, moments, within_db)
+        };
+        let mut best: Option<(usize, Shape)> = None;
+        let lengths =
+            if self.is_best { self.length..self.length + 1 } else { self.length..self.lengths };
+        for length in lengths {
+            let least_db = best.as_ref().map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
+            let Some(shape) = with(length, least_db)? else {
+                continue;
+            };
+            let is_within = shape.at_conditions_db <= TOLERANCE_DB;
+            best = Some((length, shape));
+            if is_within {
+                break;
+            }
+        }
+        // The first length has no limit.
+        let Some((length, shape)) = best else {
+            return Err(BakeError::Refused(htex_player::OpenError::Values));
+        };
+        self.is_best = shape.at_conditions_db > TOLERANCE_DB;
+        self.length = length;
+        Ok(shape)
+    }
+}
+
+/// The spectra of a grid before compression.
+struct Designed {
+    moments: Vec<Rc<Moment>>,
+    interpolator: Interpolator,
+    shape: Shape,
+    between: Vec<(Motion, f64)>,
+}
+
+impl Designed {
+    fn new(
+        texture: &Texture<'_>,
+        grid: &Grid,
+        rate_hz: f64,
+        designs: &mut Designs,
+    ) -> Result<Self, BakeError> {
+        let moments = grid.motions().map(|motion| texture.at(motion));
+        let moments: Vec<Rc<Moment>> = moments.collect::<Result<_, _>>()?;
+        for moment in &moments {
+            check_level(moment)?;
+        }
+        let [slowest, fastest] = ratios(&moments);
+        let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
+        let shape = if texture.model().is_sum_of_sines() {
+            let (tones, random) = tones::of_moments(&moments, texture.band())?;
+            let spectra = Spectra::Tones(tones, random);
+            Shape::within(spectra, texture, &moments, f64::INFINITY)?
+        } else {
+            let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
+            let designer = designs.designer(design, texture);
+            Some(designs.shape(&designer, texture, &moments)?)
+        };
+        // Nothing exceeds an infinite limit.
+        let Some(shape) = shape else {
+            return Err(BakeError::Refused(htex_player::OpenError::Values));
+        };
+        Ok(Self {
+            between: shape.between(texture, grid, f64::INFINITY)?,
+            moments,
+            interpolator,
+            shape,
+        })
+    }
+
+    fn between_db(&self) -> f64 {
+        largest(&self.between)
+    }
+
+    /// Encodes the block, with as few filters as the accuracy allows.
+    fn baked(
+        mut self,
+        texture: &Texture<'_>,
+        grid: Grid,
+        within_db: f64,
+    ) -> Result<Baked, BakeError> {
+        let spectra = match self.shape.spectra.clone() {
+            Spectra::Noise(designer, filters) => {
+                let sides: Vec<&[f64]> = filters.iter().map(|f| f.as_slice()).collect();
+                let [slowest, fastest] = ratios(&self.moments);
+                let factors = designer.factors(&sides, slowest, fastest, MOST_FILTERS);
+                Encoded::Noise(self.compress(texture, &grid, within_db, &designer, &factors)?)
+            }
+            Spectra::Tones(tones, random_phase) => {
+                let internal_hz = self.interpolator.internal_hz;
+                let numbers = |&(hz, amplitude): &Tone| [hz / internal_hz, amplitude];
+                Encoded::Tones {
+                    count: tones.first().map_or(0, Vec::len),
+                    random_phase,
+                    numbers: tones.iter().flatten().flat_map(numbers).collect(),
+                }
+            }
+        };
+        let law = texture.law();
+        let content = Content {
+            quantity: texture.quantity(),
+            law,
+            ceiling: self.ceiling(texture),
+            full_scale: self.full_scale(),
+            levels: self.shape.levels.clone(),
+            spectra,
+        };
+        let bytes = encode(&grid, &self.interpolator, &content);
+        let numbers = Block::open(&bytes)?.numbers();
+        let (taps, filters, tones) = match &content.spectra {
+            Encoded::Noise(stored) => (2 * stored.filters[0].len() - 1, stored.filters.len(), 0),
+            Encoded::Tones { count, .. } => (0, 0, *count),
+        };
+        let cannot_follow = law.frequency_speed != 0.0 && tones == 0;
+        let beyond_db =
+            if cannot_follow { Some(self.shape.beyond_db(texture, &grid)?) } else { None };
+        Ok(Baked {
+            bytes,
+            numbers,
+            grid,
+            model: texture.id().to_owned(),
+            rights: Rights::default(),
+            quantity: content.quantity,
+            law,
+            ceiling: content.ceiling,
+            full_scale: content.full_scale,
+            internal_rate_hz: self.interpolator.internal_hz,
+            taps,
+            filters,
+            tones,
+            at_conditions_db: self.shape.at_conditions_db,
+            between_db: self.between_db(),
+            beyond_db,
+            recorded_speeds_mm_s: texture.recorded_speeds_mm_s(),
+        })
+    }
+
+    /// Finds the smallest number of filters that are within the tolerance at the conditions and
+    /// within `within_db` between them, or nearly as accurate as all filters. Replaces the shape
+    /// and the errors by theirs.
+    fn compress(
+        &mut self,
+        texture: &Texture<'_>,
+        grid: &Grid,
+        within_db: f64,
+        designer: &Rc<Designer>,
+        factors: &Factors,
+    ) -> Result<Stored, BakeError> {
+        let exact_db = [self.shape.at_conditions_db, self.between_db()];
+        // An error that is within a limit has to stay within it.
+        let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| {
+            if exact_db <= limit_db { limit_db } else { exact_db + left_out_db }
+        };
+        let limits = |left_out_db: f64| {
+            [
+                limit(TOLERANCE_DB, exact_db[0], left_out_db),
+                limit(within_db, exact_db[1], left_out_db),
+            ]
+        };
+        for count in 1..=factors.len() {
+            let stored = factors.stored(count);
+            let fits = |count: usize| self.bytes(grid, &stored, count) <= WANTED_BYTES;
+            let is_last_that_fits = fits(count) && !fits(count + 1);
+            let limits_db = match (count == factors.len(), is_last_that_fits) {
+                (true, _) => [f64::INFINITY; 2],
+                (false, true) => limits(MORE_LEFT_OUT_DB),
+                (false, false) => limits(LEFT_OUT_DB),
+            };
+            let filters = stored.conditions().into_iter().map(Rc::new).collect();
+            let spectra = Spectra::Noise(Rc::clone(designer), filters);
+            let shape = Shape::within(spectra, texture, &self.moments, limits_db[0])?;
+            if let Some(shape) = shape {
+                let between = shape.between(texture, grid, limits_db[1])?;
+                if largest(&between) <= limits_db[1] {
+                    (self.shape, self.between) = (shape, between);
+                    return Ok(stored);
+                }
+            }
+        }
+        // The last number of filters has no limit, and a filter is never zero.
+        Err(BakeError::Refused(htex_player::OpenError::Values))
+    }
+
+    /// Returns the length of a block with `count` filters that are as long as the stored ones.
+    fn bytes(&self, grid: &Grid, stored: &Stored, count: usize) -> usize {
+        let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
+        let conditions = self.moments.len();
+        let words = axes + self.interpolator.rows.len() + conditions + count;
+        let length = stored.filters.first().map_or(0, Vec::len);
+        let integers = count * (conditions + length);
+        HEADER + 4 * words + (2 * integers).next_multiple_of(4) + CHECKSUM
+    }
+
+    /// Returns the largest level to which the law may raise a level of the grid, in the scale of
+    /// the stored levels.
+    fn ceiling(&self, texture: &Texture<'_>) -> f64 {
+        let stated = self.moments.iter().map(|m| m.level_rms);
+        let pairs = self.shape.levels.iter().zip(stated);
+        let loudest = pairs.max_by(|a, b| a.0.total_cmp(b.0));
+        let raised = loudest.map_or(1.0, |(stored, stated)| stored / stated);
+        texture.ceiling_rms() * raised
+    }
+
+    /// Returns a magnitude that samples at the conditions rarely exceed. Sinusoids never exceed it.
+    fn full_scale(&self) -> f64 {
+        let crest = |i: usize| match &self.shape.spectra {
+            Spectra::Noise(..) => CREST,
+            Spectra::Tones(tones, _) => {
+                let amplitudes = || tones[i].iter().map(|(_, a)| a.abs());
+                let power: f64 = amplitudes().map(|a| 0.5 * a * a).sum();
+                amplitudes().sum::<f64>() / power.sqrt()
+            }
+        };
+        let levels = self.shape.levels.iter().enumerate();
+        let most = levels.map(|(i, level)| level * crest(i));
+        most.fold(0.0, f64::max)
+    }
+}
+
+/// Returns the smallest and the largest factor of frequencies.
+fn ratios(moments: &[Rc<Moment>]) -> [f64; 2] {
+    let ratios = || moments.iter().map(|m| m.ratio);
+    let slowest = ratios().fold(f64::INFINITY, f64::min);
+    [slowest, ratios().fold(0.0, f64::max)]
+}
+
+fn largest(errors: &[(Motion, f64)]) -> f64 {
+    errors.iter().map(|(_, error)| *error).fold(0.0, f64::max)
+}
+
+fn check_level(moment: &Moment) -> Result<(), BakeError> {
+    let Motion { speed_mm_s, force_n, .. } = moment.motion;
+    let most = 0.1 * f64::from(MOST_LEVEL);
+    match moment.level_rms {
+        level if level > most => Err(BakeError::Level { speed_mm_s, force_n, level, most }),
+        level if level > 0.0 => Ok(()),
+        _ => Err(BakeError::Silent { speed_mm_s, force_n }),
+    }
+}

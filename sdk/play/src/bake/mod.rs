@@ -1,0 +1,41 @@
+//! Converts assets to blocks for players on microcontrollers (`spec/baked-1.md`, `htex_player`).
+//!
+//! ```no_run
+//! use htex_play::bake::{Grid, bake};
+//! let asset = htex_play::Asset::open("sandpaper.htex")?;
+//! let baked = bake(&asset, None, &Grid::new(vec![40.0, 160.0], vec![0.4])?, 8_000.0, 0.3)?;
+//! println!("{} bytes, within {:.2} dB", baked.bytes.len(), baked.between_db);
+//! # Ok::<(), htex_play::bake::BakeError>(())
+//! ```
+//!
+//! A block for noise contains filters and not models. White noise through a symmetrical filter at a
+//! low rate can have the spectrum of every noise model, and is always stable. A weighted sum of two
+//! filters has the weighted sum of their magnitudes, so the player does not need the formula of any
+//! model.
+//!
+//! Because mixing is linear, a block stores only a few filters, and each condition mixes them. The
+//! model `bands` on the grid of `tests/it/bake_sizes.rs` takes 16 kB; with one filter in single precision
+//! for each of its 60 conditions it would take 77 kB. A lattice would be cheaper for AR. But
+//! between conditions its spectra would differ from the model's, which interpolates line spectral
+//! frequencies. Where the mixed filters differ from the model by more than `--within`, conditions
+//! are inserted.
+#![forbid(unsafe_code)]
+
+mod bake;
+mod compress;
+mod encode;
+mod error;
+mod filter;
+mod grid;
+mod interpolator;
+mod noise;
+mod reading;
+mod shape;
+mod source;
+mod texture;
+mod tones;
+
+pub use bake::{BakeLimits, Baked, bake};
+pub use error::BakeError;
+pub use grid::Grid;
+pub use source::{c_header, c_name, is_c_name, is_rust_name, rust_name, rust_source};

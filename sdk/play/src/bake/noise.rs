@@ -1,0 +1,93 @@
+//! The filters of the conditions. Each is designed only once.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use htex_host::Band;
+
+use crate::bake::BakeError;
+use crate::bake::compress::Factors;
+use crate::bake::filter::{Bins, Design, Wanted};
+use crate::bake::texture::{Moment, Texture};
+
+/// The centre and one side of a filter with unit energy.
+pub(crate) type Filter = Rc<Vec<f64>>;
+
+/// Designs filters at one rate and measures their spectra. Caches both.
+pub(crate) struct Designer {
+    band: Band,
+    design: RefCell<Design>,
+    /// Bins, by the bits of the ratio of their frequencies.
+    bins: RefCell<BTreeMap<u64, Rc<Bins>>>,
+    /// Filters, by their length and by everything that determines the spectrum.
+    filters: RefCell<BTreeMap<(usize, Vec<u64>), Filter>>,
+}
+
+impl Designer {
+    pub(crate) fn new(design: Design, band: Band) -> Self {
+        Self {
+            band,
+            design: RefCell::new(design),
+            bins: RefCell::default(),
+            filters: RefCell::default(),
+        }
+    }
+
+    /// Returns whether this designer uses the given design.
+    pub(crate) fn is_of(&self, design: &Design) -> bool {
+        self.design.borrow().is_same(design)
+    }
+
+    fn bins(&self, ratio: f64) -> Rc<Bins> {
+        let mut known = self.bins.borrow_mut();
+        let bins = known.entry(ratio.to_bits());
+        let new = || Rc::new(Bins::new(&self.design.borrow(), self.band, ratio));
+        Rc::clone(bins.or_insert_with(new))
+    }
+
+    /// Returns the filter for a moment, with `half` coefficients on each side.
+    pub(crate) fn filter(
+        &self,
+        texture: &Texture<'_>,
+        moment: &Moment,
+        half: usize,
+    ) -> Result<Filter, BakeError> {
+        let key = (half, moment.shape());
+        if let Some(known) = self.filters.borrow().get(&key) {
+            return Ok(Rc::clone(known));
+        }
+        let bins = self.bins(moment.ratio);
+        let mut design = self.design.borrow_mut();
+        let played = design.frequencies_hz().into_iter();
+        let recorded: Vec<f64> = played.map(|hz| hz / moment.ratio).collect();
+        let wanted = Wanted {
+            magnitude: texture.magnitude(moment, &recorded)?,
+            stated: &moment.stated,
+            bands: texture.bands(),
+        };
+        let filter = Rc::new(design.filter(&wanted, &bins, half));
+        self.filters.borrow_mut().insert(key, Rc::clone(&filter));
+        Ok(filter)
+    }
+
+    /// Returns the magnitude at the bins of unit noise that passes a filter; the frequencies of the
+    /// bins are multiplied by `ratio`.
+    pub(crate) fn read(&self, side: &[f64], ratio: f64) -> Vec<f64> {
+        let response = self.design.borrow_mut().response(side);
+        self.bins(ratio).read(&response)
+    }
+
+    /// Factors the filters of the conditions into at most `most` filters. `slowest` and `fastest`
+    /// are the smallest and the largest factor of the band's frequencies.
+    pub(crate) fn factors(
+        &self,
+        conditions: &[&[f64]],
+        slowest: f64,
+        fastest: f64,
+        most: usize,
+    ) -> Factors {
+        let hz = slowest * self.band.low_hz..=fastest * self.band.high_hz;
+        Factors::new(&mut self.design.borrow_mut(), conditions, hz, most)
+    }
+}

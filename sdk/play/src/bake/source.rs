@@ -1,0 +1,179 @@
+//! Blocks as source code in C and Rust.
+
+use std::fmt::Write;
+
+use crate::bake::Baked;
+
+/// Number of bytes per line.
+const IN_LINE: usize = 16;
+
+/// Reserved words, which an array in C or C++ cannot have as its name.
+const RESERVED: &[&str] = &[
+    "alignas",
+    "alignof",
+    "and",
+    "asm",
+    "auto",
+    "bool",
+    "break",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "const",
+    "constexpr",
+    "continue",
+    "decltype",
+    "default",
+    "delete",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "false",
+    "float",
+    "for",
+    "friend",
+    "goto",
+    "if",
+    "inline",
+    "int",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "noexcept",
+    "not",
+    "nullptr",
+    "operator",
+    "or",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "restrict",
+    "return",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "struct",
+    "switch",
+    "template",
+    "this",
+    "throw",
+    "true",
+    "try",
+    "typedef",
+    "typeid",
+    "typename",
+    "typeof",
+    "union",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "while",
+    "xor",
+];
+
+/// Returns the name of an array in C for the stem of a file name. Characters that are not allowed
+/// become underscores.
+///
+/// ```
+/// assert_eq!(htex_play::bake::c_name("my-texture"), "my_texture");
+/// assert_eq!(htex_play::bake::c_name("cloth"), "texture_cloth");
+/// ```
+pub fn c_name(stem: &str) -> String {
+    identifier(stem)
+}
+
+/// Returns the name of a constant in Rust for the stem of a file name.
+///
+/// ```
+/// assert_eq!(htex_play::bake::rust_name("my-texture"), "MY_TEXTURE");
+/// ```
+pub fn rust_name(stem: &str) -> String {
+    identifier(stem).to_ascii_uppercase()
+}
+
+/// Returns whether an array in C and C++ may have this name: a letter, then letters, digits and
+/// underscores, and not a keyword.
+///
+/// ```
+/// assert!(htex_play::bake::is_c_name("felt2"));
+/// assert!(!htex_play::bake::is_c_name("2felt") && !htex_play::bake::is_c_name("float") && !htex_play::bake::is_c_name("_x"));
+/// ```
+pub fn is_c_name(name: &str) -> bool {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(is_word)
+        && !name.contains("__")
+        && !RESERVED.contains(&name)
+}
+
+/// Returns whether a constant in Rust may have this name: a capital letter, then capital letters,
+/// digits and underscores.
+///
+/// ```
+/// assert!(htex_play::bake::is_rust_name("FELT_2"));
+/// assert!(!htex_play::bake::is_rust_name("felt"));
+/// ```
+pub fn is_rust_name(name: &str) -> bool {
+    let is_capital = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
+    name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(is_capital)
+}
+
+/// Returns a C header that defines a block as an array of bytes with this name. The macro
+/// `NAME_NUMBERS`, with the name in capitals, is the number of values that its player needs.
+/// Comments state the author and the licence.
+pub fn c_header(name: &str, baked: &Baked) -> String {
+    let (bytes, numbers) = (&baked.bytes, baked.numbers);
+    let macros = name.to_ascii_uppercase();
+    let lines = lines(bytes);
+    let comment = |line: &str| format!("/* {line} */\n");
+    let rights: String = baked.rights.to_text().lines().map(comment).collect();
+    format!(
+        "{rights}/* A baked texture for htex_player.h (spec/baked-1.md). */\n#ifndef {macros}_BAKED_H\n#define {macros}_BAKED_H\n\n\
+         #include <stdint.h>\n\n/* For HTEX_PLAYER_MEMORY. */\n#define {macros}_NUMBERS {numbers}\n\n\
+         static const uint8_t {name}[{}] = {{\n{lines}}};\n\n#endif\n",
+        bytes.len()
+    )
+}
+
+/// Returns Rust source code that defines a block as an array of bytes with this name.
+pub fn rust_source(name: &str, baked: &Baked) -> String {
+    let bytes = &baked.bytes;
+    let lines = lines(bytes);
+    let rights = baked.rights.commented("// ");
+    format!(
+        "{rights}/// A baked texture for the crate `htex-player` (spec/baked-1.md).\n#[rustfmt::skip]\n\
+         pub static {name}: [u8; {}] = [\n{lines}];\n",
+        bytes.len()
+    )
+}
+
+fn lines(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(5 * bytes.len());
+    for line in bytes.chunks(IN_LINE) {
+        text.push_str("   ");
+        for byte in line {
+            let _ = write!(text, " {byte},");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Returns an identifier for C and Rust. Characters that are not allowed become underscores. A
+/// prefix prevents a leading digit and keywords.
+fn identifier(stem: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let name: String = stem.chars().map(plain).collect();
+    let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.contains('_');
+    if is_word { name } else { format!("texture_{name}") }
+}

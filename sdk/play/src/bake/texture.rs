@@ -1,0 +1,137 @@
+//! The texture of a representation at any motion. Motions have the same effects as on a voice.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use crate::exploration::CEILING;
+use crate::{Asset, Motion, Motions, Quantity};
+use htex_host::{Band, Descriptor, LoadedModel};
+use htex_player::Law;
+
+use crate::bake::BakeError;
+use crate::bake::reading::Bands;
+
+/// A representation of an asset.
+pub(crate) struct Texture<'a> {
+    asset: &'a Asset,
+    model: LoadedModel,
+    id: String,
+    motions: Motions,
+    bands: Bands,
+    /// Moments that were computed, by the bits of speed and force.
+    known: RefCell<BTreeMap<[u64; 2], Rc<Moment>>>,
+}
+
+/// The texture at one motion.
+pub(crate) struct Moment {
+    pub(crate) parameters: Vec<f64>,
+    /// RMS in the asset's unit.
+    pub(crate) level_rms: f64,
+    /// Factor for all frequencies.
+    pub(crate) ratio: f64,
+    pub(crate) motion: Motion,
+    /// Magnitude at unit RMS on the band's grid, as a Hann window would measure it from a recording
+    /// of the host's voice.
+    pub(crate) stated: Vec<f64>,
+}
+
+impl Moment {
+    /// Returns the bits of all values that determine the shape of the spectrum.
+    pub(crate) fn shape(&self) -> Vec<u64> {
+        let numbers = self.parameters.iter().chain([&self.ratio]);
+        numbers.map(|x| x.to_bits()).collect()
+    }
+}
+
+impl<'a> Texture<'a> {
+    pub(crate) fn new(asset: &'a Asset, model: Option<&str>) -> Result<Self, BakeError> {
+        let loaded = asset.loaded_model(model)?;
+        let id = asset.representation_id(model)?.to_owned();
+        if loaded.follows_motion() {
+            return Err(BakeError::FollowsMotion { model: id });
+        }
+        Ok(Self {
+            asset,
+            model: loaded,
+            motions: asset.motions(Some(&id))?,
+            bands: Bands::new(asset.band()),
+            known: RefCell::default(),
+            id,
+        })
+    }
+
+    pub(crate) fn id(&self) -> &str {
+        &self.id
+    }
+
+    pub(crate) fn quantity(&self) -> Quantity {
+        self.asset.quantity()
+    }
+
+    pub(crate) fn model(&self) -> &Descriptor {
+        self.model.descriptor()
+    }
+
+    pub(crate) fn band(&self) -> Band {
+        self.asset.band()
+    }
+
+    pub(crate) fn bands(&self) -> &Bands {
+        &self.bands
+    }
+
+    /// Returns the exponents that are played. An exponent is 0 if the asset does not state the
+    /// speed or the force that it belongs to.
+    pub(crate) fn law(&self) -> Law {
+        let explored = self.motions.explored();
+        let law = explored.law;
+        let over = |is_known: bool, exponent: f64| if is_known { exponent as f32 } else { 0.0 };
+        let (speed, force) = (explored.speed.is_known(), explored.force.is_known());
+        Law {
+            frequency_speed: over(speed, law.frequency_speed.exponent),
+            level_speed: over(speed, law.level_speed.exponent),
+            level_force: over(force, law.level_force.exponent),
+        }
+    }
+
+    /// Returns the largest level to which the law may raise recorded levels.
+    pub(crate) fn ceiling_rms(&self) -> f64 {
+        let representations = &self.asset.manifest().representations;
+        let own = representations.iter().filter(|r| r.model == self.id);
+        let levels = own.flat_map(|r| r.at.iter().map(|at| at.level_rms));
+        CEILING * levels.fold(0.0, f64::max)
+    }
+
+    /// Returns the lowest and the highest recorded speed, mm/s, if they are known.
+    pub(crate) fn recorded_speeds_mm_s(&self) -> Option<(f64, f64)> {
+        match self.motions.explored().speed {
+            crate::Recorded::Between { low, high } => Some((low, high)),
+            crate::Recorded::Unknown => None,
+        }
+    }
+
+    pub(crate) fn at(&self, motion: Motion) -> Result<Rc<Moment>, BakeError> {
+        let key = [motion.speed_mm_s, motion.force_n].map(f64::to_bits);
+        if let Some(known) = self.known.borrow().get(&key) {
+            return Ok(Rc::clone(known));
+        }
+        let (parameters, level_rms) = self.asset.parameters(Some(&self.id), Some(motion))?;
+        let scaling = self.motions.scaling(motion, CEILING);
+        let moment = Rc::new(Moment {
+            stated: self.model.read_magnitude(&parameters, self.band())?,
+            parameters,
+            level_rms: level_rms * scaling.level,
+            ratio: scaling.frequency,
+            motion,
+        });
+        self.known.borrow_mut().insert(key, Rc::clone(&moment));
+        Ok(moment)
+    }
+
+    /// Returns the magnitude at unit RMS at frequencies of the recording, hertz, i.e. before they
+    /// are multiplied by the moment's ratio.
+    pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
+        Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
+    }
+}

@@ -1,0 +1,381 @@
+//! The blocks of `spec/baked-conformance`, what is done with them, and what a player renders for
+//! them or why it refuses them.
+
+use htex_player::{Block, OpenError, Player};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use super::blocks::{Plan, noise, tones, with_checksum};
+
+/// The folder that contains the files.
+pub const FOLDER: &str = "spec/baked-conformance";
+pub const SEED: u32 = 7;
+/// Number of samples that the files list.
+const LISTED: usize = 16;
+
+/// One call of a player.
+#[derive(Clone, Copy)]
+pub enum Step {
+    SetMotion(f32, f32),
+    Render(usize),
+}
+
+use Step::{Render, SetMotion};
+
+/// The files of all cases: their paths from the workspace's folder, and their bytes.
+pub fn files() -> Vec<(String, Vec<u8>)> {
+    let valid = sound().into_iter().map(|(name, plan)| {
+        let bytes = plan.bytes();
+        let case = played(name, &bytes, &steps(plan.rate_hz));
+        (name, bytes, case)
+    });
+    let refused = hostile().into_iter().map(|(name, bytes)| {
+        let case = json!({"block": format!("{name}.bin"), "valid": false, "rule": rule(&bytes)});
+        (name, bytes, case)
+    });
+    let both = |(name, bytes, case): (&str, Vec<u8>, Value)| {
+        let text = format!("{:#}\n", case).into_bytes();
+        [("bin", bytes), ("json", text)].map(|(end, of)| (format!("{FOLDER}/{name}.{end}"), of))
+    };
+    valid.chain(refused).flat_map(both).collect()
+}
+
+/// All blocks, including those that are refused, and what is done with each.
+pub fn blocks_and_steps() -> Vec<(Vec<u8>, Vec<Step>)> {
+    let played = sound().into_iter().map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
+    let refused = hostile().into_iter().map(|(_, bytes)| (bytes, Vec::new()));
+    played.chain(refused).collect()
+}
+
+/// The rule that bytes violate, as the specification names it.
+fn rule(bytes: &[u8]) -> Option<&'static str> {
+    Some(match Block::open(bytes).err()? {
+        OpenError::TooShort => "too_short",
+        OpenError::NotABlock => "not_a_block",
+        OpenError::Version => "version",
+        OpenError::Length => "length",
+        OpenError::Checksum => "checksum",
+        OpenError::Header => "header",
+        OpenError::Axes => "axes",
+        _ => "values",
+    })
+}
+
+/// Motions on the grid, between its points, beyond it and at rest; implausible readings and numbers
+/// that are not finite; and changes during changes.
+fn steps(rate_hz: f32) -> Vec<Step> {
+    let held = (0.1 * rate_hz) as usize;
+    vec![
+        SetMotion(80.0, 0.4),
+        Render(64),
+        SetMotion(55.5, 0.25),
+        Render(1),
+        Render(333),
+        SetMotion(f32::NAN, 0.4),
+        SetMotion(70.0, f32::INFINITY),
+        Render(30),
+        SetMotion(0.0, 0.0),
+        Render(200),
+        SetMotion(101.25, 0.5),
+        Render(100),
+        SetMotion(101.25, 0.5),
+        Render(7),
+        SetMotion(1e6, 0.5),
+        Render(held / 2),
+        SetMotion(80.0, 100.0),
+        Render(held / 2 + 200),
+        SetMotion(-60.0, 0.3),
+        Render(250),
+        SetMotion(999.0, 19.5),
+        Render(200),
+        SetMotion(1.25, 0.001),
+        Render(200),
+        SetMotion(240.0, 0.05),
+        Render(3),
+        SetMotion(70.0, 2.0),
+        Render(200),
+        SetMotion(0.25, 2.0),
+        Render(11),
+        SetMotion(64.0, 0.35),
+        Render(200),
+    ]
+}
+
+/// What two players with the same seed render: one to floating-point numbers, one to integers.
+fn played(name: &str, bytes: &[u8], steps: &[Step]) -> Value {
+    let block = Block::open(bytes).unwrap();
+    let full_scale = block.full_scale();
+    let mut players = [Player::new(block, SEED), Player::new(block, SEED)];
+    let (mut samples, mut integers) = (Vec::new(), Vec::new());
+    for step in steps {
+        match *step {
+            SetMotion(speed, force) => players.iter_mut().for_each(|player| {
+                player.set_motion(speed, force);
+            }),
+            Render(count) => {
+                let from = samples.len();
+                samples.resize(from + count, 0.0f32);
+                integers.resize(from + count, 0i16);
+                players[0].render(&mut samples[from..]);
+                players[1].render_i16(&mut integers[from..], full_scale);
+            }
+        }
+    }
+    let sha256 = |bytes: Vec<u8>| hex(&Sha256::digest(bytes));
+    let first: Vec<String> = samples.iter().take(LISTED).map(|x| bits(*x)).collect();
+    json!({
+        "block": format!("{name}.bin"),
+        "valid": true,
+        "quantity": block.quantity().name(),
+        "unit": block.quantity().unit(),
+        "seed": SEED,
+        "steps": steps.iter().map(described).collect::<Vec<_>>(),
+        "samples": {
+            "count": samples.len(),
+            "first_bits": first,
+            "sha256": sha256(samples.iter().flat_map(|x| x.to_le_bytes()).collect()),
+        },
+        "integers": {
+            "full_scale": full_scale,
+            "full_scale_bits": bits(full_scale),
+            "count": integers.len(),
+            "first": integers.iter().take(LISTED).collect::<Vec<_>>(),
+            "sha256": sha256(integers.iter().flat_map(|x| x.to_le_bytes()).collect()),
+        },
+    })
+}
+
+fn described(step: &Step) -> Value {
+    match *step {
+        SetMotion(speed, force) => json!({"set_motion": {
+            "speed_mm_s": readable(speed), "force_n": readable(force),
+            "speed_bits": bits(speed), "force_bits": bits(force),
+        }}),
+        Render(count) => json!({"render": count}),
+    }
+}
+
+/// A number, or its name if it is not finite.
+fn readable(x: f32) -> Value {
+    if x.is_finite() { json!(x) } else { json!(x.to_string()) }
+}
+
+fn bits(x: f32) -> String {
+    format!("{:08x}", x.to_bits())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Different numbers from -1 to 1, without a pattern.
+fn scattered(count: usize) -> impl Iterator<Item = f32> {
+    let spread = |i: usize| (i as u32).wrapping_mul(2_654_435_761) as i32;
+    (1..=count).map(move |i| spread(i) as f32 / 2_147_483_648.0)
+}
+
+/// An interpolator whose coefficients add up to 1 in each phase.
+fn rows(up: usize, row: usize) -> Vec<f32> {
+    let at = move |phase: usize, i: usize| {
+        let t = i as f32 - (row / 2) as f32 + 1.0 - phase as f32 / up as f32;
+        (1.0 - t.abs() / (row / 2) as f32).max(0.0)
+    };
+    let phase = |p: usize| {
+        let sum: f32 = (0..row).map(|i| at(p, i)).sum();
+        (0..row).map(move |i| at(p, i) / sum)
+    };
+    (0..up).flat_map(phase).collect()
+}
+
+/// Noise with three filters at three speeds and two forces.
+fn noise_grid() -> Plan {
+    let (filters, conditions, size) = (3, 6, 16);
+    let decays = (0..filters).flat_map(|k| {
+        let side = scattered(size + 1).zip(0..).map(move |(x, i)| {
+            let envelope = 1.0 / (1.0 + 0.2 * (i * (k + 1)) as f32);
+            (30_000.0 * envelope * if i == 0 { 1.0 } else { x }) as i16
+        });
+        side.collect::<Vec<_>>()
+    });
+    let weights = scattered(filters * conditions).zip(0..).map(|(x, i)| match i % 3 {
+        0 => 32_767,
+        _ => (20_000.0 * x) as i16,
+    });
+    Plan {
+        up: 3,
+        row: 8,
+        size: size as u16,
+        glide: 53,
+        filters: filters as u8,
+        speeds: vec![40.0, 80.0, 160.0],
+        forces: vec![0.2, 0.6],
+        rows: rows(3, 8),
+        levels: vec![0.05, 0.07, 0.11, 0.12, 0.17, 0.31],
+        numbers: vec![4.1e-10, 2.7e-10, 1.3e-10],
+        integers: weights.chain(decays).collect(),
+        law: [1.0, 0.43, 0.9],
+        ceiling: 1.25,
+        full_scale: 1.6,
+        ..noise()
+    }
+}
+
+fn noise_one_condition() -> Plan {
+    Plan {
+        rate_hz: 2000.0,
+        up: 1,
+        row: 0,
+        size: 4,
+        glide: 40,
+        filters: 1,
+        quantity: 3,
+        rows: vec![],
+        speeds: vec![80.0],
+        forces: vec![0.4],
+        levels: vec![2.5],
+        numbers: vec![4.6e-10],
+        integers: vec![32_767, 31_000, -12_000, 4_001, -77, 9],
+        law: [0.0, 2.0, 1.0],
+        ceiling: 10.0,
+        full_scale: 12.5,
+        highest: 0.5,
+        ..noise()
+    }
+}
+
+/// Noise whose mix is silent at the higher speed.
+fn noise_without_energy() -> Plan {
+    let mut plan = noise();
+    plan.integers[2] = 0;
+    plan.integers[3] = 0;
+    plan
+}
+
+fn noise_rate(rate_hz: f32, up: u16, row: u16, glide: u16) -> Plan {
+    let rows = match up {
+        1 => vec![],
+        _ => rows(up.into(), row.into()),
+    };
+    Plan { rate_hz, up, row, glide, quantity: 4, rows, ..noise_grid() }
+}
+
+fn tones_fixed() -> Plan {
+    let numbers = scattered(24).zip(0..).map(|(x, i)| match i % 2 {
+        0 => 0.01 + 0.2 * x.abs(),
+        _ => x,
+    });
+    Plan {
+        size: 3,
+        rate_hz: 2667.0,
+        quantity: 2,
+        speeds: vec![40.0, 120.0],
+        forces: vec![0.2, 0.6],
+        levels: vec![0.5, 0.75, 1.0, 2.0],
+        numbers: numbers.collect(),
+        ..tones()
+    }
+}
+
+fn tones_random() -> Plan {
+    Plan {
+        flags: 1,
+        rate_hz: 12_000.0,
+        up: 4,
+        row: 12,
+        rows: rows(4, 12),
+        glide: 60,
+        quantity: 5,
+        levels: vec![2e-5, 3e-5, 4e-5, 5e-5],
+        ceiling: 2e-4,
+        full_scale: 3e-4,
+        law: [0.75, -0.5, -0.25],
+        ..tones_fixed()
+    }
+}
+
+/// Sinusoids that the law would raise above the highest frequency, with a level that it would raise
+/// above the ceiling.
+fn tones_law() -> Plan {
+    Plan { law: [4.0, -4.0, 4.0], ceiling: 3.0, highest: 0.4, ..tones_fixed() }
+}
+
+/// A level in the grid that is above the ceiling.
+fn tones_low_ceiling() -> Plan {
+    Plan { law: [-2.0, 1.5, 0.0], ceiling: 0.6, ..tones_fixed() }
+}
+
+fn sound() -> Vec<(&'static str, Plan)> {
+    vec![
+        ("noise_grid", noise_grid()),
+        ("noise_one_condition", noise_one_condition()),
+        ("noise_without_energy", noise_without_energy()),
+        ("noise_100_hz", noise_rate(100.0, 1, 0, 2)),
+        ("noise_44100_hz", noise_rate(44_100.0, 17, 12, 52)),
+        ("tones_fixed_phases", tones_fixed()),
+        ("tones_random_phases", tones_random()),
+        ("tones_law", tones_law()),
+        ("tones_low_ceiling", tones_low_ceiling()),
+    ]
+}
+
+/// Blocks that a player refuses.
+fn hostile() -> Vec<(&'static str, Vec<u8>)> {
+    let noise_with = |change: fn(&mut Plan)| {
+        let mut plan = noise();
+        change(&mut plan);
+        plan.bytes()
+    };
+    let tones_with = |change: fn(&mut Plan)| {
+        let mut plan = tones();
+        change(&mut plan);
+        plan.bytes()
+    };
+    let changed = |change: fn(&mut Vec<u8>)| {
+        let mut bytes = noise().bytes();
+        change(&mut bytes);
+        bytes
+    };
+    let padded = || {
+        let mut odd = noise();
+        (odd.filters, odd.numbers, odd.integers) = (1, vec![1e-9], vec![1; 11]);
+        let mut bytes = odd.content();
+        let last = bytes.len() - 1;
+        bytes[last] = 1;
+        with_checksum(bytes)
+    };
+    vec![
+        ("refused_too_short", noise().bytes()[..55].to_vec()),
+        ("refused_magic", changed(|b| b[0] = b'h')),
+        ("refused_version", changed(|b| b[4] = 2)),
+        ("refused_truncated", changed(|b| b.truncate(b.len() - 4))),
+        ("refused_length_of_header", changed(|b| b[8] = 40)),
+        ("refused_changed_byte", changed(|b| b[60] ^= 1)),
+        ("refused_missing_integers", noise_with(|p| p.integers.truncate(19))),
+        ("refused_too_many_levels", noise_with(|p| p.levels.push(0.0))),
+        ("refused_kind", noise_with(|p| p.kind = 3)),
+        ("refused_flags", noise_with(|p| p.flags = 1)),
+        ("refused_rate", noise_with(|p| p.rate_hz = f32::NAN)),
+        ("refused_up", noise_with(|p| p.up = 65)),
+        ("refused_row", noise_with(|p| p.row = 6)),
+        ("refused_row_without_up", tones_with(|p| p.row = 4)),
+        ("refused_half", noise_with(|p| p.size = 10)),
+        ("refused_glide", noise_with(|p| p.glide = 0)),
+        ("refused_no_force", noise_with(|p| p.forces.clear())),
+        ("refused_no_filter", noise_with(|p| p.filters = 0)),
+        ("refused_tones_with_filter", tones_with(|p| p.filters = 1)),
+        ("refused_quantity", noise_with(|p| p.quantity = 6)),
+        ("refused_exponent", noise_with(|p| p.law[2] = -4.5)),
+        ("refused_ceiling", noise_with(|p| p.ceiling = f32::INFINITY)),
+        ("refused_full_scale", noise_with(|p| p.full_scale = 0.0)),
+        ("refused_highest", noise_with(|p| p.highest = 0.6)),
+        ("refused_equal_speeds", noise_with(|p| p.speeds = vec![80.0, 80.0])),
+        ("refused_speed", noise_with(|p| p.speeds[1] = 1001.0)),
+        ("refused_force", noise_with(|p| p.forces[0] = 0.0)),
+        ("refused_level", noise_with(|p| p.levels[0] = -1.0)),
+        ("refused_scale", noise_with(|p| p.numbers[0] = 1e-7)),
+        ("refused_interpolator", noise_with(|p| p.rows[0] = f32::NAN)),
+        ("refused_frequency", tones_with(|p| p.numbers[0] = 0.6)),
+        ("refused_amplitude", tones_with(|p| p.numbers[1] = 65.0)),
+        ("refused_padding", padded()),
+    ]
+}

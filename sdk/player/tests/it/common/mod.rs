@@ -1,0 +1,5 @@
+pub mod blocks;
+pub mod cases;
+pub mod compilers;
+pub mod mutated;
+pub mod stream;

@@ -1,0 +1,8 @@
+//! Integration tests, in one program.
+#![allow(clippy::unwrap_used, reason = "a failed test may panic")]
+
+mod c;
+mod common;
+mod conformance;
+mod hostile;
+mod playing;

@@ -1,0 +1,11 @@
+//! Integration tests, in one program.
+#![allow(clippy::panic, clippy::unwrap_used, reason = "a failed test may panic")]
+
+mod binary_readers;
+mod common;
+mod formats;
+mod lab;
+mod long_files;
+mod maps;
+mod readers;
+mod value_limit;

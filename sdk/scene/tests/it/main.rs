@@ -1,0 +1,13 @@
+//! Integration tests, in one program.
+#![allow(clippy::panic, clippy::unwrap_used, reason = "a failed test may panic")]
+
+mod budget;
+mod common;
+mod compensation;
+mod conformance;
+mod drive;
+mod equivalence;
+mod exploration;
+mod hostile;
+mod kept_gains;
+mod parsimony;

@@ -1,0 +1,2 @@
+pub mod builds;
+pub mod playing;

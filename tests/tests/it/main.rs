@@ -1,0 +1,28 @@
+//! Integration tests, in one program.
+#![allow(clippy::panic, clippy::unwrap_used, dead_code, reason = "a failed test may panic")]
+
+mod abi;
+mod architecture;
+mod bands;
+mod common;
+mod device_abi;
+mod edges;
+mod fields;
+mod follows_motion;
+mod gltf;
+mod golden_models;
+mod golden_pipeline;
+mod independent;
+mod levels;
+mod library_elsewhere;
+mod lines;
+mod map_model;
+mod modules;
+mod pages;
+mod playing;
+mod probes;
+mod regressions;
+mod schemas;
+mod source_abi;
+mod third_party;
+mod voices;

@@ -1,6 +1,6 @@
 //! The command as a user runs it, on files. One program, in which tests that wait leave room to
 //! others.
-#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../common/browser.rs"]
 mod browser;

@@ -1,5 +1,5 @@
 //! The command with what runs in real time: devices, hands, pages, participants.
-#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../common/bench.rs"]
 mod bench;

@@ -29,7 +29,7 @@ const fn place(index: usize) -> (usize, usize) {
 ///
 /// A handle consists of a slot's index and the slot's generation, which changes whenever a voice is
 /// inserted or removed. So the handle of a removed voice stays invalid when its slot is used again.
-pub struct Voices<V> {
+pub(crate) struct Voices<V> {
     chunks: [Once<Box<[Slot<V>]>>; CHUNKS],
     free: Lock<Free>,
 }
@@ -57,7 +57,7 @@ impl<V> Default for Voices<V> {
 
 impl<V> Voices<V> {
     /// Makes an empty collection.
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             chunks: [const { Once::new() }; CHUNKS],
             free: Lock::new(Free { freed: Vec::new(), never_used: 0 }),
@@ -65,7 +65,7 @@ impl<V> Voices<V> {
     }
 
     /// Inserts a voice and returns its handle, or `None` if there are too many voices.
-    pub fn insert(&self, voice: V) -> Option<i64> {
+    pub(crate) fn insert(&self, voice: V) -> Option<i64> {
         let mut free = self.free.lock()?;
         let index = match free.freed.pop() {
             Some(index) => index,
@@ -95,14 +95,14 @@ impl<V> Voices<V> {
     /// While the reference is in use, no other thread uses or frees this voice, and the caller
     /// holds no second reference to it.
     #[allow(clippy::mut_from_ref)]
-    pub unsafe fn get(&self, handle: i64) -> Option<&mut V> {
+    pub(crate) unsafe fn get(&self, handle: i64) -> Option<&mut V> {
         let slot = self.live_slot(handle)?;
         // SAFETY: the slot is live, and the caller guarantees exclusive access.
         unsafe { (*slot.voice.get()).as_mut() }
     }
 
     /// Removes a voice and returns it, or `None` if the handle is not valid.
-    pub fn remove(&self, handle: i64) -> Option<V> {
+    pub(crate) fn remove(&self, handle: i64) -> Option<V> {
         let mut free = self.free.lock()?;
         let slot = self.live_slot(handle)?;
         // From here on, the handle is stale.

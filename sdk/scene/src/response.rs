@@ -14,7 +14,7 @@ pub use htex_recording::SetupResponse as Response;
 ///
 /// # Errors
 /// As [`read_response`], and if no magnitude is above 0.
-pub fn open(path: &Path) -> Result<Response, ReadError> {
+pub(crate) fn open(path: &Path) -> Result<Response, ReadError> {
     let file = path.file_name().unwrap_or(path.as_os_str());
     not_zero(read_response(path)?, &file.to_string_lossy())
 }

@@ -12,7 +12,7 @@ use htex_host::FitRequest;
 use serde_json::json;
 
 /// The case, and the folder with its files for the other programs.
-pub struct Case {
+pub(crate) struct Case {
     pub folder: PathBuf,
     pub registry: Registry,
     pub spectrum: TextureSpectrum,
@@ -26,7 +26,7 @@ type Failure = Box<dyn std::error::Error>;
 
 impl Case {
     /// Makes the case and writes `recording.csv`, `case.json` and `asset.htex`.
-    pub fn new(folder: &Path) -> Result<Self, Failure> {
+    pub(crate) fn new(folder: &Path) -> Result<Self, Failure> {
         let recorded = simulate(&SimulationOptions::new(Surface::Sandpaper))?;
         let csv = folder.join("recording.csv");
         recorded.write_csv(&mut std::io::BufWriter::new(std::fs::File::create(&csv)?))?;
@@ -48,13 +48,13 @@ impl Case {
     }
 
     /// A model's parameters, in the flat form of the ABI.
-    pub fn parameters(&self, model: &str) -> &[f64] {
+    pub(crate) fn parameters(&self, model: &str) -> &[f64] {
         let found = self.parameters.iter().find(|(name, _)| name == model);
         found.map_or(&[], |(_, parameters)| parameters)
     }
 
     /// The coefficients of the all-pole filter.
-    pub fn ar(&self) -> &[f64] {
+    pub(crate) fn ar(&self) -> &[f64] {
         self.list("ar", 0)
     }
 
@@ -81,7 +81,7 @@ impl Case {
 }
 
 /// The input of a fit.
-pub fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequest<'a> {
+pub(crate) fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequest<'a> {
     FitRequest {
         band: spectrum.band,
         frequency_hz: &spectrum.frequency_hz,

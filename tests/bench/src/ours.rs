@@ -26,7 +26,7 @@ type Failure = Box<dyn std::error::Error>;
 type Task<'a> = Box<dyn FnMut() -> Result<f64, Failure> + 'a>;
 
 /// Returns a task by its name. Each run returns seconds per unit.
-pub fn task<'a>(case: &'a Case, name: &str) -> Result<Task<'a>, Failure> {
+pub(crate) fn task<'a>(case: &'a Case, name: &str) -> Result<Task<'a>, Failure> {
     Ok(match name {
         "ar" => voice(case, "ar")?,
         "ar_many" => many_voices(case)?,

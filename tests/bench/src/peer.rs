@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// A running peer.
-pub struct Peer {
+pub(crate) struct Peer {
     name: &'static str,
     child: Child,
     to: ChildStdin,
@@ -20,7 +20,7 @@ impl Peer {
     ///
     /// # Errors
     /// Why it does not run.
-    pub fn start(name: &'static str, command: &mut Command) -> Result<Self, String> {
+    pub(crate) fn start(name: &'static str, command: &mut Command) -> Result<Self, String> {
         let spawned = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         let mut child = spawned.map_err(|error| format!("{name} does not start: {error}"))?;
         let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
@@ -39,7 +39,7 @@ impl Peer {
     }
 
     /// Whether it supports a task.
-    pub fn can(&self, task: &str) -> bool {
+    pub(crate) fn can(&self, task: &str) -> bool {
         self.tasks.iter().any(|known| known == task)
     }
 
@@ -47,7 +47,7 @@ impl Peer {
     ///
     /// # Errors
     /// When it ends, or replies anything except numbers.
-    pub fn run(&mut self, task: &str) -> Result<f64, String> {
+    pub(crate) fn run(&mut self, task: &str) -> Result<f64, String> {
         writeln!(self.to, "{task}")
             .and_then(|()| self.to.flush())
             .map_err(|error| format!("{} ended at {task}: {error}", self.name))?;

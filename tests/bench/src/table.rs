@@ -4,13 +4,13 @@ use serde::Serialize;
 use serde_json::json;
 
 #[derive(Clone, Copy)]
-pub enum Who {
+pub(crate) enum Who {
     C = 0,
     Python = 1,
 }
 
 /// A peer's task.
-pub struct Against {
+pub(crate) struct Against {
     pub peer: Who,
     pub task: &'static str,
     /// Description, for the table.
@@ -20,7 +20,7 @@ pub struct Against {
 }
 
 /// One measurement.
-pub struct Row {
+pub(crate) struct Row {
     /// Our task.
     pub ours: &'static str,
     /// Description, for the table.
@@ -43,7 +43,7 @@ const fn sample(ours: &'static str, what: &'static str, against: &'static [Again
     Row { ours, what, unit: "ns/sample", scale: 1e9, against }
 }
 
-pub const fn rows() -> &'static [Row] {
+pub(crate) const fn rows() -> &'static [Row] {
     const ROWS: &[Row] = &[
         sample(
             "ar",
@@ -143,7 +143,7 @@ pub const fn rows() -> &'static [Row] {
 }
 
 /// All measurements.
-pub struct Rows {
+pub(crate) struct Rows {
     rows: &'static [Row],
     ours: Vec<Vec<f64>>,
     theirs: Vec<Vec<Vec<f64>>>,
@@ -186,7 +186,7 @@ struct Line {
 }
 
 impl Rows {
-    pub fn new(rows: &'static [Row]) -> Self {
+    pub(crate) fn new(rows: &'static [Row]) -> Self {
         Self {
             rows,
             ours: vec![Vec::new(); rows.len()],
@@ -196,19 +196,19 @@ impl Rows {
         }
     }
 
-    pub fn ours(&mut self, row: usize) -> &mut Vec<f64> {
+    pub(crate) fn ours(&mut self, row: usize) -> &mut Vec<f64> {
         &mut self.ours[row]
     }
 
-    pub fn theirs(&mut self, row: usize, against: usize) -> &mut Vec<f64> {
+    pub(crate) fn theirs(&mut self, row: usize, against: usize) -> &mut Vec<f64> {
         &mut self.theirs[row][against]
     }
 
-    pub fn whole_ours(&mut self, seconds: f64, mib: f64) {
+    pub(crate) fn whole_ours(&mut self, seconds: f64, mib: f64) {
         self.whole_ours.push((seconds, mib));
     }
 
-    pub fn whole_theirs(&mut self, seconds: f64, mib: f64) {
+    pub(crate) fn whole_theirs(&mut self, seconds: f64, mib: f64) {
         self.whole_theirs.push((seconds, mib));
     }
 
@@ -259,7 +259,7 @@ impl Rows {
         time.into_iter().chain(memory).collect()
     }
 
-    pub fn to_text(&self) -> String {
+    pub(crate) fn to_text(&self) -> String {
         let mut text = format!(
             "{:<38} {:>9} {:<11} {:>7} | {:<44} {:>9} {:>7} {:>7} {:>5}\n",
             "", "htex", "", "spread", "against", "", "spread", "ratio", "aim"
@@ -286,7 +286,7 @@ impl Rows {
         text
     }
 
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+    pub(crate) fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(&json!({ "lines": self.lines() }))
     }
 }

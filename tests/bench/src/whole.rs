@@ -11,7 +11,7 @@ const LOOK: Duration = Duration::from_millis(2);
 ///
 /// # Errors
 /// When it does not start or fails.
-pub fn run(command: &mut Command) -> Result<(f64, f64), String> {
+pub(crate) fn run(command: &mut Command) -> Result<(f64, f64), String> {
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let begun = Instant::now();
     finish(start(command)?, command)?;

@@ -2,7 +2,7 @@
 
 /// A function: nested blocks, with statements at the head and at the end of each.
 #[derive(Debug, Clone, Default)]
-pub struct Heavy {
+pub(crate) struct Heavy {
     /// Local variables, 64-bit integers.
     pub locals: usize,
     /// Nesting depth of blocks.
@@ -24,7 +24,7 @@ const KINDS: u8 = 14;
 
 impl Heavy {
     /// Returns the text of the functions and of the items they use, for a module with a memory.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut function = String::new();
         let mut n = 0;
         for _ in 0..self.nests {
@@ -95,7 +95,7 @@ impl Heavy {
     }
 
     /// Whether the text has a practical size.
-    pub fn is_bounded(&self) -> bool {
+    pub(crate) fn is_bounded(&self) -> bool {
         let blocks = self.depth * self.nests;
         let each = 1 + self.head.len() + self.end.len();
         let targets = self.head.iter().chain(&self.end).filter(|k| **k % KINDS == 5).count();

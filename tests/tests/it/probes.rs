@@ -11,7 +11,6 @@
 #[allow(dead_code)]
 mod raw_zip;
 
-
 use std::env;
 use std::fs::{self, File};
 use std::io::Write;

@@ -86,8 +86,17 @@ pub enum Proof {
 }
 
 /// Without the rest of the workspace, so that it takes only minutes.
-const ZERO: [&str; 8] =
-    ["test", "--locked", "-p", "htex-device", "--test", "it", "guardian_zero::", "--", "--nocapture"];
+const ZERO: [&str; 9] = [
+    "test",
+    "--locked",
+    "-p",
+    "htex-device",
+    "--test",
+    "it",
+    "guardian_zero::",
+    "--",
+    "--nocapture",
+];
 
 const DAYS: [&str; 8] = [
     "run",

@@ -1,5 +1,11 @@
 //! Integration tests, in one program.
-#![allow(clippy::panic, clippy::unwrap_used, unsafe_code, reason = "a failed test may panic")]
+#![allow(
+    unreachable_pub,
+    clippy::panic,
+    clippy::unwrap_used,
+    unsafe_code,
+    reason = "a failed test may panic"
+)]
 
 mod common;
 #[cfg(target_os = "linux")]

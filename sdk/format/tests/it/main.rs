@@ -1,5 +1,6 @@
 //! Integration tests, in one program.
 #![allow(
+    unreachable_pub,
     clippy::expect_used,
     clippy::panic,
     clippy::unwrap_used,

@@ -1,5 +1,6 @@
 //! Integration tests, in one program.
 #![allow(
+    unreachable_pub,
     clippy::disallowed_methods,
     clippy::expect_used,
     clippy::unwrap_used,

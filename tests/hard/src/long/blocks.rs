@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 /// Samples in a block.
-pub const LENGTH: usize = 64;
+pub(super) const LENGTH: usize = 64;
 
 /// Hashes of blocks with 64 samples. Two different blocks have the same hash with probability 2⁻⁶⁴.
 #[derive(Debug, Default)]

@@ -1,5 +1,5 @@
 //! Integration tests, in one program.
-#![allow(clippy::unwrap_used, reason = "a failed test may panic")]
+#![allow(unreachable_pub, clippy::unwrap_used, reason = "a failed test may panic")]
 
 mod long;
 mod table;

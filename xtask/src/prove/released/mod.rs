@@ -12,7 +12,7 @@ use fs_err as fs;
 use crate::places::workspace;
 use crate::programs::{program, run};
 
-pub use bare::Bare;
+pub(super) use bare::Bare;
 pub(super) use bare::{bare, bare_root};
 pub(super) use wine::wine;
 

@@ -12,8 +12,8 @@ use htex_device::{Adapter, Device, DeviceError, Settings, StreamFormat};
 use htex_device_builtin::parametric::Parametric;
 use tempfile::TempDir;
 
-pub const LONG: Duration = Duration::from_secs(5);
-pub const RATE_HZ: f64 = 8_000.0;
+pub(crate) const LONG: Duration = Duration::from_secs(5);
+pub(crate) const RATE_HZ: f64 = 8_000.0;
 
 /// Compiles a source to a library; `None` without a compiler.
 fn built(source: &str) -> Option<PathBuf> {
@@ -47,7 +47,7 @@ fn declared() -> String {
     block.unwrap().text
 }
 
-pub struct Mock {
+pub(crate) struct Mock {
     _folder: TempDir,
     pub path: PathBuf,
     pub library: libloading::Library,
@@ -55,12 +55,12 @@ pub struct Mock {
 
 impl Mock {
     /// Builds the mock OpenXR runtime.
-    pub fn new() -> Option<Self> {
+    pub(crate) fn new() -> Option<Self> {
         Self::of("runtime.c")
     }
 
     /// Builds the library of a source.
-    pub fn of(source: &str) -> Option<Self> {
+    pub(crate) fn of(source: &str) -> Option<Self> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("libmock.so");
         std::fs::copy(built(source)?, &path).unwrap();
@@ -69,7 +69,7 @@ impl Mock {
         Some(Self { _folder: folder, path, library })
     }
 
-    pub fn set(&self, name: &str, value: f64) {
+    pub(crate) fn set(&self, name: &str, value: f64) {
         type Set = unsafe extern "C" fn(*const c_char, f64) -> i32;
         let name = CString::new(name).unwrap();
         // SAFETY: as `runtime.c` has it.
@@ -78,26 +78,26 @@ impl Mock {
     }
 
     /// Returns the recorded lines since the last call.
-    pub fn record(&self) -> Vec<String> {
+    pub(crate) fn record(&self) -> Vec<String> {
         type Get = unsafe extern "C" fn() -> *const c_char;
         // SAFETY: as `runtime.c` has it; the text is copied before the next call.
         let text = unsafe { CStr::from_ptr(self.library.get::<Get>("mock_record").unwrap()()) };
         text.to_str().unwrap().lines().map(str::to_owned).collect()
     }
 
-    pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
+    pub(crate) fn settings(&self, given: &[(&str, &str)]) -> Settings {
         let runtime = ("runtime", self.path.to_str().unwrap());
         settings(&[&[runtime], given].concat()).unwrap()
     }
 
-    pub fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
+    pub(crate) fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
         let adapter = Parametric::new();
         let settings = self.settings(given);
         let rate_hz = adapter.capabilities(&settings)?.default_rate_hz;
         self.open_at(rate_hz, given)
     }
 
-    pub fn open_at(
+    pub(crate) fn open_at(
         &self,
         rate_hz: f64,
         given: &[(&str, &str)],
@@ -107,26 +107,26 @@ impl Mock {
     }
 }
 
-pub fn settings(given: &[(&str, &str)]) -> Result<Settings, DeviceError> {
+pub(crate) fn settings(given: &[(&str, &str)]) -> Result<Settings, DeviceError> {
     let given: BTreeMap<String, String> =
         given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     Settings::resolve(Parametric::new().descriptor(), None, &given)
 }
 
-pub fn sine(hz: f64, peak: f64, seconds: f64, rate_hz: f64) -> Vec<f32> {
+pub(crate) fn sine(hz: f64, peak: f64, seconds: f64, rate_hz: f64) -> Vec<f32> {
     let turn = std::f64::consts::TAU * hz / rate_hz;
     let count = (seconds * rate_hz) as usize;
     let sample = |n: usize| (peak * (turn * n as f64).sin()) as f32;
     (0..count).map(sample).collect()
 }
 
-pub fn write_all(device: &mut dyn Device, samples: &[f32]) {
+pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) {
     assert_eq!(device.write(samples, LONG), Ok(samples.len()));
 }
 
 /// A frame of points as the runtime received it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
+pub(crate) struct Frame {
     pub hand: String,
     pub kind: String,
     pub at_ns: i64,
@@ -137,7 +137,7 @@ pub struct Frame {
 
 impl Frame {
     /// Parses a recorded line; `None` if it is not a frame.
-    pub fn of(line: &str) -> Option<Self> {
+    pub(crate) fn of(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split(' ').collect();
         if words[0] != "points" {
             return None;

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use htex_host::{HostError, LoadedModel, WasmCache, WasmLimits};
 
-pub const ID: &str = "org.example.hostile";
+pub(crate) const ID: &str = "org.example.hostile";
 
 /// The name, signature and valid body of each function.
-pub const FUNCTIONS: &[(&str, &str, &str)] = &[
+pub(crate) const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("abi_version", "(result i32)", "(i32.const 0x48540100)"),
     (
         "descriptor",
@@ -58,11 +58,11 @@ pub const FUNCTIONS: &[(&str, &str, &str)] = &[
 ];
 
 /// Value of the model's samples: the bytes 3e3e3e3e.
-pub const SAMPLE: f32 = f32::from_bits(0x3e3e_3e3e);
+pub(crate) const SAMPLE: f32 = f32::from_bits(0x3e3e_3e3e);
 
 /// Returns the text of a model with this version. `changed` replaces the bodies of some functions,
 /// and `fields` adds fields to the module.
-pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
+pub(crate) fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let json = format!(
         r#"{{"id":"{ID}","name":"H","version":"{version}","summary":"S.","fields":[{{"name":"x","unit":"1","kind":{{"type":"scalar"}},"min":0,"max":1,"store":{{"type":"f32"}},"description":"X."}}]}}"#
     );
@@ -70,7 +70,7 @@ pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
 }
 
 /// Returns the text of a model as [`text`] does, but with another descriptor.
-pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> String {
+pub(crate) fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let mut functions = String::new();
     for (name, signature, body) in FUNCTIONS {
         let body = changed
@@ -98,18 +98,18 @@ pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> St
 }
 
 /// Short times and no cache.
-pub fn limits() -> WasmLimits {
+pub(crate) fn limits() -> WasmLimits {
     WasmLimits::default()
         .with_call(Duration::from_millis(200))
         .with_render(Duration::from_millis(100))
         .with_cache(WasmCache::Off)
 }
 
-pub fn load_within(wat: &str, limits: &WasmLimits) -> Result<LoadedModel, HostError> {
+pub(crate) fn load_within(wat: &str, limits: &WasmLimits) -> Result<LoadedModel, HostError> {
     LoadedModel::from_wasm_bytes("test.htex", &wat::parse_str(wat).unwrap(), limits)
 }
 
 /// Loads the model with the bodies of some functions replaced.
-pub fn load(changed: &[(&str, &str)]) -> Result<LoadedModel, HostError> {
+pub(crate) fn load(changed: &[(&str, &str)]) -> Result<LoadedModel, HostError> {
     load_within(&text("1.0.0", changed, ""), &limits())
 }

@@ -13,14 +13,14 @@ use htex_scene::{Surroundings, validate};
 use serde_json::{Value, json};
 
 /// A conformance scene.
-pub struct Case {
+pub(crate) struct Case {
     pub name: &'static str,
     pub text: String,
 }
 
 impl Case {
     /// The report expected for the scene in `folder`, as pretty-printed JSON.
-    pub fn golden(&self, folder: &Path) -> String {
+    pub(crate) fn golden(&self, folder: &Path) -> String {
         let devices = Devices::new(vec![Arc::new(htex_device_builtin::file::FileAdapter)]);
         let around =
             Surroundings { models: &Registry::builtin(), embedded: true, devices: &devices };
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// The files that the scenes name, as file name and bytes.
-pub fn files() -> Vec<(&'static str, Vec<u8>)> {
+pub(crate) fn files() -> Vec<(&'static str, Vec<u8>)> {
     let trace = |header: &str, rows: &str| format!("{header}\n{rows}").into_bytes();
     let rows = "0,0,0,0.4\n0.5,40,0,0.4\n1,0,0,0.4\n";
     vec![
@@ -116,7 +116,7 @@ fn field(name: &str) -> StoredField {
 }
 
 /// A scene with one surface and a constant motion.
-pub fn plain() -> Value {
+pub(crate) fn plain() -> Value {
     json!({
         "htex_scene": "1.0",
         "surfaces": [{ "asset": "cloth.htex" }],
@@ -158,7 +158,7 @@ fn two(second: [f64; 2]) -> Value {
 }
 
 /// All conformance scenes.
-pub fn cases() -> Vec<Case> {
+pub(crate) fn cases() -> Vec<Case> {
     let volts =
         || ("/device", json!({ "settings": { "quantity": "display_voltage", "limit_v": 100 } }));
     let start = || ("/motion/constant/from_mm", json!([10, 10]));

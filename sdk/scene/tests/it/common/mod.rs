@@ -1,6 +1,6 @@
 //! Scenes of simulated surfaces in memory.
 
-pub mod cases;
+pub(crate) mod cases;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -14,20 +14,20 @@ use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, Scene, Surface};
 use htex_scene::{Costs, LoadedScene, Plan, Renderer, Trace, plan};
 
 /// An asset with one condition, 80 mm/s and 0.4 N.
-pub fn single() -> &'static Asset {
+pub(crate) fn single() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     ASSET.get_or_init(|| asset(Simulated::Sandpaper, &[(80.0, 0.4)]))
 }
 
 /// An asset with four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
-pub fn grid() -> &'static Asset {
+pub(crate) fn grid() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     let known = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)];
     ASSET.get_or_init(|| asset(Simulated::CoarseFabric, &known))
 }
 
 /// An asset with nine conditions, 60, 90 and 120 mm/s by 0.3, 0.45 and 0.6 N.
-pub fn nine() -> &'static Asset {
+pub(crate) fn nine() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     let known = |i: usize| {
         let (speed, force) = ((i % 3) as f64, (i / 3) as f64);
@@ -37,7 +37,7 @@ pub fn nine() -> &'static Asset {
 }
 
 /// An asset with three speeds and computed conditions between them.
-pub fn three_speeds() -> &'static Asset {
+pub(crate) fn three_speeds() -> &'static Asset {
     static ASSET: OnceLock<Asset> = OnceLock::new();
     let known = [(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)];
     ASSET.get_or_init(|| asset(Simulated::Sandpaper, &known))
@@ -62,7 +62,7 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
 }
 
 /// A scene with one surface without a region.
-pub fn scene(asset: &Asset, motion: Motion, duration_s: f64) -> LoadedScene {
+pub(crate) fn scene(asset: &Asset, motion: Motion, duration_s: f64) -> LoadedScene {
     LoadedScene {
         scene: Scene {
             htex_scene: "1.0".to_owned(),
@@ -83,7 +83,7 @@ pub fn scene(asset: &Asset, motion: Motion, duration_s: f64) -> LoadedScene {
     }
 }
 
-pub fn surface() -> Surface {
+pub(crate) fn surface() -> Surface {
     Surface {
         asset: PathBuf::from("simulated.htex"),
         region: None,
@@ -93,13 +93,17 @@ pub fn surface() -> Surface {
     }
 }
 
-pub fn constant(speed_mm_s: f64, force_n: f64) -> Motion {
+pub(crate) fn constant(speed_mm_s: f64, force_n: f64) -> Motion {
     Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 })
 }
 
 /// A trace with 200 rows per second. Position along x (mm) and force (newtons) are functions of
 /// time.
-pub fn trace(duration_s: f64, x_mm: impl Fn(f64) -> f64, force_n: impl Fn(f64) -> f64) -> Trace {
+pub(crate) fn trace(
+    duration_s: f64,
+    x_mm: impl Fn(f64) -> f64,
+    force_n: impl Fn(f64) -> f64,
+) -> Trace {
     let t_s: Vec<f64> = (0..=(duration_s * 200.0) as usize + 1).map(|i| i as f64 / 200.0).collect();
     Trace::new(TraceColumns {
         x_mm: t_s.iter().map(|t| x_mm(*t)).collect(),
@@ -112,7 +116,7 @@ pub fn trace(duration_s: f64, x_mm: impl Fn(f64) -> f64, force_n: impl Fn(f64) -
 }
 
 /// A scene with a trace as its motion.
-pub fn traced(asset: &Asset, trace: Trace, duration_s: f64) -> LoadedScene {
+pub(crate) fn traced(asset: &Asset, trace: Trace, duration_s: f64) -> LoadedScene {
     LoadedScene {
         trace: Some(trace),
         ..scene(asset, Motion::Trace("trace.csv".into()), duration_s)
@@ -120,7 +124,7 @@ pub fn traced(asset: &Asset, trace: Trace, duration_s: f64) -> LoadedScene {
 }
 
 /// A file of 32-bit floats, newtons.
-pub fn file() -> Capabilities {
+pub(crate) fn file() -> Capabilities {
     Capabilities {
         quantity: Quantity::LateralForce,
         rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
@@ -134,12 +138,12 @@ pub fn file() -> Capabilities {
 }
 
 /// A file of 16-bit integers, 4 N full scale.
-pub fn integer_file() -> Capabilities {
+pub(crate) fn integer_file() -> Capabilities {
     Capabilities { limit: Some(4.0), step: Some(4.0 / 32_768.0), ..file() }
 }
 
 /// An electrovibration display behind a 16-bit converter.
-pub fn display() -> Capabilities {
+pub(crate) fn display() -> Capabilities {
     Capabilities {
         quantity: Quantity::DisplayVoltage,
         limit: Some(150.0),
@@ -150,7 +154,7 @@ pub fn display() -> Capabilities {
     }
 }
 
-pub fn loudspeaker() -> Capabilities {
+pub(crate) fn loudspeaker() -> Capabilities {
     Capabilities {
         quantity: Quantity::Sound,
         default_rate_hz: 48_000.0,
@@ -160,12 +164,12 @@ pub fn loudspeaker() -> Capabilities {
     }
 }
 
-pub fn planned(scene: &LoadedScene, device: &Capabilities) -> Plan {
+pub(crate) fn planned(scene: &LoadedScene, device: &Capabilities) -> Plan {
     plan(scene, device, &Costs::embedded()).unwrap()
 }
 
 /// Renders a scene to its end and returns all samples.
-pub fn rendered(renderer: &mut Renderer) -> Vec<f32> {
+pub(crate) fn rendered(renderer: &mut Renderer) -> Vec<f32> {
     let mut all = Vec::new();
     let mut block = [0.0f32; 64];
     loop {

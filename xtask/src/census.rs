@@ -270,6 +270,7 @@ struct Packages {
 }
 
 struct Package {
+    /// Its folder in the workspace.
     folder: PathBuf,
     /// Packages of this workspace that it needs outside tests.
     needs: Vec<String>,
@@ -286,12 +287,14 @@ impl Packages {
         let all: serde_json::Value = serde_json::from_slice(&listed.stdout)?;
         let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
         let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
+        let root = PathBuf::from(text(&all["workspace_root"]));
         let package = |package: &serde_json::Value| {
             let needs = list(&package["dependencies"]);
             let ours =
                 needs.iter().filter(|need| need["path"].is_string() && need["kind"] != "dev");
             let manifest = PathBuf::from(text(&package["manifest_path"]));
-            let folder = manifest.parent().map_or_else(PathBuf::new, Path::to_owned);
+            let folder = manifest.parent().and_then(|folder| folder.strip_prefix(&root).ok());
+            let folder = folder.map_or_else(PathBuf::new, Path::to_owned);
             let needs = ours.map(|need| text(&need["name"])).collect();
             (text(&package["name"]), Package { folder, needs })
         };
@@ -313,7 +316,6 @@ impl Packages {
 
     /// Returns the package in whose folder a file lies.
     fn of(&self, path: &Path) -> Option<&str> {
-        let path = workspace().join(path);
         let holds = |(_, package): &(&String, &Package)| path.starts_with(&package.folder);
         let depth = |(_, package): &(&String, &Package)| package.folder.iter().count();
         self.ours.iter().filter(holds).max_by_key(depth).map(|(name, _)| name.as_str())
@@ -354,7 +356,8 @@ fn root_names(packages: &Packages) -> Result<usize> {
 
 fn root_names_of(package: &str, packages: &Packages, names: &mut BTreeSet<String>) -> Result<()> {
     let folder = &packages.ours.get(package).with_context(|| package.to_owned())?.folder;
-    let file = syn::parse_file(&fs_err::read_to_string(folder.join("src/lib.rs"))?)?;
+    let file =
+        syn::parse_file(&fs_err::read_to_string(workspace().join(folder).join("src/lib.rs"))?)?;
     for item in &file.items {
         match item {
             syn::Item::Use(item) if matches!(item.vis, syn::Visibility::Public(_)) => {

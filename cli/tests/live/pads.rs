@@ -25,14 +25,14 @@ fn built(place: &Place, source: &str, links: &[&str]) -> Option<PathBuf> {
 
 /// A gamepad of SDL, as the setting `driver`.
 fn pad(place: &Place) -> Option<String> {
-    let library = built(place, "sdl/tests/pad.c", &["-lSDL2", "-ldl"]);
+    let library = built(place, "builtin/tests/pad.c", &["-lSDL2", "-ldl"]);
     let library = xtask::needs::SDL.met(library.is_some()).then_some(library)?;
     library.map(|library| format!("driver={}", library.display()))
 }
 
 /// A runtime of OpenXR, as the setting `runtime`.
 fn runtime(place: &Place) -> String {
-    let library = built(place, "parametric/tests/runtime.c", &["-lpthread"]);
+    let library = built(place, "builtin/tests/runtime.c", &["-lpthread"]);
     format!("runtime={}", library.unwrap().display())
 }
 

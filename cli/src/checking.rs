@@ -11,7 +11,6 @@ use serde::Serialize;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::invocation::{self, Program};
-use crate::of_file::OrFail;
 use crate::output::{print, print_json};
 
 /// How checks are run and reported.
@@ -88,7 +87,7 @@ fn timeout(seconds: f64) -> Result<Duration, Failure> {
 }
 
 fn this_program() -> Result<Program, Failure> {
-    invocation::program().or_fail()
+    invocation::program().map_err(Failure::other)
 }
 
 fn exit_code(bad: bool) -> Exit {

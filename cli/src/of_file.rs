@@ -71,31 +71,19 @@ impl OfFile for htex_build::BuildError {
     }
 }
 
-/// Adds the file's name to the error of a result.
-pub(crate) trait ResultOfFile<T> {
-    fn of(self, file: &Path) -> Result<T, Failure>;
+/// Adds the file's name to an error.
+pub(crate) fn of_file<E: OfFile>(file: &Path) -> impl FnOnce(E) -> Failure {
+    move |error| error.of(file)
 }
 
-impl<T, E: OfFile> ResultOfFile<T> for Result<T, E> {
-    fn of(self, file: &Path) -> Result<T, Failure> {
-        self.map_err(|error| error.of(file))
-    }
-}
-
-/// Converts the text of an error to a failure.
-pub(crate) trait OrFail<T> {
+impl Failure {
     /// Reports that the command line is invalid.
-    fn or_usage(self) -> Result<T, Failure>;
-    /// Reports any other error.
-    fn or_fail(self) -> Result<T, Failure>;
-}
-
-impl<T, E: Display> OrFail<T> for Result<T, E> {
-    fn or_usage(self) -> Result<T, Failure> {
-        self.map_err(|error| Failure::Usage(error.to_string()))
+    pub(crate) fn usage(error: impl Display) -> Self {
+        Self::Usage(error.to_string())
     }
 
-    fn or_fail(self) -> Result<T, Failure> {
-        self.map_err(|error| Failure::Other(error.to_string()))
+    /// Reports an error that has no variant of its own.
+    pub(crate) fn other(error: impl Display) -> Self {
+        Self::Other(error.to_string())
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use htex_host::{Registry, Search, WasmLimits};
 
 use crate::failure::Failure;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::warn;
 use crate::wasm_limits::WasmLimit;
 
@@ -100,7 +100,7 @@ impl PlayerArgs {
 
     pub(crate) fn open(&self, path: &Path) -> Result<htex::Asset, Failure> {
         let registry = self.plugins.registry()?;
-        let data = htex_format::Asset::open(path).of(path)?;
+        let data = htex_format::Asset::open(path).map_err(of_file(path))?;
         let asset = htex::Asset::with_registry(data, registry);
         if self.no_embedded_plugins {
             return Ok(asset);

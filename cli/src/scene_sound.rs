@@ -12,7 +12,7 @@ use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Limits, LoadedScene, Renderer, read_scene};
 
 use crate::failure::Failure;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::plugins::PlayerArgs;
 use crate::scenes::{Loader, Ready, costs};
 use crate::shown::shown;
@@ -95,13 +95,13 @@ impl Scene {
         let mut ready = load(&self.loader, &self.file, &device, &self.told)?;
         ready.scene.scene.duration_s = Some(self.seconds);
         let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.file)?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.file))?;
         let mut samples = Vec::new();
         let mut block = [0.0; BLOCK];
         loop {
             let rendered = renderer.render(&mut block);
             if let Some(error) = renderer.take_failure() {
-                return Err(error).of(&self.file);
+                return Err(error).map_err(of_file(&self.file));
             }
             if rendered == 0 {
                 return Ok(samples);

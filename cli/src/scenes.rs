@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{note, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::{PlayerArgs, PluginArgs};
@@ -157,7 +157,7 @@ impl SceneArgs {
             embedded: false,
             devices: &DeviceArgs::default().devices_quietly()?,
         };
-        htex_scene::validate(file, &around).of(file)
+        htex_scene::validate(file, &around).map_err(of_file(file))
     }
 
     /// Returns the schema for the settings of a scene's device, if the device is known.
@@ -199,7 +199,7 @@ impl Loader {
         told: &mut BTreeSet<String>,
         load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
     ) -> Result<Ready, Failure> {
-        let scene = load(&self.around()).of(file)?;
+        let scene = load(&self.around()).map_err(of_file(file))?;
         let notes = scene.notes.iter().map(ToString::to_string);
         let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
         warn(&new);
@@ -217,7 +217,7 @@ impl Loader {
 
 impl Ready {
     pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan, Failure> {
-        htex_scene::plan(&self.scene, &self.capabilities, costs).of(&self.file)
+        htex_scene::plan(&self.scene, &self.capabilities, costs).map_err(of_file(&self.file))
     }
 
     /// Refuses an output file from which the scene was read.
@@ -265,8 +265,9 @@ pub(crate) fn is_asset(file: &Path) -> bool {
 
 /// Returns the motion of an asset's default condition.
 pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
-    let asset = htex::Asset::new(htex_format::Asset::open(file).of(file)?);
-    let htex::Motion { speed_mm_s, force_n, .. } = asset.motion(None, None, None).of(file)?;
+    let asset = htex::Asset::new(htex_format::Asset::open(file).map_err(of_file(file))?);
+    let htex::Motion { speed_mm_s, force_n, .. } =
+        asset.motion(None, None, None).map_err(of_file(file))?;
     Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
 }
 

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::{OfFile, ResultOfFile};
+use crate::of_file::{OfFile, of_file};
 use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -88,12 +88,13 @@ impl Bake {
         let asset = self.player.open(&self.asset)?;
         let grid = match given {
             Some(grid) => grid,
-            None => Grid::of_default_condition(&asset, self.model.as_deref()).of(&self.asset)?,
+            None => Grid::of_default_condition(&asset, self.model.as_deref())
+                .map_err(of_file(&self.asset))?,
         };
         let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
         let limits = BakeLimits::within_db(self.within).with_longest(longest);
         let baked = htex_play::bake::bake(&asset, self.model.as_deref(), &grid, self.rate, limits)
-            .of(&self.asset)?;
+            .map_err(of_file(&self.asset))?;
         let rights = match format {
             Format::Bytes => Some(&baked.rights),
             Format::C | Format::Rust => None,
@@ -129,7 +130,7 @@ impl Bake {
     fn given(&self) -> Result<Option<Grid>, Failure> {
         if let Some(text) = &self.grid {
             let [speeds, forces] = axes("--grid", text, span)?;
-            return Grid::new(speeds, forces).map(Some).of(&self.asset);
+            return Grid::new(speeds, forces).map(Some).map_err(of_file(&self.asset));
         }
         let mut motions = Vec::new();
         for text in &self.at {
@@ -139,7 +140,7 @@ impl Bake {
         if motions.is_empty() {
             Ok(None)
         } else {
-            Grid::of_conditions(&motions).map(Some).of(&self.asset)
+            Grid::of_conditions(&motions).map(Some).map_err(of_file(&self.asset))
         }
     }
 }

@@ -2,7 +2,6 @@ use clap::Args;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::OrFail;
 
 /// Compile the WASM module on standard input for the process that started this one (internal).
 #[derive(Args)]
@@ -14,7 +13,7 @@ pub(crate) struct CompileModule {
 
 impl CompileModule {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        htex_host::serve_compiler(&self.arguments).or_fail()?;
+        htex_host::serve_compiler(&self.arguments).map_err(Failure::other)?;
         Ok(Exit::SUCCESS)
     }
 }

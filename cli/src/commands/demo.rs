@@ -21,7 +21,7 @@ use crate::columns::{cells, columns, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
-use crate::of_file::{OrFail, ResultOfFile};
+use crate::of_file::of_file;
 use crate::output::{Written, print, print_json};
 use crate::progress::bar;
 use crate::report::{Reported, measures, shares};
@@ -63,7 +63,8 @@ impl Demo {
         let own = OwnFolder::new(&self.dir);
         own.make_folder(Path::new("")).writing(&self.dir)?;
         let inside = |name: &str, bytes: &[u8]| Written::Inside(&own, name.as_ref()).write(bytes);
-        let rig = SimulationOptions::new(Surface::Sandpaper).setup_response().or_fail()?;
+        let rig =
+            SimulationOptions::new(Surface::Sandpaper).setup_response().map_err(Failure::other)?;
         write_response(&rig, Written::Inside(&own, RIG.as_ref()))?;
         let bar = bar(Surface::ALL.len() as u64);
         let mut done = Vec::new();
@@ -108,7 +109,7 @@ impl Demo {
         let bytes = fitted.asset.to_bytes()?;
         Written::Inside(own, &path).write(&bytes)?;
         let path = self.dir.join(path);
-        let asset = htex::Asset::open(&path).of(&path)?;
+        let asset = htex::Asset::open(&path).map_err(of_file(&path))?;
         for representation in &asset.manifest().representations {
             let wav = format!("{name}-{}.wav", short_name(&representation.model));
             let wav = Written::Inside(own, wav.as_ref());
@@ -119,13 +120,13 @@ impl Demo {
         let recording_bytes = std::fs::metadata(&csv).map_or(0, |m| m.len());
         let reported =
             Reported { fitted: &fitted, asset: &asset, summary: &summary, recording_bytes };
-        let texture = reported.texture(0).of(&path)?;
+        let texture = reported.texture(0).map_err(of_file(&path))?;
         Ok(DemoTexture { texture, summary })
     }
 
     fn write_recording(&self, surface: Surface, csv: Written<'_>) -> Result<(), Failure> {
         let options = SimulationOptions::new(surface).with_seed(self.seed);
-        let simulation = simulate(&options).or_fail()?;
+        let simulation = simulate(&options).map_err(Failure::other)?;
         let write =
             |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
         Ok(csv.replace(write)?)
@@ -208,10 +209,10 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
 
 fn play(asset: &htex::Asset, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
     let options = VoiceOptions::default().with_model(model).with_rate_hz(f64::from(WAV_RATE_HZ));
-    let mut voice = asset.voice(&options).of(file)?;
+    let mut voice = asset.voice(&options).map_err(of_file(file))?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     let rights = Rights::of(asset.manifest());
-    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).of(file))
+    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).map_err(of_file(file)))
 }
 
 /// Returns the measures shown in the table.

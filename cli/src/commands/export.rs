@@ -14,7 +14,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::given::Given;
 use crate::located;
-use crate::of_file::{OfFile, ResultOfFile};
+use crate::of_file::{OfFile, of_file};
 use crate::output::{note, print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -175,8 +175,8 @@ impl Export {
             return Ok(Path::Stroke(Stroke::open(stroke)?));
         }
         let beyond = settings.choice.beyond(asset, htex::Effects::default());
-        note(&Vec::from_iter(beyond.of(&self.asset)?));
-        Ok(Path::Condition(settings.choice.motion(asset).of(&self.asset)?))
+        note(&Vec::from_iter(beyond.map_err(of_file(&self.asset))?));
+        Ok(Path::Condition(settings.choice.motion(asset).map_err(of_file(&self.asset))?))
     }
 
     /// Converts an error. An error of playing names the asset.

@@ -16,7 +16,7 @@ use crate::invocation;
 use crate::located;
 use crate::metadata::checked;
 use crate::models::tool;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -141,7 +141,7 @@ impl Fit {
         let page = TextureReport {
             title: format!("{}: recording and models", fitted.asset.manifest.name),
             measures: measures(),
-            textures: textures.of(&self.output)?,
+            textures: textures.map_err(of_file(&self.output))?,
             command: command_line(),
             pictures: grid.map(|grid| grid_plot(&name, grid).to_svg()).into_iter().collect(),
             shares: shares([summary]),

@@ -10,7 +10,7 @@ use crate::commands::play;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::print;
 use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
@@ -137,7 +137,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
     while goes_on {
         ready.scene.scene.device.drive_v = Some(drive_v);
         let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).of(&ready.file)?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&ready.file))?;
         let output = match &mut output {
             Some(output) => output,
             none => none.insert(opened(ready, &plan)?),

@@ -8,7 +8,7 @@ use crate::commands::validate::{refuse_library, refuse_more};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{print, print_json};
 
 /// Show what an asset holds, and its errors
@@ -35,7 +35,7 @@ impl Info {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         refuse_more("info", &self.more)?;
         refuse_library(&self.asset)?;
-        let asset = htex_format::Asset::open(&self.asset).of(&self.asset)?;
+        let asset = htex_format::Asset::open(&self.asset).map_err(of_file(&self.asset))?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
         let mut summary = AssetSummary::new(&self.asset, bytes, &asset);
         let models = Registry::builtin();

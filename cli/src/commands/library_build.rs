@@ -19,7 +19,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located::Anywhere;
 use crate::models::tool;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{print, print_json};
 use crate::progress;
 use crate::wasm_limits::WasmLimit;
@@ -159,30 +159,32 @@ impl Build {
             .with_prune(self.prune)
             .with_no_removals(self.no_removals)
             .with_browser_package(self.browser_package.clone());
-        let to = Destination::parse(&self.output, self.work.as_deref()).of(&self.recipe)?;
+        let to = Destination::parse(&self.output, self.work.as_deref())
+            .map_err(of_file(&self.recipe))?;
         if to.remote().is_none() && self.work.is_some() {
             let sentence =
                 "--work goes with a URI after -o; a build of this machine works in its own folder";
             return Err(Failure::Usage(sentence.to_owned()));
         }
         let options = options.with_published(to.remote());
-        let mut build = Recipe::open(&self.recipe, to.folder(), options).of(&self.recipe)?;
+        let mut build =
+            Recipe::open(&self.recipe, to.folder(), options).map_err(of_file(&self.recipe))?;
         let work = Work::of(&build);
         if self.dry_run {
             return self.announce(&build, &work);
         }
         if work.textures > 0 {
-            to.try_out().of(&self.recipe)?;
+            to.try_out().map_err(of_file(&self.recipe))?;
         }
-        fit(&mut build, &work).of(&self.recipe)?;
-        let built = build.finish().of(&self.recipe)?;
-        to.publish().of(&self.recipe)?;
+        fit(&mut build, &work).map_err(of_file(&self.recipe))?;
+        let built = build.finish().map_err(of_file(&self.recipe))?;
+        to.publish().map_err(of_file(&self.recipe))?;
         self.report(&built, &to, &work, start.elapsed().as_secs_f64())
     }
 
     /// Checks the recipe, and prints what would be fitted and why.
     fn announce(&self, build: &Recipe, work: &Work) -> Result<Exit, Failure> {
-        build.check().of(&self.recipe)?;
+        build.check().map_err(of_file(&self.recipe))?;
         let to_fit = build.reasons();
         let textures = build.plan().textures.len();
         if self.json {

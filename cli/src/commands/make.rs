@@ -12,7 +12,6 @@ use crate::failure::Failure;
 use crate::located;
 use crate::metadata::checked;
 use crate::models::tool;
-use crate::of_file::OrFail;
 use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -89,7 +88,7 @@ impl Make {
             }
         }
         let made = make(model, &texture);
-        let mut asset = made.or_usage()?;
+        let mut asset = made.map_err(Failure::usage)?;
         metadata.apply(&mut asset.manifest);
         write(&self.output, &asset, self.json)
     }

@@ -11,7 +11,6 @@ use crate::failure::Failure;
 use crate::located;
 use crate::metadata::checked;
 use crate::models::tool;
-use crate::of_file::OrFail;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
@@ -63,7 +62,7 @@ impl Mix {
             &stem.to_string_lossy(),
             &tool(),
         );
-        let mut asset = mixed.or_fail()?;
+        let mut asset = mixed.map_err(Failure::other)?;
         metadata.apply(&mut asset.manifest);
         write(&self.output, &asset, self.json)
     }

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
 use crate::located;
 use crate::motions::{Motions, Moved};
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{note, print};
 use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, default_motion, is_asset};
@@ -71,7 +71,7 @@ impl Play {
         self.choice.check_unnamed(&ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
-        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.file)?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.file))?;
         signals::ask();
         let mut output = Output::open(&ready, &plan)?;
         let mut motions = self.motion.is_some().then(Motions::from_stdin);

@@ -12,7 +12,7 @@ use serde_json::json;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{Written, note, print, print_json, warn};
 use crate::playing::Output;
 use crate::progress::bar;
@@ -64,7 +64,7 @@ impl Render {
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
         let rights = rights(&ready);
-        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.scene)?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.scene))?;
         if self.json {
             renderer = renderer.timed();
         }

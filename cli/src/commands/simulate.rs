@@ -10,7 +10,6 @@ use htex_author::simulate::{Departures, FreeMotion, SimulationOptions, Surface, 
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::OrFail;
 use crate::output::Written;
 use crate::outputs::check_outputs;
 
@@ -110,10 +109,12 @@ impl Simulate {
         check_outputs(outputs, [])?;
         let options = self.options()?;
         // Computed first, so that its errors are found before anything is written.
-        let truth =
-            self.truth.as_ref().map(|file| Ok::<_, Failure>((file, options.truth().or_usage()?)));
+        let truth = self
+            .truth
+            .as_ref()
+            .map(|file| Ok::<_, Failure>((file, options.truth().map_err(Failure::usage)?)));
         let truth = truth.transpose()?;
-        let simulation = simulate(&options).or_usage()?;
+        let simulation = simulate(&options).map_err(Failure::usage)?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
         Written::Named(&self.output).replace(write)?;
         if let Some((file, truth)) = truth {
@@ -121,7 +122,7 @@ impl Simulate {
             Written::Named(file).replace(write)?;
         }
         if let Some(frf) = &self.frf {
-            let response = options.setup_response().or_usage()?;
+            let response = options.setup_response().map_err(Failure::usage)?;
             write_response(&response, Written::Named(frf))?;
         }
         Ok(Exit::SUCCESS)

@@ -6,7 +6,7 @@ use serde_json::json;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
 
@@ -85,16 +85,16 @@ impl Spectrum {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let asset = self.player.open(&self.asset)?;
         let grid = htex::Band::TACTILE.grid_hz();
-        let motion = self.choice.motion(&asset).of(&self.asset)?;
+        let motion = self.choice.motion(&asset).map_err(of_file(&self.asset))?;
         let model = self.choice.model.as_deref();
         let (magnitude, effects) = if self.unscaled {
             (asset.recorded_magnitude(model, motion, &grid), htex::Effects::NONE)
         } else {
             (asset.magnitude(model, motion, &grid), htex::Effects::default())
         };
-        let magnitude = magnitude.of(&self.asset)?;
+        let magnitude = magnitude.map_err(of_file(&self.asset))?;
         let beyond = self.choice.beyond(&asset, effects);
-        if let Some(said) = beyond.of(&self.asset)? {
+        if let Some(said) = beyond.map_err(of_file(&self.asset))? {
             warn(&[said]);
         }
         let quantity = asset.quantity();

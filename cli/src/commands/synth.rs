@@ -8,7 +8,7 @@ use crate::commands::spectrum::ChoiceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{Written, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -80,18 +80,20 @@ impl Synth {
         let mut options = VoiceOptions::default()
             .with_rate_hz(f64::from(self.rate))
             .with_seed(self.seed)
-            .with_motion(self.choice.motion(&asset).of(&self.asset)?)
+            .with_motion(self.choice.motion(&asset).map_err(of_file(&self.asset))?)
             .with_synthesis(self.quality)
             .with_ceiling(self.ceiling)
             .with_effects(if self.as_recorded { Effects::NONE } else { Effects::default() });
         options.model = self.choice.model.as_deref();
-        let beyond = self.choice.beyond(&asset, options.effects).of(&self.asset)?;
+        let beyond = self.choice.beyond(&asset, options.effects).map_err(of_file(&self.asset))?;
         warn(&Vec::from_iter(beyond));
-        let mut voice = asset.voice(&options).of(&self.asset)?;
+        let mut voice = asset.voice(&options).map_err(of_file(&self.asset))?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::of(asset.manifest());
         let wav = Written::Named(&self.output);
-        write_wav(wav, self.rate, frames, &rights, |block| voice.render(block).of(&self.asset))?;
+        write_wav(wav, self.rate, frames, &rights, |block| {
+            voice.render(block).map_err(of_file(&self.asset))
+        })?;
         Ok(Exit::SUCCESS)
     }
 }

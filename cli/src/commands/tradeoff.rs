@@ -18,7 +18,6 @@ use crate::failure::Failure;
 use crate::invocation;
 use crate::located;
 use crate::models::tool;
-use crate::of_file::OrFail;
 use crate::output::{Written, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -185,7 +184,7 @@ impl Tradeoff {
 fn simulated() -> Result<Vec<Take>, Failure> {
     let take = |surface: Surface| {
         let options = SimulationOptions::new(surface);
-        let simulation = simulate(&options).or_fail()?;
+        let simulation = simulate(&options).map_err(Failure::other)?;
         let recording = simulation.to_recording(&surface.to_string()).map_err(AuthorError::from)?;
         let given =
             Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) };

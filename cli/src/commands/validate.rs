@@ -14,7 +14,7 @@ use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::warn;
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
@@ -181,7 +181,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
 
 /// Loads the embedded models of an asset. A model that cannot be loaded is a finding.
 fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
-    let data = htex_format::Asset::open(path).of(path)?;
+    let data = htex_format::Asset::open(path).map_err(of_file(path))?;
     let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
     let asset = htex::Asset::with_registry(data, registry).with_embedded();
     let mut findings = Findings::default();

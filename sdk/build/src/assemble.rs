@@ -15,7 +15,7 @@ use walkdir::WalkDir;
 use crate::BuildError;
 use crate::catalogue::catalogue;
 use crate::dist::Dist;
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::findings::shares;
 use crate::gates::missed;
 use crate::hashes::Stamp;
@@ -98,16 +98,17 @@ pub(crate) fn assemble(
             // Written in the folder of parts, because in the results a killed build would leave the
             // writer's files.
             let part = parts.join(&file);
-            let mut writer = Writer::create(&dist.at(&part)?, &plan.library).at(&library)?;
+            let mut writer =
+                Writer::create(&dist.at(&part)?, &plan.library).map_err(at_place(&library))?;
             // The recipe's gate has already decided about licences.
             writer.allow_unlicensed();
             let planned = jobs.iter().zip(&plan.textures).zip(&textures);
             for (((key, job), texture), _) in planned.filter(|(_, r)| r.status == Status::Built) {
                 let made = found(key, texture)?;
                 let bytes = asset(job, &made)?;
-                writer.add(&texture.name, &bytes).at(&library)?;
+                writer.add(&texture.name, &bytes).map_err(at_place(&library))?;
             }
-            let packed = writer.finish().at(&library)?;
+            let packed = writer.finish().map_err(at_place(&library))?;
             dist.rename(&part, Path::new(&file))?;
             keep_library(kept, &path, contents, &packed)?
         }
@@ -139,7 +140,7 @@ fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildE
     let license = asset.and_then(|asset| asset.license.as_deref());
     let author = asset.and_then(|asset| asset.author.as_deref());
     let mut wav = Cursor::new(sound);
-    Rights::new(license, author).add_to_wav(&mut wav).at(&report.name)?;
+    Rights::new(license, author).add_to_wav(&mut wav).map_err(at_place(&report.name))?;
     Ok(wav.into_inner())
 }
 

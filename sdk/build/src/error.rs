@@ -65,14 +65,7 @@ impl From<htex_base::files::toml::TomlError> for BuildError {
     }
 }
 
-/// Adds the place to an error.
-pub(crate) trait AtPlace<T> {
-    /// Adds the part of the recipe, the texture or the file to the error.
-    fn at(self, place: impl Display) -> Result<T, BuildError>;
-}
-
-impl<T, E: Display> AtPlace<T> for Result<T, E> {
-    fn at(self, place: impl Display) -> Result<T, BuildError> {
-        self.map_err(|error| BuildError::at(place, error))
-    }
+/// Adds the part of the recipe, the texture or the file to an error.
+pub(crate) fn at_place<E: Display>(place: impl Display) -> impl FnOnce(E) -> BuildError {
+    move |error| BuildError::at(place, error)
 }

@@ -15,7 +15,7 @@ use walkdir::WalkDir;
 
 use crate::BuildError;
 use crate::elsewhere::joined;
-use crate::error::AtPlace;
+use crate::error::at_place;
 
 /// Characters that make a text a glob.
 const GLOB: [char; 4] = ['*', '?', '[', '{'];
@@ -37,11 +37,11 @@ pub(crate) fn glob_set<S: AsRef<str>>(globs: &[S], place: &str) -> Result<GlobSe
     }
     let mut set = GlobSetBuilder::new();
     for glob in globs {
-        check(glob.as_ref()).at(place)?;
+        check(glob.as_ref()).map_err(at_place(place))?;
         let compiled = GlobBuilder::new(glob.as_ref()).literal_separator(true).build();
-        set.add(compiled.at(place)?);
+        set.add(compiled.map_err(at_place(place))?);
     }
-    set.build().at(place)
+    set.build().map_err(at_place(place))
 }
 
 fn check(glob: &str) -> Result<(), String> {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::BuildError;
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::inputs::slashed;
 use crate::job::shown_path;
 use crate::plan::{PlannedRecording, PlannedTexture};
@@ -75,8 +75,8 @@ impl FileKind {
 /// apply to them. A licence is required unless the recipe says that none must be stated:
 /// third-party files have a licence, but seldom state it.
 pub(crate) fn check_files(texture: &mut PlannedTexture) -> Result<(), BuildError> {
-    texture.kind = kind(texture).at(&texture.name)?;
-    check_settings(texture).at(&texture.name)?;
+    texture.kind = kind(texture).map_err(at_place(&texture.name))?;
+    check_settings(texture).map_err(at_place(&texture.name))?;
     if texture.kind != FileKind::Recording {
         texture.gates.license.get_or_insert(true);
     }

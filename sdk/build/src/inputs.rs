@@ -9,7 +9,7 @@ use regex::Regex;
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined};
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::globs;
 use crate::recipe::Textures;
 use crate::template::Fields;
@@ -51,7 +51,7 @@ pub(crate) fn inputs(
     missing: Missing,
 ) -> Result<Vec<Input>, BuildError> {
     let pattern = rule.pattern.as_deref().map(Regex::new).transpose();
-    let pattern = pattern.at(format!("{place}.pattern"))?;
+    let pattern = pattern.map_err(at_place(format!("{place}.pattern")))?;
     let found = match (&rule.recordings[..], &rule.table) {
         ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere, missing)?,
         ([], None) => {
@@ -154,7 +154,7 @@ fn tabulated(
     };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
     let in_table = format!("{place}: {shown}");
-    let headers = reader.headers().at(&in_table)?.clone();
+    let headers = reader.headers().map_err(at_place(&in_table))?.clone();
     let column = headers.iter().position(|name| name == "recording");
     let column = column.ok_or_else(|| {
         let problem = format!("{shown}: it has no column `recording` with the files");
@@ -166,7 +166,7 @@ fn tabulated(
         if inputs.len() == MOST_RECORDINGS {
             return Err(too_many(&place));
         }
-        let row = row.at(&in_table)?;
+        let row = row.map_err(at_place(&in_table))?;
         let cell = row.get(column).unwrap_or_default();
         let file = joined(&beside, Path::new(cell));
         let is_away = is_elsewhere(&file);

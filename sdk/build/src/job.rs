@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere, joined};
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::gates::check_gates;
 use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
 use crate::imports::FileKind;
@@ -264,16 +264,18 @@ impl Job {
         let without = Self { recordings: Vec::new(), response: None, ..self.clone() };
         let here = without.copied(&workbench.elsewhere)?;
         let job = here.as_ref().unwrap_or(&without);
-        let registry = workbench.registry(job).at("plugins")?;
+        let registry = workbench.registry(job).map_err(at_place("plugins"))?;
         if self.kind == FileKind::Asset {
             // It is not fitted, and the plan has already refused settings and gates of fits.
             return Ok(());
         }
         let reading = ReadingSettings { response: None, ..self.reading.clone() };
-        let request =
-            self.fit.request(registry, &reading, &self.texture, &self.program).at(&self.texture)?;
+        let request = self
+            .fit
+            .request(registry, &reading, &self.texture, &self.program)
+            .map_err(at_place(&self.texture))?;
         let models: Vec<&str> = request.models.iter().map(|m| m.model.id()).collect();
-        check_gates(gates, &models).at(&self.texture)
+        check_gates(gates, &models).map_err(at_place(&self.texture))
     }
 
     /// Applies the texture's own name and metadata to an asset that this job made.

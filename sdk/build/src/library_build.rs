@@ -17,7 +17,7 @@ use crate::assemble::{Built, assemble};
 use crate::cache::Cache;
 use crate::dist::Dist;
 use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined, origin};
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::failed::put_failure;
 use crate::hashes::{Hashed, Hashes, hash};
 use crate::inputs::Missing;
@@ -178,7 +178,8 @@ impl Build {
         if options.no_removals {
             BuildError::refuse_removals(plan.removed(&before))?;
         }
-        let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build().at("jobs")?;
+        let pool =
+            ThreadPoolBuilder::new().num_threads(options.jobs).build().map_err(at_place("jobs"))?;
         let job =
             |texture: &PlannedTexture| match Job::new(texture, &named, &options.program, &hashes) {
                 Err(error) if options.keep_going && is_of_input(&error) => {

@@ -8,7 +8,7 @@ use htex_author::settings::Metadata;
 
 use crate::BuildError;
 use crate::elsewhere::Elsewhere;
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::globs::glob_set;
 use crate::imports::{FileKind, check_files};
 use crate::inputs::{Input, MOST_RECORDINGS, Missing, inputs, slashed, too_many};
@@ -163,14 +163,15 @@ fn planned(
         (None, Some(_)) => "{name}".to_owned(),
         (None, None) => "{stem}".to_owned(),
     };
-    let name = fill(&template, &fields).at(of("name"))?;
+    let name = fill(&template, &fields).map_err(at_place(of("name")))?;
     check_name(&format!("{place}.name"), &name)?;
     fields.insert("name".to_owned(), name.clone());
     let mut settings = overrides.over(&name, settings.clone());
     let at = std::mem::take(&mut settings.at);
-    let condition =
-        |key: &str, given: Option<NumberOrTemplate>| number(key, given, &fields).at(of("at"));
-    let tracker = tracker(&mut settings, &fields).at(of("tracker"))?;
+    let condition = |key: &str, given: Option<NumberOrTemplate>| {
+        number(key, given, &fields).map_err(at_place(of("at")))
+    };
+    let tracker = tracker(&mut settings, &fields).map_err(at_place(of("tracker")))?;
     let recording = PlannedRecording {
         file,
         tracker,
@@ -235,13 +236,13 @@ fn filled(
     ];
     for (key, text) in texts {
         if let Some(text) = text {
-            *text = fill(text, fields).at(of(key))?;
+            *text = fill(text, fields).map_err(at_place(of(key)))?;
         }
     }
     for tag in metadata.tags.iter_mut().flatten() {
-        *tag = fill(tag, fields).at(of("tags"))?;
+        *tag = fill(tag, fields).map_err(at_place(of("tags")))?;
     }
-    metadata.check().at(of("metadata"))?;
+    metadata.check().map_err(at_place(of("metadata")))?;
     Ok(metadata)
 }
 
@@ -301,7 +302,7 @@ fn gather(
 }
 
 fn check_name(place: &str, name: &str) -> Result<(), BuildError> {
-    htex_format::library::check_name(name).at(place)
+    htex_format::library::check_name(name).map_err(at_place(place))
 }
 
 /// Refuses a texture whose file would have the same path as a folder of another texture.

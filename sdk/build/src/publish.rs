@@ -14,7 +14,7 @@ use walkdir::WalkDir;
 
 use crate::BuildError;
 use crate::elsewhere::elsewhere;
-use crate::error::AtPlace;
+use crate::error::at_place;
 use crate::hashes::{Stamp, hash_local};
 use crate::kept::Kept;
 
@@ -188,7 +188,10 @@ impl<'a> Publishing<'a> {
             .collect();
         let (last, first): (Vec<_>, Vec<_>) =
             wanted.iter().copied().partition(|name| LAST.contains(&name.as_str()));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(AT_ONCE).build().at("publish")?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(AT_ONCE)
+            .build()
+            .map_err(at_place("publish"))?;
         pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
         last.iter().try_for_each(|name| self.copy(name))?;
         let copied = wanted.len();

@@ -109,14 +109,10 @@ pub enum HostError {
     },
 }
 
-/// Adds the file, or the entry of an asset, to an error of loading a model.
-pub(crate) trait Loading<T> {
-    fn loading(self, origin: impl Display) -> Result<T, HostError>;
-}
-
-impl<T, E: Display> Loading<T> for Result<T, E> {
-    fn loading(self, origin: impl Display) -> Result<T, HostError> {
-        self.map_err(|error| HostError::Load { path: origin.to_string(), what: error.to_string() })
+impl HostError {
+    /// Adds the file, or the entry of an asset, to an error of loading a model.
+    pub(crate) fn loading<E: Display>(origin: impl Display) -> impl FnOnce(E) -> Self {
+        move |error| Self::Load { path: origin.to_string(), what: error.to_string() }
     }
 }
 

@@ -10,7 +10,7 @@ use htex_model::{Descriptor, Kind, Knobs, Status, Usual, Values};
 use htex_model::{Fit, FitCondition};
 
 use crate::descriptor::read_descriptor;
-use crate::error::{Loading, plain};
+use crate::error::plain;
 use crate::marker::check_marker;
 #[cfg(feature = "fit")]
 use crate::raw::RawFit;
@@ -132,7 +132,7 @@ impl LoadedModel {
     /// whatever its name. This is the only place that decides what may be loaded because a file
     /// asks for it.
     pub(crate) fn from_module_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
-        if !is_module(path).loading(path.display())? {
+        if !is_module(path).map_err(HostError::loading(path.display()))? {
             return Err(HostError::NotModule { path: path.display().to_string() });
         }
         Self::from_wasm_file(path, sandbox)

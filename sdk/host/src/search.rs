@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use htex_base::native::folders::{data, libraries_in, listed};
 
-use crate::error::Loading;
 use crate::registry::Rank;
 use crate::{HostError, LoadedModel, Note, Registry, WasmLimits};
 
@@ -129,7 +128,8 @@ impl Search {
             registry.add(Rank::File, model);
         }
         for dir in &self.dirs {
-            let files = libraries_in(dir, Some("wasm")).loading(dir.display())?;
+            let files =
+                libraries_in(dir, Some("wasm")).map_err(HostError::loading(dir.display()))?;
             self.add_all(&mut registry, Rank::Folder, files);
         }
         if self.env {

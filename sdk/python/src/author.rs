@@ -15,7 +15,7 @@ use pyo3::pybacked::PyBackedStr;
 use serde_json::{Value, json};
 
 use crate::causes;
-use crate::errors::{ModelError, OrRaise, option};
+use crate::errors::{ModelError, option, raised};
 use crate::models::registry;
 use crate::python::{from_json, parsed};
 use crate::reading::{Pair, Reading, ReadingText, Source, unknown};
@@ -106,7 +106,7 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     let metadata: Metadata = parsed(&fit.metadata)?;
     let request = fit.request(&registry, reading, &metadata)?;
     let takes = reading.takes(sources, &fit.conditions)?;
-    let mut fitted = fit_asset(&takes, &request).or_raise()?;
+    let mut fitted = fit_asset(&takes, &request).map_err(raised)?;
     raise_of_python(&registry, &fitted.skipped)?;
     metadata.apply(&mut fitted.asset.manifest);
     let rest = rest(&fitted);
@@ -117,7 +117,7 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
 /// Raises the error of a model written in Python. Other models that cannot be fitted are left out.
 fn raise_of_python(registry: &Registry, skipped: &[(String, String)]) -> PyResult<()> {
     for (id, reason) in skipped {
-        let model = registry.find(id).or_raise()?;
+        let model = registry.find(id).map_err(raised)?;
         if matches!(model.origin(), Origin::Runtime(_)) {
             let text = format!("model {id} cannot be fitted: {reason}");
             return Err(causes::attach(ModelError::new_err(text)));

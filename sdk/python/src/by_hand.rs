@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 
 use crate::author::TOOL;
-use crate::errors::{IntoPyErr, OrRaise, option};
+use crate::errors::{IntoPyErr, option, raised};
 use crate::models::registry;
 use crate::python::parsed;
 use crate::reading::{Pair, unknown};
@@ -61,7 +61,7 @@ pub(crate) fn mix(
             metadata.name.as_deref().unwrap_or("mix"),
             TOOL,
         );
-        let mut asset = mixed.or_raise()?;
+        let mut asset = mixed.map_err(raised)?;
         metadata.apply(&mut asset.manifest);
         a.made_of(&asset, &[b])
     })
@@ -82,7 +82,7 @@ pub(crate) fn edit(
                 "nothing to change: give at least one of the metadata, such as author",
             ));
         }
-        let asset = edited(&texture.bytes()?, &metadata).or_raise()?;
+        let asset = edited(&texture.bytes()?, &metadata).map_err(raised)?;
         texture.made_of(&asset, &[])
     })
 }
@@ -91,7 +91,7 @@ impl Made {
     fn texture(self) -> PyResult<Texture> {
         let metadata = checked(&self.metadata)?;
         let registry = registry(&self.plugins, self.installed)?;
-        let model = registry.find(&self.model).or_raise()?;
+        let model = registry.find(&self.model).map_err(raised)?;
         let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
             let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
             unknown("quantity", &self.quantity, &known.join(", "))
@@ -102,7 +102,7 @@ impl Made {
             .at(Condition { speed_mm_s, force_n, ..Condition::default() })
             .with_quantity(quantity);
         texture.values = self.parameters;
-        let mut asset = by_hand::make(model, &texture).or_raise()?;
+        let mut asset = by_hand::make(model, &texture).map_err(raised)?;
         metadata.apply(&mut asset.manifest);
         Texture::of(&asset, self.plugins, self.installed)
     }

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 use crate::author::condition;
-use crate::errors::{IntoPyErr, OrRaise, RecordingError, option};
+use crate::errors::{IntoPyErr, RecordingError, option, raised};
 use crate::python::from_json;
 use crate::reading::{Reading, ReadingText, Source};
 use crate::texture::Texture;
@@ -38,7 +38,7 @@ pub(crate) fn compare<'py>(
 
 fn with_texture(source: Source, texture: &Texture, reading: &Reading) -> PyResult<Value> {
     let (_, read, spectrum) = reading.spectrum(source)?;
-    let models = compared(texture.asset(), &spectrum, read.condition).or_raise()?;
+    let models = compared(texture.asset(), &spectrum, read.condition).map_err(raised)?;
     Ok(json!({
         "condition": condition(read.condition, &spectrum),
         "representations": models,

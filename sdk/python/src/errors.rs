@@ -33,16 +33,9 @@ pub(crate) trait IntoPyErr {
     fn into_py_err(self) -> PyErr;
 }
 
-/// Converts the error of a result to an exception.
-pub(crate) trait OrRaise<T> {
-    /// Converts the error to an exception.
-    fn or_raise(self) -> PyResult<T>;
-}
-
-impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
-    fn or_raise(self) -> PyResult<T> {
-        self.map_err(|error| causes::attach(error.into_py_err()))
-    }
+/// Converts an error to an exception.
+pub(crate) fn raised(error: impl IntoPyErr) -> PyErr {
+    causes::attach(error.into_py_err())
 }
 
 /// Makes the `OSError` for a file. The system's error number determines the subclass, such as

@@ -16,7 +16,7 @@ use pyo3::types::PyBytes;
 use serde_json::json;
 
 use crate::author::TOOL;
-use crate::errors::{ExchangeError as Refused, IntoPyErr, OrRaise, of_file, option};
+use crate::errors::{ExchangeError as Refused, IntoPyErr, of_file, option, raised};
 use crate::models::registry;
 use crate::python::{from_json, parsed};
 use crate::reading::unknown;
@@ -90,7 +90,7 @@ impl Importing {
     fn import(self, file: &Path) -> PyResult<(Texture, Vec<String>, Vec<String>)> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        Format::of_file(&name).or_raise()?;
+        Format::of_file(&name).map_err(raised)?;
         let metadata: Metadata = parsed(&self.metadata)?;
         metadata.check().map_err(|error| option(error.to_string()))?;
         let fit: FitSettings = parsed(&self.settings)?;
@@ -110,7 +110,7 @@ impl Importing {
                 force_n: self.force_n,
                 pitch_mm: self.pitch_mm,
             },
-            profile: profile.map(Profile::find).transpose().or_raise()?,
+            profile: profile.map(Profile::find).transpose().map_err(raised)?,
             fit,
             metadata,
             license_file: beside.as_deref(),
@@ -118,8 +118,8 @@ impl Importing {
         };
         let bytes = read_regular(file, MOST_BYTES).map_err(|error| of_file(file, &error))?;
         let registry = registry(&self.plugins, self.installed)?;
-        let imported = htex_exchange::import(&name, &bytes, &how, &registry).or_raise()?;
-        let written = imported.to_bytes().or_raise()?;
+        let imported = htex_exchange::import(&name, &bytes, &how, &registry).map_err(raised)?;
+        let written = imported.to_bytes().map_err(raised)?;
         let texture = Texture::of_bytes(&written, self.plugins, self.installed)?;
         let texts =
             |all: &[htex_base::finding::Notice]| all.iter().map(ToString::to_string).collect();
@@ -135,7 +135,7 @@ impl Exporting {
         export.path = self.path(texture)?;
         export.model = self.model.as_deref();
         let profile = self.profile.as_deref();
-        export.profile = profile.map(Profile::find).transpose().or_raise()?;
+        export.profile = profile.map(Profile::find).transpose().map_err(raised)?;
         export.seconds = self.seconds;
         export.rate_hz = self.rate_hz;
         export.seed = self.seed;
@@ -146,7 +146,7 @@ impl Exporting {
             _ => None,
         };
         export.file = file.as_deref();
-        htex_exchange::export(texture.asset(), &export).or_raise()
+        htex_exchange::export(texture.asset(), &export).map_err(raised)
     }
 
     fn path(&self, texture: &Texture) -> PyResult<htex_exchange::Path> {
@@ -154,12 +154,14 @@ impl Exporting {
             (None, None) => None,
             (speed, force) => {
                 let motion = texture.asset().motion(self.model.as_deref(), speed, force);
-                Some(motion.or_raise()?)
+                Some(motion.map_err(raised)?)
             }
         };
         match (&self.stroke, motion) {
             (None, motion) => Ok(htex_exchange::Path::Condition(motion)),
-            (Some(file), None) => Ok(htex_exchange::Path::Stroke(Stroke::open(file).or_raise()?)),
+            (Some(file), None) => {
+                Ok(htex_exchange::Path::Stroke(Stroke::open(file).map_err(raised)?))
+            }
             (Some(_), Some(_)) => Err(option(
                 "a stroke has its own speed and force; give the stroke, or speed_mm_s and force_n",
             )),

@@ -11,7 +11,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-use crate::errors::{IntoPyErr, LibraryError as Raised, OrRaise, of_file};
+use crate::errors::{IntoPyErr, LibraryError as Raised, of_file, raised};
 use crate::python::data;
 use crate::texture::{Source, Texture};
 
@@ -82,7 +82,7 @@ impl Library {
             };
             htex::Library::open_source(origin)
         });
-        Ok(Self { library: opened.or_raise()?, plugins, embedded, installed })
+        Ok(Self { library: opened.map_err(raised)?, plugins, embedded, installed })
     }
 
     /// Name of the library; may be empty.
@@ -125,27 +125,27 @@ impl Library {
     fn entry<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let entry = py
             .detach(|| self.library.entry(name))
-            .or_raise()?
+            .map_err(raised)?
             .ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
         entry_data(py, &entry)
     }
 
     /// Returns the bytes of a texture's `.htex` file.
     fn to_bytes<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| self.library.get(name)).or_raise()?;
+        let bytes = py.detach(|| self.library.get(name)).map_err(raised)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Texture> {
         py.detach(|| {
-            let bytes = self.library.get(name).or_raise()?;
-            let data = AssetData::from_bytes(&bytes).or_raise()?;
+            let bytes = self.library.get(name).map_err(raised)?;
+            let data = AssetData::from_bytes(&bytes).map_err(raised)?;
             Texture::new(data, self.plugins.clone(), self.embedded, self.installed)
         })
     }
 
     fn __contains__(&self, py: Python<'_>, name: &str) -> PyResult<bool> {
-        let entry = py.detach(|| self.library.entry(name)).or_raise()?;
+        let entry = py.detach(|| self.library.entry(name)).map_err(raised)?;
         Ok(entry.is_some())
     }
 
@@ -167,7 +167,7 @@ impl Library {
     fn matching(&self, query: &Query) -> PyResult<Vec<Entry>> {
         let entries = self.library.entries();
         let matching = entries.filter(|entry| !matches!(entry, Ok(e) if !query.matches(e)));
-        matching.collect::<Result<_, _>>().or_raise()
+        matching.collect::<Result<_, _>>().map_err(raised)
     }
 }
 
@@ -210,16 +210,16 @@ pub(crate) fn pack(
     name: &str,
     unlicensed: bool,
 ) -> PyResult<u64> {
-    let mut writer = Writer::create(&path, name).or_raise()?;
+    let mut writer = Writer::create(&path, name).map_err(raised)?;
     if unlicensed {
         writer.allow_unlicensed();
     }
     for pair in textures.call_method0("items")?.try_iter()? {
         let (name, texture): (String, Bound<'_, PyAny>) = pair?.extract()?;
         let bytes = texture_bytes(py, &texture)?;
-        py.detach(|| writer.add(&name, &bytes)).or_raise()?;
+        py.detach(|| writer.add(&name, &bytes)).map_err(raised)?;
     }
-    let packed = py.detach(|| writer.finish()).or_raise()?;
+    let packed = py.detach(|| writer.finish()).map_err(raised)?;
     Ok(packed.bytes)
 }
 

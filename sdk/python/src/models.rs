@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use htex::host::{Registry, Search};
 use pyo3::prelude::*;
 
-use crate::errors::OrRaise;
+use crate::errors::raised;
 use crate::python::from_json;
 use crate::python_model;
 
@@ -14,7 +14,8 @@ use crate::python_model;
 pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registry> {
     let (dirs, files) = plugins.iter().cloned().partition(|path| path.is_dir());
     let places = Search::builtin().with_env(installed).with_user_dir(installed);
-    let mut registry = Registry::search(&places.with_files(files).with_dirs(dirs)).or_raise()?;
+    let mut registry =
+        Registry::search(&places.with_files(files).with_dirs(dirs)).map_err(raised)?;
     python_model::add_to(&mut registry)?;
     Ok(registry)
 }

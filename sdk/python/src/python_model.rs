@@ -15,7 +15,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::causes::failed;
-use crate::errors::{OrRaise, option};
+use crate::errors::{option, raised};
 use crate::python_voice::PlayedVoice;
 
 /// Where these models come from, in messages and assets.
@@ -71,7 +71,7 @@ pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
 pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
     let all = registered().clone();
     for (descriptor, model) in all {
-        registry.add_runtime_model(ORIGIN, descriptor, model).or_raise()?;
+        registry.add_runtime_model(ORIGIN, descriptor, model).map_err(raised)?;
     }
     Ok(())
 }

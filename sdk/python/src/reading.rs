@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
 use serde::Deserialize;
 
-use crate::errors::{IntoPyErr, OrRaise, of_file, option};
+use crate::errors::{IntoPyErr, of_file, option, raised};
 use crate::python::parsed;
 
 /// A recording: a file, or the name and the bytes of a file.
@@ -94,9 +94,9 @@ impl Reading {
     ) -> PyResult<(Recording, ReadTake, TextureSpectrum)> {
         let options = self.spectrum_options()?;
         let take = self.takes(&[source], &[])?.pop().ok_or_else(|| option("no recording"))?;
-        let read = read_take(&take, &options, self.strict()).or_raise()?;
+        let read = read_take(&take, &options, self.strict()).map_err(raised)?;
         let part = std::slice::from_ref(&read.part);
-        let spectrum = TextureSpectrum::average(part, options.averaging).or_raise()?;
+        let spectrum = TextureSpectrum::average(part, options.averaging).map_err(raised)?;
         Ok((take.recording, read, spectrum))
     }
 
@@ -105,19 +105,19 @@ impl Reading {
     fn read(&self, source: &Source, options: &ReadOptions) -> PyResult<Recording> {
         let path = match source {
             Source::Bytes(name, bytes) => {
-                return recording_from_bytes(Path::new(name), bytes, options).or_raise();
+                return recording_from_bytes(Path::new(name), bytes, options).map_err(raised);
             }
             Source::File(path) => path,
         };
-        let known = KnownTake::find(path).or_raise()?;
+        let known = KnownTake::find(path).map_err(raised)?;
         let Some(known) = known.filter(|_| !self.settings().says_columns()) else {
-            return read_recording(path, options).map_err(|error| raised(path, error));
+            return read_recording(path, options).map_err(|error| unreadable(path, error));
         };
         let file = known.recording.clone();
         let settings = known.with_given(self.settings());
         let options = settings.read_options(1).map_err(|error| self.raised(error))?.pop();
         let read = read_recording(&file, &options.unwrap_or_default());
-        read.map_err(|error| raised(&file, error))
+        read.map_err(|error| unreadable(&file, error))
     }
 
     /// Returns the options for computing spectra.
@@ -129,7 +129,7 @@ impl Reading {
     /// Makes the exception for a setting.
     pub(crate) fn raised(&self, error: SettingsError) -> PyErr {
         match (error, &self.settings().response) {
-            (SettingsError::Response(error), Some(file)) => raised(file, *error),
+            (SettingsError::Response(error), Some(file)) => unreadable(file, *error),
             (SettingsError::Response(error), None) => (*error).into_py_err(),
             (SettingsError::Model(error), _) => error.into_py_err(),
             (SettingsError::Grid(error), _) => (*error).into_py_err(),
@@ -144,7 +144,7 @@ pub(crate) fn unknown(what: &str, got: &str, known: &str) -> PyErr {
 }
 
 /// Makes the exception for a file that cannot be read, with its full path.
-fn raised(path: &Path, error: ReadError) -> PyErr {
+fn unreadable(path: &Path, error: ReadError) -> PyErr {
     match &error.problem {
         ReadProblem::Io(source) => of_file(path, source),
         _ => error.into_py_err(),

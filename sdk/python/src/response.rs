@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
 
-use crate::errors::{IntoPyErr, OrRaise, RecordingError, option};
+use crate::errors::{IntoPyErr, RecordingError, option, raised};
 use crate::python::{from_json, parsed};
 
 /// Measures a response from recordings of an input and an output, each given as a list of series.
@@ -28,7 +28,7 @@ pub(crate) fn response<'py>(
         let records: Result<Vec<Record>, _> = records.into_iter().enumerate().map(record).collect();
         measure(&records?, &options)
     });
-    from_json(py, &json!({"measured": measured.or_raise()?, "settings": options}))
+    from_json(py, &json!({"measured": measured.map_err(raised)?, "settings": options}))
 }
 
 /// Returns a response as a CSV file.

@@ -11,7 +11,7 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
 use crate::device::devices;
-use crate::errors::{MotionError, OrRaise, SceneError, option};
+use crate::errors::{MotionError, SceneError, option, raised};
 use crate::models::registry;
 use crate::path::{Series, count};
 use crate::python::{from_json, zeros};
@@ -59,11 +59,11 @@ impl Scene {
         };
         py.detach(|| {
             let models = registry(&plugins, installed)?;
-            let devices = devices(installed).or_raise()?;
+            let devices = devices(installed).map_err(raised)?;
             let around = Surroundings { models: &models, embedded, devices: &devices };
-            let loaded = LoadedScene::open(&path, &around, &device).or_raise()?;
-            let known = devices.find(&loaded.scene.device.adapter).or_raise()?;
-            let able = known.adapter.capabilities(&loaded.settings).or_raise()?;
+            let loaded = LoadedScene::open(&path, &around, &device).map_err(raised)?;
+            let known = devices.find(&loaded.scene.device.adapter).map_err(raised)?;
+            let able = known.adapter.capabilities(&loaded.settings).map_err(raised)?;
             Ok(Self { file: path, models, embedded, device, loaded, able, devices })
         })
     }
@@ -117,7 +117,7 @@ impl Scene {
                 SceneError::new_err("the scene has no end; give seconds, or add duration_s to it")
             })?;
             let mut samples = zeros(usize::try_from(frames).unwrap_or(usize::MAX))?;
-            let mut renderer = Renderer::new(&loaded, &plan).or_raise()?;
+            let mut renderer = Renderer::new(&loaded, &plan).map_err(raised)?;
             let rendered = renderer.render(&mut samples);
             samples.truncate(rendered);
             failed(&mut renderer)?;
@@ -146,7 +146,7 @@ impl Scene {
             let samples = count(&given, block)?;
             let loaded = self.live()?;
             let plan = self.planned(&loaded)?;
-            let mut renderer = Renderer::new(&loaded, &plan).or_raise()?;
+            let mut renderer = Renderer::new(&loaded, &plan).map_err(raised)?;
             let mut samples = zeros(samples)?;
             for (i, part) in samples.chunks_mut(block).enumerate() {
                 let at_mm = x_mm.as_ref().zip(y_mm.as_ref());
@@ -174,7 +174,7 @@ impl Scene {
 
 impl Scene {
     fn planned(&self, loaded: &LoadedScene) -> PyResult<Plan> {
-        plan(loaded, &self.able, &costs()).or_raise()
+        plan(loaded, &self.able, &costs()).map_err(raised)
     }
 
     /// Loads the scene for a motion that is set while it plays.
@@ -182,7 +182,7 @@ impl Scene {
         let around =
             Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
         let device = DeviceOverride { live: true, ..self.device.clone() };
-        let mut loaded = LoadedScene::open(&self.file, &around, &device).or_raise()?;
+        let mut loaded = LoadedScene::open(&self.file, &around, &device).map_err(raised)?;
         loaded.scene.motion = Motion::Live;
         loaded.scene.duration_s = None;
         loaded.trace = None;
@@ -191,7 +191,7 @@ impl Scene {
 }
 
 fn failed(renderer: &mut Renderer) -> PyResult<()> {
-    renderer.take_failure().map_or(Ok(()), Err).or_raise()
+    renderer.take_failure().map_or(Ok(()), Err).map_err(raised)
 }
 
 /// Returns the costs that the command measured on this machine, or the built-in ones.

@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::errors::{IntoPyErr, OrRaise, option};
+use crate::errors::{IntoPyErr, option, raised};
 
 /// A column of a recording: its name and its values.
 type Column<'py> = (&'static str, Bound<'py, PyArray1<f64>>);
@@ -39,7 +39,7 @@ pub(crate) fn simulate<'py>(
     force_n: Option<Range>,
     departures: (&str, f64, f64),
 ) -> PyResult<(Vec<Column<'py>>, Bound<'py, PyBytes>, Response)> {
-    let surface = surface.parse::<Surface>().or_raise()?;
+    let surface = surface.parse::<Surface>().map_err(raised)?;
     let options = SimulationOptions::new(surface)
         .with_seed(seed)
         .with_rate_hz(rate_hz)
@@ -47,7 +47,7 @@ pub(crate) fn simulate<'py>(
         .with_departures(departing(departures)?);
     let options = moved(options, free, speed_mm_s, force_n)?;
     let (simulation, csv) = py.detach(|| written(&options))?;
-    let response = options.setup_response().or_raise()?;
+    let response = options.setup_response().map_err(raised)?;
     let columns = [
         ("t_s", simulation.t_s),
         ("fx_n", simulation.fx_n),
@@ -106,7 +106,7 @@ fn moved(
 }
 
 fn written(options: &SimulationOptions) -> PyResult<(Simulation, Vec<u8>)> {
-    let simulation = htex_author::simulate::simulate(options).or_raise()?;
+    let simulation = htex_author::simulate::simulate(options).map_err(raised)?;
     let mut csv = Vec::new();
     simulation.write_csv(&mut csv)?;
     Ok((simulation, csv))

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 
-use crate::errors::{OrRaise, of_file, option};
+use crate::errors::{of_file, option, raised};
 use crate::models::registry;
 use crate::path::located;
 use crate::python::{data, from_json, spectrum};
@@ -40,7 +40,7 @@ pub(crate) fn open(
             Source::File(path) => AssetData::open(path),
             Source::Bytes(bytes) => AssetData::from_bytes(bytes),
         };
-        Texture::new(data.or_raise()?, plugins, embedded, installed)
+        Texture::new(data.map_err(raised)?, plugins, embedded, installed)
     })
 }
 
@@ -110,7 +110,7 @@ impl Texture {
 
     /// Makes a texture from an asset's file.
     pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
-        Self::new(AssetData::from_bytes(bytes).or_raise()?, plugins, true, installed)
+        Self::new(AssetData::from_bytes(bytes).map_err(raised)?, plugins, true, installed)
     }
 
     /// Makes a texture from an asset that was made from this one and `others`. It does not run
@@ -129,13 +129,13 @@ impl Texture {
         match at {
             None | Some(At { speed_mm_s: None, force_n: None }) => Ok(None),
             Some(At { speed_mm_s, force_n }) => {
-                self.asset.motion(model, speed_mm_s, force_n).map(Some).or_raise()
+                self.asset.motion(model, speed_mm_s, force_n).map(Some).map_err(raised)
             }
         }
     }
 
     pub(crate) fn bytes(&self) -> PyResult<Vec<u8>> {
-        self.asset.data().to_bytes().or_raise()
+        self.asset.data().to_bytes().map_err(raised)
     }
 }
 
@@ -247,7 +247,7 @@ impl Texture {
         let motion = self.motion(model, at)?;
         let magnitude = py.detach(|| self.asset.magnitude(model, motion, &frequency_hz));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
-        spectrum(py, quantity, band, frequency_hz, magnitude.or_raise()?)
+        spectrum(py, quantity, band, frequency_hz, magnitude.map_err(raised)?)
     }
 
     /// Returns the magnitudes of a representation at a recorded condition, as a recording of its
@@ -260,20 +260,20 @@ impl Texture {
         condition: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let condition =
-            condition.map_or_else(|| self.asset.default_condition(model), Ok).or_raise()?;
+            condition.map_or_else(|| self.asset.default_condition(model), Ok).map_err(raised)?;
         let known = self.asset.manifest().conditions.get(condition);
         let known =
             known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
         let motion =
             known.speed_mm_s.zip(known.force_n).map(|(speed, force)| Motion::new(speed, force));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
-        let (parameters, _) = self.asset.parameters(model, motion).or_raise()?;
-        let level = self.asset.level_rms(model, motion).or_raise()?;
-        let loaded = self.asset.loaded_model(model).or_raise()?;
+        let (parameters, _) = self.asset.parameters(model, motion).map_err(raised)?;
+        let level = self.asset.level_rms(model, motion).map_err(raised)?;
+        let loaded = self.asset.loaded_model(model).map_err(raised)?;
         let (frequency_hz, silent) = (band.grid_hz(), vec![0.0; band.bins()]);
         let grid = SpectrumRef { band, frequency_hz: &frequency_hz, magnitude: &silent };
         let read = py.detach(|| read_spectrum(&loaded, &parameters, level, grid));
-        spectrum(py, quantity, band, frequency_hz.clone(), read.or_raise()?)
+        spectrum(py, quantity, band, frequency_hz.clone(), read.map_err(raised)?)
     }
 
     /// Returns the level of a representation at a condition: the RMS in the band, in the unit of
@@ -281,7 +281,7 @@ impl Texture {
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(model, at)?;
-        py.detach(|| self.asset.level_rms(model, motion)).or_raise()
+        py.detach(|| self.asset.level_rms(model, motion)).map_err(raised)
     }
 
     /// Returns the parameters of a representation at a condition, by name.
@@ -293,7 +293,7 @@ impl Texture {
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(model, at)?;
-        let all = py.detach(|| self.asset.named_parameters(model, motion)).or_raise()?;
+        let all = py.detach(|| self.asset.named_parameters(model, motion)).map_err(raised)?;
         let named = PyDict::new(py);
         for (name, parameter) in all {
             match parameter {
@@ -355,7 +355,7 @@ impl Texture {
             .with_rate_hz(rate_hz)
             .with_seed(seed)
             .with_motion(motion)
-            .with_synthesis(synthesis.parse::<Synthesis>().or_raise()?)
+            .with_synthesis(synthesis.parse::<Synthesis>().map_err(raised)?)
             .with_ceiling(ceiling)
             .with_gain(gain)
             .with_limit(limit)
@@ -367,8 +367,8 @@ impl Texture {
                     .with_contact(contact),
             );
         options.model = model;
-        let id = self.asset.representation_id(model).or_raise()?.to_owned();
-        let voice = py.detach(|| self.asset.voice(&options)).or_raise()?;
+        let id = self.asset.representation_id(model).map_err(raised)?.to_owned();
+        let voice = py.detach(|| self.asset.voice(&options)).map_err(raised)?;
         let unit = self.asset.quantity().unit();
         Ok(Voice::new(voice, id, rate_hz, seed, unit))
     }
@@ -397,7 +397,7 @@ impl Texture {
 
 /// Returns what the file of a new asset contains.
 fn stored(made: &htex::format::Asset) -> PyResult<AssetData> {
-    AssetData::from_bytes(&made.to_bytes().or_raise()?).or_raise()
+    AssetData::from_bytes(&made.to_bytes().map_err(raised)?).map_err(raised)
 }
 
 /// Returns the last part of a model's id.

@@ -6,7 +6,7 @@ use htex_author::settings::named_models;
 use htex_author::tradeoff::{ErrorAxis, Journal, Model, Request, Subject, Tradeoff, sweep};
 use pyo3::prelude::*;
 
-use crate::errors::{OrRaise, of_file};
+use crate::errors::{of_file, raised};
 use crate::models::registry;
 use crate::python::from_json;
 use crate::reading::{Reading, ReadingText, Source, unknown};
@@ -50,7 +50,7 @@ fn measured(
     let error = request.error.as_ref().map(error_named).transpose()?;
     let registry = registry(&request.plugins, request.installed)?;
     let models = named_models(&registry, &request.models)
-        .or_raise()?
+        .map_err(raised)?
         .into_iter()
         .map(|model| Model { ways: vec![(model.origin().to_string(), model)] });
     let swept = Request { models: models.collect(), quick: request.quick, error, program };
@@ -58,7 +58,7 @@ fn measured(
     let takes = reading.takes(sources, &[])?;
     let mut subjects: Vec<Subject> = Vec::new();
     for (i, take) in takes.iter().enumerate() {
-        let mut subject = Subject::new(take, &options, reading.strict()).or_raise()?;
+        let mut subject = Subject::new(take, &options, reading.strict()).map_err(raised)?;
         if subjects.iter().any(|other| other.name == subject.name) {
             subject.name += &format!(" #{}", i + 1);
         }
@@ -68,8 +68,8 @@ fn measured(
     let kept = request.journal.clone();
     let file = kept.unwrap_or_else(|| folder.path().join("sweep.part"));
     let mut journal = Journal::new(&file);
-    let swept = sweep(&subjects, &swept, &mut journal, &|_, _, _| {}).or_raise()?;
-    journal.discard().or_raise()?;
+    let swept = sweep(&subjects, &swept, &mut journal, &|_, _, _| {}).map_err(raised)?;
+    journal.discard().map_err(raised)?;
     let tool = concat!("htex ", env!("CARGO_PKG_VERSION"));
     Ok(Tradeoff::new(tool, &subjects, swept))
 }

@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::OrRaise;
+use crate::errors::raised;
 use crate::path::{Path, Series, located};
 use crate::python::{data, zeros};
 
@@ -70,7 +70,7 @@ impl Voice {
     fn render<'py>(&self, py: Python<'py>, n: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let samples = py.detach(|| {
             let mut samples = zeros(n)?;
-            self.lock().render(&mut samples).or_raise()?;
+            self.lock().render(&mut samples).map_err(raised)?;
             Ok::<_, PyErr>(samples)
         })?;
         Ok(samples.into_pyarray(py))
@@ -91,7 +91,7 @@ impl Voice {
         })?;
         let samples =
             borrowed.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?;
-        py.detach(|| self.lock().render(samples).or_raise())
+        py.detach(|| self.lock().render(samples).map_err(raised))
     }
 
     /// Sets the motion of the following samples.
@@ -107,7 +107,7 @@ impl Voice {
     ) -> PyResult<()> {
         let motion = Motion::new(speed_mm_s, force_n);
         let motion = located(motion, position_mm, [x_mm, y_mm])?;
-        py.detach(|| self.lock().set_motion(motion).or_raise())
+        py.detach(|| self.lock().set_motion(motion).map_err(raised))
     }
 
     /// Returns the samples of a path: one motion for each block of samples.
@@ -129,8 +129,8 @@ impl Voice {
             let mut samples = path.buffer()?;
             let mut voice = self.lock();
             for (motion, block) in path.motions.iter().zip(samples.chunks_mut(path.block)) {
-                voice.set_motion(*motion).or_raise()?;
-                voice.render(block).or_raise()?;
+                voice.set_motion(*motion).map_err(raised)?;
+                voice.render(block).map_err(raised)?;
             }
             Ok::<_, PyErr>(samples)
         })?;
@@ -139,7 +139,7 @@ impl Voice {
 
     /// Sets the gain. The change takes 10 ms.
     fn set_gain(&self, py: Python<'_>, gain: f64) -> PyResult<()> {
-        py.detach(|| self.lock().set_gain(gain).or_raise())
+        py.detach(|| self.lock().set_gain(gain).map_err(raised))
     }
 
     /// Whether the voice is silent: its samples are 0 until the finger slides again.
@@ -161,7 +161,7 @@ impl Voice {
         let (envelope, bands) = py.detach(|| {
             let mut voice = self.lock();
             let mut bands = vec![0.0; voice.envelope_edges_hz().len().saturating_sub(1)];
-            let envelope = voice.envelope(&mut bands).or_raise()?;
+            let envelope = voice.envelope(&mut bands).map_err(raised)?;
             Ok::<_, PyErr>((envelope, bands))
         })?;
         let fields = PyDict::new(py);
@@ -179,7 +179,7 @@ impl Voice {
         speed_mm_s: f64,
         force_n: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let motion = Motion::new(speed_mm_s, force_n).checked().or_raise()?;
+        let motion = Motion::new(speed_mm_s, force_n).checked().map_err(raised)?;
         let coverage = py.detach(|| self.lock().coverage(motion));
         let fields = PyDict::new(py);
         fields.set_item("inside", coverage.is_inside())?;

@@ -126,17 +126,16 @@ fn nearest_of(nearest: &Option<(String, f64)>) -> String {
     }
 }
 
-/// Adds the surface to an error from its asset or its model.
-pub(crate) trait OfSurface<T> {
-    fn of_surface(self, surface: usize, scene: &LoadedScene) -> Result<T, SceneError>;
-}
-
-impl<T, E: Into<htex_play::Error>> OfSurface<T> for Result<T, E> {
-    fn of_surface(self, surface: usize, scene: &LoadedScene) -> Result<T, SceneError> {
-        self.map_err(|source| SceneError::Surface {
+impl SceneError {
+    /// Adds the surface to an error from its asset or its model.
+    pub(crate) fn of_surface<E: Into<htex_play::Error>>(
+        surface: usize,
+        scene: &LoadedScene,
+    ) -> impl FnOnce(E) -> Self {
+        move |source| Self::Surface {
             surface,
             asset: scene.scene.surfaces[surface].asset.clone(),
             source: source.into(),
-        })
+        }
     }
 }

@@ -6,7 +6,6 @@ use htex_play::exploration::CEILING;
 use htex_play::{Motions, Representation, SampleSource, Scaling, VoiceOptions};
 
 use crate::SceneError;
-use crate::error::OfSurface;
 use crate::file::{Effect, Switch};
 use crate::load::LoadedScene;
 use crate::requirements::{Requirements, Span, Touch};
@@ -75,8 +74,9 @@ impl PlayedSurface {
         let (asset, touch) = (&scene.assets[surface], &required.touches[surface]);
         let measure = scene.scene.budget.error;
         let stored = representation(asset, model);
-        let motions = asset.motions(Some(model)).of_surface(surface, scene)?;
-        let loaded = asset.loaded_model(Some(model)).of_surface(surface, scene)?;
+        let motions = asset.motions(Some(model)).map_err(SceneError::of_surface(surface, scene))?;
+        let loaded =
+            asset.loaded_model(Some(model)).map_err(SceneError::of_surface(surface, scene))?;
         let mut played = Self {
             surface,
             model: model.to_owned(),
@@ -106,12 +106,14 @@ impl PlayedSurface {
         played.find_factors(scene, touch);
         played.scale_frequencies();
         let most_gain = played.scale_level();
-        let source = played.source(scene, required).of_surface(surface, scene)?;
+        let source =
+            played.source(scene, required).map_err(SceneError::of_surface(surface, scene))?;
         played.rate_hz = source.rate_hz();
         played.divide_rate(required.rate_hz);
         played.own_rate = source.has_own_rate() && played.oversampling == 1.0;
         played.mix_rate_hz = played.rate_hz * played.oversampling;
-        let shape = played.compensated(required, asset).of_surface(surface, scene)?;
+        let shape =
+            played.compensated(required, asset).map_err(SceneError::of_surface(surface, scene))?;
         played.level_rms =
             loudest(asset, model, source.level_rms()) * played.gain * most_gain * shape;
         Ok(played)

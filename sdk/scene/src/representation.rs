@@ -3,7 +3,6 @@
 use std::cmp::Ordering;
 
 use crate::SceneError;
-use crate::error::OfSurface;
 use crate::file::Budget;
 use crate::load::LoadedScene;
 use crate::played::PlayedSurface;
@@ -80,7 +79,9 @@ fn candidates(
     let (asset, wanted) = (&scene.assets[surface], &scene.scene.surfaces[surface].representation);
     let all = &asset.manifest().representations;
     if wanted != "auto" {
-        let id = asset.representation_id(Some(wanted)).of_surface(surface, scene)?;
+        let id = asset
+            .representation_id(Some(wanted))
+            .map_err(SceneError::of_surface(surface, scene))?;
         return Ok(Candidates {
             surface,
             options: vec![PlayedSurface::new(scene, required, surface, id)?],

@@ -1,7 +1,6 @@
 //! One surface of a running scene: its voice, and the stages before surfaces are mixed.
 
 use crate::SceneError;
-use crate::error::OfSurface;
 use crate::file::Effect;
 use crate::load::LoadedScene;
 use crate::path::PathPoint;
@@ -60,7 +59,9 @@ impl Track {
         planned: &PlannedSurface,
     ) -> Result<Self, SceneError> {
         let played = &planned.played;
-        let source = played.source(scene, required).of_surface(played.surface, scene)?;
+        let source = played
+            .source(scene, required)
+            .map_err(SceneError::of_surface(played.surface, scene))?;
         let synthesis = Synthesis::new(source);
         let mut chain = Chain::default();
         for entry in EFFECTS {

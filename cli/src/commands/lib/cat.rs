@@ -7,7 +7,7 @@ use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{write_bytes, write_file};
 use crate::outputs::check_outputs;
 
@@ -34,7 +34,7 @@ impl Cat {
             return Err(Failure::Usage(sentence.to_owned()));
         }
         let library = self.library.open()?;
-        let bytes = library.get(&self.name).of(&self.library.shown())?;
+        let bytes = library.get(&self.name).map_err(of_file(&self.library.shown()))?;
         match &self.output {
             Some(output) => write_file(output, &bytes)?,
             None => write_bytes(&bytes)?,

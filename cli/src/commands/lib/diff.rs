@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::{print, print_json};
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
@@ -64,7 +64,7 @@ impl<'a> Walk<'a> {
 
     /// Takes the next entry.
     fn step(&mut self) -> Result<Option<Entry>, Failure> {
-        let next = self.entries.next().transpose().of(&self.given.shown())?;
+        let next = self.entries.next().transpose().map_err(of_file(&self.given.shown()))?;
         Ok(std::mem::replace(&mut self.next, next))
     }
 }

@@ -5,7 +5,7 @@ use super::given::Given;
 use super::listing::Listing;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::note;
 
 /// Search a library; all that is asked for must hold.
@@ -52,7 +52,7 @@ impl Find {
         };
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {
-            let entry = entry.of(&file)?;
+            let entry = entry.map_err(of_file(&file))?;
             if query.matches(&entry) {
                 listing.add(&entry)?;
             }

@@ -7,7 +7,7 @@ use htex_base::storage::{Location, Storage};
 use htex_format::library::{Library, Located};
 
 use crate::failure::Failure;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 
 /// A library given by a path or URI.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ impl Given {
     }
 
     pub(crate) fn open(&self) -> Result<Library<Located>, Failure> {
-        Library::open_located(&storage()?, &self.0).of(&self.shown())
+        Library::open_located(&storage()?, &self.0).map_err(of_file(&self.shown()))
     }
 
     /// Returns the file if it is on this machine.

@@ -4,7 +4,7 @@ use super::given::Given;
 use super::listing::Listing;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::note;
 
 /// List the textures of a library: name, bytes, recorded speeds and forces, law, models, tags.
@@ -29,7 +29,7 @@ impl Ls {
         note(&library.notes().iter().map(ToString::to_string).collect::<Vec<_>>());
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {
-            listing.add(&entry.of(&file)?)?;
+            listing.add(&entry.map_err(of_file(&file))?)?;
         }
         listing.finish()?;
         Ok(Exit::SUCCESS)

@@ -10,7 +10,7 @@ use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::{OfFile, ResultOfFile};
+use crate::of_file::{OfFile, of_file};
 use crate::output::{print, print_json};
 use crate::outputs::check_outputs;
 use crate::progress::bar;
@@ -58,14 +58,14 @@ impl Pack {
         check_outputs([self.output.as_path()], sources.values().map(PathBuf::as_path))?;
         let stem = self.output.file_stem().map(|stem| stem.to_string_lossy());
         let name = self.name.clone().unwrap_or(stem.unwrap_or_default().into_owned());
-        let mut writer = Writer::create(&self.output, &name).of(&self.output)?;
+        let mut writer = Writer::create(&self.output, &name).map_err(of_file(&self.output))?;
         if self.unlicensed {
             writer.allow_unlicensed();
         }
         let bar = bar(sources.len() as u64);
         for (name, path) in &sources {
             let bytes = read_asset(path)?;
-            writer.add(name, &bytes).of(path)?;
+            writer.add(name, &bytes).map_err(of_file(path))?;
             bar.inc(1);
         }
         let packed = writer.finish().map_err(|error| self.failure(error, &sources))?;

@@ -7,7 +7,7 @@ use htex_format::library::{Entry, LibraryError, Names};
 use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::{OfFile, ResultOfFile};
+use crate::of_file::{OfFile, of_file};
 use crate::output::print;
 use crate::progress::bar;
 use crate::shown::shown;
@@ -44,8 +44,8 @@ impl Unpack {
         let (mut ratio, mut names) = (library.ratio(), Names::default());
         if self.names.is_empty() {
             for entry in library.entries() {
-                let entry = entry.of(&file)?;
-                ratio.add(&entry).of(&file)?;
+                let entry = entry.map_err(of_file(&file))?;
+                ratio.add(&entry).map_err(of_file(&file))?;
                 check_alike(&mut names, &entry.name)?;
             }
         }
@@ -54,15 +54,15 @@ impl Unpack {
         }
         let mut batch = Batch::default();
         let mut write = |entry: Entry| {
-            let bytes = library.read(&entry).of(&file)?;
+            let bytes = library.read(&entry).map_err(of_file(&file))?;
             bar.inc(1);
             self.write(&mut batch, &entry.name, &bytes)
         };
         if self.names.is_empty() {
-            library.entries().try_for_each(|entry| write(entry.of(&file)?))?;
+            library.entries().try_for_each(|entry| write(entry.map_err(of_file(&file))?))?;
         }
         for name in &self.names {
-            let entry = library.entry(name).of(&file)?;
+            let entry = library.entry(name).map_err(of_file(&file))?;
             let absent = || LibraryError::Absent { name: name.clone() }.of(&file);
             write(entry.ok_or_else(absent)?)?;
         }

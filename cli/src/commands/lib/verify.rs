@@ -6,7 +6,7 @@ use htex_base::finding::Report;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::validation::report;
 
 /// Check every page and every texture of libraries; exit status 1 if one is not valid.
@@ -32,5 +32,5 @@ impl Verify {
 
 /// Validates a library.
 pub(crate) fn check(path: &Path) -> Result<Report, Failure> {
-    htex_format::library::validate(path).of(path)
+    htex_format::library::validate(path).map_err(of_file(path))
 }

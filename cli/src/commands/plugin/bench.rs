@@ -7,7 +7,6 @@ use htex_host::{LoadedModel, Origin, Registry, WasmLimits};
 use crate::commands::plugin::named::named;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::OrFail;
 use crate::output::{print, print_json};
 use crate::plugins::PluginArgs;
 
@@ -32,7 +31,7 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let costs = bench(&self.subjects()?).or_fail()?;
+        let costs = bench(&self.subjects()?).map_err(Failure::other)?;
         if self.json {
             print_json(&costs)?;
         } else {

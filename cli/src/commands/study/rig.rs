@@ -17,7 +17,7 @@ use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
 
 use crate::failure::Failure;
 use crate::motions::{Motions, Moved};
-use crate::of_file::ResultOfFile;
+use crate::of_file::of_file;
 use crate::output::tell;
 use crate::playing::Output;
 use crate::scenes::{Loader, Ready, costs};
@@ -210,9 +210,9 @@ impl StudyRig<'_> {
     ) -> Result<Played, Failure> {
         let (ready, drive_v) = self.begin(stimulus)?;
         let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.path)?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.path))?;
         if ready.scene.scene.motion == Motion::Live {
-            renderer.set_motion(Finger::AWAY).of(&self.path)?;
+            renderer.set_motion(Finger::AWAY).map_err(of_file(&self.path))?;
         }
         let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
         if let Some((felt, name)) = recorded {

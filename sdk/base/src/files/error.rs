@@ -57,9 +57,9 @@ impl std::error::Error for FileError {
 /// Error for a file whose content cannot be used.
 ///
 /// ```
-/// use htex_base::files::InFile;
+/// use htex_base::files::ContentError;
 ///
-/// let error = "a".parse::<f64>().in_file("gain.txt").unwrap_err();
+/// let error = "a".parse::<f64>().map_err(ContentError::in_file("gain.txt")).unwrap_err();
 /// assert_eq!(error.to_string(), "gain.txt: invalid float literal");
 /// ```
 #[derive(Debug)]
@@ -75,6 +75,11 @@ impl ContentError {
     pub fn new(file: impl AsRef<Path>, problem: impl fmt::Display) -> Self {
         Self { file: file.as_ref().to_owned(), problem: problem.to_string() }
     }
+
+    /// Adds the file to an error about its content.
+    pub fn in_file<E: fmt::Display>(file: impl AsRef<Path>) -> impl FnOnce(E) -> Self {
+        move |problem| Self::new(file, problem)
+    }
 }
 
 impl fmt::Display for ContentError {
@@ -84,21 +89,6 @@ impl fmt::Display for ContentError {
 }
 
 impl std::error::Error for ContentError {}
-
-/// Adds the name of the file to an error about its content.
-pub trait InFile<T> {
-    /// Says that the error is in this file.
-    ///
-    /// # Errors
-    /// The error of the result.
-    fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError>;
-}
-
-impl<T, E: fmt::Display> InFile<T> for Result<T, E> {
-    fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError> {
-        self.map_err(|problem| ContentError::new(file, problem))
-    }
-}
 
 /// Adds the name of the file to an error of the system.
 pub trait AtFile<T> {

@@ -99,13 +99,9 @@ impl StorageProblem {
     }
 }
 
-/// Adds the URI or the path to an error of the system.
-pub(crate) trait AtPlace<T> {
-    fn at(self, place: impl Display) -> Result<T, StorageError>;
-}
-
-impl<T> AtPlace<T> for io::Result<T> {
-    fn at(self, place: impl Display) -> Result<T, StorageError> {
-        self.map_err(|error| StorageProblem::Io { error }.at(place))
+impl StorageError {
+    /// Adds the URI or the path to an error of the system.
+    pub(crate) fn io_at(place: impl Display) -> impl FnOnce(io::Error) -> Self {
+        move |error| StorageProblem::Io { error }.at(place)
     }
 }

@@ -5,7 +5,6 @@ use std::time::SystemTime;
 
 use glob::{MatchOptions, Pattern};
 
-use crate::storage::error::AtPlace;
 use crate::storage::{Location, StorageError, StorageProblem};
 
 /// Largest number of files in a list.
@@ -54,13 +53,14 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
     let mut listed = 0;
     while let Some((path, depth)) = open.pop() {
         let shown = path.display();
-        for entry in std::fs::read_dir(&path).at(&shown)? {
+        for entry in std::fs::read_dir(&path).map_err(StorageError::io_at(&shown))? {
             listed += 1;
             if listed > MOST_LISTED {
                 return Err(too_many(&folder.to_owned().into()));
             }
-            let entry = entry.at(&shown)?;
-            let (kind, path) = (entry.file_type().at(&shown)?, entry.path());
+            let entry = entry.map_err(StorageError::io_at(&shown))?;
+            let (kind, path) =
+                (entry.file_type().map_err(StorageError::io_at(&shown))?, entry.path());
             if kind.is_dir() && depth < MOST_DEPTH {
                 open.push((path, depth + 1));
                 continue;

@@ -9,7 +9,6 @@ use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::storage::cloud::{Store, Version};
-use crate::storage::error::AtPlace;
 use crate::storage::{Location, StorageError, StorageProblem, local};
 
 /// Cost of reading so far.
@@ -76,7 +75,7 @@ impl Remote {
         head: Range<u64>,
     ) -> Result<Self, StorageError> {
         let file = local::opened(path)?;
-        let len = file.metadata().at(path.display())?.len();
+        let len = file.metadata().map_err(StorageError::io_at(path.display()))?.len();
         let mut remote = Self {
             location: location.clone(),
             of: Of::File {
@@ -154,7 +153,7 @@ impl Remote {
             Of::File { file, requests, bytes } => {
                 let read =
                     read_file(&mut file.lock().unwrap_or_else(PoisonError::into_inner), &range);
-                let read = read.at(&self.location)?;
+                let read = read.map_err(StorageError::io_at(&self.location))?;
                 requests.fetch_add(1, Ordering::Relaxed);
                 bytes.fetch_add(read.len() as u64, Ordering::Relaxed);
                 read

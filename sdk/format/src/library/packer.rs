@@ -112,7 +112,7 @@ impl<S: Store> Packer<S> {
         let facts = Facts::of(&read.manifest);
         check_words(name, "tags", &facts.tags)?;
         check_words(name, "models", &facts.models)?;
-        let spooled = self.spool.add(asset).unchanged(&self.path)?;
+        let spooled = self.spool.add(asset).map_err(LibraryError::unchanged(&self.path))?;
         let added = Added {
             words: self.common_words(facts.tags, facts.models),
             conditions: facts.conditions,
@@ -152,11 +152,12 @@ impl<S: Store> Packer<S> {
     pub(crate) fn finish(self, target: &mut impl Write) -> Result<Packed, LibraryError> {
         self.check_licences()?;
         let Self { path, name, spool, added, .. } = self;
-        let (mut spool, modules) = spool.finish().unchanged(&path)?;
+        let (mut spool, modules) = spool.finish().map_err(LibraryError::unchanged(&path))?;
         let sharing = Sharing::of(modules);
         let (header, index, total) = index(&name, &added, &sharing);
         check_limits(&name, &header, total)?;
-        write(target, &header, &index, &mut spool, &sharing, &added).unchanged(&path)?;
+        write(target, &header, &index, &mut spool, &sharing, &added)
+            .map_err(LibraryError::unchanged(&path))?;
         Ok(Packed {
             entries: header.entries,
             bytes: header.payload.end,
@@ -168,14 +169,10 @@ impl<S: Store> Packer<S> {
     }
 }
 
-/// Turns an input or output error into one that names the file and says that it is unchanged.
-pub(crate) trait Unchanged<T> {
-    fn unchanged(self, path: &Path) -> Result<T, LibraryError>;
-}
-
-impl<T> Unchanged<T> for io::Result<T> {
-    fn unchanged(self, path: &Path) -> Result<T, LibraryError> {
-        self.map_err(|error| LibraryError::Write { path: path.to_owned(), error })
+impl LibraryError {
+    /// Names the file of an error of the system, and says that the file is unchanged.
+    pub(crate) fn unchanged(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |error| Self::Write { path: path.to_owned(), error }
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use htex_base::files::{Scratch, Unfinished};
 
 use crate::library::error::LibraryError;
-use crate::library::packer::{Packed, Packer, Unchanged};
+use crate::library::packer::{Packed, Packer};
 use crate::library::spool::ScratchFile;
 
 /// Number of bytes collected in memory before they are written.
@@ -39,8 +39,8 @@ impl Writer {
     /// If the name has a control character or more than 255 bytes, or no file can be written there.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
-        let target = Unfinished::create(path).unchanged(path)?;
-        let scratch = ScratchFile(Scratch::beside(path).unchanged(path)?);
+        let target = Unfinished::create(path).map_err(LibraryError::unchanged(path))?;
+        let scratch = ScratchFile(Scratch::beside(path).map_err(LibraryError::unchanged(path))?);
         Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
     }
 
@@ -73,7 +73,7 @@ impl Writer {
         let packed = packer.finish(&mut file)?;
         let written = file.flush();
         drop(file);
-        written.and_then(|()| target.keep()).unchanged(&path)?;
+        written.and_then(|()| target.keep()).map_err(LibraryError::unchanged(&path))?;
         Ok(packed)
     }
 }

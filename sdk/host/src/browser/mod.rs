@@ -39,11 +39,10 @@ pub(crate) use model::WasmModel;
 use module::WasmModule;
 
 use crate::HostError;
-use crate::error::Loading;
 use crate::sandbox::Sandbox;
 
 /// Loads a model from the bytes of a module. `origin` names it in messages.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
-    let module = WasmModule::new(bytes, sandbox).loading(origin)?;
+    let module = WasmModule::new(bytes, sandbox).map_err(HostError::loading(origin))?;
     WasmModel::new(origin, Arc::new(module))
 }

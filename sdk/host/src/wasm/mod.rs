@@ -35,18 +35,17 @@ use module::WasmModule;
 pub use process::serve_compiler;
 
 use crate::HostError;
-use crate::error::Loading;
 use crate::sandbox::Sandbox;
 
 /// Loads a model from the bytes of a module. `origin` names it in messages.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
-    let module = WasmModule::new(bytes, sandbox).loading(origin)?;
+    let module = WasmModule::new(bytes, sandbox).map_err(HostError::loading(origin))?;
     WasmModel::new(origin, Arc::new(module))
 }
 
 pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let origin = path.display().to_string();
-    let bytes = read(path, sandbox.limits.module_bytes).loading(&origin)?;
+    let bytes = read(path, sandbox.limits.module_bytes).map_err(HostError::loading(&origin))?;
     load(&origin, &bytes, sandbox)
 }
 

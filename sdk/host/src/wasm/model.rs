@@ -11,7 +11,6 @@ use super::instance::Instance;
 use super::module::WasmModule;
 use super::voice::{WasmVoice, copy_text};
 use crate::HostError;
-use crate::error::Loading;
 use crate::marker::check_marker;
 use crate::raw::{RawFit, RawModel, RawVoice};
 
@@ -88,7 +87,7 @@ fn first(module: &Arc<WasmModule>, origin: &str) -> Result<Instance, HostError> 
         Err(Fault::NoFunction { name }) => {
             Err(HostError::NoFunction { path: origin.to_owned(), name })
         }
-        other => other.loading(origin),
+        other => other.map_err(HostError::loading(origin)),
     }
 }
 

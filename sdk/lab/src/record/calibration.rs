@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_base::files::InFile;
+use htex_base::files::ContentError;
 use serde::Deserialize;
 
 use crate::record::error::RecordError;
@@ -158,5 +158,5 @@ type Problem = Box<dyn std::error::Error>;
 fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, RecordError> {
     let advice = "a calibration is six rows of six numbers, N and N m for a volt of each channel";
     let result = result.map_err(|problem| format!("{problem}; {advice}"));
-    Ok(result.in_file(path)?)
+    Ok(result.map_err(ContentError::in_file(path))?)
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_base::files::{AtFile, InFile, OwnFolder};
+use htex_base::files::{AtFile, ContentError, OwnFolder};
 use serde::Serialize;
 
 use crate::record::error::RecordError;
@@ -71,7 +71,7 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
 /// # Errors
 /// If the header of a part file is damaged, or a recording cannot be written.
 pub fn recover(folder: &Path) -> Result<Vec<Recorded>, RecordError> {
-    let parts = names::parts(folder).in_file(folder)?;
+    let parts = names::parts(folder).map_err(ContentError::in_file(folder))?;
     let mut recovered = Vec::new();
     for path in &parts {
         match finish(folder, path) {

@@ -9,7 +9,7 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use htex_base::files::{AtFile, ContentError, InFile, OwnFolder};
+use htex_base::files::{AtFile, ContentError, OwnFolder};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
@@ -119,14 +119,14 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 /// another program writes to it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
-    let mut file = opened.in_file(path)?;
+    let mut file = opened.map_err(ContentError::in_file(path))?;
     // A `PartFile` holds the lock as long as it is written to.
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         let file = path.to_owned();
         return Err(RecordError::Busy { file });
     }
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).in_file(path)?;
+    file.read_to_end(&mut bytes).map_err(ContentError::in_file(path))?;
     let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
         return Ok(None);
     };
@@ -139,7 +139,7 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
                 htex_base::finding::plain(&error)
             )
         })
-        .in_file(path)?;
+        .map_err(ContentError::in_file(path))?;
     let own = names::stem(&header.name, header.number);
     if path.file_stem().is_none_or(|stem| stem != &own[..]) {
         let problem = format!(

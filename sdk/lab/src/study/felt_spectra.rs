@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::recording::read_recording;
 use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
-use htex_base::files::{AtFile, ContentError, InFile};
+use htex_base::files::{AtFile, ContentError};
 use htex_base::finding::as_text;
 use htex_dsp::Band;
 use htex_format::{Asset, Condition, Quantity};
@@ -54,8 +54,8 @@ impl Reference {
         options: &SpectrumOptions,
         strict: bool,
     ) -> Result<Self, StudyError> {
-        let reading = read_take(take, options, strict).in_file(file)?;
-        Ok(Self::average(&[reading.part], options).in_file(file)?)
+        let reading = read_take(take, options, strict).map_err(ContentError::in_file(file))?;
+        Ok(Self::average(&[reading.part], options).map_err(ContentError::in_file(file))?)
     }
 
     /// Returns the spectrum that was recorded for an asset, at the condition nearest to a motion,
@@ -64,7 +64,7 @@ impl Reference {
     /// # Errors
     /// [`StudyError::Content`] if the asset cannot be read or does not have the spectrum.
     pub fn of_asset(file: &Path, motion: Exploration) -> Result<Self, StudyError> {
-        let asset = Asset::open(file).in_file(file)?;
+        let asset = Asset::open(file).map_err(ContentError::in_file(file))?;
         let conditions = asset.manifest.conditions.iter().enumerate();
         let off = |condition: &Condition| {
             let off = |own: Option<f64>, wanted: Option<f64>| match own.zip(wanted) {
@@ -76,10 +76,10 @@ impl Reference {
         let nearest = conditions.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)));
         let spectra = asset.reference.as_ref();
         let spectrum = nearest.and_then(|(at, _)| spectra?.get(at));
-        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)").in_file(file)?;
+        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)").map_err(ContentError::in_file(file))?;
         let magnitude = spectrum.iter().map(|m| f64::from(*m)).collect();
         let whole = Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude);
-        Ok(whole.in_file(file)?)
+        Ok(whole.map_err(ContentError::in_file(file))?)
     }
 
     fn average(
@@ -158,7 +158,8 @@ pub fn felt_spectra(
                 parts.push(part(folder, felt, options)?);
                 recordings += 1;
             }
-            let felt = Reference::average(&parts, options).in_file(folder.join(participant))?;
+            let felt = Reference::average(&parts, options)
+                .map_err(ContentError::in_file(folder.join(participant)))?;
             quantities.insert(felt.quantity);
             rows.push(row(participant, &texture, &model, &felt));
             textures.insert(texture);
@@ -208,9 +209,9 @@ fn part(
     let header = header_beside(&beside)
         .reading(&beside)?
         .ok_or("it does not describe a recording")
-        .in_file(&beside)?;
-    let take = take(&file, &header).in_file(&file)?;
-    Ok(read_take(&take, options, false).in_file(&file)?.part)
+        .map_err(ContentError::in_file(&beside))?;
+    let take = take(&file, &header).map_err(ContentError::in_file(&file))?;
+    Ok(read_take(&take, options, false).map_err(ContentError::in_file(&file))?.part)
 }
 
 fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {

@@ -13,7 +13,6 @@ use tokio::task::JoinSet;
 
 use super::Store;
 use super::explain::Fail;
-use crate::storage::error::AtPlace;
 use crate::storage::{StorageError, StorageProblem};
 
 /// Files up to this size are sent with one request.
@@ -42,15 +41,15 @@ impl Store {
 
     /// Uploads a local file.
     pub(crate) fn upload(&self, path: &Path) -> Result<(), StorageError> {
-        let mut file = File::open(path).at(path.display())?;
-        let len = file.metadata().at(path.display())?.len();
+        let mut file = File::open(path).map_err(StorageError::io_at(path.display()))?;
+        let len = file.metadata().map_err(StorageError::io_at(path.display()))?.len();
         if len > MOST_BYTES {
             let most_bytes = MOST_BYTES;
             return Err(StorageProblem::TooLarge { most_bytes }.at(path.display()));
         }
         if len <= MOST_SINGLE_BYTES {
             let mut bytes = Vec::new();
-            file.read_to_end(&mut bytes).at(path.display())?;
+            file.read_to_end(&mut bytes).map_err(StorageError::io_at(path.display()))?;
             return self.write(bytes);
         }
         let limit = self.settings.total + 2 * ABORT;

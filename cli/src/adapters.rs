@@ -30,6 +30,7 @@ pub(crate) fn named<A: AdapterKind + ?Sized>(
     known: impl FnOnce() -> Result<Registry<A>, Failure>,
 ) -> Result<Known<A>, Failure> {
     let file = Path::new(name);
+    // A folder does not count. A folder called `sdl` must not hide the device of that name.
     if file.is_file() {
         return Ok(Known::load(file)?);
     }
@@ -95,6 +96,7 @@ pub(crate) fn listed_text<A: AdapterKind + ?Sized>(all: &Registry<A>) -> String 
 }
 
 fn adapter_text<A: AdapterKind + ?Sized>(known: &Known<A>) -> String {
+    // `print` keeps line breaks, so a text of a native library could add lines of its own.
     let descriptor = &tamed(known.descriptor());
     let (name, version) = (descriptor.short_name(), &descriptor.version);
     let mut text = format!("  {name:8} {version:8} {:20} {}\n", descriptor.id, known.origin);

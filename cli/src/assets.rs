@@ -277,6 +277,7 @@ fn left_out_heading(measure: Measure) -> String {
 
 /// Returns the table cells under [`left_out_heading`].
 fn spread_cells(measure: Measure, spread: Option<Spread>) -> String {
+    // Each cell has two spaces before it, and the second one is as wide as `largest`.
     let width = left_out_heading(measure).len() - "    largest".len();
     match spread {
         Some(Spread { rms, largest }) => format!("  {rms:>width$.2}  {largest:>7.2}"),
@@ -316,6 +317,7 @@ impl RepresentationSummary {
     }
 
     pub(crate) fn at(&self, condition: usize) -> Option<&AtSummary> {
+        // `at` is empty if there is only one condition.
         let all = self.at.iter().chain([&self.first]);
         all.into_iter().find(|at| at.condition == condition)
     }
@@ -356,6 +358,7 @@ fn row(
 fn parameter_text(name: &str, value: &Value) -> String {
     match value {
         Value::Array(list) => format!("{name}[{}]", list.len()),
+        // JSON has no NaN: `Value::from` has made it `null`.
         other => format!("{name}={}", short_number(other.as_f64().unwrap_or(f64::NAN))),
     }
 }
@@ -440,6 +443,7 @@ pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<
     let mut named = Map::new();
     for field in fields {
         let value = if field.list {
+            // In the flat array, a list begins with its length.
             let len = flat.first().map_or(0, |n| *n as usize);
             let list = flat.get(1..=len).unwrap_or_default();
             flat = flat.get(len + 1..).unwrap_or_default();

@@ -13,6 +13,8 @@ use crate::failure::Failure;
 /// is allowed.
 pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
+    // The reader refuses the additional byte with its own finding, so only it says what the limit
+    // is.
     let most = Limits::default().file_bytes.saturating_add(1);
     File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).reading(path)?;
     Ok(bytes)

@@ -82,6 +82,7 @@ impl CheckArgs {
 fn timeout(seconds: f64) -> Result<Duration, Failure> {
     Duration::try_from_secs_f64(seconds)
         .ok()
+        // The end of a check is `Instant::now() + timeout`, which must not overflow.
         .filter(|timeout| !timeout.is_zero() && timeout.as_secs() < 1_000_000)
         .ok_or_else(|| Failure::Usage(format!("--timeout {seconds}: seconds, more than 0")))
 }

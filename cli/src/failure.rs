@@ -121,6 +121,7 @@ impl Failure {
         }
         let findings = self.findings();
         let first = match text.split_once('\n') {
+            // The message lists the findings, too, but without their flags. They are listed below.
             Some((first, _)) if !findings.is_empty() => first,
             _ => &text,
         };
@@ -176,6 +177,7 @@ impl Failure {
 const MOST_SHOWN: usize = 8000;
 
 fn shown_line(line: &str) -> String {
+    // URIs are put in before escaping, because an escaped path would not be found.
     let named = named(line);
     let line = plain(&named);
     match line.char_indices().nth(MOST_SHOWN) {

@@ -104,6 +104,7 @@ pub(crate) fn apply_kept(
         return Err(Failure::Other(sentence));
     };
     let limit_v = ready.capabilities.limit.unwrap_or(f64::INFINITY);
+    // The limit may have been lowered since, or the file edited by hand.
     if !(gain.drive_v > 0.0 && gain.drive_v <= limit_v) {
         let drive_v = gain.drive_v;
         return Err(Failure::Other(format!(

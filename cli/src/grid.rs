@@ -68,6 +68,7 @@ fn entry(cell: &GridCell) -> String {
 /// Formats a number with three digits.
 fn short(x: f64) -> String {
     match x {
+        // The least number that rounds to 100.
         x if x >= 99.95 => format!("{x:.0}"),
         x if x >= 9.995 => format!("{x:.1}"),
         x => format!("{x:.2}"),
@@ -93,6 +94,7 @@ pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     let mut from_db = f64::NEG_INFINITY;
     for (to_db, name, color) in CLASSES {
         let within = |cell: &&GridCell| {
+            // An unknown repeatability is in the worst class.
             let db = cell.repeatability_rms_db.unwrap_or(f64::INFINITY);
             cell.condition.is_some() && db > from_db && db <= to_db
         };
@@ -102,6 +104,7 @@ pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     let thin = grid.cells.iter().filter(|c| c.status == CellStatus::Thin);
     push_cells(&mut plot, "too thin: no condition", THIN, thin);
     if let Some(last) = plot.series.last_mut() {
+        // Without thin cells nothing was added, and the last series is another one.
         last.marker_hollow = last.name.starts_with("too thin");
     }
     plot

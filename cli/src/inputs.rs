@@ -111,6 +111,7 @@ impl InputArgs {
                 Box::new(LineTracker::new("standard input", input))
             }
             Some(("lines", path)) => {
+                // Waits for the writer of a named pipe, which `open_regular` would refuse.
                 let file = std::fs::File::open(path).reading(path)?;
                 Box::new(LineTracker::new(path, BufReader::new(file)))
             }

@@ -39,6 +39,7 @@ impl Program {
 
 /// Stores the shown arguments (without the program's name) and the program of this run.
 pub(crate) fn set(arguments: Vec<OsString>, program: Vec<OsString>) {
+    // Not set once per process: the Python package may run several commands.
     *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Invocation { arguments, program };
 }
 

@@ -114,6 +114,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
     let shown = arguments.iter().skip(1).cloned().map(located::without_secrets);
     invocation::set(shown.collect(), program);
     let code = parse_and_run(arguments);
+    // A static is never dropped, so its temporary folder has to be removed here.
     located::clear();
     code
 }
@@ -159,12 +160,14 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
             failure.exit_code().code()
         }
     };
+    // Last, because it waits as long as the output may have a voltage.
     playing::stay_until_zero();
     code
 }
 
 /// Downloads the inputs of a command, runs it, and uploads its outputs.
 fn run_command(command: Command) -> Result<Exit, Failure> {
+    // Also resets what an earlier command in this process has set.
     signals::handle()?;
     folders::check()?;
     transfer::fetch()?;

@@ -203,6 +203,7 @@ impl Elsewhere {
             return Err(format!("{location}: it has no file name at its end; name a file"));
         };
         let failed = |error| format!("no temporary folder for {location}: {error}");
+        // A folder for each, because several URIs may have the same file name.
         let folder = self.folder().map_err(failed)?.join(self.files.len().to_string());
         std::fs::create_dir(&folder).map_err(failed)?;
         let local = folder.join(name);
@@ -256,6 +257,7 @@ pub(crate) fn keep() {
     let mut elsewhere = local();
     // From now on, messages name the copies themselves.
     elsewhere.files.clear();
+    // A signal must not remove what is kept.
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let Some(folder) = elsewhere.folder.take() {
         let _ = folder.keep();
@@ -275,6 +277,7 @@ pub(crate) fn named(text: &str) -> String {
         let escaped = |text: &str| serde_json::Value::from(text).to_string();
         let in_json = |text: &str| escaped(text).trim_matches('"').to_owned();
         if text.contains(&copy) || text.contains(&in_json(&copy)) {
+            // First as a whole JSON string, in which a Windows path has other characters.
             text = text.replace(&escaped(&copy), &escaped(&uri));
             text = text.replace(&copy, &uri);
         }

@@ -40,6 +40,7 @@ impl Motions {
     /// can have is a failed reading, as in the renderer.
     pub(crate) fn from_stdin() -> Self {
         let (sender, receiver) = RingBuffer::new(ROOM);
+        // A read cannot be interrupted, so the thread is left to the end of the process.
         thread::spawn(move || read(std::io::stdin().lock(), sender));
         Self::Queue(receiver)
     }

@@ -78,6 +78,7 @@ fn steers(c: char) -> bool {
 pub(crate) fn tamed<T: Serialize + DeserializeOwned + Clone>(value: &T) -> T {
     let mut json = serde_json::to_value(value).unwrap_or_default();
     tame(&mut json);
+    // If an escaped text is no valid value, `print` still escapes the original.
     serde_json::from_value(json).unwrap_or_else(|_| value.clone())
 }
 

@@ -30,6 +30,8 @@ const DISPLAY_BLOCK_S: f64 = 0.02;
 fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
     let most_s = match ready.scene.scene.motion {
         Motion::Live => LIVE_BLOCK_S,
+        // Zero must be reached within 0.5 s of a signal, and buffer and ramp may take 400 ms of
+        // that.
         _ if is_wanted(&ready.capabilities) => DISPLAY_BLOCK_S,
         _ => f64::INFINITY,
     };
@@ -127,9 +129,11 @@ impl Output {
             self.last = frames;
         }
         if let Some(start) = self.pace {
+            // From the start, so that the errors of the sleeps do not add up.
             let due = Duration::from_secs_f64(self.frames as f64 / self.rate_hz);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
         }
+        // Only the last block is shorter. If the scene ends with a full one, the next is empty.
         Ok(frames == self.block.len())
     }
 

@@ -123,6 +123,7 @@ impl RecordingArgs {
     /// Whether any option for reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
+        // clap fills in the default, so only another value was given.
         let bounded = self.settings.most_values.is_some_and(|most| most != MOST_VALUES);
         condition || self.strict || bounded || !self.settings.recorded().is_empty()
     }

@@ -29,6 +29,7 @@ impl Reported<'_> {
             .collect::<Result<_, _>>()?;
         if textures.len() > 1 {
             for texture in &mut textures {
+                // The name has it then, so it is not shown again.
                 let condition = std::mem::take(&mut texture.condition);
                 texture.name = format!("{}, {condition}", texture.name);
             }
@@ -145,6 +146,7 @@ pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) 
     for summary in summaries {
         for representation in &summary.representations {
             let model = short_name(&representation.model);
+            // A list instead of a map, so that the models stay in the order of the assets.
             let at = match shares.iter().position(|(known, _)| known == model) {
                 Some(at) => at,
                 None => {

@@ -48,6 +48,7 @@ impl Scene {
     ) -> Result<Self, Failure> {
         let loader = Loader::builtin(player)?;
         let told = RefCell::default();
+        // The quantity is a setting of the device, so it is read before the scene is loaded.
         let ready = load(&loader, file, &numbers(quantity(file), None), &told)?;
         if ready.scene.scene.motion == Motion::Live {
             let file = shown(file);
@@ -79,6 +80,7 @@ impl Scene {
     /// Calls a function with the scene's sound.
     pub(crate) fn with<T>(&self, call: impl FnOnce(&SceneSound<'_>) -> T) -> T {
         let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        // `two.scene.json` has two extensions.
         let name = name.split('.').next().unwrap_or_default();
         call(&SceneSound {
             name,

@@ -78,6 +78,7 @@ impl ChoiceArgs {
         let settings = ready.device.descriptor().settings.iter();
         for setting in settings.filter(|s| s.kind == SettingKind::Path) {
             let path = ready.settings().text(&setting.name);
+            // `exists` would follow a link, and miss one that leads nowhere.
             if !given.contains_key(&setting.name) && Path::new(path).symlink_metadata().is_ok() {
                 return Err(Failure::Usage(format!(
                     "{path} exists; name the file to write, or to replace, by --set {}=FILE",
@@ -164,6 +165,7 @@ impl SceneArgs {
     pub(crate) fn settings_schema(scene: &Value) -> Result<Option<Named>, Failure> {
         let name = scene.pointer("/device/adapter").and_then(Value::as_str);
         let devices = DeviceArgs::default().devices_quietly()?;
+        // A scene that names no device plays to a file.
         let device = devices.find(name.unwrap_or("file")).ok();
         let settings = |known: &KnownDevice| crate::schemas::settings(known.descriptor());
         device.map(settings).transpose()
@@ -250,6 +252,7 @@ fn capabilities(
         .filter(|(_, value)| !value.is_empty())
         .collect();
     given.insert("quantity".to_owned(), "display_voltage".to_owned());
+    // The setting has to be given. Nothing is opened, so nothing is written.
     given.insert("path".to_owned(), "display.wav".to_owned());
     let like = Settings::resolve(file.descriptor(), None, &given)?;
     let able = file.adapter.capabilities(&like).map_err(|_| missing)?;

@@ -81,6 +81,7 @@ fn covers(finding: &str, violation: &str) -> bool {
         let rest = inner.strip_prefix(outer);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     };
+    // An empty pointer is the whole document, in which every violation lies.
     inside(finding, violation) || (!finding.is_empty() && inside(violation, finding))
 }
 
@@ -94,6 +95,7 @@ fn add(report: &mut Report, broken: &Rule, violation: Violation, rule: String, a
         report
             .findings
             .push(Finding { schema_rule: Some(rule), ..Finding::new(broken, pointer, &message) });
+    // The note itself makes the list longer than this, so it is added once.
     } else if shown == KEPT {
         let message = "more findings are not shown";
         let finding = Finding::new(FINDINGS_TRUNCATED, "", message);
@@ -151,9 +153,12 @@ pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<Named, Failur
     for setting in &device.settings {
         let schema = match &setting.kind {
             SettingKind::Number { min, max } => {
+                // A scene may write a number as text. `minimum` applies only to numbers; the rules
+                // check texts.
                 json!({ "type": ["number", "string"], "minimum": min, "maximum": max })
             }
             SettingKind::Choice { values } => {
+                // A scene may write the choice `2` as a number.
                 let numbers = values.iter().filter_map(|v| serde_json::from_str(v).ok());
                 let texts = values.iter().map(|v| json!(v));
                 json!({ "enum": texts.chain(numbers).collect::<Vec<Value>>() })

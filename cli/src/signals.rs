@@ -11,6 +11,7 @@ use crate::located;
 use crate::output::tell;
 
 /// Exit status of an interrupted program, as is customary.
+// 128 and the number of SIGINT.
 const INTERRUPTED: i32 = 130;
 
 /// End the program at once and remove unfinished files.
@@ -35,6 +36,8 @@ pub(crate) fn handle() -> Result<(), Failure> {
 
 /// Installs the handler once per process.
 fn install() -> Result<(), String> {
+    // Runs in a thread of `ctrlc`, not in the signal handler itself, so it may lock and delete
+    // files.
     let handler = || match MEANING.load(Ordering::Relaxed) {
         ENDS => {
             htex_format::remove_unfinished();

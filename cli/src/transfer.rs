@@ -23,6 +23,7 @@ pub(crate) fn fetch() -> Result<(), Failure> {
         return Ok(());
     }
     let storage = Storage::from_environment()?;
+    // Before any download, which a wrong output would make useless.
     for (location, _, _) in files.iter().filter(|(_, _, role)| *role == Role::Output) {
         storage.check_writable(location)?;
     }
@@ -34,6 +35,7 @@ pub(crate) fn fetch() -> Result<(), Failure> {
         };
         let mut options = File::options();
         htex_base::files::private::only_user(&mut options);
+        // `create_new` follows no link. The folder is new, so nothing is there.
         let file = options.write(true).create_new(true).open(&local).writing(&local)?;
         storage.download(&location, file, most_bytes)?;
     }

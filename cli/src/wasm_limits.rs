@@ -27,6 +27,7 @@ const LIMITS: [(&str, u64, Set); 16] = [
     ("table-elements", 10_000_000, |l, n| l.table_elements = n as usize),
     ("stack-kib", 1024, |l, n| l.stack_bytes = (n as usize) << 10),
     ("voices", 100_000, |l, n| l.voices = n as usize),
+    // A day, for all limits of time.
     ("call-ms", 86_400_000, |l, n| l.call = Duration::from_millis(n)),
     ("render-ms", 86_400_000, |l, n| l.render = Duration::from_millis(n)),
     ("fuel", u64::MAX / 2, |l, n| l.fuel = Some(n)),

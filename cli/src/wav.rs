@@ -12,6 +12,8 @@ use crate::shown::shown;
 use htex_format::Rights;
 
 /// Maximum number of frames in a WAV file.
+// Sizes in a RIFF file have 32 bits. 64 bytes are for the header; rights that do not fit as well
+// are left out.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
 /// Writes `frames` samples of one channel, with the rights of the textures that are played.
@@ -36,6 +38,7 @@ pub(crate) fn write_wav(
         bits_per_sample: 32,
         sample_format: SampleFormat::Float,
     };
+    // `replace` passes on only errors of the system, so the error of the model is kept here.
     let mut failed = None;
     let mut is_silent = true;
     let path = wav.path();

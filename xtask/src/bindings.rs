@@ -115,6 +115,7 @@ impl Binding {
 impl Program {
     /// Returns the first of the names that is installed.
     fn find(&self) -> Option<&'static str> {
+        // Whether it starts is enough: not every program knows `--version`.
         let there = |name: &&&str| Command::new(name).arg("--version").output().is_ok();
         self.names.iter().find(there).copied()
     }

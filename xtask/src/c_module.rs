@@ -15,6 +15,7 @@ use crate::programs::run;
 /// printed.
 pub fn build(source: &str, module: &Path) -> Result<()> {
     let mut clang = Command::new("clang");
+    // Without `errno`, `sqrt` becomes an instruction. There is no C library to call.
     clang.args(["--target=wasm32", "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno"]);
     clang.args(["-fvisibility=hidden", "-ffreestanding", "-nostdlib", "-Wl,--no-entry"]);
     for include in ["spec/include", "sdk/check/templates/c", "examples/model-c-bursts"] {

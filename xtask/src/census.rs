@@ -107,6 +107,7 @@ fn source(path: &Path) -> Result<Source> {
     found.visit_file(&file);
     let test_lines = if is_test { text.lines().count() } else { found.test_lines };
     WithoutTests.visit_file_mut(&mut file);
+    // Visited twice: the lines of tests are counted before tests are removed, names after.
     let mut kept = Found::default();
     kept.visit_file(&file);
     Ok(Source {

@@ -11,6 +11,7 @@ pub(crate) fn at_a_time<T: Send, R: Send>(
     call: impl Fn(T) -> R + Sync,
 ) -> Vec<R> {
     let waiting = Mutex::new(items.into_iter());
+    // The lock is free again before `call` runs.
     let next = || waiting.lock().ok()?.next();
     let work = || std::iter::from_fn(next).map(&call).collect::<Vec<R>>();
     scope(|scope| {

@@ -144,8 +144,10 @@ impl Need {
         let test = std::thread::current().name().unwrap_or("a test").to_owned();
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let record = format!("{test} {what}").replace(|c| !is_plain(c), "-");
+        // A file for each, because the tests run in several programs at the same time.
         let record = folder().join(record);
         if there {
+            // An earlier run may have written it, when the software was not installed yet.
             let _ = fs::remove_file(record);
             return true;
         }

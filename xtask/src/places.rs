@@ -15,6 +15,7 @@ pub(crate) fn workspace() -> PathBuf {
 
 pub(crate) fn target() -> PathBuf {
     let own = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    // An absolute path replaces the workspace's.
     workspace().join(own.unwrap_or_else(|| "target".into()))
 }
 

@@ -111,6 +111,8 @@ fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Resul
     run(cargo
         .args(["rustc", "--quiet", "--lib", "--package", &package])
         .args(more)
+        // The manifests do not ask for a library of this kind, because programs also link the
+        // models.
         .args(["--features", "plugin", "--crate-type", "cdylib"])
         .env("CARGO_TARGET_DIR", target)
         .current_dir(workspace()))
@@ -120,6 +122,7 @@ fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Resul
 fn place(built: &Path, name: &str) -> Result<()> {
     let (folder, beside) = (folder(), format!("{name}.{}", std::process::id()));
     fs_err::create_dir_all(&folder)?;
+    // A test may have loaded the old file. Writing into a loaded library would crash its process.
     fs_err::copy(built, folder.join(&beside))?;
     Ok(fs_err::rename(folder.join(&beside), folder.join(name))?)
 }

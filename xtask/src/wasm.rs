@@ -68,6 +68,7 @@ impl Toolchain {
                 let mut command = Command::new("/usr/bin/cargo");
                 command
                     .env("RUSTC", "/usr/bin/rustc")
+                    // A stable compiler needs it for `-Z build-std`.
                     .env("RUSTC_BOOTSTRAP", "1")
                     .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker)
                     .env_remove("RUSTUP_TOOLCHAIN");
@@ -83,6 +84,7 @@ impl Toolchain {
         match self {
             Self::Ready => &["--target", TARGET],
             Self::Debian { .. } => {
+                // Debian's compiler may be older than the manifests ask for.
                 &["-Z", "build-std=std,panic_abort", "--ignore-rust-version", "--target", TARGET]
             }
         }

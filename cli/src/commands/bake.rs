@@ -100,6 +100,8 @@ impl Bake {
             Format::C | Format::Rust => None,
         };
         let beside = rights.and_then(|rights| rights.beside(&self.output));
+        // The licence goes to a second file, whose name the user did not give. It is known only
+        // now.
         check_outputs(beside.as_deref(), [self.asset.as_path()])?;
         let written = match format {
             Format::Bytes => baked.bytes.clone(),
@@ -228,6 +230,8 @@ fn axes<T>(flag: &str, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<[
         match part.split_once('=').map(|(key, value)| (key.trim(), value)) {
             Some(("speed", value)) => speed = read(value),
             Some(("force", value)) => force = read(value),
+            // An unknown or repeated key is refused below: a value is missing, or there are three
+            // parts.
             _ => {}
         }
     }
@@ -251,6 +255,7 @@ fn span(text: &str) -> Option<Vec<f64>> {
         [first, last, count] => {
             let (first, last): (f64, f64) = (first.parse().ok()?, last.parse().ok()?);
             let count: u32 = count.parse().ok()?;
+            // A count of 1 divides by zero here. The range below refuses it.
             let step = (last - first) / f64::from(count.checked_sub(1)?);
             (2..=32)
                 .contains(&count)

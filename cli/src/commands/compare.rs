@@ -76,6 +76,7 @@ struct OtherRecording {
 
 impl Compare {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        // Before any file is parsed: swapped arguments get advice, not the error of a wrong parser.
         self.check_kinds()?;
         let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
         let mut comparison = Comparison {

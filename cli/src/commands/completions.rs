@@ -19,6 +19,7 @@ pub(crate) struct Completions {
 
 impl Completions {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        // Not to standard output: `generate` panics if it cannot write, e.g. to a closed pipe.
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut crate::command(), "htex", &mut script);
         write_bytes(&script)?;

@@ -102,6 +102,7 @@ impl Demo {
         let csv = PathBuf::from(format!("{name}.csv"));
         self.write_recording(surface, Written::Inside(own, &csv))?;
         let csv = self.dir.join(csv);
+        // The files are read back, so that the demo takes the way of a user's recording and asset.
         let recording = read_recording(&csv, &ReadOptions::default())?;
         let take = Take { recording, given: CONDITION };
         let fitted = fit_asset(&[take], &request(&name, rig)?)?;

@@ -54,6 +54,8 @@ impl Edit {
             let sentence = "nothing to change: give at least one of the metadata, such as --author";
             return Err(Failure::Usage(sentence.to_owned()));
         }
+        // The command sees the local copy of a remote asset. Replacing the copy would change
+        // nothing.
         if self.output.is_none() && located::is_copy(&self.asset) {
             let file = located::named(&shown(&self.asset));
             return Err(Failure::Usage(format!(

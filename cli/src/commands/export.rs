@@ -138,6 +138,7 @@ impl Export {
     fn of_scene(&self, format: &'static Format) -> Result<Exported, Failure> {
         format.check_export_of_scene(self.given.settings.iter().map(String::as_str))?;
         let scene = Scene::open(&self.asset, &self.player, self.given.values.seconds)?;
+        // Only the loaded scene knows which other files it reads.
         check_outputs([self.output.as_path()], scene.inputs.iter().map(PathBuf::as_path))?;
         let export = self.export(format)?;
         scene

@@ -86,6 +86,7 @@ impl Fit {
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
         let metadata = std::mem::take(&mut self.metadata);
         checked(&metadata)?;
+        // Wrong options are reported before the recordings are read, which may be long.
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;
@@ -112,6 +113,7 @@ impl Fit {
         } else {
             warn(&fitted.warnings);
             note(&fitted.notes);
+            // They were printed above, on standard error.
             summary.warnings.clear();
             print(&summary.to_text())?;
             if let Some(grid) = &fitted.grid {
@@ -153,6 +155,7 @@ impl Fit {
     /// Embeds the modules of fitted models in the asset.
     fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<(), Failure> {
         let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
+        // Only models that were fitted can be embedded, so this follows the fit.
         let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
         embedded.map_err(|error| match error {
             EmbedError::Read { file, error } => FileError::reading(file, error).into(),

@@ -88,6 +88,7 @@ impl Gain {
             let sentence = format!("--start {start_v}: more than 0, at most {limit_v} V");
             return Err(Failure::Usage(sentence));
         }
+        // The participant needs any amount of time, whatever the scene says.
         ready.scene.scene.duration_s = None;
         self.felt.apply(&mut ready)?;
         let key = key(&self.person, self.texture.as_deref(), &ready);
@@ -95,6 +96,7 @@ impl Gain {
         let Some(found) = adjust(&mut ready, start_v, limit_v)? else {
             return Err(Failure::Other("ended without a match; nothing was kept".to_owned()));
         };
+        // Made before `key` is moved, and printed only after the gain is stored.
         let text = format!(
             "kept for {} and `{}`: {} ({})\n",
             self.person,
@@ -130,6 +132,7 @@ fn limit(ready: &Ready) -> Result<f64, Failure> {
 
 /// Plays until the participant accepts the gain; `None` if the input ends or is interrupted before.
 fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>, Failure> {
+    // Before the device is opened: from then on a signal must first bring the output to zero.
     signals::ask();
     let wishes = wishes();
     let (mut drive_v, mut output, mut kept) = (start_v, None, None);
@@ -138,6 +141,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
         ready.scene.scene.device.drive_v = Some(drive_v);
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&ready.file))?;
+        // The first plan opens the device, which stays open while the gain changes.
         let output = match &mut output {
             Some(output) => output,
             none => none.insert(opened(ready, &plan)?),
@@ -174,6 +178,7 @@ fn play_until_wish(
     let mut answer = None;
     let mut stopped = false;
     while output.step(renderer)? {
+        // Blocks go on until the fade to silence is written.
         if stopped {
             continue;
         }
@@ -190,6 +195,7 @@ fn play_until_wish(
 /// Reads requests from the lines of standard input. An invalid line is reported.
 fn wishes() -> Receiver<Wish> {
     let (sender, receiver) = channel();
+    // A read cannot be interrupted, so the thread is left to the end of the process.
     std::thread::spawn(move || {
         for line in std::io::stdin().lines().map_while(Result::ok) {
             let sent = wish(&line).map(|wish| sender.send(wish));

@@ -82,6 +82,7 @@ impl Import {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let plugins = self.plugins.files().iter().map(PathBuf::as_path);
         let beside = license_file(&self.file);
+        // The licence file is read, too, so the output must not replace it.
         let inputs = [self.file.as_path(), &beside].into_iter().chain(plugins);
         check_outputs([self.output.as_path()], inputs)?;
         checked(&self.metadata)?;
@@ -128,6 +129,7 @@ impl Import {
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &imported.asset)
             .with_felt(&imported.felt);
         if self.json {
+            // The asset may state some of these warnings already.
             let known: BTreeSet<String> = summary.warnings.iter().cloned().collect();
             let warnings = imported.warnings.iter().map(ToString::to_string);
             let new = warnings.filter(|warning| !known.contains(warning));
@@ -139,6 +141,7 @@ impl Import {
         }
         warn(&imported.warnings);
         note(&imported.notes);
+        // They were printed above, on standard error.
         summary.warnings.clear();
         let text = summary.to_text();
         print(&format!("imported {}\n{text}", shown(&self.file)))?;

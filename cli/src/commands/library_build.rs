@@ -138,6 +138,7 @@ impl Build {
         let to = Destination::parse(&self.output, self.work.as_deref());
         let changes_nothing = self.dry_run
             || matches!(failure, Failure::Build { error: BuildError::Removes { .. }, .. });
+        // Wrong usage is not written, because no build has begun.
         if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit_code()) {
             // If the report cannot be written, the reason is the one in `failure`.
             let _ = report_failure(to.folder(), &tool(), &lines);
@@ -174,6 +175,7 @@ impl Build {
             return self.announce(&build, &work);
         }
         if work.textures > 0 {
+            // A store that refuses files must say so before hours of fitting.
             to.try_out().map_err(of_file(&self.recipe))?;
         }
         fit(&mut build, &work).map_err(of_file(&self.recipe))?;
@@ -269,6 +271,7 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
     let bar = progress::bytes(work.bytes);
     let (count, all) = (AtomicUsize::new(0), work.textures);
     let done = |job: &Job| {
+        // Only a number on the screen depends on the order.
         let count = count.fetch_add(1, Ordering::Relaxed) + 1;
         bar.set_message(format!("{count}/{all} textures"));
         bar.inc(job.recording_bytes());

@@ -22,7 +22,9 @@ pub(crate) struct Manual {
 
 impl Manual {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        // Otherwise there would be a page for the `help` of each subcommand.
         let mut command = crate::command().disable_help_subcommand(true);
+        // Gives subcommands their full names, such as `htex-fit`, which name the files.
         command.build();
         write_pages(&command, &OwnFolder::new(&self.folder))?;
         Ok(Exit::SUCCESS)

@@ -70,6 +70,7 @@ impl Mix {
     /// Opens a texture and computes the hash of its file.
     fn open(&self, path: &Path) -> Result<(htex::Asset, String), Failure> {
         let asset = self.player.open(path)?;
+        // An opened asset does not keep its file's bytes, and written again it may have others.
         let bytes = read_asset(path)?;
         Ok((asset, blake3::hash(&bytes).to_hex().to_string()))
     }

@@ -72,10 +72,12 @@ impl Play {
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.file))?;
+        // Before the device is opened: from then on a signal must first bring the output to zero.
         signals::ask();
         let mut output = Output::open(&ready, &plan)?;
         let mut motions = self.motion.is_some().then(Motions::from_stdin);
         let endless = motions.is_some() || plan.frames.is_none();
+        // A device without a clock takes samples at once. A file would fill the disk.
         if endless && !ready.capabilities.paced {
             output = output.paced();
         }
@@ -110,6 +112,7 @@ impl Play {
         }
         self.felt.apply(&mut ready)?;
         if let Some(person) = &self.person {
+            // After `--levels`: own levels also need the level at which the gain was found.
             apply_kept(person, self.texture.as_deref(), &mut ready)?;
         }
         Ok(ready)

@@ -66,6 +66,7 @@ impl Render {
         let rights = rights(&ready);
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.scene))?;
         if self.json {
+            // Timing slows the renderer down, and only JSON has the times.
             renderer = renderer.timed();
         }
         signals::ask();
@@ -74,6 +75,7 @@ impl Render {
         let bar = bar(length_s.ceil() as u64);
         while output.step(&mut renderer)? {
             if interrupted() {
+                // Dropping the device without `finish` leaves no file behind.
                 return Err(Failure::Other("interrupted; nothing was written".to_owned()));
             }
             bar.set_position((output.frames() as f64 / plan.rate_hz) as u64);
@@ -151,6 +153,7 @@ impl Render {
             ready.check_output(&beside)?;
         }
         let is_named = self.output.is_some() || self.choice.names_output()?;
+        // `exists` would follow a link, and miss one that leads nowhere.
         if !is_named && path.symlink_metadata().is_ok() {
             let path = shown(&path);
             return Err(Failure::Usage(format!(

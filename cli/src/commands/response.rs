@@ -139,6 +139,7 @@ impl Response {
     /// Summarises the response and the settings of the measurement.
     fn summary(&self, measured: &MeasuredResponse, remarks: &[Notice]) -> Result<Value, Failure> {
         let mut summary = serde_json::to_value(measured)?;
+        // Indexing inserts a key. It cannot panic, because a struct is always a JSON object.
         summary["input"] = json!(self.input);
         summary["output"] = json!(self.output);
         summary["settings"] = serde_json::to_value(self.options())?;

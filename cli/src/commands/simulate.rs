@@ -167,6 +167,7 @@ impl Simulate {
             ))),
         };
         Ok(options
+            // The defaults are the paper's condition, as in `htex demo`.
             .with_speed_mm_s(one(self.speed, "speed", 80.0)?)
             .with_force_n(one(self.force, "force", 0.4)?))
     }

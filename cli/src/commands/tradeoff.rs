@@ -120,6 +120,7 @@ impl Tradeoff {
             Written::Inside(&own, &name).write(bytes)?;
         }
         write_file(&self.output, page(&tradeoff, &command()).as_bytes())?;
+        // Last: if a file cannot be written, the next run still continues from the journal.
         journal.discard()?;
         if self.json {
             print_json(&tradeoff)?;
@@ -139,6 +140,8 @@ impl Tradeoff {
             found.sort_by_key(|model| way(model.origin()).0);
             let ways = found.into_iter().map(|m| (way(m.origin()).1.to_owned(), m.clone()));
             let mut ways: Vec<(String, LoadedModel)> = ways.collect();
+            // They are sorted by way, so equal ways are neighbours. The one that was found first
+            // stays.
             ways.dedup_by(|b, a| a.0 == b.0);
             models.push(Model { ways });
         }

@@ -89,12 +89,14 @@ impl Validate {
             refused |= self.reading.strict() && kind == Kind::Recording && !is_clean(&report);
             Ok((path.as_path(), report))
         });
+        // `report` consumes the iterator, so `refused` is complete afterwards.
         let exit = report(reports, self.json)?;
         Ok(if refused { Exit::FAILURE } else { exit })
     }
 
     fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report, Failure> {
         let mut report = validate_asset(path, schemas)?;
+        // An invalid asset may not open.
         if self.embedded_plugins && report.valid {
             hold_plugins(path, &WasmLimit::all(&self.wasm_limit), &mut report)?;
         }
@@ -126,6 +128,7 @@ pub(crate) fn kind(path: &Path) -> Kind {
         () if called("json") => Kind::Document,
         () if called("toml") => Kind::Recipe,
         () if called(EXTENSION) || begins(&MAGIC) => Kind::Library,
+        // A damaged asset may not begin as an archive, so its name counts as well.
         () if called("htex") || begins(b"PK") => Kind::Asset,
         () => Kind::Recording,
     }
@@ -210,6 +213,7 @@ const MOST_TOML_BYTES: u64 = 1 << 20;
 fn validate_recipe(path: &Path) -> Result<Report, Failure> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
     let options = BuildOptions::new(crate::models::tool()).with_limits(WasmLimit::all(&[]));
+    // If it cannot be read, `check` says why.
     let text = htex_base::files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
     let is_study = |line: &str| line.trim_start().starts_with("htex_study");
     if text.lines().any(is_study) {
@@ -242,6 +246,7 @@ fn validate_recipe(path: &Path) -> Result<Report, Failure> {
 /// Validates a scene or a descriptor. Their keys tell them apart.
 fn validate_json(path: &Path) -> Result<Report, Failure> {
     let bytes = read_asset(path)?;
+    // What is not JSON goes on as a scene, whose reader reports the place.
     let document = htex_format::parse_json(&bytes).unwrap_or_default();
     let text = || String::from_utf8_lossy(&bytes);
     let has = |key: &str| document.get(key).is_some();

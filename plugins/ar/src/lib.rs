@@ -108,11 +108,14 @@ impl Model for Autoregression {
             return Err(Error::argument("filters of different model rates cannot be mixed"));
         }
         let order = sets.iter().map(|s| s.list(COEFFICIENTS).len()).max().unwrap_or(0);
+        // On the stack, because hosts may interpolate on the render thread.
         let mut all = [[0.0; MAX_ORDER]; 4];
         let [mixed, padded, lines, coefficients] = all.each_mut().map(|all| &mut all[..order]);
         for (set, &weight) in sets.iter().zip(weights) {
             let own = set.list(COEFFICIENTS);
             padded.fill(0.0);
+            // Zero coefficients change no filter, but all filters then have the same number of
+            // lines.
             padded[..own.len()].copy_from_slice(own);
             if !write_lines(padded, lines) {
                 return Err(unstable());

@@ -43,6 +43,7 @@ impl Kept {
 /// allocate or wait.
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
+    // The render thread must not wait for the lock. Computing the lines again gives the same bits.
     let kept = if (1..=KEPT_ORDER).contains(&order) { KEPT.try_lock() } else { None };
     let Some(mut kept) = kept else {
         return find_lines(coefficients, lines);

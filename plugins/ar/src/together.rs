@@ -56,6 +56,7 @@ fn groups(
     let [a, b, c, d] = voices;
     let filters = [&mut a.filter, &mut b.filter, &mut c.filter, &mut d.filter];
     let edges = [&mut a.edges, &mut b.edges, &mut c.edges, &mut d.edges];
+    // Before any noise is drawn, so that a refusal has no effect.
     let (Some(mut filters), Some(mut edges)) = (AllPoles::new(filters), Pipelines::new(edges))
     else {
         return false;

@@ -83,6 +83,7 @@ impl AutoregressionVoice {
             taken: GROUP,
         };
         let settle = libm::ceil((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize;
+        // A whole number of groups of noise, so that the first block begins at the start of one.
         voice.render(&mut vec![0.0; settle.next_multiple_of(NOISE_GROUP)]);
         Ok(voice)
     }
@@ -136,6 +137,8 @@ impl AutoregressionVoice {
     fn ramp(&mut self) {
         self.ramp_left -= 1;
         let done = self.ramp_left == 0;
+        // Reflection coefficients between those of two stable filters are again inside (-1, 1). The
+        // last step sets the target itself, because the steps have rounding errors.
         for (i, k) in self.filter.reflection_mut().iter_mut().enumerate() {
             *k = if done { self.target.reflection[i] } else { *k + self.step.reflection[i] };
         }
@@ -181,6 +184,8 @@ impl Voice for AutoregressionVoice {
                 " Hz accepts filters of this rate only",
             ]));
         }
+        // Before anything else changes: if the parameters are refused, the voice must continue
+        // unchanged.
         self.target = Target::new(parameters, &self.passed)?;
         self.filter.raise_order(parameters.list(COEFFICIENTS).len());
         self.ramp_left = self.ramp_len;

@@ -96,6 +96,8 @@ impl Filter {
             return Err(descending());
         }
         let (own, beyond) = self.reflection.split_at_mut(poles.len());
+        // Lines that ascend should give a stable filter, but if they are very close, rounding can
+        // make it unstable. So this is checked again.
         own.copy_from_slice(self.poles.coefficients());
         beyond.fill(0.0);
         if step_down_in_place(own) { Ok(()) } else { Err(unstable()) }

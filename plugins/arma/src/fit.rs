@@ -110,6 +110,8 @@ impl Spectrum {
             let denominator = self.inverse_power(&below);
             above = self.poles_of(|i| denominator[i] / self.power[i], zeros);
             let distance = self.distance(&denominator, &self.inverse_power(&above));
+            // The first round is taken even if its distance is NaN, so that there is always a
+            // result.
             if distance < best.0 || best.0 == f64::INFINITY {
                 best = (distance, below, above.clone());
             }

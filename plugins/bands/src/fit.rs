@@ -115,6 +115,8 @@ impl Fitter {
             .iter()
             .zip(&energy)
             .map(|(wanted, energy)| {
+                // A trial far from the solution may underflow to an energy of 0, which has no
+                // logarithm.
                 wanted.map_or(0.0, |wanted| libm::log(energy.max(f64::MIN_POSITIVE)) - wanted)
             })
             .collect();
@@ -131,6 +133,8 @@ impl Fitter {
         let mut system = Pentadiagonal::zero(knots);
         let mut slope = vec![0.0; knots];
         for i in (0..knots).filter(|&i| self.wanted[i].is_some()) {
+            // An energy depends on its own knot and on the two beside it, so the matrix has two
+            // diagonals on either side. The first and the last band have only one neighbour.
             let row = by[i].map(|d| d / trial.energy[i].max(f64::MIN_POSITIVE));
             let first = i.saturating_sub(1);
             let row = if i == 0 { &row[1..] } else { &row[..] };

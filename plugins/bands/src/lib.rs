@@ -144,6 +144,7 @@ impl Model for BandEnergies {
             },
             band: input.band,
         };
+        // For a silent spectrum these are NaN, and `Fitter::new` then finds no energy.
         let power: Vec<f64> = input.magnitude.iter().map(|m| (m / top) * (m / top)).collect();
         let fitter = Fitter::new(&axis, input.frequency_hz, &power).ok_or_else(|| {
             Error::cannot_fit(

@@ -121,6 +121,7 @@ fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
                 let (cos, sin) = turns[turn];
                 re += grey * cos;
                 im += grey * sin;
+                // The phase is counted in whole numbers, so it is exact at the end of a row.
                 turn += waves;
                 turn -= if turn < width { 0 } else { width };
             }

@@ -43,6 +43,8 @@ impl Surface {
         if map.rms <= 0.0 {
             return Err(Error::parameters("`rms` is 0, and a map is felt by its differences"));
         }
+        // `empty` has reserved memory for the largest map, so this does not allocate on the render
+        // thread.
         self.grey.clear();
         self.grey.extend(map.grey.iter().map(|grey| libm::round(*grey) as u8));
         self.width = map.width;
@@ -78,6 +80,7 @@ impl Surface {
 fn around(at: f64, count: usize) -> (f64, [usize; 4]) {
     let whole = libm::floor(at);
     let count = count as f64;
+    // The remainder `%` would be negative for places left of the map or above it.
     let first = whole - 1.0 - count * libm::floor((whole - 1.0) / count);
     let pixel = |i: usize| {
         let next = first + i as f64;

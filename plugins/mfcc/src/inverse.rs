@@ -47,6 +47,7 @@ impl Inverse {
         if let Some(found) = cache.iter().position(same) {
             return Arc::clone(&cache[found]);
         }
+        // Made while the lock is held: another voice that needs the same inverse waits for it.
         let made = Arc::new(Self::new(bands, kind, band));
         if cache.len() == KEPT {
             cache.remove(0);

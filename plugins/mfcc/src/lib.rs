@@ -240,6 +240,7 @@ impl Curve for Spectrum {
     }
 
     fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
+        // So that `set`, on the render thread, never allocates.
         self.cepstrum.reserve(self.inverse.bands());
         self.places = Some(Places::shared(frequency_hz, key, self.band));
     }

@@ -81,6 +81,8 @@ impl Squares {
         if free.iter().all(|factor| (low..=high).contains(factor)) {
             return free;
         }
+        // The cost is convex. So if its minimum is outside the bounds, the best point within them
+        // is on one of the sides.
         let sides = [low, high].into_iter().flat_map(|bound| {
             let beside_a = ((self.yz - self.xy * bound) / self.yy).clamp(low, high);
             let beside_b = ((self.xz - self.xy * bound) / self.xx).clamp(low, high);

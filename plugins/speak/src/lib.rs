@@ -180,6 +180,7 @@ impl Model for SpectralPeak {
         heard().for_each(|(set, _)| out.extend(set.list(FREQUENCY)));
         out.push(count as f64);
         for (set, weight) in heard() {
+            // The powers of different lines add up, so the weights apply to powers.
             let fade = htex_dsp::root::sqrt(*weight);
             set.list(AMPLITUDE).iter().for_each(|a| out.push(a * fade));
         }

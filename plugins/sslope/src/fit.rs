@@ -29,6 +29,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         .zip(input.magnitude)
         .map(|(&f, &m)| (libm::log10(f), decibels(m / top)))
         .collect();
+    // A peak at an edge of the band has no slope on that side. It gets the lowest order.
     let order = |slope: Option<f64>| round_order(slope.unwrap_or(0.0), input.options[ROUNDING]);
     let slope = |points: &[(f64, f64)], peak: usize| match input.options[METHOD] as u32 {
         0 => least_squares(points),

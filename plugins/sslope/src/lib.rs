@@ -216,6 +216,7 @@ impl Curve for Shape {
             exponentials(magnitude);
             exponentials(passed);
             for (m, high) in magnitude.iter_mut().zip(&*passed) {
+                // One of the two factors is at most 2, so the product does not overflow.
                 *m = 1.0 / htex_dsp::root::sqrt((1.0 + *m) * (1.0 + high));
             }
         }

@@ -261,6 +261,7 @@ impl From<Status> for [f64; STATUS_NUMBERS] {
 impl From<[f64; STATUS_NUMBERS]> for Status {
     fn from(numbers: [f64; STATUS_NUMBERS]) -> Self {
         Self {
+            // `as` turns NaN and negative numbers of a faulty library into 0.
             frames_written: numbers[STATUS_FRAMES_WRITTEN] as u64,
             frames_played: numbers[STATUS_FRAMES_PLAYED] as u64,
             underruns: numbers[STATUS_UNDERRUNS] as u64,

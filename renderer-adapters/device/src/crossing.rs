@@ -11,6 +11,8 @@ const MAX_WAIT_MS: u32 = 86_400_000;
 /// Converts an error to its code and its last-error text.
 pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     use DeviceError as E;
+    // Where `incoming` builds the same error again, only the part that the host does not know
+    // crosses.
     let text = match error {
         E::Setting { name, what } => format!("{name}: {what}"),
         E::Underflow { advice, .. } => advice.clone(),

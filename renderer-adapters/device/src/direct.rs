@@ -60,6 +60,7 @@ impl DirectVoltage {
         let most_v = self.limit_v * (1.0 + ROUNDING) * frames as f64;
         let (old, new) = self.last_v.split_at(self.oldest);
         let before = new.iter().chain(old).copied();
+        // In a block longer than the window, the block's own first samples leave it again.
         let leaving = before.chain(samples.iter().map(|v| (*v).into()));
         let mut sum_v = self.sum_v;
         for (at, (sample, leaves)) in samples.iter().zip(leaving).enumerate() {
@@ -96,6 +97,7 @@ impl DirectVoltage {
     /// that, and so on, back and forth without end.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();
+        // Plus one window, so that the index below is never negative.
         let newest = self.oldest + frames - 1;
         let period = (2 * frames).saturating_sub(2).max(1);
         (1..).map(move |back: usize| {

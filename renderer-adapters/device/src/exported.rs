@@ -22,6 +22,7 @@ impl<'a, T> Input<'a, T> {
     /// # Safety
     /// `pointer` is null, or `len` values can be read there for `'a`.
     pub unsafe fn new(pointer: *const T, len: usize) -> Self {
+        // A null pointer is allowed for an empty array, but a slice must not have one.
         if len == 0 {
             return Self(Some(&[]));
         }
@@ -44,6 +45,7 @@ impl<'a, T> Output<'a, T> {
     /// # Safety
     /// `pointer` is null, or `len` initialised values can be written there for `'a`, only by us.
     pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
+        // As for an input: a slice must not have a null pointer.
         if len == 0 {
             return Self(Some(&mut []));
         }
@@ -151,6 +153,7 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
 
     pub(crate) fn close(&self, handle: i64) -> i64 {
         self.answer(|| {
+            // The drop runs inside `answer`, so that a panic in it becomes a code.
             let closed = self.open.remove(handle).map(|_| 0);
             closed.ok_or_else(|| self.bad_handle())
         })
@@ -168,6 +171,7 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
 fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
     // A panic must not leave the library.
     let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
+        // The payload is one of these two types, depending on whether the message was formatted.
         let text = panic
             .downcast_ref::<&str>()
             .map(ToString::to_string)

@@ -197,6 +197,7 @@ impl<T: Table> Library<T> {
         // SAFETY: a live buffer of this length.
         let len = unsafe { (self.table.common().last_error)(bytes.as_mut_ptr(), bytes.len()) };
         bytes.truncate(usize::try_from(len).unwrap_or(0));
+        // A longer text was cut, perhaps inside a character.
         match String::from_utf8_lossy(&bytes) {
             text if text.is_empty() => "no reason given".to_owned(),
             text => text.into_owned(),
@@ -227,6 +228,7 @@ impl<T: Table> Library<T> {
 }
 
 fn check_marker<T: Table>(marker: u32) -> Result<(), AbiFault> {
+    // The lowest byte is the minor version, which may differ.
     if marker >> 8 == T::MARKER >> 8 {
         Ok(())
     } else {

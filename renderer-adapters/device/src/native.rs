@@ -91,6 +91,7 @@ impl NativeAdapter {
     ) -> Result<NativeDevice, DeviceError> {
         let capabilities = self.capabilities(settings)?;
         let lines = self.lines(settings);
+        // The rates that a library states may be too low for its carrier.
         if format.rate_hz < capabilities.lowest_with_carrier_hz() {
             return Err(DeviceError::Rate {
                 device: self.name().to_owned(),

@@ -63,6 +63,7 @@ fn refused(call: &str, array: &str, answer: i64) -> Result<(), String> {
 /// Tests a function that writes a text, with buffers of every kind. `call` gets a pointer and a
 /// capacity.
 fn check_text(name: &str, call: impl Fn(*mut u8, usize) -> i64) -> Result<(), String> {
+    // Null is allowed with a capacity of 0: the call then only answers the length of its text.
     let len = call(std::ptr::null_mut(), 0);
     refused(name, "a null `out`", call(std::ptr::null_mut(), 16))?;
     let whole = usize::try_from(len).unwrap_or(0);
@@ -135,6 +136,7 @@ impl Native<DeviceTable> {
 
     /// Uses a new device for each array, because a refusal may close the device.
     fn check_write(&self, lines: &str, format: &StreamFormat) -> Result<(), String> {
+        // Zeros do no harm if a faulty device plays them.
         let (write, mut samples) = (self.library.table.write, Guarded::new(SAMPLES, 0.0f32));
         for (array, pointer) in [
             ("null `samples`", std::ptr::null_mut()),
@@ -152,6 +154,7 @@ impl Native<DeviceTable> {
     fn check_status(&self, lines: &str, format: &StreamFormat) -> Result<(), String> {
         let device = self.opened_by(lines, format)?;
         let (status, handle) = (self.library.table.status, device.handle);
+        // No device reports this number, so every write into the guard values shows.
         let mut out = Guarded::new(STATUS_NUMBERS, -1234.5f64);
         // SAFETY: null, which must be refused.
         let null = unsafe { status(handle, std::ptr::null_mut(), STATUS_NUMBERS) };

@@ -219,6 +219,7 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
                 found.notes.push(Note::LeftOut { kind: A::WORD, error });
             }
         }
+        // Last, so that a library can replace a built-in adapter of the same id.
         found.add_builtin(builtin);
         Ok(found)
     }

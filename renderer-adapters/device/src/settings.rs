@@ -69,6 +69,7 @@ impl Settings {
         for (name, value) in stated.given {
             let setting = known(descriptor, name)?;
             check(setting, value)?;
+            // A limit of a profile protects its rig, so the user may only lower it.
             let holds = setting.from_scene == FromScene::Less
                 && values.get(name).is_some_and(|held| number(held) < number(value));
             if !holds {
@@ -82,6 +83,7 @@ impl Settings {
                 values.insert(setting.name.clone(), default.clone());
             }
         }
+        // After the defaults, because a scene may only lower or raise what holds without it.
         let mut ignored = Vec::new();
         for (name, value) in stated.asked {
             let setting = known(descriptor, name)?;
@@ -95,6 +97,7 @@ impl Settings {
                 Asked::Ignored(what) => ignored.push(Ignored { name: name.clone(), what }),
             }
         }
+        // The values of a profile and the defaults are checked only here.
         for setting in &descriptor.settings {
             match values.get(&setting.name) {
                 Some(value) => check(setting, value)?,
@@ -220,6 +223,7 @@ fn profile_settings(
 /// Checks that a setting may have this value.
 pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
     let refuse = |what: String| Err(error(&setting.name, what));
+    // Settings cross the ABI as lines.
     if value.contains(['\n', '\r']) {
         return refuse("a value is one line".to_owned());
     }

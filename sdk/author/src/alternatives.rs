@@ -93,6 +93,7 @@ fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     for (i, option) in model.descriptor().options.iter().enumerate() {
         for value in other_values(option) {
             let mut options = choice.options.clone();
+            // This is the fit that has the error.
             if options.get(i).is_none_or(|now| *now == value) {
                 continue;
             }
@@ -119,6 +120,7 @@ fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -
     let request = group.spectrum.fit_request(options);
     let fit = model.fit_at(&request, group.condition).ok()?;
     let fields = stored_fields(model.descriptor());
+    // Compared as an asset stores it, because the error to beat was measured like that too.
     let stored = htex_format::round_within(&fields, model.descriptor(), &fit.parameters).ok()?;
     let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
     let magnitude = read_spectrum(model, &stored, level_rms, reference).ok()?;

@@ -34,6 +34,7 @@ pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
     if source != ExponentSource::Measured || exponent < LEAST_EXPONENT {
         return;
     }
+    // A copy, because the conditions that are added below must not become neighbours themselves.
     let recorded = grouped.conditions.clone();
     let mut left = MOST;
     for pair in neighbours(&recorded) {
@@ -108,6 +109,8 @@ impl<'a> Recorded<'a> {
     /// and mixed with the weights and the level that a player would use. Where one of them has
     /// moved out of the band, only the other one counts.
     fn mixed(&self, other: &Self, motion: [f64; 2], exponent: f64) -> TextureSpectrum {
+        // The player's own mesh, so that the added condition lies on what the player would play
+        // between the two.
         let mesh = Mesh::new(&[self.motion, other.motion]);
         let mut weights = [0.0; 2];
         for (i, weight) in mesh.weights(motion[0], motion[1]).iter() {

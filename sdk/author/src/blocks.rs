@@ -77,7 +77,10 @@ pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
 /// belongs to the block that contains its middle, unless it shares samples with an earlier block.
 fn cut(stretch: &[Span], longest: f64, mut count: usize, blocks: &mut Vec<Option<usize>>) -> usize {
     let (start, length) = (earliest(stretch), length(stretch));
+    // A block shorter than a segment would share samples with the next one.
     let most = libm::floor(length + TOLERANCE);
+    // libm's rounding and the tolerance keep the number of blocks the same on all processors, where
+    // a length is a whole number of segments but for its last digit.
     let parts = libm::ceil(length / longest - TOLERANCE).min(most).max(1.0);
     // The part of the open block, the end of its spans so far, and the end of all earlier blocks.
     let (mut open, mut end, mut closed) = (None, start, f64::NEG_INFINITY);

@@ -62,6 +62,8 @@ pub(crate) fn group_takes(
         notes.add(&take.recording.source, reading.notes);
         findings.extend(RecordingFinding::all(&take.recording.source, reading.findings));
         sources.push(source_of(take, part.spectra.len()));
+        // The first recording of a condition decides its speed and force, so the order of
+        // recordings can matter where they lie close together.
         match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
             Some(gathering) => {
                 gathering.parts.push(part);
@@ -74,6 +76,7 @@ pub(crate) fn group_takes(
             }),
         }
     }
+    // Only after all recordings, because a level differs from the median of its whole condition.
     for (name, found) in gatherings.iter().flat_map(Gathering::differing) {
         if strict {
             refuse(name, &found)?;
@@ -138,5 +141,6 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
 
 /// Rounds to four digits, the precision of measured speeds and forces.
 pub(crate) fn four_digits(x: f64) -> f64 {
+    // By way of text: the nearest number to four digits has the shortest form in the manifest.
     format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -75,6 +75,7 @@ fn is_left_out(value: &Value) -> bool {
     match value {
         Value::Object(map) => map.values().all(is_left_out),
         Value::Array(list) => list.is_empty(),
+        // `f64` is the default store of a field, which is left out.
         Value::String(text) => text.is_empty() || text == "f64",
         Value::Bool(is) => !is,
         _ => false,

@@ -158,6 +158,7 @@ pub(crate) fn keep_on_target(
         return Ok(());
     }
     let known = known(recording, target);
+    // Messages compare the target with all segments, not with those that are left.
     let of_all = segments.clone();
     let is_on_target = |start: &usize| {
         let mut known = known.iter().flatten();

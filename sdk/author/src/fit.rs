@@ -85,6 +85,7 @@ pub fn fit_asset_watched(
         let spectra: Vec<&TextureSpectrum> = grouped.groups.iter().map(|g| &g.spectrum).collect();
         law(&grouped.conditions, &spectra, contact)
     };
+    // A grid chooses its own speeds as close together as its recordings support.
     if grid.is_none() {
         between::add(&mut grouped, &law);
     }
@@ -100,6 +101,8 @@ pub fn fit_asset_watched(
                 warnings.extend(told.map(Notice::from));
                 fitted.push(one);
             }
+            // Only a refusal by the model itself skips it. Every other error concerns the
+            // recordings or the program.
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
                 let message = match call {
                     "fit" => message,
@@ -275,6 +278,8 @@ pub(crate) fn read_and_measure(
 ) -> Result<(Vec<f64>, Quality), AuthorError> {
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
+    // Lines interfere with each other, so what a recording of them shows follows from their samples
+    // and not from their magnitudes.
     let read = if model.has_lines() {
         rendered
     } else {

@@ -55,6 +55,8 @@ pub(crate) fn law<S: Borrow<TextureSpectrum>>(
         let assumed = law.frequency_speed.exponent;
         measured(&mut law.frequency_speed, frequency_exponent(&spectra, speeds, assumed));
     }
+    // This weighs the estimates against the assumptions. The frequency exponent decides which
+    // levels are assumed, so all three go together.
     law.reassumed(quantity, contact)
 }
 
@@ -225,6 +227,7 @@ fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
             row.iter().map(|x| x - mean).collect()
         })
         .collect();
+    // The mean of the curves takes one degree of freedom at each point.
     let others = curves.len() as f64 - 1.0;
     let mut squares = 0.0;
     for i in 0..points as usize {

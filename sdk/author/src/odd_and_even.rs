@@ -38,6 +38,8 @@ pub fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<Od
     let all: Vec<(&[Complex<f64>], Span, usize)> = spectra
         .zip(&spans)
         .zip(&of_spans)
+        // A segment that lies in two blocks belongs to none, or odd and even blocks would share
+        // samples.
         .filter_map(|((spectrum, span), block)| Some((spectrum.as_slice(), *span, (*block)?)))
         .collect();
     let half = |parity: usize| {

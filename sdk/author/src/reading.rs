@@ -49,6 +49,8 @@ pub fn read_take(
     })?;
     judge_segments(recording, &part, &mut of_segments);
     let (condition, spread) = exploration(recording, &part.segments, take.given, &mut of_segments)?;
+    // In the specification the findings of signals come first, so those of segments are added
+    // after.
     let mut findings = recording_findings(recording);
     findings.extend(of_segments.into_list());
     if strict {
@@ -124,6 +126,8 @@ fn validated(
     options: &SpectrumOptions,
 ) -> Result<Report, ReadError> {
     let findings = match read {
+        // A missing file or a wrong option is the caller's mistake and says nothing about the
+        // recording.
         Err(error) if matches!(error.problem, ReadProblem::Io(_) | ReadProblem::Option { .. }) => {
             return Err(error);
         }
@@ -147,6 +151,8 @@ fn all_findings(take: Take, options: &SpectrumOptions) -> Vec<Finding> {
             reading.findings
         }
         Err(error) => {
+            // The signals can still be judged, and their findings often say why nothing could be
+            // read.
             rest.add(RECORDING_UNUSABLE, "", error.to_string());
             recording_findings(&take.recording)
         }

@@ -59,6 +59,8 @@ impl RecordedLoop {
         let spectrum = TextureSpectrum::average(std::slice::from_ref(part), options.averaging)?;
         let len = frame_len(rate_hz, part.band)?;
         let mut samples = joined(part, len);
+        // The level of all segments, as models have it; the loop may hold only the first 30 s of
+        // them.
         let level_rms = recorded_level(&spectrum.magnitude);
         set_level(&mut samples, level_rms);
         Ok(Self {
@@ -76,6 +78,8 @@ impl RecordedLoop {
 /// apart.
 fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
     let len = rate_hz / GRID_HZ;
+    // The remainder of an infinite or undefined rate is not a number, so the comparison refuses it
+    // too.
     let is_whole = len % 2.0 == 0.0 && rate_hz <= MOST_RATE_HZ;
     if is_whole && len > 2.0 * band.last_bin() as f64 {
         Ok(len as usize)
@@ -124,6 +128,8 @@ fn add(samples: &mut [f64], at: usize, half: &[f64], window: &[f64]) {
 
 /// Whether a segment overlaps the one before it, so that both contain the same signal there.
 fn follows(segments: &Segments, i: usize) -> bool {
+    // The step of windows in `segments.rs`. At any other distance the halves do not hold the same
+    // signal.
     let step = segments.len.div_ceil(2);
     let before = i.checked_sub(1).and_then(|k| segments.starts.get(k));
     before.is_some_and(|start| segments.starts.get(i) == Some(&(start + step)))
@@ -134,6 +140,7 @@ fn square_sum(a: f64, b: f64) -> f64 {
 }
 
 fn power_sum(a: f64, b: f64) -> f64 {
+    // Each segment has its own window and this one, both squared in a power.
     (a * a * a * a + b * b * b * b).sqrt()
 }
 

@@ -147,8 +147,11 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
         let middles = whole().filter_map(|sweep| middle(*sweep, len, samples));
         middles.collect()
     } else {
+        // Playback joins windows that follow each other by exactly this step, so `recorded.rs`
+        // rounds alike.
         let hop = len.div_ceil(2);
         let last = samples.saturating_sub(len);
+        // For a recording shorter than a segment, `last` is 0 too, and the filter leaves no window.
         (0..=last).step_by(hop).filter(|_| samples >= len).collect()
     };
     let turned = choice == SegmentChoice::Auto && has_sweeps && !represent_most;
@@ -260,6 +263,8 @@ fn scan(friction: &Friction, shortest: usize) -> Scan {
 /// Returns the start of the segment around a sweep's middle, if the segment lies inside the
 /// recording.
 fn middle(sweep: Sweep, len: usize, samples: usize) -> Option<usize> {
+    // Whole numbers, rounded twice as the specification says, so that other programs read the same
+    // samples.
     let start = ((sweep.start + sweep.end) / 2).checked_sub(len / 2)?;
     (start + len <= samples).then_some(start)
 }

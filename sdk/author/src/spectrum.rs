@@ -292,6 +292,7 @@ fn inverse_response(
         .map(|(re, im)| Complex::new(re, im))
         .collect();
     let largest = response.largest_in(band);
+    // A value that is not finite is the better report: the largest value may hide it.
     let broken = values.iter().map(|h| magnitude(*h)).find(|h| !h.is_finite());
     if let Some(largest) = broken.or(Some(largest).filter(|l| *l < SMALLEST_RESPONSE)) {
         return Err(AuthorError::Response { largest });
@@ -367,6 +368,8 @@ impl SegmentReader {
                 Trend::Linear => Cow::Owned(without_line(segment)),
             };
             self.analyzer.analyze(&level, &mut bins).map_err(|_| AuthorError::BandsDiffer)?;
+            // Bins are counted, not hertz: a rate that is no multiple of 5 Hz has bins almost 5 Hz
+            // apart.
             let in_band = self.band.first_bin()..=self.band.last_bin();
             let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
             spectra.push(in_band.map(bin).collect::<Vec<_>>());
@@ -380,6 +383,7 @@ impl SegmentReader {
 /// Subtracts the slope of the least-squares line through equally spaced samples; the mean stays.
 pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
     let middle = 0.5 * (segment.len() as f64 - 1.0);
+    // Positions around the middle have the mean 0, so that the slope does not depend on the mean.
     let place = |i: usize| i as f64 - middle;
     let samples = || segment.iter().enumerate();
     let both: f64 = samples().map(|(i, x)| place(i) * x).sum();
@@ -391,6 +395,7 @@ pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
 /// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's upper
 /// end.
 fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
+    // A multiple of four, so that half a segment is a whole number of samples.
     let len = 4 * band.last_bin();
     let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
     each_frame(band, all, len, |i, frame| {

@@ -63,6 +63,8 @@ pub(crate) fn assemble(
         bytes => job.named(bytes),
     };
     let library = path.display();
+    // Everything is judged once before anything is written, so that a refused build changes
+    // nothing.
     if options.no_removals {
         let judge = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
             let mut made = found(key, texture)?;
@@ -76,6 +78,7 @@ pub(crate) fn assemble(
         BuildError::refuse_removals(lost.map(|t| t.name.clone()).collect())?;
     }
     let parts = dist.empty_parts()?;
+    // Read before the new report replaces it.
     let before = previous(dist);
     let report = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
         let mut made = found(key, texture)?;
@@ -91,6 +94,8 @@ pub(crate) fn assemble(
     };
     let planned = jobs.par_iter().zip(&plan.textures);
     let textures: Vec<TextureReport> = planned.map(report).collect::<Result<_, BuildError>>()?;
+    // Only the reports stay in memory. The library reads each asset again, because all of them
+    // together may not fit.
     let contents = contents(plan, &textures);
     let packed = match kept_library(kept, &path, &contents) {
         Some(packed) => packed,
@@ -268,6 +273,7 @@ fn remove_stale(
     let kept: BTreeSet<String> = built(now).collect();
     let before_built: BTreeSet<String> =
         built(&before).chain(now.removed.iter().cloned()).collect();
+    // The earlier report may come from somebody else, and its names become paths.
     for name in before_built.iter().filter(|name| htex_format::library::check_name(name).is_ok()) {
         if !kept.contains(name) {
             dist.remove(&Dist::texture(name))?;

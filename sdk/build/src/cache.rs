@@ -72,6 +72,7 @@ impl Cache {
             let path = own.path().join(&folder).join(&file);
             let modified = path.metadata().and_then(|is| is.modified());
             let age =
+                // A time in the future counts as now.
                 modified.map_or(Duration::MAX, |then| now.duration_since(then).unwrap_or_default());
             let is_part = file.len() > key.len();
             if keys.contains(key) && !is_part {

@@ -50,6 +50,7 @@ impl Dist {
 
     /// Writes a file and creates the folders above it, unless the file already has these bytes.
     pub(crate) fn put(&self, file: &Path, bytes: &[u8]) -> Result<(), BuildError> {
+        // A longer file is not read to its end, because it differs anyway.
         let there = self.own.read(file, bytes.len() as u64);
         if there.is_ok_and(|there| there == bytes) {
             return Ok(());

@@ -202,6 +202,7 @@ impl Elsewhere {
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, named(location)?);
         let folder = copies.own.path().join(&copies.inside);
+        // In the folder of the copies, so that it only needs a new name at the end.
         let part =
             tempfile::Builder::new().suffix(".part").tempfile_in(&folder).writing(&folder)?;
         let file = part.reopen().writing(&folder)?;

@@ -18,6 +18,7 @@ use crate::report::{LibraryReport, REPORT, Report};
 /// If the report cannot be written.
 pub fn report_failure(output: &Path, program: &str, error: &[String]) -> Result<bool, BuildError> {
     let dist = Dist::new(output);
+    // The folder may come from somebody else, so a link in it is not followed.
     let is_folder = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_dir());
     if !dist.at(Path::new(KEPT)).is_ok_and(|kept| is_folder(&kept)) {
         return Ok(false);

@@ -113,6 +113,7 @@ fn by_model(
     above: &dyn Fn(&str, f64, f64) -> String,
 ) -> Vec<Missed> {
     let compare = |model: &str, error: f64, most: f64| {
+        // An error that is not a number must not pass a gate.
         let is_above = error.is_nan() || error > most;
         is_above.then(|| Missed::new(key, above(model, error, most)))
     };

@@ -52,6 +52,7 @@ fn check(glob: &str) -> Result<(), String> {
         ));
     }
     let (mut open, mut most, mut all) = (0_usize, 0, 0);
+    // Escaped braces count too, which only makes the limit stricter.
     for c in glob.chars() {
         match c {
             '{' => (open, all) = (open + 1, all + 1),
@@ -127,6 +128,7 @@ pub(crate) fn files(
         entry.file_type().is_dir() && is()
     };
     let mut walk = WalkDir::new(&walked).follow_links(true);
+    // Without `**`, no deeper folder can match.
     if !pattern.contains("**") {
         walk = walk.max_depth(pattern.split('/').count());
     }
@@ -163,6 +165,7 @@ fn normalised(path: &Path) -> PathBuf {
         match (part, parts.last()) {
             (Component::CurDir, _) => {}
             (Component::ParentDir, Some(Component::Normal(_))) => drop(parts.pop()),
+            // The folder above the root is the root.
             (Component::ParentDir, Some(Component::RootDir)) => {}
             _ => parts.push(part),
         }

@@ -137,6 +137,7 @@ impl Hashes {
     /// Adds hashes of files. They are valid as long as the stamps of the files stay the same.
     pub(crate) fn add(&self, hashed: impl IntoIterator<Item = (PathBuf, Hashed)>) {
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
+        // The new hashes come last, because they replace the earlier ones.
         used.extend(self.known.clone());
         used.extend(hashed);
     }
@@ -204,6 +205,7 @@ pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
     let before = Stamp::of_metadata(&file.metadata()?)?;
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(&mut file)?;
+    // By the path and not by the open file, so that a replaced file is noticed too.
     if Stamp::of(path)? != before {
         return Err(changed());
     }

@@ -145,6 +145,7 @@ fn check_import(
             format.title
         )));
     }
+    // Such a file states its own texture, so it needs no physical settings.
     if let Some(Reads::Asset(_)) = format.reads {
         return Ok(());
     }

@@ -80,6 +80,7 @@ fn recordings(
     if globs.len() > MOST_RECORDINGS {
         return Err(too_many(&place));
     }
+    // A file that several globs match counts once.
     let (mut here, mut away) = (BTreeSet::new(), BTreeMap::new());
     for glob in globs {
         if is_elsewhere(&joined(folder, Path::new(glob))) {

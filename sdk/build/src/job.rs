@@ -218,6 +218,7 @@ impl Job {
     ) -> Result<(String, Self), BuildError> {
         let without = PlannedTexture { recordings: Vec::new(), ..texture.clone() };
         let job = Self::new(&without, named, program, hashes)?;
+        // The name keeps unreadable textures apart, because their recordings cannot.
         let key = hash_of(&serde_json::json!(["absent", texture.name, job.key()]));
         Ok((key, job))
     }
@@ -261,6 +262,7 @@ impl Job {
 
     /// Checks plugins, settings and gates as far as this is possible without a fit.
     pub(crate) fn check(&self, gates: &Gates, workbench: &mut Workbench) -> Result<(), BuildError> {
+        // Recordings may be large or remote, and these checks need none of them.
         let without = Self { recordings: Vec::new(), response: None, ..self.clone() };
         let here = without.copied(&workbench.elsewhere)?;
         let job = here.as_ref().unwrap_or(&without);
@@ -308,6 +310,7 @@ impl Job {
             return self.run_here(workbench);
         };
         let mut made = copied.run_here(workbench)?;
+        // The copies are temporary, so messages must name the original files.
         let names = || copied.files().zip(self.files());
         if let Outcome::Refused(text) | Outcome::NotStrict(text) = &mut made.record.outcome {
             for (copy, file) in names().filter(|(copy, file)| copy.path != file.path) {
@@ -457,6 +460,7 @@ pub(crate) fn shown_path(file: &Path) -> PathBuf {
     match elsewhere(file) {
         Ok(Some(location)) => {
             let text = location.to_string();
+            // A location shows its query as `?…`.
             let path = text.trim_end_matches("?…");
             match (path.rsplit_once('/'), location.file_name()) {
                 (Some((folder, _)), Some(name)) => Path::new(folder).join(name),

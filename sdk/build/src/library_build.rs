@@ -175,6 +175,7 @@ impl Build {
             Prepared::new(recipe, output, &options.plugins, options.missing())?;
         let dist = Dist::new(output);
         let before = textures_before(&dist, &plan.library, options.published.as_ref());
+        // Refused before the files are hashed, which may take long.
         if options.no_removals {
             BuildError::refuse_removals(plan.removed(&before))?;
         }
@@ -196,6 +197,7 @@ impl Build {
             unkept.extend(refused.map(|refused| (key.clone(), refused)));
             jobs.push((key, job));
         }
+        // Stored at once, so that a killed build need not hash the files again.
         kept.put(HASHES, &hashes.to_keep())?;
         let cache = Cache::open(kept.clone())?;
         let is_pending =
@@ -303,6 +305,7 @@ impl Build {
         let stopped = AtomicBool::new(false);
         let ended = Mutex::new((BTreeMap::new(), None));
         let work = |_: rayon::BroadcastContext<'_>| {
+            // Each thread has its own workbench, which loads the models once.
             let mut workbench = self.workbench();
             while !stopped.load(Ordering::Relaxed) {
                 let Some(i) = self.pending.get(next.fetch_add(1, Ordering::Relaxed)) else {
@@ -319,6 +322,7 @@ impl Build {
                         stopped.store(true, Ordering::Relaxed);
                     }
                 }
+                // `done` is the caller's and may take long, so the lock is released before it.
                 drop(ended);
                 done(job);
             }
@@ -388,6 +392,7 @@ impl Build {
         let assemble = || assemble(&self.plan, &self.jobs, &made, put, &self.options, &self.before);
         let built = self.pool.install(assemble)?;
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
+        // Only when everything is written, so that a failed build loses no result.
         self.cache.keep(&keys, self.options.prune)?;
         Reasons::of(self.jobs.iter().map(|(_, job)| job)).keep(&self.kept)?;
         self.elsewhere.forget()?;

@@ -119,6 +119,7 @@ impl Made {
             return Err(damaged("it is that of another job"));
         }
         let parts = &bytes[line + 1..];
+        // The lengths come from the file, so their sum may overflow.
         let length = header.asset_bytes.checked_add(header.sound_bytes);
         if length != Some(parts.len()) {
             return Err(damaged("it is too short or too long"));

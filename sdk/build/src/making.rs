@@ -39,6 +39,7 @@ impl Job {
             ..Metadata::default()
         };
         plays.apply(&mut asset.manifest);
+        // The job may come from another process, so its numbers may not fit together.
         let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
         let files: Vec<PathBuf> =
             self.plugins[travelling..].iter().map(|f| f.path.clone()).collect();

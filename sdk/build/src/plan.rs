@@ -179,6 +179,8 @@ fn planned(
         force_n: condition("force_n", at.force_n)?,
     };
     let metadata = filled(settings.metadata.clone(), &fields, of)?;
+    // Gates must not change a fit, so that they can be changed without a new one. Only `strict`
+    // stops a fit.
     let gates = std::mem::take(&mut settings.gates);
     settings.gates.strict = gates.strict;
     Ok(PlannedTexture {
@@ -258,6 +260,7 @@ fn check_once(
             return Err(too_many(place));
         }
         let mut hasher = blake3::Hasher::new();
+        // The length keeps the name and the file apart.
         hasher.update(&(planned.name.len() as u64).to_le_bytes());
         hasher.update(planned.name.as_bytes());
         hasher.update(recording.file.as_os_str().as_encoded_bytes());

@@ -195,6 +195,7 @@ impl<'a> Publishing<'a> {
         pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
         last.iter().try_for_each(|name| self.copy(name))?;
         let copied = wanted.len();
+        // Only after the new report is there, which no longer names these files.
         self.remove_stale(&here, &there)?;
         self.keep(here)?;
         Ok(copied)
@@ -251,6 +252,7 @@ impl<'a> Publishing<'a> {
 
     /// Stores what is now at the URI for the next build.
     fn keep(&self, here: BTreeMap<String, String>) -> Result<(), BuildError> {
+        // Listed again, because each copy has a new version.
         let there = self.there()?;
         let files = here.into_iter().filter_map(|(name, blake3)| {
             let there = *there.get(&name)?;

@@ -208,6 +208,7 @@ impl Recipe {
     /// If it is not TOML, has other keys or values than a recipe, or has a gate for a code that no
     /// finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
+        // Flattened settings cannot refuse unknown keys themselves.
         check_keys(text, &htex_base::files::toml::from_str(text)?)?;
         let recipe: Self = htex_base::files::toml::from_str(text)?;
         recipe.check_codes()?;

@@ -26,6 +26,7 @@ pub(crate) fn textures_before(
 ) -> BTreeSet<String> {
     let report = previous(dist);
     let file = report.as_ref().map(|report| report.library.file.clone());
+    // The report may come from somebody else, so its file must lie in this folder.
     let is_name = |file: &String| !file.contains(['/', '\\']) && file.ends_with(".htexlib");
     let file = file.filter(is_name).unwrap_or_else(|| format!("{library}.htexlib"));
     let mut names = in_library(dist, Path::new(&file));

@@ -94,6 +94,7 @@ pub unsafe extern "C" fn htex_asset_open_reader(
     out: *mut htex_asset,
 ) -> htex_status {
     guarded(|| {
+        // The reader first: if the options are invalid, it is dropped and thereby closed.
         // SAFETY: the pointers are the caller's.
         let (reader, models) = unsafe { (Reader::of(reader)?, models(options)?) };
         let bytes =

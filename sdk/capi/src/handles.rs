@@ -17,6 +17,7 @@ const FIRST: usize = 64;
 const CHUNKS: usize = 20;
 
 /// The lower half of a handle is the index plus one, below the bits of the kind.
+// 5 of the 32 bits remain for the kind.
 const KIND_SHIFT: u32 = 27;
 const _: () = assert!(FIRST << CHUNKS <= 1 << KIND_SHIFT);
 
@@ -103,11 +104,13 @@ impl<T: Send + 'static> Table<T> {
             return Err(FULL);
         };
         let next = generation(slot.state.load(Ordering::Relaxed)) + 1;
+        // A generation is never used twice, as in `remove`.
         if next >= EXCLUSIVE {
             return Err(FULL);
         }
         // SAFETY: the slot is empty, its index was spare, and the lock is held.
         unsafe { *slot.value.get() = Some(value) };
+        // After the value: a thread that sees the new generation also sees the value.
         slot.state.store(next << 32, Ordering::Release);
         Ok(next << 32 | (self.kind as u64) << KIND_SHIFT | (index as u64 + 1))
     }
@@ -143,6 +146,8 @@ impl<T: Send + 'static> Table<T> {
         let index = index.checked_sub(1).ok_or(BAD)? as usize;
         let slot = self.slot(index).ok_or(BAD)?;
         let wanted = generation(handle);
+        // Only a first look, so the order does not matter: `enter` checks the generation again. An
+        // even generation is that of an empty slot.
         if wanted.is_multiple_of(2) || generation(slot.state.load(Ordering::Relaxed)) != wanted {
             return Err(BAD);
         }
@@ -156,6 +161,7 @@ impl<T: Send + 'static> Table<T> {
         wanted: u64,
         change: impl Fn(u64) -> Option<u64>,
     ) -> Result<(), Failure> {
+        // Pairs with the releases in `insert` and in the drops of earlier users.
         let result = slot.state.fetch_update(Ordering::Acquire, Ordering::Relaxed, |state| {
             (generation(state) == wanted)
                 .then(|| change(users(state)).map(|users| wanted << 32 | users))
@@ -200,6 +206,7 @@ impl<T: Send + 'static> Table<T> {
         // SAFETY: this is the only user.
         let value = unsafe { (*slot.value.get()).take() };
         slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
+        // After the slot is empty, because the next `insert` may take it at once.
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         // The last generation is not reused: after it, the counter would start again, and an old
         // handle would match a new object.
@@ -217,6 +224,8 @@ impl<T: Send + 'static> Table<T> {
     pub(crate) unsafe fn clear(&self) -> Result<(), Failure> {
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         let mut highest = spare.unused;
+        // All slots are checked before anything is freed, so an object in use leaves the table as
+        // it is.
         for slot in (0..spare.made).filter_map(|index| self.slot(index)) {
             let state = slot.state.load(Ordering::Acquire);
             if users(state) != 0 {

@@ -57,7 +57,9 @@ pub(crate) fn forget_log() {
 
 /// Passes a message to the function that receives messages, if there is one.
 pub(crate) fn log(level: htex_log_level, message: &str) {
+    // Held during the call, so that `htex_set_log` waits for it.
     let log = LOG.read().unwrap_or_else(PoisonError::into_inner);
+    // A message may quote a text with a zero, at which C would end it.
     let (Some(log), Ok(message)) = (&*log, CString::new(message.replace('\0', " "))) else {
         return;
     };

@@ -6,6 +6,7 @@ use std::alloc::{Layout, alloc, dealloc};
 const ALIGNMENT: usize = 8;
 
 fn layout(bytes: usize) -> Option<Layout> {
+    // `alloc` must not get a size of 0.
     let size = bytes.max(1);
     Layout::from_size_align(size, ALIGNMENT).ok()
 }

@@ -54,6 +54,7 @@ const UNKNOWN: htex_motion = htex_motion {
 };
 
 /// Allowed sizes of a motion, bytes. Every version has at least speed and force.
+// The upper end leaves room for later fields, and refuses a size that was never set.
 const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_mm)..=256;
 
 /// Motions from a caller, which may have been compiled against a shorter or longer struct.
@@ -77,6 +78,7 @@ impl Motions {
         }
         // SAFETY: a motion begins with its size.
         let size = unsafe { pointer.cast::<u32>().read() } as usize;
+        // Another size would misalign the second motion of an array.
         if !SIZES.contains(&size) || !size.is_multiple_of(align_of::<htex_motion>()) {
             return Err(Failure::argument(
                 "the motion's size is not that of its struct; set it to sizeof(htex_motion)",

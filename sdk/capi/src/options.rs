@@ -117,8 +117,10 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
     if !pointer.is_aligned() {
         return Err(Failure::argument("the options are misaligned"));
     }
+    // Nothing else may be read yet, because the struct of an older program is shorter.
     // SAFETY: the struct begins with its size.
     let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    // Far more than any version has. A larger size was never set.
     if !(size_of::<u32>()..=4096).contains(&size) {
         return Err(Failure::argument(
             "the options' size is not that of their struct; set it to sizeof the struct",
@@ -259,6 +261,7 @@ pub(crate) unsafe fn voice_options<'a>(
         .with_synthesis(synthesis)
         .with_envelope_bands(options.envelope_bands as usize)
         .with_effects(effects);
+    // Only an exact zero is the default. NaN and negative numbers go on and are refused.
     if options.rate_hz != 0.0 {
         voice = voice.with_rate_hz(options.rate_hz);
     }

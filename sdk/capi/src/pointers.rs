@@ -12,6 +12,7 @@ use crate::status::{Failure, htex_status};
 /// As the module says.
 pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Failure> {
     if len == 0 {
+        // C may pass NULL or any address with a length of 0, which `from_raw_parts` does not allow.
         return Ok(&[]);
     }
     check(pointer, len)?;
@@ -33,6 +34,7 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a
 }
 
 fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
+    // The limit of `from_raw_parts`. It also refuses a length that was negative in C.
     let possible = len <= isize::MAX as usize / size_of::<T>().max(1);
     if pointer.is_null() || !pointer.is_aligned() || !possible {
         return Err(Failure::argument(
@@ -110,6 +112,7 @@ pub(crate) unsafe fn write_text(
     capacity: usize,
     length: *mut usize,
 ) -> Result<(), Failure> {
+    // Before any error, so that a caller whose buffer is too small learns the length.
     if !length.is_null() {
         // SAFETY: as here.
         *unsafe { place(length) }? = text.len();
@@ -123,6 +126,7 @@ pub(crate) unsafe fn write_text(
             Ok(())
         };
     };
+    // Also what is cut off must be UTF-8.
     let len = text.floor_char_boundary(space);
     out[..len].copy_from_slice(&text.as_bytes()[..len]);
     out[len] = 0;

@@ -74,6 +74,7 @@ impl Reader {
     }
 
     fn new(reader: &htex_reader) -> Result<Self, Failure> {
+        // A longer struct is that of a newer header, which begins in the same way.
         if (reader.size as usize) < size_of::<htex_reader>() {
             return Err(Failure::argument(
                 "the reader's size is not that of its struct; set it to sizeof(htex_reader)",
@@ -110,6 +111,7 @@ impl Reader {
             let what = format!("{} bytes; at most {MOST_BYTES} are read", self.len);
             return Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
         }
+        // The limit above also fits into 32 bits.
         let mut bytes = vec![0; self.len as usize];
         self.read_at(0, &mut bytes)?;
         Ok(bytes)

@@ -18,6 +18,7 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
         unsafe {
             #[cfg(feature = "scene")]
             {
+                // First, so that the devices go to rest even if another object is in use.
                 crate::device::clear()?;
                 crate::scene::clear()?;
             }
@@ -27,6 +28,7 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
             crate::library::clear()?;
         }
         forget_log();
+        // Last, because the clocks stop calls of modules that take too long.
         #[cfg(feature = "wasm")]
         htex::host::end_wasm_clocks();
         Ok::<_, Failure>(())

@@ -210,6 +210,7 @@ pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
 
 /// Runs the body of a C function. It stores the text of an error and catches panics.
 pub fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> htex_status {
+    // The header says that an object must be freed after this error, so its state does not matter.
     let result = catch_unwind(AssertUnwindSafe(body)).unwrap_or(Err(Failure::plain(
         htex_status::HTEX_STATUS_INTERNAL,
         "an error of the library itself; please report it",

@@ -35,6 +35,7 @@ impl Playing {
         model: Option<&str>,
         options: VoiceOptions<'static>,
     ) -> Result<Self, Failure> {
+        // The options would borrow the caller's text, so the name is stored separately.
         let model = asset.representation_id(model)?.to_owned();
         Ok(Self {
             voice: asset.voice(&options.clone().with_model(&model))?,
@@ -280,6 +281,7 @@ pub unsafe extern "C" fn htex_voice_render_path(
             .ok_or(Failure::argument("motions_len * frames is too large"))?;
         // SAFETY: the arrays are the caller's.
         let (motions, out) = unsafe { (Motions::of(motions, motions_len)?, slice_mut(out, len)?) };
+        // `chunks_exact_mut` panics at 0. The motions are set all the same.
         if frames == 0 {
             return motions.iter().try_for_each(|motion| Ok(voice.set_motion(motion)?));
         }

@@ -74,6 +74,7 @@ impl AllPole {
             past: [0.0; MAX_DIRECT_ORDER],
             direct: None,
         };
+        // At rest the state of both forms is zero, so the direct form can start at once.
         filter.settle();
         Some(filter)
     }
@@ -84,6 +85,8 @@ impl AllPole {
             // First get the state of the lattice at the present order.
             self.reflection_mut();
             self.lattice.raise_order(order);
+            // The new stages hold zeros. Only after `order` samples do they hold what they would
+            // hold if they had always been there.
             self.unsettled = order;
         }
     }
@@ -107,6 +110,8 @@ impl AllPole {
         if self.direct.is_some() {
             self.reflection_mut();
         }
+        // `unsettled` is not counted down here, because the coefficients usually change again
+        // before the next sample.
         let y = self.lattice.tick(input);
         remember(&mut self.past, &[y]);
         y
@@ -117,6 +122,8 @@ impl AllPole {
         let in_lattice = match (&self.direct, self.unsettled) {
             (Some(_), _) => 0,
             (None, 0) => groups.len(),
+            // Rounded up to whole groups, because the direct form takes only these. So the switch
+            // does not depend on the block length.
             (None, unsettled) => unsettled.div_ceil(GROUP).min(groups.len()),
         };
         let (moved, steady) = groups.split_at_mut(in_lattice);
@@ -152,8 +159,11 @@ impl AllPole {
             step_up(&mut a[..=m], k);
         }
         let sum: f64 = a.iter().map(|a| a.abs()).sum();
+        // Not `1 - k * k`, which would cancel for |k| near 1.
         let remaining = |k: &f64| (1.0 - k) * (1.0 + k);
         let power: f64 = self.lattice.reflection().iter().map(remaining).product();
+        // The gain for noise is `1 / sqrt(power)`. If the numbers are NaN, the filter stays a
+        // lattice.
         if sum <= MAX_DIRECT_ERROR * crate::root::sqrt(power) {
             self.direct = Some(Direct::new(&a, &self.past));
         }
@@ -170,6 +180,7 @@ impl<'a> AllPoles<'a> {
 
     /// Filters a block in place. Does not allocate.
     pub fn process(&mut self, groups: &mut [[Quad; GROUP]]) {
+        // The tables have zeros beyond a filter's own order, so the largest order serves all four.
         let order = self.0.iter().map(|filter| filter.order()).max();
         let forms = self.0.each_mut().map(|filter| filter.direct.as_mut());
         if let [Some(a), Some(b), Some(c), Some(d)] = forms {

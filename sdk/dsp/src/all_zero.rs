@@ -52,6 +52,7 @@ impl AllZero {
     /// Filters one sample; for use while coefficients change. Gives the same sums as
     /// [`Self::process`].
     pub fn tick(&mut self, input: f64) -> f64 {
+        // One product after the other, in the order of `Sums`, so that both give the same bits.
         let own = self.coefficients[..self.order].iter();
         let output = own.zip(self.past.iter().rev()).fold(input, |sum, (a, x)| sum - a * x);
         self.past.copy_within(1.., 0);
@@ -61,6 +62,7 @@ impl AllZero {
 
     /// Filters a block in place. Does not allocate.
     pub fn process(&mut self, block: &mut [f64]) {
+        // On the stack, because rendering must not allocate.
         let mut room = [0.0; MAX_ORDER + CHUNK];
         for chunk in block.chunks_mut(CHUNK) {
             room[..MAX_ORDER].copy_from_slice(&self.past);
@@ -86,6 +88,8 @@ struct Sums<'a> {
 impl Work for Sums<'_> {
     #[inline(always)]
     fn run(self) {
+        // The samples are the inner loop, because their sums do not depend on each other and
+        // compilers can vectorise them. Each sum still has the order of `tick`.
         for (i, a) in self.coefficients.iter().enumerate() {
             let earlier = &self.inputs[MAX_ORDER - 1 - i..];
             for (sum, x) in self.block.iter_mut().zip(earlier) {

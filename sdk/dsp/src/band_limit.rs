@@ -46,6 +46,7 @@ pub fn band_limit_power(band: Band, rate_hz: f64) -> impl Fn(f64) -> f64 {
 
 fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
     let half_bin = 0.5 * GRID_HZ;
+    // Half a bin below a very low edge could be 0 Hz or less, where no filter exists.
     let low_hz = (band.low_hz - half_bin).max(0.5 * band.low_hz);
     let high_hz = band.high_hz + half_bin;
     [(PassKind::HighPass, low_hz), (PassKind::LowPass, high_hz)]
@@ -174,6 +175,8 @@ struct AllPolePower<'a> {
 impl Work for AllPolePower<'_> {
     #[inline(always)]
     fn run(self) {
+        // One sum per lane, added up once at the end, so that the order of additions does not
+        // depend on the width of the registers.
         let mut sums = [0.0; TURNS];
         for Turns { cos, sin, part } in self.turns {
             // Horner's rule for Σ A_i z⁻ⁱ, with z⁻¹ = cos - i sin.
@@ -244,6 +247,7 @@ fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
     }
     let mut power = [0.0; TURNS];
     for i in 0..TURNS {
+        // Each fixed factor of the two polynomials enters as the square of its absolute value.
         let sine = turns.sin[i] * turns.sin[i];
         let s = symmetric[i] * symmetric[i];
         let a = antisymmetric[i] * antisymmetric[i];
@@ -253,6 +257,8 @@ fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
                 let above = 1.0 + turns.cos[i];
                 0.5 * (s * above + a * (sine / above))
             }
+            // An odd number of lines has the fixed factors 1 and `1 - z⁻²`, and the latter has
+            // the squared magnitude `4 sin²`.
             false => s + a * sine,
         };
     }

@@ -78,6 +78,7 @@ pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
 }
 
 fn ratio_db(model: f64, reference: f64) -> f64 {
+    // Equal energies include two zeros, whose ratio would be NaN.
     if model == reference { 0.0 } else { 10.0 * libm::log10(model / reference) }
 }
 
@@ -128,6 +129,8 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
 
 /// Deviations from the mean, divided by the largest one; all zero if the values are constant.
 fn deviations(values: &[f64]) -> Vec<f64> {
+    // The values are compared with each other and not with the mean, because rounding can move the
+    // mean of equal values away from them.
     let varies = values.windows(2).any(|pair| pair[0] != pair[1]);
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let largest = values.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);

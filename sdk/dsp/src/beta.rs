@@ -57,6 +57,7 @@ impl BetaDensity {
     /// everywhere.
     pub fn new(alpha: f64, beta: f64) -> Self {
         let valid = [alpha, beta].iter().all(|p| *p > 0.0 && p.is_finite());
+        // In logarithms, because the gamma function overflows from 171 on.
         let log_scale = if valid {
             libm::lgamma(alpha) + libm::lgamma(beta) - libm::lgamma(alpha + beta)
         } else {
@@ -73,6 +74,7 @@ impl BetaDensity {
             return 0.0;
         }
         let left = times_log(self.alpha - 1.0, libm::log(u));
+        // `log(1 - u)` would lose the digits of a small `u`.
         let right = times_log(self.beta - 1.0, libm::log1p(-u));
         libm::exp(left + right - self.log_scale)
     }

@@ -71,6 +71,7 @@ impl Biquad {
 fn squared_magnitude(c0: f64, c1: f64, c2: f64, phi: f64) -> f64 {
     let sum = c0 + c1 + c2;
     let linear = c0 * c1 + 4.0 * c0 * c2 + c1 * c2;
+    // At a zero on the unit circle, rounding can make this slightly negative, and its root NaN.
     (sum * sum - 4.0 * linear * phi + 16.0 * c0 * c2 * phi * phi).max(0.0)
 }
 

@@ -47,6 +47,7 @@ impl Butterfly<2> for Two {
 impl Butterfly<3> for Three {
     #[inline(always)]
     fn turn<T: Number>(re: [T; 3], im: [T; 3]) -> ([T; 3], [T; 3]) {
+        // The sine of a third of a turn.
         const SIN: f64 = 0.866_025_403_784_438_6;
         let (sum, sum_i) = (re[1] + re[2], im[1] + im[2]);
         let (turned, turned_i) = ((im[2] - im[1]).times(SIN), (re[1] - re[2]).times(SIN));

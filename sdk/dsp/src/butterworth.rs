@@ -106,6 +106,7 @@ pub(crate) fn second_order(kind: PassKind, omega: f64, half_inverse_q: f64) -> B
     let scale = 1.0 / (1.0 + alpha);
     let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let (b0, sign) = match kind {
+        // The usual form, `(1 - cos) / 2`, would cancel for a low cut-off.
         PassKind::LowPass => (sine * sine * scale, 1.0),
         PassKind::HighPass => (cosine * cosine * scale, -1.0),
     };

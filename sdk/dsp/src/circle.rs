@@ -13,6 +13,7 @@ const fn taylor() -> [[f32; 2]; TERMS] {
     let mut i = 1;
     while i < TERMS {
         let n = 2.0 * i as f64;
+        // The recursion is in double precision, and each coefficient is rounded only once.
         exact[i][0] = -exact[i - 1][0] / (n * (n - 1.0));
         exact[i][1] = -exact[i - 1][1] / (n * (n + 1.0));
         terms[i] = [exact[i][0] as f32, exact[i][1] as f32];
@@ -41,6 +42,8 @@ pub(crate) fn directions<const N: usize>(bits: [u32; N]) -> ([f32; N], [f32; N])
             sin[i] = sin[i] * square + next_sin;
         }
     }
+    // The angle has only the upper 24 of the bits, apart from very small angles, so the lowest bit
+    // is independent of it.
     let turned = |x: f32, bits: u32| f32::from_bits(x.to_bits() ^ (bits << 31));
     for i in 0..N {
         cos[i] = turned(cos[i], bits[i]);

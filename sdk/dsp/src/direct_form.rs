@@ -85,6 +85,8 @@ impl Direct {
     #[inline(always)]
     fn keep<const N: usize>(&mut self, state: &[f64; N]) {
         for i in 0..N {
+            // Checked once for a block and not for each sample: from 1e-200 it is a long way down
+            // to denormal numbers.
             self.state[i] = without_denormals(state[i]);
         }
     }
@@ -181,6 +183,8 @@ impl Lane for Quad {
     /// The same sums without multiplications by 0 or 1.
     #[inline(always)]
     fn outputs(&[_, h1, h2, h3]: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP] {
+        // The brackets are those of `sum`, and the products by 0 and 1 that are left out change no
+        // finite number. So one voice and four voices have the same bits.
         let [a, b, c, d] = *met;
         [a, h1 * a + b, (h2 * a + h1 * b) + c, (h3 * a + h2 * b) + (h1 * c + d)]
     }
@@ -194,6 +198,7 @@ impl<T: Lane, const N: usize> Short<T, N> {
         let (outputs, states, mut state) = (self.outputs, self.states, self.state);
         for group in groups {
             let mut met = *group;
+            // With `N = 2` there are fewer states than inputs.
             for i in 0..GROUP.min(N) {
                 met[i] = met[i] + state[i];
             }
@@ -213,6 +218,8 @@ impl<T: Lane, const N: usize> Short<T, N> {
 fn sum<T: Real, const N: usize>(left: &[[T; N]; GROUP], met: &[T; GROUP]) -> [T; N] {
     let mut sum = [T::ZERO; N];
     for i in 0..N {
+        // Summed in pairs, which shortens the chain of additions. `Quad::outputs` must keep this
+        // order.
         sum[i] = (left[0][i] * met[0] + left[1][i] * met[1])
             + (left[2][i] * met[2] + left[3][i] * met[3]);
     }

@@ -112,6 +112,7 @@ impl Analyser {
             windowed: alloc::vec![0.0; len],
             ring: alloc::vec![0.0; len],
             at: 0,
+            // The samples before the first one count as zeros.
             quiet: len,
             sums: Sums::default(),
             bands: alloc::vec![0.0; edges_hz.len() - 1],
@@ -135,6 +136,7 @@ impl Analyser {
     pub fn push(&mut self, samples: &[f32]) {
         let mut rest = samples;
         while !rest.is_empty() {
+            // Up to the end of a window, because `advance` must not go beyond it.
             let (now, later) = rest.split_at(self.to_window().min(rest.len()));
             self.ring[self.at..self.at + now.len()].copy_from_slice(now);
             self.sums.squares += now.iter().map(|x| f64::from(x * x)).sum::<f64>();
@@ -196,6 +198,7 @@ impl Analyser {
     fn add_window(&mut self) {
         self.begin_window();
         self.sums.windows += 1;
+        // A silent window has no power, so its transform is saved.
         if self.quiet >= self.ring.len() {
             return;
         }
@@ -207,6 +210,7 @@ impl Analyser {
         let last = self.bins.len() - 1;
         let step_hz = self.rate_hz / self.ring.len() as f64;
         for (k, (bin, band)) in self.bins.iter().zip(&self.band_of).enumerate() {
+            // These two bins have no counterpart at a negative frequency.
             let sides = if k == 0 || k == last { 1.0 } else { 2.0 };
             let power = sides * self.scale * bin.norm_sqr();
             self.bands[*band] += power;

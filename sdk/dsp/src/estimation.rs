@@ -41,6 +41,7 @@ pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut sums = added(errors.iter().map(BurgErrors::sums));
     while stages.is_open() {
         let (cross, power) = sums;
+        // If the segments are too short for another stage, this is 0 / 0, and `push` refuses NaN.
         let reflection = 2.0 * cross / power;
         stages.push(reflection);
         sums = added(errors.iter_mut().map(|error| error.advance(reflection)));
@@ -78,6 +79,8 @@ impl BurgErrors {
     fn advance(&mut self, k: f64) -> (f64, f64) {
         let (forward, backward) = (&mut self.forward[..], &mut self.backward[..]);
         let (mut cross, mut power) = (0.0, 0.0);
+        // The next stage pairs the forward error with the backward error one sample earlier, so the
+        // forward errors move down by one.
         let mut delayed = None;
         for i in 0..forward.len().min(backward.len()) {
             let (f, b) = (forward[i], backward[i]);
@@ -104,6 +107,7 @@ pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let count: usize = long.iter().map(|s| s.len() - order).sum();
     let gram = covariance_matrix(&long, order);
     let stride = order + 1;
+    // Products of finite samples overflow from 1e154 on.
     if !gram.iter().all(|g| g.is_finite()) {
         return LinearPrediction::silent(order);
     }
@@ -113,6 +117,7 @@ pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut coefficients = alloc::vec![0.0; order];
     inverse.apply(&gram[1..stride], &mut coefficients);
     let explained: f64 = coefficients.iter().zip(&gram[1..]).map(|(a, g)| a * g).sum();
+    // A completely predicted signal leaves only rounding, of either sign.
     let error = (gram[0] - explained).max(0.0) / count.max(1) as f64;
     stable_model(coefficients, error, inverse.rank())
 }

@@ -104,12 +104,14 @@ impl RealFft {
     fn unfold(&self, bins: &mut [Complex<f64>]) {
         let half = self.fold.len();
         for (k, bin) in bins.iter_mut().enumerate().take(half) {
+            // `% half`, because bin 0 is its own mirror image.
             let (z, mirrored) = (self.points.at(k), self.points.at((half - k) % half).conj());
             let (even, odd) = ((z + mirrored) * 0.5, (z - mirrored) * 0.5);
             // Division by i of the sum over the odd samples.
             let odd = Complex::new(odd.im, -odd.re) * self.fold[k].conj();
             *bin = even + odd;
         }
+        // A transform of length 0 has this bin, but no point to compute it from.
         if let (Some(last), true) = (bins.get_mut(half), half > 0) {
             let z = self.points.at(0);
             *last = Complex::new(z.re - z.im, 0.0);

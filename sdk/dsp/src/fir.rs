@@ -30,11 +30,15 @@ impl Fir {
             .map(|i| libm::cos(core::f64::consts::PI * i as f64 / bins as f64))
             .collect();
         let at = |lag: usize| {
+            // The angle is reduced in whole numbers, so one period of cosines is exact for every
+            // product.
             let term = |k: usize| sampled[k] * cosine[k * lag % (2 * bins)];
             let ends = 0.5 * (term(0) + term(bins));
             (ends + (1..bins).map(term).sum::<f64>()) / bins as f64
         };
         let window = |lag: usize| {
+            // The window ends one sample outside the kernel, so that the outermost coefficients are
+            // not zero.
             let x = core::f64::consts::PI * lag as f64 / (half + 1) as f64;
             0.5 + 0.5 * libm::cos(x)
         };
@@ -52,6 +56,8 @@ impl Fir {
         // Reversed, because the newest sample is multiplied by the last coefficient.
         kernel.reverse();
         let padded = kernel.len().next_multiple_of(8);
+        // `dot` takes multiples of eight. Zeros in front meet the oldest samples, so they add no
+        // delay.
         let mut front = alloc::vec![0.0; padded - kernel.len()];
         front.append(&mut kernel);
         Self { history: alloc::vec![0.0; padded - 1 + CHUNK], kernel: front }

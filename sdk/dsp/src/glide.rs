@@ -55,6 +55,8 @@ impl Glide {
 
     /// As [`Self::set`], but over `len` samples (at least one).
     pub fn set_within(&mut self, target: f32, len: u32) {
+        // A host may set the same target with every block. If each call restarted the ramp, it
+        // would never end.
         if target != self.target {
             self.target = target;
             self.left = len.max(1);
@@ -67,6 +69,7 @@ impl Glide {
     pub fn advance(&mut self) -> f32 {
         if self.left > 0 {
             self.left -= 1;
+            // The steps have rounding errors, so the last one is replaced by the target itself.
             self.value = if self.left == 0 { self.target } else { self.value + self.step };
         }
         self.value

@@ -36,6 +36,7 @@ impl Band {
 
     /// Grid index (in multiples of [`GRID_HZ`]) of the lowest bin in the band.
     pub fn first_bin(&self) -> usize {
+        // The tolerance keeps an edge on the grid that rounding has moved.
         libm::ceil(self.low_hz / GRID_HZ - 1e-9) as usize
     }
 
@@ -88,6 +89,7 @@ impl ReadPart {
             return 1.0;
         }
         let nearest = libm::round(at);
+        // The bins are whole numbers apart, so one sine serves all of them, up to its sign.
         let turn = crate::trig::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
         let low = first.max(nearest - WINDOW_BINS) as i64;
         let high = last.min(nearest + WINDOW_BINS) as i64;
@@ -104,6 +106,7 @@ const WINDOW_BINS: f64 = 4.0;
 /// `sinc(x) / (1 - x²)`; `turn` is `sin(πx) / π` up to its sign.
 fn hann_power(x: f64, turn: f64) -> f64 {
     let x = libm::fabs(x);
+    // At 0 and 1 the formula is 0 / 0; these are its limits.
     let amplitude = if x < 1e-6 {
         1.0
     } else if libm::fabs(x - 1.0) < 1e-6 {

@@ -53,6 +53,7 @@ pub fn select_interpolated_peaks(
 
 /// Returns the indices of the local maxima, as if the spectrum continued with zeros on both sides.
 fn maxima_with_edges(magnitude: &[f64]) -> Vec<usize> {
+    // Between the zeros that are added below, a flat spectrum would be one plateau, and so a peak.
     if magnitude.windows(2).all(|pair| pair[0] == pair[1]) {
         return Vec::new();
     }

@@ -69,6 +69,7 @@ const LARGEST_RADIX: usize = 5;
 /// Returns the smallest number from `least` on that has no prime factor above 5.
 pub(crate) fn smooth_length(least: usize) -> usize {
     let is_smooth = |n: &usize| factors(*n).is_some();
+    // From 1 on, because `factors` would not end for 0.
     (least.max(1)..).find(is_smooth).unwrap_or(least)
 }
 
@@ -117,11 +118,13 @@ impl InverseRealFft {
         to.re.fill(0.0);
         to.im.fill(0.0);
         let bins = cos.iter().zip(sin).zip(amplitude);
+        // Bin 0 is left out: its mirror image would be point `half`, which does not exist.
         for (k, ((cos, sin), a)) in (first.max(1)..self.half).zip(bins) {
             let (re, im) = (cos * a, sin * a);
             // X_k adds X + i w X at k, and conj(X) - i w' conj(X) at half - k, where w' = -conj(w).
             let (c, s) = self.fold[k];
             let (turned_re, turned_im) = (-(re * s + im * c), re * c - im * s);
+            // Added and not set, because bins `k` and `half - k` share the same two points.
             to.re[k] += re + turned_re;
             to.im[k] += im + turned_im;
             to.re[self.half - k] += re - turned_re;
@@ -171,6 +174,8 @@ impl Stage {
         let groups = if stride.is_multiple_of(WIDTH) { stride / WIDTH } else { 1 };
         let twiddle = |i: usize| {
             let (first, k) = (i / radix * groups * WIDTH, i % radix);
+            // Neighbouring lanes often have the same twiddle, so a sine is computed only when `p`
+            // changes.
             let (mut of, mut one) = (first / stride, unit(first / stride * k, length));
             let mut both = [Lanes::default(); 2];
             for lane in 0..WIDTH {

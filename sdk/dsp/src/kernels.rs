@@ -23,6 +23,7 @@ pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<
 /// `cutoff` is in cycles per sample.
 fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
+    // Kaiser's formula for attenuations above 50 dB.
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
     let window = Kaiser::new(beta);
     let half = taps as f64 / 2.0;
@@ -78,6 +79,7 @@ impl Kaiser {
 
 fn bessel_i0(x: f64) -> f64 {
     let (mut sum, mut term, mut k) = (1.0, 1.0, 1.0);
+    // All terms are positive, so nothing cancels, and the rest is below the rounding of the sum.
     while term > 1e-17 * sum {
         term *= (x / (2.0 * k)) * (x / (2.0 * k));
         sum += term;

@@ -114,6 +114,8 @@ impl AllPoleLattice {
     pub(crate) fn set_past(&mut self, past: &[f64]) {
         self.reset();
         for &y in past {
+            // This is the inverse filter, from outputs to inputs. With constant coefficients it
+            // gives the same backward errors, and these are the state.
             let mut forward = y;
             let mut backward = y;
             for (k, delayed) in self.reflection.iter().zip(&mut self.delayed) {
@@ -137,6 +139,7 @@ fn stages(input: f64, k: &[f64], delayed: &mut [f64]) -> f64 {
     for stage in (0..k.len()).rev() {
         let before = delayed[stage];
         forward += k[stage] * before;
+        // No stage uses the backward error of the last one.
         if stage + 1 < k.len() {
             delayed[stage + 1] = before - k[stage] * forward;
         }

@@ -57,6 +57,8 @@ impl PseudoInverse {
             let (by_column, by_row) = if wide { (long, short) } else { (short, long) };
             for (out, c) in inverse.chunks_mut(rows).zip(by_column) {
                 for (out, r) in out.iter_mut().zip(by_row) {
+                    // Divided one by one, because the square of `sigma` could overflow or
+                    // underflow.
                     *out += (c / sigma) * (r / sigma);
                 }
             }
@@ -116,10 +118,13 @@ impl Factors {
 /// Cosine and sine of the rotation that makes `a` and `b` orthogonal. `None` if they already are.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
+    // Two roots, because the product of the squares could overflow or underflow.
     let limit = ORTHOGONAL * crate::root::sqrt(aa) * crate::root::sqrt(bb);
     // This comparison is false if either side is NaN.
     (ab.abs() > limit).then(|| {
         let zeta = (bb - aa) / (2.0 * ab);
+        // The smaller of the two possible angles, at most an eighth of a turn. With the larger one
+        // the sweeps might not converge.
         let tangent = libm::copysign(1.0, zeta) / (zeta.abs() + libm::hypot(1.0, zeta));
         let cosine = 1.0 / libm::hypot(1.0, tangent);
         (cosine, cosine * tangent)

@@ -64,6 +64,8 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
             break;
         }
         let newton = at - (lag - target) / slope;
+        // Newton's method alone has no bound on its steps. A bisection every third step gives one
+        // (`MOST_STEPS`).
         at = if step % 3 != 0 && newton > low && newton < high {
             newton
         } else {
@@ -125,6 +127,7 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
     // Clearing the memory for few lines takes less time than for many.
     match cosines.len() {
+        // 24 lines are 12 factors, and `multiply` needs two places more.
         0..=24 => Halves::<14>::of(cosines).write(coefficients),
         _ => Halves::<{ MOST_FACTORS + 2 }>::of(cosines).write(coefficients),
     }
@@ -153,6 +156,7 @@ impl<const N: usize> Halves<N> {
         }
         if let [cosine] = last {
             // With an odd number of lines, the symmetric polynomial has one more factor.
+            // `multiply` changes both polynomials, so the antisymmetric one is put back.
             let other = halves.coefficients;
             halves.multiply([-2.0 * cosine, 0.0]);
             let own = halves.coefficients.iter_mut();
@@ -203,6 +207,7 @@ impl<const N: usize> Halves<N> {
 /// would cancel.
 fn spread_order(n: usize) -> impl Iterator<Item = usize> {
     let bits = n.next_power_of_two().trailing_zeros();
+    // For a single factor, the shift would be as wide as the number, which `>>` does not allow.
     let reversed = move |i: usize| i.reverse_bits().checked_shr(usize::BITS - bits).unwrap_or(0);
     (0..1 << bits).map(reversed).filter(move |&i| i < n)
 }

@@ -83,10 +83,13 @@ impl Stages {
             return;
         }
         let k = reflection.clamp(-MAX_REFLECTION, MAX_REFLECTION);
+        // After a limited stage almost no error is left, and further stages would fit rounding
+        // errors.
         self.open = k == reflection;
         let stage = self.model.usable_stages;
         step_up(&mut self.model.coefficients[..=stage], k);
         self.model.reflection[stage] = k;
+        // Not `1 - k * k`, which would cancel for |k| near 1.
         self.model.error *= (1.0 - k) * (1.0 + k);
         self.model.usable_stages += 1;
     }
@@ -172,6 +175,7 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
         return alloc::vec![0.0; coefficients.len()];
     }
     let stable = largest_stable_factor(coefficients, 1.0);
+    // The outermost radius is `1 / stable`, and the radius of its mirror image is `stable`.
     let mirrored = scale_poles(coefficients, stable * stable);
     if is_stable(&mirrored) {
         mirrored
@@ -206,6 +210,7 @@ pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
 /// divided by the outermost radius. Found by bisection, since factor 0 is always stable.
 fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     let mut stable = 0.0;
+    // 60 halvings reach the resolution of f64.
     for _ in 0..60 {
         let middle = 0.5 * (stable + unstable);
         if is_stable(&scale_poles(coefficients, middle)) {
@@ -250,6 +255,8 @@ pub(crate) fn step_up(a: &mut [f64], k: f64) {
     *last = k;
     let m = previous.len();
     for i in 0..m.div_ceil(2) {
+        // Two at a time from both ends, because each needs the old value of the other. In the
+        // middle of an odd number both are one element, and both lines write the same.
         let (front, back) = (previous[i], previous[m - 1 - i]);
         previous[i] = front - k * back;
         previous[m - 1 - i] = back - k * front;

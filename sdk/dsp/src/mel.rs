@@ -91,6 +91,8 @@ fn mel_edges(bands: usize, band: Band) -> Vec<f64> {
     let (low, high) = (hz_to_mel(band.low_hz), hz_to_mel(band.high_hz));
     (0..=last)
         .map(|i| match i {
+            // The ends are exact. Rounding would give a bin on an edge of the band a tiny weight
+            // instead of none.
             0 => band.low_hz,
             i if i == last => band.high_hz,
             i => mel_to_hz(low + (high - low) * i as f64 / last as f64),

@@ -97,6 +97,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
         let mut search = Self { f, best: unknown, others: [unknown; N], evaluations: 0 };
         search.best = search.evaluate(start);
         for axis in 0..N {
+            // A vertex that was not evaluated stays infinitely high.
             if search.evaluations >= options.max_evaluations {
                 break;
             }
@@ -141,6 +142,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
     fn has_converged(&self, options: &Options) -> bool {
         self.others.iter().all(|vertex| {
             let near = (0..N).all(|i| (vertex.x[i] - self.best.x[i]).abs() <= options.x_tolerance);
+            // The difference of two infinite values is NaN, which does not count as converged.
             near && vertex.value - self.best.value <= options.f_tolerance
         })
     }
@@ -186,6 +188,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
         let outside = reflected.value < worst.value;
         let contracted = self.evaluate(self.away_from_worst(if outside { 0.5 } else { -0.5 }));
         let accepted = if outside {
+            // `<=` outside and `<` inside, as in Lagarias et al. and in SciPy.
             contracted.value <= reflected.value
         } else {
             contracted.value < worst.value

@@ -65,6 +65,8 @@ impl GaussianNoise {
         self.taken += kept;
         let (groups, last) = rest.as_chunks_mut();
         wide(Normals(&mut self.random, groups));
+        // The rest of the group is kept for the next call, so that samples do not depend on the
+        // block sizes.
         if !last.is_empty() {
             wide(Normals(&mut self.random, core::slice::from_mut(&mut self.ready)));
             last.copy_from_slice(&self.ready[..last.len()]);
@@ -76,6 +78,7 @@ impl GaussianNoise {
 /// Fills whole groups of two streams, if both are at the start of a group and registers are wide
 /// enough for both. Returns the number of samples filled in each.
 fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
+    // A stream that is within a group has samples that must come first.
     if a.taken < GROUP || b.taken < GROUP {
         return 0;
     }
@@ -97,6 +100,8 @@ impl Work for Normals<'_> {
         // A local copy of the generator can stay in registers.
         let mut random = self.0.clone();
         for group in self.1 {
+            // The radius draws first and the direction second. Another order would be another sound
+            // for the same seed.
             let radius = radii(random.next_bits());
             let (cos, sin) = directions(random.next_bits());
             for i in 0..LANES {

@@ -108,6 +108,8 @@ impl NonNegative {
         for column in &self.columns {
             for (row, weight) in (column.first..).zip(column.weight) {
                 if weight > 0.0 {
+                    // If all energies are zero, this is NaN. The search then ends at once, and
+                    // `max` in `solve` turns the power into 0.
                     scratch.wanted[row] = energies[row] / largest;
                 }
             }
@@ -189,6 +191,8 @@ impl Scratch {
 
     /// Derivative of the residual at the current solution.
     fn derive_here(&mut self, columns: &[Column]) {
+        // Taken out, because `derive` borrows all of `self`. An empty vector is put in its place,
+        // without an allocation.
         let at = core::mem::take(&mut self.at);
         self.derive(columns, |column| column.between(&at) > 0.0);
         self.at = at;
@@ -201,6 +205,8 @@ impl Scratch {
         for column in columns.iter().filter(|column| active(column)) {
             let [here, next] = column.weight;
             self.diagonal[column.first] += here * here;
+            // The last filter has no next one. Its second weight is 0, which keeps the index in
+            // range.
             if next > 0.0 {
                 self.diagonal[column.first + 1] += next * next;
                 self.beside[column.first] += here * next;
@@ -213,6 +219,7 @@ impl Scratch {
 /// that couples `i` and `i + 1`.
 fn solve_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mut [f64]) {
     for i in 1..values.len() {
+        // The ridge term makes the matrix positive definite, so no pivoting is needed.
         let ratio = beside[i - 1] / diagonal[i - 1];
         diagonal[i] -= ratio * beside[i - 1];
         values[i] -= ratio * values[i - 1];

@@ -31,6 +31,7 @@ impl Normal {
         loop {
             let (a, b) = (2.0 * self.next_unit() - 1.0, 2.0 * self.next_unit() - 1.0);
             let square = a * a + b * b;
+            // 0 has no logarithm.
             if square < 1.0 && square > 0.0 {
                 let scale = sqrt(-2.0 * libm::log(square) / square);
                 self.spare = Some(b * scale);

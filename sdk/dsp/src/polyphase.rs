@@ -35,6 +35,8 @@ impl Polyphase {
             up,
             step,
             taps,
+            // An interpolated kernel has 513 rows, and then `up` is above 1024, so the two cannot
+            // be confused.
             exact: kernel.len() == up * taps,
             kernel,
             phase: 0,
@@ -58,6 +60,7 @@ impl Polyphase {
             }
             let window = &self.history[self.start..self.start + self.taps];
             *sample = self.filter(window);
+            // The position is counted in whole numbers, so it never drifts.
             self.phase += rest;
             self.start += whole;
             if self.phase >= self.up {
@@ -74,6 +77,7 @@ impl Polyphase {
             // Small pulls keep the latency of parameter changes low.
             let wanted = (self.start + self.taps - self.filled).max(8);
             if self.filled + wanted > self.history.len() {
+                // At a high ratio the next window may begin behind all samples in the buffer.
                 let keep_from = self.start.min(self.filled);
                 self.history.copy_within(keep_from..self.filled, 0);
                 self.filled -= keep_from;

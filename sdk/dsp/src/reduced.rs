@@ -113,6 +113,7 @@ impl Points {
     /// Returns the point that ends the stream: silence, at the end of the last block.
     pub fn end(&self, rate_hz: f64) -> Point {
         Point {
+            // From the number of all samples, so that the rounding of the blocks does not add up.
             time_ns: libm::round(self.frames as f64 / rate_hz * 1e9) as i64,
             strength: 0.0,
             place: self.place,

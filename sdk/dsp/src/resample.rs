@@ -188,6 +188,7 @@ impl OwnRate {
             let mut sum = 0.0;
             for x in kernel {
                 sum += f64::from(*x) * cos;
+                // Turned step by step, which is much faster than a sine for each coefficient.
                 (cos, sin) = (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
             }
             sum
@@ -230,6 +231,7 @@ fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, Unusabl
 /// The stages of a converter; empty if no conversion is needed.
 fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRates> {
     let unusable = UnusableRates { from_hz, to_hz };
+    // Whole millihertz, so that the ratio of the rates is an exact fraction.
     let (Some(from), Some(mut to)) = (millihertz(from_hz), millihertz(to_hz)) else {
         return Err(unusable);
     };
@@ -255,7 +257,10 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
     if !narrow || to / from < 4 {
         return Ok(alloc::vec![spec(from, to, pass, stop)]);
     }
+    // The steep filter runs at only twice the source's rate. The images that it leaves are far
+    // away, so the second stage, with many more outputs, needs few taps.
     let middle = 2 * from;
+    // The first stage passes content up to `stop`, and this is where its image begins.
     let image = 2.0 * from_hz - stop;
     Ok(alloc::vec![
         spec(from, middle, pass, stop),
@@ -312,6 +317,7 @@ impl Spec {
     fn taps(&self) -> usize {
         let width = (self.stop_hz - self.pass_hz).max(1e-6) / self.source_hz();
         let least = kernels::kaiser_length(width).clamp(8, MAX_TAPS);
+        // Eight for `dot` of `Polyphase`. `Upsampler` only needs an even number.
         least.next_multiple_of(if self.is_whole() { 2 } else { 8 })
     }
 }

@@ -36,6 +36,7 @@ impl Loop {
         let (body, after) = samples.split_at_mut(len);
         let correlation = correlation(&body[..fade], after);
         for (n, (start, after)) in body.iter_mut().zip(after).enumerate() {
+            // The offset of half a sample makes both ends of the fade alike.
             let angle = core::f32::consts::FRAC_PI_2 * (n as f32 + 0.5) / fade as f32;
             let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
             let power = 1.0 + 2.0 * correlation * sin * cos;

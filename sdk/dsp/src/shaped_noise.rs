@@ -99,6 +99,8 @@ enum Pending {
 /// `wanted_hz`. It is the lowest integer fraction of `wanted_hz` that contains the band and leaves
 /// a wide transition band for the interpolation to `wanted_hz`.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
+    // The first image then begins at 2.7 times the upper edge, so a single short filter separates
+    // it (see `specs` in `resample.rs`).
     let parts = libm::floor(wanted_hz / (3.7 * band.high_hz)).max(1.0);
     wanted_hz / parts
 }
@@ -106,11 +108,15 @@ pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
 /// Part of a component's power that the band's bins measure. Components are not lines, because
 /// frames are finite: their spread is approximated by the spread of a rectangle as long as the hop.
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
+    // If the part is 1 at both ends, it is 1 in between, and the sum below would give exactly 1 as
+    // well. Most components take this shortcut.
     if part.at(hz - FRAME_SPREAD * spacing_hz) == 1.0
         && part.at(hz + FRAME_SPREAD * spacing_hz) == 1.0
     {
         return 1.0;
     }
+    // The spacing belongs to a frame. The hop is shorter by one part in `OVERLAP`, so its spread is
+    // wider.
     let lobe_hz = spacing_hz * OVERLAP as f64 / (OVERLAP - 1) as f64;
     let steps = (FRAME_SPREAD * FRAME_STEPS) as i64;
     let (mut read, mut all) = (0.0, 0.0);
@@ -135,6 +141,8 @@ const FRAME_STEPS: f64 = 2.0;
 /// of steep spectra low.
 fn rise(n: usize, overlap: usize) -> f64 {
     let quarter = core::f64::consts::FRAC_PI_2;
+    // Half a sample of offset makes the weights at `n` and at its mirror image complementary, so
+    // that their squares add up to 1 at every sample.
     let sine = crate::trig::sin(quarter * (n as f64 + 0.5) / overlap as f64);
     crate::trig::sin(quarter * sine * sine)
 }
@@ -142,6 +150,8 @@ fn rise(n: usize, overlap: usize) -> f64 {
 /// [`ShapedNoise::prepare_at`] for a seed. Multiples of the golden ratio spread consecutive seeds
 /// evenly over the hop.
 fn prepare_at(seed: u64, hop: usize) -> usize {
+    // The upper bits, because the lower bits of a product depend only on the lower bits of the
+    // seed.
     let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
     ((part * hop as u64) >> 32) as usize
 }
@@ -164,6 +174,7 @@ impl Frames {
         // 1e-9 keeps a component that rounding has moved just beyond the edge.
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
+        // The inverse FFT has no bin at the Nyquist frequency.
         let high = high.min(half - 1);
         let part = ReadPart::new(band);
         let components = || (low..=high.max(low)).map(|j| j as f64 * spacing);
@@ -173,6 +184,7 @@ impl Frames {
             rise: (0..overlap).map(|n| rise(n, overlap) as f32).collect(),
             len,
             hop,
+            // A fade that did not fit into a hop would never begin (`begin_fade`).
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
             // Components up to half a bin outside the band have the magnitude of the edge.
@@ -283,6 +295,7 @@ impl ShapedNoise {
             if !a.is_finite() || *a <= 0.0 {
                 *a = 0.0;
             }
+            // Half the square of an amplitude is the power of a sinusoid.
             power += 0.5 * read * *a * *a;
         }
         let gain = if power > 0.0 { 1.0 / crate::root::sqrt(power) } else { 0.0 };
@@ -306,6 +319,8 @@ impl ShapedNoise {
     pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&[f64], &mut [f64])) {
         let mut rest = out;
         while !rest.is_empty() {
+            // The hop ends before a fade may begin, so that a fade that waits for the next hop
+            // starts at that hop's first sample.
             if self.position == self.frames.hop {
                 self.next_hop();
             }
@@ -323,6 +338,7 @@ impl ShapedNoise {
     /// Renders samples up to the end of the current hop; returns their number. The samples do not
     /// depend on the block size, even while a change waits for the next hop.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
+        // `faded` is free here: while a cross-fade needs it, `run_fade` renders instead.
         if self.position >= self.prepare_at && !self.changes && self.prepared.is_none() {
             self.prepare();
         }
@@ -345,6 +361,7 @@ impl ShapedNoise {
         }
         self.position += run;
         self.fade_position = Some(done + run);
+        // The last weight was 1, so exchanging the buffers makes no step.
         if done + run == fade_len {
             core::mem::swap(&mut self.now, &mut self.faded);
             self.fade_position = None;
@@ -362,6 +379,8 @@ impl ShapedNoise {
         self.pending = Pending::None;
         if made {
             self.take_pending();
+            // Before the hop is made again: behind the overlap, `remake_hop` uses the phases that
+            // were drawn last, and these must be the phases of the current frame.
             self.discard_prepared();
             self.remake_hop();
             self.fade_position = Some(0);
@@ -371,6 +390,8 @@ impl ShapedNoise {
 
     /// Advances to the next frame.
     fn next_hop(&mut self) {
+        // No cross-fade is in progress, since it begins only if it ends within its hop. So `faded`
+        // is free for the next hop.
         if self.prepared.is_none() {
             self.prepare();
         }

@@ -38,6 +38,8 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
         let table = match found.and_then(|(_, table)| table.upgrade()) {
             Some(table) => table,
             None => {
+                // Made while the lock is held: another thread that wants the same table waits for
+                // it instead of computing it as well.
                 let table = make();
                 in_use.retain(|(_, table)| table.strong_count() > 0);
                 in_use.push((key, Arc::downgrade(&table)));

@@ -120,6 +120,7 @@ impl SineBank {
     /// ms; phases are continuous. The oscillator with index i changes to sine i. Does not allocate.
     pub fn retune(&mut self, sines: &[Sine]) {
         self.advance();
+        // Oscillators that fade out stay in use until the ramp ends.
         self.heard = self.heard.max(sines.len()).min(self.osc.phase.len());
         let scale = 1.0 / f64::from(self.ramp_len);
         for i in 0..self.heard {
@@ -131,7 +132,9 @@ impl SineBank {
                 self.osc.phase[i] = sines.get(i).map_or(0, |s| cycles_to_fixed(s.phase_cycles));
             }
             self.osc.step[i] = (self.osc.target[i] - self.osc.amplitude[i]) * scale;
+            // The difference as a signed number, because a frequency may fall.
             let change = self.osc.goal[i].wrapping_sub(self.osc.increment[i]) as i64;
+            // The division drops a rest, which `end_ramp` makes up for by setting the goal itself.
             self.osc.bend[i] = (change / i64::from(self.ramp_len)) as u64;
         }
         self.ramp_left = self.ramp_len;
@@ -164,6 +167,8 @@ impl SineBank {
         let n = u64::from(self.since_anchor);
         for i in 0..self.heard {
             let bend = self.osc.bend[i];
+            // The sum of all increments since the anchor. `n (n + 1) / 2` and not `n (n - 1) / 2`,
+            // because `changing_sample` bends the increment before it uses it.
             let turned = self.osc.increment[i]
                 .wrapping_mul(n)
                 .wrapping_add(bend.wrapping_mul(n * (n + 1) / 2));
@@ -186,6 +191,7 @@ impl SineBank {
     /// Renders samples of a constant sound up to the end of the chunk; returns their number.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
         let at = self.since_anchor as usize % CHUNK;
+        // A chunk is always computed whole, so its samples do not depend on the block sizes.
         if at == 0 {
             self.chunk = self.osc.steady_chunk(self.heard);
         }
@@ -197,6 +203,7 @@ impl SineBank {
 
     /// Renders samples of a ramp up to its end or the next anchor; returns their number.
     fn run_ramp(&mut self, out: &mut [f32]) -> usize {
+        // Up to the next anchor, because `render` restarts the recurrences only between two runs.
         let left = self.ramp_left.min(ANCHOR_INTERVAL - self.since_anchor);
         let run = out.len().min(left as usize);
         for sample in &mut out[..run] {

@@ -76,6 +76,7 @@ impl TriangleBank {
 
 impl Triangle {
     fn new([left, apex, right]: [f64; 3], axis: &[f64]) -> Self {
+        // Positions on the edges have weight 0, so they are left out.
         let first = axis.partition_point(|&x| x <= left);
         let end = axis.partition_point(|&x| x < right).max(first);
         let weights =

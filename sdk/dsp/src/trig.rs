@@ -119,6 +119,8 @@ fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     const QUARTER: [f64; 2] = [core::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
     let mut cosines = [0.0; LANES];
     for i in 0..LANES {
+        // A quarter turn in two parts. Near it the first difference is exact, and the second part
+        // supplies the digits that are left.
         let x = (QUARTER[0] - angles[i]) + QUARTER[1];
         let z = x * x;
         let mut r = C[0];
@@ -148,6 +150,7 @@ fn high_word(x: f64) -> u32 {
 
 /// Splits an angle above π/4 into quarter turns and a rest, which is returned in two parts.
 fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
+    // If this is added and subtracted again, a number is rounded to a whole one.
     const ROUND: f64 = 1.5 / f64::EPSILON;
     /// π/2 in parts of 33 bits, each with the rest that follows it.
     const PARTS: [[f64; 2]; 3] = [
@@ -165,6 +168,7 @@ fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
     let mut y = r - w;
     if near.is_none() || WHOLE.contains(&high) {
         // Digits that have cancelled are replaced by further digits of π/2.
+        // 16 and 49 are the numbers of lost bits up to which the parts before suffice (msun).
         for ([part, rest], lost) in PARTS[1..].iter().zip([16, 49]) {
             let exponent = |x: f64| (high_word(x) >> 20) as i32;
             if exponent(x) - exponent(y) <= lost {

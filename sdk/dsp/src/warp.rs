@@ -71,6 +71,7 @@ impl Warp {
     /// reader interpolates as [`Self::new`] does, starting at the current position.
     pub fn when_needed(top: f64) -> Self {
         let mut warp = Self::of(taps(top), FEW_PHASE_BITS);
+        // The samples before the first one count as zeros.
         warp.filled = warp.before();
         warp.reads = false;
         warp
@@ -136,6 +137,7 @@ impl Warp {
             (self.place, carry) = self.place.overflowing_add(part);
             self.start += whole + usize::from(carry);
         }
+        // Only now is it known how many samples all windows need, so the source is called once.
         self.pull(last + self.taps, source);
         wide(Windows { warp: self, places: &places[..count], out: &mut out[..count] });
         count
@@ -219,6 +221,7 @@ impl Windows<'_> {
         let rows = self.warp.kernel.as_chunks::<TAPS>().0;
         for (sample, place) in self.out.iter_mut().zip(self.places) {
             let row = (place.between >> (64 - bits)) as usize;
+            // 24 bits are as many as a single-precision number holds exactly.
             let between = (place.between << bits >> 40) as f32 / (1u32 << 24) as f32;
             let window = &self.warp.history[place.start..][..TAPS];
             *sample = dot_between([&rows[row], &rows[row + 1]], between, window);

@@ -280,6 +280,7 @@ fn identifier(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let mut identifier = String::new();
     for word in words {
+        // A split inside a character would panic, but words hold ASCII alone.
         let (first, rest) = word.split_at(1);
         if identifier.is_empty() {
             identifier.push_str(&first.to_ascii_lowercase())
@@ -288,6 +289,7 @@ fn identifier(name: &str) -> String {
         }
         identifier.push_str(rest);
     }
+    // A Kotlin name must not begin with a digit, and a name of other scripts leaves nothing.
     if identifier.starts_with(|c: char| c.is_ascii_alphabetic()) {
         identifier
     } else {

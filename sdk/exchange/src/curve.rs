@@ -34,6 +34,8 @@ pub fn value_at(curve: &[Point], time_s: f64) -> Option<f64> {
     let before = after.checked_sub(1).and_then(|index| curve.get(index));
     match (before, curve.get(after)) {
         (Some(a), Some(b)) => {
+            // `b` is later than `time_s` and `a` is not, so they differ even where points share a
+            // time.
             let part = (time_s - a.time_s) / (b.time_s - a.time_s);
             Some(a.value + part * (b.value - a.value))
         }
@@ -69,7 +71,9 @@ impl<'a> Reader<'a> {
 #[must_use]
 pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
     let mut keeps = vec![false; curve.len()];
+    // `first` is `false`, as all flags are; the pattern makes sure that there is a point.
     if let (Some(first), Some(last)) = (keeps.first().copied(), curve.len().checked_sub(1)) {
+        // A stack and not recursion, which a curve of thousands of points could drive as deep.
         let mut open = vec![(0, last)];
         keeps.iter_mut().take(1).for_each(|keep| *keep = !first);
         keeps.iter_mut().skip(last).for_each(|keep| *keep = true);

@@ -275,6 +275,7 @@ fn emphasise(points: &mut Vec<Amplitude>, transient: &Transient, profile: &Profi
         _ => return,
     };
     let time = transient.time_s.clamp(first, last);
+    // Of several points at one time the last one counts: it is the value after the jump.
     let at = match points.iter().rposition(|point| point.time == time) {
         Some(at) => at,
         None => {

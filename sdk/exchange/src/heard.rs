@@ -148,6 +148,7 @@ impl Playing<'_> {
         let frames = (libm::round(block_s * rate_hz).max(1.0) as usize).min(len);
         let (before, samples) = self.samples(rate_hz, len, frames)?;
         analyser.push(&before);
+        // What was pushed so far belongs to no block, and reading it empties the level.
         analyser.read(&mut []);
         let blocks = samples.chunks(frames).map(|block| {
             analyser.push(block);

@@ -128,6 +128,7 @@ impl Import<'_> {
     /// The settings that are set, as keywords.
     fn given(&self) -> Vec<&'static str> {
         let (physical, fit) = (&self.physical, &self.fit);
+        // `all` is the command line's own default and does not count as given.
         let is_all = |models: &Vec<String>| models[..] == ["all"];
         let all = [
             ("full_scale", physical.full_scale.is_some()),
@@ -152,6 +153,8 @@ impl Imported {
         let before = self.asset.manifest.clone();
         metadata.apply(&mut self.asset.manifest);
         if self.asset.manifest != before {
+            // The bytes in the file no longer match the manifest; without a change they stay as
+            // they are.
             self.held = None;
         }
     }
@@ -235,6 +238,7 @@ pub fn recording_of(
     let signal = signal(format, bytes, sampling, profile)?.map_err(in_file(file))?;
     let mut samples: Vec<f64> = signal.samples.iter().map(|x| full_scale * x).collect();
     let mut warnings = signal.left_out;
+    // Before samples are repeated, so that an empty signal is refused here as well.
     if !samples.iter().any(|x| *x != 0.0) {
         let silent = Fault::whole("it is silent, and nothing can be fitted to it");
         return Err(in_file(file)(silent));
@@ -271,6 +275,7 @@ pub fn fit_signals(
     }
     let mut fitted = fit_asset(takes, &request)?;
     for condition in &mut fitted.asset.manifest.conditions {
+        // Repeated samples agree with themselves, which would look like a perfect recording.
         condition.repeatability_rms_db = None;
     }
     Ok(fitted)

@@ -21,6 +21,7 @@ pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Fault> {
     }
     // Some editors write a byte order mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    // First to a value: it finds keys that appear twice, and lets errors of types name their place.
     let value = parse_json(bytes).map_err(of_json)?;
     typed(value)
 }
@@ -37,6 +38,7 @@ fn of_json(error: JsonError) -> Fault {
         JsonError::Syntax(error) => {
             let place = format!("line {} column {}", error.line(), error.column());
             let text = error.to_string();
+            // The parser's text ends with the place, which the fault already states.
             let problem = text.split(" at line ").next().unwrap_or(&text);
             Fault::new(place, format!("it is not JSON: {problem}"))
         }

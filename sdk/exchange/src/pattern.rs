@@ -96,9 +96,12 @@ impl Pattern {
             let Some((level, hertz)) = level.at(time_s).zip(frequency.at(time_s)) else {
                 break;
             };
+            // A default pattern has the exponent 0, which would play silence as the strongest
+            // vibration.
             *sample += libm::pow(level, f64::from(self.exponent.max(1))) * libm::sin(phase);
             // Adding up the phase keeps the sine continuous while its frequency changes.
             phase += std::f64::consts::TAU * hertz / rate_hz;
+            // A phase that grew for ten minutes would lose digits, and with them its frequency.
             if phase > std::f64::consts::TAU {
                 phase -= std::f64::consts::TAU * libm::floor(phase / std::f64::consts::TAU);
             }
@@ -147,6 +150,7 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     for pattern in patterns {
         pattern.add_to(&mut samples, rate_hz);
     }
+    // Only the sum is limited: vibrations of opposite sign may be stronger on their own.
     samples.iter_mut().for_each(|x| *x = x.clamp(-1.0, 1.0));
     samples
 }
@@ -177,6 +181,7 @@ pub fn combined(patterns: &[Pattern]) -> Pattern {
 }
 
 fn push(curve: &mut Vec<Point>, point: Point) {
+    // Where there is no jump, both sides of a time are the same point.
     if curve.last() != Some(&point) {
         curve.push(point);
     }

@@ -101,6 +101,7 @@ impl Physical {
             });
         };
         let above = |name, value: f64, most: f64, range| {
+            // Written so that NaN is refused.
             if value > 0.0 && value <= most {
                 Ok(())
             } else {

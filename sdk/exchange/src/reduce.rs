@@ -108,11 +108,13 @@ fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     let steps = (0..=STEPS)
         .map(|step| wanted_hz * libm::pow(resonance_hz / wanted_hz, step as f64 / STEPS as f64));
     let mut tones = steps.map(|hertz| {
+        // Rounding of the power may step over an end of the range, where the response is 0.
         let hertz = hertz.clamp(profile.low_hz.value, profile.high_hz.value);
         let needed = strength * threshold(Quantity::Acceleration, hertz);
         let part = needed / profile.strongest_at(hertz);
         Tone { amplitude: part.min(1.0), hertz, is_limited: part > 1.0 }
     });
+    // The first one is nearest to the wanted frequency: steps go from there to the resonance.
     let enough = tones.by_ref().find(|tone| !tone.is_limited);
     enough.unwrap_or(Tone { amplitude: 1.0, hertz: resonance_hz, is_limited: true })
 }
@@ -129,6 +131,7 @@ fn rotating(profile: &Profile, strength: f64) -> Tone {
     }
     let steps =
         (0..=STEPS).map(|step| low_hz * libm::pow(high_hz / low_hz, step as f64 / STEPS as f64));
+    // Rounding may put the last step above the range, where the response is 0.
     let enough = steps.map(|hertz| hertz.min(high_hz)).find(|hertz| felt(*hertz) >= strength);
     enough.map_or_else(|| tone(high_hz, true), |hertz| tone(hertz, false))
 }
@@ -210,6 +213,7 @@ fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<
             profile.resonance_hz.value
         };
         let bands = group * own..group * own + middles.len();
+        // Exact equality suffices: equal frequencies are copies of the same resonance.
         match groups.iter_mut().find(|(other, _)| *other == hertz) {
             Some((_, all)) => all.extend(bands),
             None => groups.push((hertz, bands.collect())),
@@ -223,6 +227,7 @@ fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<
 pub(crate) fn drive(heard: &Heard, profile: &Profile) -> (Vec<f64>, f64) {
     let strongest = profile.strongest_m_s2.value;
     let gain = |hertz: f64| match profile.response(hertz) {
+        // Outside its range the actuator plays nothing, and no gain would change that.
         response if response > 0.0 => {
             acceleration_of(heard.quantity, hertz) / (strongest * response.max(LEAST_RESPONSE))
         }
@@ -233,6 +238,7 @@ pub(crate) fn drive(heard: &Heard, profile: &Profile) -> (Vec<f64>, f64) {
     let mut filter = Fir::with_magnitude(taps, heard.rate_hz, gain);
     let delay = taps / 2;
     let mut samples: Vec<f32> = heard.samples.iter().map(|x| *x as f32).collect();
+    // The filter delays by half its length, and the last samples must come out of it too.
     samples.resize(samples.len() + delay, 0.0);
     filter.process(&mut samples);
     let filtered = samples.into_iter().skip(delay).map(f64::from);

@@ -40,6 +40,7 @@ impl Stroke {
         let start_s = read.t_s.first().copied().unwrap_or(0.0);
         let curve = |values: &[f64]| -> Vec<Point> {
             let points = read.t_s.iter().zip(values);
+            // A trace may begin at any time of its clock; a stroke begins at 0.
             points.map(|(t, value)| Point::new(t - start_s, *value)).collect()
         };
         let speed_mm_s = curve(&read.speed_mm_s);
@@ -48,6 +49,7 @@ impl Stroke {
         let mut before: Option<&Point> = None;
         for point in &speed_mm_s {
             if let Some(before) = before {
+                // Exact, because the speed is linear between points.
                 way += 0.5 * (before.value + point.value) * (point.time_s - before.time_s);
             }
             way_mm.push(Point::new(point.time_s, way));

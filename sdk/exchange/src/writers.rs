@@ -87,6 +87,7 @@ fn thin(pattern: &mut Pattern) {
     }
     pattern.to_s = libm::round(pattern.to_s * 1e6) / 1e6;
     pattern.level = simplified(&pattern.level, TOLERANCE);
+    // Frequencies are in hertz and not within 0 to 1: a tenth of a hertz.
     pattern.frequency_hz = simplified(&pattern.frequency_hz, TOLERANCE * 1e2);
 }
 
@@ -101,6 +102,8 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     }
     let heard = job.playing.heard(RATE_HZ, point_s)?;
     let free = one_tone(&heard, job.profile, false);
+    // The oldest form has amplitudes alone: the device chooses the frequency, which is its
+    // resonance.
     let fixed = one_tone(&heard, job.profile, true);
     let effect = Android::new(
         as_waveform(job, &heard, &fixed.pattern),
@@ -137,6 +140,7 @@ fn durations_ms(job: &Job<'_>, heard: &Heard) -> Vec<u64> {
     let shortest_ms = (libm::ceil(job.profile.shortest_point_ms.value) as u64).max(1);
     let (mut before, mut durations) = (0, Vec::new());
     for count in 1..=heard.blocks.len() {
+        // The ends are rounded and not the durations, so that the errors do not add up.
         let end = libm::round(end_s(count) * 1e3) as u64;
         let own = end.saturating_sub(before);
         before = end;
@@ -168,6 +172,8 @@ fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64
     for (index, ms) in durations.into_iter().enumerate() {
         time_s += ms as f64 / 1e3;
         let at = |curve: &[Point]| value_at(curve, time_s).unwrap_or(0.0);
+        // Android refuses a basic envelope that ends at another intensity, and all envelopes share
+        // these points.
         let level = if index == last { 0.0 } else { at(&pattern.level) };
         points.push((
             libm::round(level * 1e4) / 1e4,

@@ -14,6 +14,8 @@ use crate::unpack::{DEFLATED, STORED, unpack};
 use crate::zip_records::{self, Central, Common, END_BYTES, End, Local};
 use htex_base::finding::Findings;
 
+// Bit 0 is encryption, bit 6 strong encryption, and bit 13 says that values of the local header are
+// hidden, which also happens only in encrypted archives.
 const ENCRYPTED: u16 = 1 | 1 << 6 | 1 << 13;
 const DATA_DESCRIPTOR: u16 = 1 << 3;
 const ZIP64_16: u16 = u16::MAX;
@@ -139,6 +141,8 @@ fn directory<'a>(
     let mut names = BTreeSet::new();
     let (mut at, mut expected_local, mut total) = (end.directory_at as usize, 0usize, 0u64);
     for index in 0..usize::from(end.entries) {
+        // The end record is cut off first, so that no field of a directory record can reach into
+        // it.
         let record = zip_records::central(bytes.get(..end.at)?, at);
         let Some((central, next)) = record else {
             let message = format!("the directory is damaged at record {index}");
@@ -148,6 +152,7 @@ fn directory<'a>(
         at = next;
         let name = String::from_utf8_lossy(central.name).into_owned();
         check_name(central.name, &name, findings);
+        // ASCII is enough, because a name with any other character has just been reported.
         if !names.insert(name.to_ascii_lowercase()) {
             let message = format!("two entries have the name {name:?}; keep one");
             findings.add(rule::ENTRY_NAME_DUPLICATE, "", message);
@@ -253,12 +258,16 @@ fn check_local(
         findings.add(rule::ARCHIVE_INVALID, "", message);
         return None;
     };
+    // No stream states the length of a stored entry, so only this comparison ties its two sizes
+    // together.
     let stated = central.common.method == STORED && central.common.packed != central.common.size;
     if !agrees(central, &local) || stated || central.disk != 0 {
         let message =
             format!("the directory and the local header of {name} differ; write the archive again");
         findings.add(rule::ENTRY_HEADER_MISMATCH, "", message);
     }
+    // An extra field of the directory has already been reported, and one finding for each entry is
+    // enough.
     if !local.extra.is_empty() && central.extra.is_empty() {
         let message = format!("{name} has an extra field in its local header; remove it");
         findings.add(rule::ENTRY_EXTRA_FIELD, "", message);

@@ -204,6 +204,7 @@ pub(crate) fn split<'a>(
         };
         let (values, after) = if !field.list {
             rest.split_at(1)
+        // NaN and infinity fail these comparisons too, so the cast below is exact.
         } else if first.fract() == 0.0 && first >= 0.0 && first <= after.len() as f64 {
             after.split_at(first as usize)
         } else {
@@ -261,6 +262,8 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
         }
     };
     match number {
+        // The value of a step is tested too, because these steps may not have passed the manifest's
+        // check, and the exponential of a large one is infinite.
         Some(number) if value.is_finite() && value_of(number, field.store).is_finite() => {
             Ok(number)
         }
@@ -272,6 +275,8 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
 /// `last`.
 fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
     let x = if steps.log { libm::log(value) } else { value };
+    // The logarithm is libm's: the standard library's differs in the last digit between systems,
+    // and a value near a half would be stored as another step there.
     let q = libm::round((x - steps.offset) / steps.scale);
     (0.0..=last).contains(&q).then_some(q)
 }
@@ -331,6 +336,8 @@ impl Reader<'_> {
             if field.list {
                 flat.push(count as f64);
             }
+            // Counted before anything is read: a packed step takes as little as one bit in the file
+            // and eight bytes in memory.
             self.left = self.left.checked_sub(count).ok_or(BlockError::TooMany(self.limit))?;
             if let StoredAs::Packed(steps) = field.store {
                 let all = self.steps(field, condition, count)?;

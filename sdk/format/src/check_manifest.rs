@@ -182,6 +182,7 @@ pub fn is_extension_name(name: &str) -> bool {
         let allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'-' || b == b'_';
         !part.is_empty() && part.bytes().all(allowed)
     };
+    // An empty revision passes this test, and is refused below.
     let number = revision.bytes().all(|b| b.is_ascii_digit()) && !revision.starts_with('0');
     parts().count() >= 3 && parts().all(word) && number && !revision.is_empty()
 }

@@ -15,6 +15,7 @@ use htex_base::finding::Findings;
 
 /// Smallest allowed ratio of a step to the largest magnitude it is added to. Below it, rounding can
 /// change the step.
+// An epsilon is 2^-52, so this is the 2^-50 of the specification.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
 pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
@@ -57,12 +58,14 @@ fn check_triangles_of(
     let mut places = Vec::with_capacity(at.len());
     for (condition, fitted) in at.iter().enumerate() {
         let Some(there) = conditions.get(fitted.condition) else {
+            // This index is reported by the check of conditions, so one finding is enough.
             return Ok(());
         };
         match (there.speed_mm_s, there.force_n) {
             (Some(speed), Some(force)) if is_size(speed) && is_size(force) => {
                 places.push([speed, force]);
             }
+            // The check of the manifest's conditions reports these numbers.
             (Some(_), Some(_)) => return Ok(()),
             _ => return Err(TrianglesError::Unknown { condition }),
         }
@@ -126,6 +129,8 @@ impl Steps {
             // The absolute error of a logarithm is at least the relative error of its argument.
             furthest = furthest.max(1.0);
         }
+        // Below the smallest normal number, values have fewer bits, and the logarithm of one no
+        // longer leads back to its step.
         let least = if self.log { f64::MIN_POSITIVE } else { f64::MIN };
         positive
             && self.value(last).is_finite()

@@ -60,6 +60,8 @@ impl Document {
     /// why and returns `None`.
     pub fn open(&self, bytes: &[u8], max_depth: usize, findings: &mut Findings) -> Option<Opened> {
         let (rules, text) = (&self.rules, self.text);
+        // Counted on the text, because the parser has a limit of its own and would report another
+        // error first.
         let depth = depth(bytes);
         if depth > max_depth {
             let message = format!("the {text} nests {depth} deep and the limit is {max_depth}");
@@ -151,6 +153,7 @@ fn depth(mut bytes: &[u8]) -> usize {
                 open += 1;
                 deepest = deepest.max(open);
             }
+            // The text may not be JSON and close more than it opens. The parser reports that later.
             b']' | b'}' => open = open.saturating_sub(1),
             _ => {}
         }
@@ -178,5 +181,7 @@ fn numbers(version: &str) -> Option<(u64, u64)> {
 
 fn number(text: &str) -> Option<u64> {
     let number: u64 = text.parse().ok()?;
+    // `parse` accepts `+1` and `01`. Writing the number again shows whether the text is its only
+    // form.
     (number.to_string() == text).then_some(number)
 }

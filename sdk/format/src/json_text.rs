@@ -20,6 +20,7 @@ use htex_base::finding::Place;
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "a": 1 }"#).is_err());
 /// ```
 pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
+    // The parser's error holds only a message, so the pointer leaves by this cell.
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let strict = Strict { place: &Place::Root, twice: &twice };

@@ -231,6 +231,7 @@ impl Law {
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);
         let anew = |i: usize, exponent: Exponent, assumed: Exponent| {
+            // The specification bounds a and b by 1 and c by 1.5, or by a larger assumption.
             let most = if i == 2 { 1.5 } else { 1.0 };
             let bounds = [0.0, assumed.exponent.max(most)];
             match (exponent.source, exponent.estimate, exponent.standard_error) {
@@ -242,6 +243,7 @@ impl Law {
             }
         };
         let frequency_speed = anew(0, self.frequency_speed, assumed.frequency_speed);
+        // The frequency exponent comes first, because the assumed levels depend on the result.
         let [b, c] = assumed_levels(frequency_speed.exponent, quantity, contact);
         assumed.level_speed = Exponent::assumed(b);
         assumed.level_force = Exponent::assumed(c);

@@ -69,6 +69,8 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
 /// Returns the Rice parameter that takes the fewest bits; of several, the smallest.
 fn parameter(steps: &[u8]) -> u32 {
     let all = 0..1 << PARAMETER_BITS;
+    // Of equal keys, `min_by_key` returns the first, which makes the smallest parameter win as
+    // specified.
     all.min_by_key(|&k| bits(steps, k)).unwrap_or(0)
 }
 

@@ -45,6 +45,8 @@ impl Plugin {
         };
         let key = from_hex(&signature.public_key).and_then(|k| VerifyingKey::from_bytes(&k).ok());
         let made = from_hex(&signature.ed25519).map(|bytes| Ed25519::from_bytes(&bytes));
+        // Strict, because the plain check also accepts weak keys, for which one signature is valid
+        // for several texts.
         key.zip(made)
             .is_some_and(|(key, made)| key.verify_strict(&self.signed_text(), &made).is_ok())
     }

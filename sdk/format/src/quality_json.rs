@@ -173,6 +173,7 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Worded as serde's derived types do it. The reader of manifests turns it into "an object".
         write!(f, "struct {}", T::NAME)
     }
 
@@ -257,6 +258,8 @@ macro_rules! in_json {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                // As a struct and not as a map, so that the reader of manifests refuses an array
+                // here.
                 deserializer.deserialize_struct(Self::NAME, &[], Reader(PhantomData))
             }
         }

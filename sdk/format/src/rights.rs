@@ -68,6 +68,7 @@ impl Rights {
             licenses.extend(one.license.filter(|own| !licenses.contains(own)));
             authors.extend(one.author.filter(|own| !authors.contains(own)));
         }
+        // In an SPDX expression AND binds more strongly than OR.
         if licenses.len() > 1 {
             for license in licenses.iter_mut().filter(|own| own.contains(" OR ")) {
                 *license = format!("({license})");
@@ -142,6 +143,7 @@ impl Rights {
     pub fn add_to_wav(&self, wav: &mut (impl Write + Seek)) -> io::Result<()> {
         let chunk = self.riff();
         let end = wav.seek(SeekFrom::End(0))?;
+        // Chunks of RIFF begin at even bytes, and not every writer of WAV pads its last one.
         let pad = end % 2;
         let Ok(riff) = u32::try_from(end + pad + chunk.len() as u64 - 8) else {
             return Ok(());
@@ -227,6 +229,7 @@ fn line(words: &str) -> Option<String> {
     for end in ENDS {
         plain = plain.replace(end, " ");
     }
+    // Character by character, because the limit is in bytes and may fall inside one.
     while plain.len() > MOST_BYTES {
         plain.pop();
     }

@@ -20,6 +20,8 @@ impl Manifest {
 }
 
 fn round_at(at: &mut AtCondition) {
+    // Rounded by way of text: the nearest number to a decimal text stays the same when it is
+    // rounded again, while multiplying and dividing by a power of ten would round twice more.
     at.level_rms = reread(&format!("{:.8e}", at.level_rms), at.level_rms);
     if let Some(quality) = &mut at.quality {
         round_quality(quality);

@@ -99,6 +99,8 @@ pub fn check_triangles(
         return Ok(());
     }
     check_corners(conditions.len(), triangles)?;
+    // Speeds in mm/s are hundreds of times larger than forces in newtons. Without a common scale,
+    // good triangles would count as flat.
     let places = relative(conditions);
     let upright = upright(&places, triangles)?;
     let outline = outline(&upright)?;
@@ -220,6 +222,7 @@ fn check_outline(
     let (mut corner, mut around, mut passed) = (first, 0.0, BTreeSet::new());
     while passed.insert(corner) {
         let three = [corner, next(corner), next(next(corner))].map(|i| places[i]);
+        // Straight on is allowed, because conditions may lie on a side of the hull.
         if Turn::of(three) == Turn::Right {
             let condition = next(corner);
             return Err(TrianglesError::Outline { condition });
@@ -231,6 +234,8 @@ fn check_outline(
     // A corner that was not passed lies on a second outline (a gap or a separate part). An angle
     // sum above one turn means that the outline goes around twice.
     let apart = outline.keys().copied().find(|other| !passed.contains(other));
+    // The sum is a whole number of turns apart from rounding, so the limit lies between one turn
+    // and two.
     match apart.or_else(|| (around > 1.5 * TAU).then_some(first)) {
         Some(condition) => Err(TrianglesError::Outline { condition }),
         None => Ok(()),

@@ -36,6 +36,8 @@ pub(crate) const DEFLATED: u16 = 8;
 pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]>, Damage> {
     let bytes = match common.method {
         DEFLATED => Cow::Owned(inflate(data, common.size as usize)?),
+        // Only stored entries are left. The check of the headers has refused other methods, and a
+        // stored entry whose two sizes differ.
         _ => Cow::Borrowed(data),
     };
     let crc = crc32(&bytes);

@@ -165,6 +165,8 @@ impl<'a> Payload<'a, '_> {
     fn reference(&mut self, manifest: &Manifest) -> Option<Vec<Vec<f32>>> {
         let reference = manifest.reference.as_ref()?;
         let bytes = self.entry(&reference.file, format_args!("/reference/file"))?;
+        // The entry has been claimed before, so that an invalid band does not also make it
+        // unreferenced.
         let points = grid_points(manifest.band)?;
         let conditions = manifest.conditions.len();
         let values = points.saturating_mul(conditions);
@@ -177,6 +179,7 @@ impl<'a> Payload<'a, '_> {
             self.findings.add(rule::REFERENCE_LENGTH, "/reference/file", message);
             return None;
         }
+        // The blocks come first and have taken their part of the limit.
         if values > self.values_left {
             let message = format!("the reference's {values} numbers exceed the limit");
             self.findings.add(rule::VALUES_TOO_MANY, "/reference/file", message);

@@ -6,6 +6,7 @@ use crate::HostError;
 
 /// Checks that a model has this ABI's major version.
 pub(crate) fn check_marker(origin: &str, marker: u32) -> Result<(), HostError> {
+    // The lowest byte is the minor version, which increases only for optional exports.
     if marker >> 8 == ABI_MARKER >> 8 {
         return Ok(());
     }

@@ -476,6 +476,7 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, TextError> {
     let mut bytes = vec![0; len];
     match call(&mut bytes) {
         status if status < 0 => Err(TextError::Status(status)),
+        // The buffer has the first length, so the text of another length would be cut.
         second if second != first => Err(TextError::Broken(format!(
             "its text has {first} bytes in one call and {second} in the next"
         ))),
@@ -514,6 +515,7 @@ fn no_wasm(origin: &str) -> HostError {
 /// Whether a regular file begins with the bytes of a WASM module.
 fn is_module(path: &Path) -> std::io::Result<bool> {
     use std::io::Read;
+    // Opening a named pipe would block.
     if !path.metadata()?.is_file() {
         return Ok(false);
     }

@@ -29,6 +29,8 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     };
     // SAFETY: every version of the ABI has this function with this type.
     let abi_version: AbiVersion = unsafe { symbols.get("htex_model_abi_version")? };
+    // Before the other names are looked up: in another major version they may be missing, or have
+    // other types.
     check_marker(&origin, abi_version())?;
     // SAFETY: a library with this marker exports these names with these types.
     let table: &'static ModelTable = Box::leak(Box::new(unsafe {

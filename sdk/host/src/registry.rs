@@ -284,6 +284,8 @@ impl Registry {
         let old = Candidate { rank: self.ranks.remove(used), model: self.models.remove(used) };
         let (mut same, others): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.shadowed).into_iter().partition(|one| one.model.id() == id);
+        // The model in use had the highest precedence, and `by_precedence` keeps the order of
+        // chosen models.
         same.insert(0, old.clone());
         same.push(new.clone());
         by_precedence(&mut same);

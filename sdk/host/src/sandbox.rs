@@ -120,6 +120,7 @@ impl Budget {
         for (taken, budget) in self.all().enumerate() {
             let (used, most) = count(budget);
             let add = |used: usize| used.checked_add(n).filter(|sum| *sum <= most);
+            // No other data depends on the counts, so `Relaxed` suffices.
             if used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).is_err() {
                 // An outer budget is full, so what the inner ones counted is taken back.
                 for other in self.all().take(taken) {
@@ -160,6 +161,8 @@ impl Budget {
         let mut time = self.time.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
         let back = now.saturating_duration_since(time.at).mul_f64(REFILL);
+        // Limited before the spent time is subtracted, so that a long pause does not pay for a call
+        // that came after it.
         time.left = (time.left + back).min(self.total.time).saturating_sub(spent);
         time.at = now;
         time.left

@@ -68,6 +68,7 @@ impl<S> Stream<S> {
         };
         let mut result = Ok(());
         resampler.process(out, &mut |block| {
+            // The resampler cannot stop halfway, so an error is returned at the end.
             if let Err(error) = render(&mut self.source, block) {
                 result = Err(error);
             }

@@ -175,6 +175,8 @@ impl StillSound {
 fn looped(mut stream: Stream, seconds: f64, rate_hz: f64) -> Result<Loop, HostError> {
     let fade_s = FADE_S.min(0.25 * seconds);
     let samples = |s: f64| (s * rate_hz).round() as usize;
+    // Before any memory is allocated. The range of the seconds alone does not bound the samples,
+    // because the rate is the caller's.
     if (seconds + fade_s) * rate_hz > MOST_SAMPLES {
         let text = format!("loop:{seconds} at {rate_hz} Hz");
         return Err(HostError::Synthesis { text });

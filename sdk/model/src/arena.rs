@@ -59,6 +59,7 @@ impl Arena {
         grow: impl FnOnce(usize) -> Option<*mut u8>,
     ) -> Option<*mut u8> {
         if len > self.fresh_len {
+            // Enough for the whole block, because new pages need not follow the old ones.
             let pages = len.div_ceil(PAGE_BYTES);
             let new = grow(pages)?;
             // New pages extend the old ones if they follow them; else the rest of these is lost.
@@ -91,9 +92,11 @@ impl Arena {
 fn class(size: usize) -> Option<(usize, usize)> {
     let size = size.max(ALIGN);
     let octave = size.ilog2() as usize;
+    // The size is at least 16, so the step is never 0.
     let step = (1 << octave) / STEPS;
     let steps = size.div_ceil(step);
     let len = steps.checked_mul(step)?.checked_next_multiple_of(ALIGN)?;
+    // If rounding up reaches the next octave, this is already the first class of that octave.
     Some((STEPS * octave + steps - STEPS, len))
 }
 

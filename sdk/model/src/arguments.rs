@@ -120,6 +120,7 @@ fn check_options(values: &[f64], descriptor: &dyn Fields) -> Result<(), Error> {
     }
     for (i, &value) in values.iter().enumerate() {
         let (option, integer) = descriptor.option(i);
+        // Without `std` there is no `fract`.
         let whole = !integer || value as i64 as f64 == value;
         if !(option.min..=option.max).contains(&value) || !whole {
             let kind = if integer { "whole numbers " } else { "" };
@@ -173,6 +174,7 @@ pub fn interpolate(
     let sets = match few.get_mut(..weights.len()) {
         Some(few) => few,
         None => {
+            // Each set has at least one number, so the caller's own array bounds the memory.
             many.resize(weights.len().min(flat.len()), Values::NONE);
             &mut many[..]
         }

@@ -11,6 +11,7 @@ pub struct Lock<T>(PhantomData<fn() -> T>);
 impl<T> Lock<T> {
     /// Makes a lock; the value is discarded.
     pub const fn new(value: T) -> Self {
+        // A `const fn` cannot drop a value of any type.
         core::mem::forget(value);
         Self(PhantomData)
     }

@@ -17,6 +17,7 @@ pub(crate) struct Decimal {
 
 /// A short ASCII text.
 pub(crate) struct Short {
+    // Enough for a sign, `0.`, six zeros and 20 digits.
     bytes: [u8; 40],
     len: usize,
 }

@@ -34,6 +34,8 @@ const fn short(size: f64) -> Option<(u64, i32)> {
     while exponent >= -EXACT_POWER {
         let power = power_of_ten(exponent.abs());
         let digits = if exponent >= 0 { size / power } else { size * power };
+        // A whole number and a power of ten that are both exact are rounded only once, by the
+        // product or quotient. A reader of the text rounds in the same way.
         if digits < EXACT_WHOLE {
             let whole = (digits + 0.5) as u64;
             let back = if exponent >= 0 { whole as f64 * power } else { whole as f64 / power };
@@ -66,6 +68,7 @@ const fn long(size: f64) -> (u64, i32) {
     // m · 2^-n is m · 5^n · 10^-n.
     let factor = if power < 0 { 5 } else { 2 };
     let mut limbs = [0; LIMBS];
+    // A mantissa is below 10^18, so it fills at most two limbs.
     limbs[0] = mantissa % LIMB;
     limbs[1] = mantissa / LIMB;
     let mut i = 0;

@@ -7,6 +7,8 @@ use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
 
 /// Returns the length of a descriptor's JSON text, bytes.
 pub const fn length(descriptor: &StaticDescriptor) -> usize {
+    // A buffer of length 0 stores nothing, but all bytes are counted. A const function cannot
+    // return a text whose length it has only just found.
     written::<0>(descriptor).len
 }
 

@@ -45,6 +45,8 @@ mod here {
 
     /// Runs a call and turns a panic into an error.
     pub(crate) fn caught<T>(call: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        // The ABI leaves the effect of a call that panics undefined, so state that a panic left
+        // half changed is allowed.
         catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
             let message = panic
                 .downcast_ref::<&str>()

@@ -38,6 +38,7 @@ impl<'a, T> Input<'a, T> {
     /// # Safety
     /// `pointer` is null, or `len` values can be read there for `'a`.
     pub unsafe fn new(pointer: *const T, len: usize) -> Self {
+        // C callers may pass null for an empty array, but a slice must not be null.
         if len == 0 {
             return Self(Some(&[]));
         }
@@ -191,6 +192,7 @@ impl<M: Model> State<M> {
     ) -> i64 {
         guarded(|| {
             check_rate(rate_hz)?;
+            // The slot is taken last, so a voice that cannot be made leaves none behind.
             let voice = M::voice(&self.values(parameters)?, band(band_hz)?, rate_hz, seed)?;
             self.voices.insert(voice).ok_or_else(|| {
                 Error::new(Status::TooManyVoices, "no more voices can be made; free some voices")
@@ -340,6 +342,7 @@ fn layout(len: usize) -> Option<Layout> {
 
 /// See [`crate::abi::LastError`].
 pub fn last_error(out: Output<'_, u8>) -> i64 {
+    // Not `guarded`, which would replace the text that is asked for.
     let Some(out) = out.0 else {
         return Status::InvalidArgument as i64;
     };

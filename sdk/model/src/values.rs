@@ -224,6 +224,7 @@ fn list_length(field: &Range<'_>, value: Option<f64>, max_len: u32) -> Result<us
 }
 
 fn whole_part(x: f64) -> f64 {
+    // Without `std` there is no `trunc`.
     x as u64 as f64
 }
 

@@ -75,6 +75,7 @@ impl<V> Voices<V> {
             }
             None => return None,
         };
+        // Chunks are never moved or freed, so other threads may find their slots without the lock.
         let (chunk, offset) = place(index as usize);
         let slots = self.chunks[chunk].get_or_init(|| {
             let slot = || Slot { generation: AtomicU32::new(0), voice: UnsafeCell::new(None) };
@@ -84,6 +85,8 @@ impl<V> Voices<V> {
         // SAFETY: the slot is free (its index came from the free list, whose lock is held), so no
         // valid handle to it exists.
         unsafe { *slot.voice.get() = Some(voice) };
+        // `Release`, after the voice was written: a thread that sees the new generation also sees
+        // the voice.
         let generation = slot.generation.fetch_add(1, Ordering::Release) + 1;
         // 31 bits of the generation, and the index plus one: a handle is above zero.
         Some((i64::from(generation & 0x7fff_ffff) << 32) | i64::from(index + 1))
@@ -116,7 +119,10 @@ impl<V> Voices<V> {
         let index = usize::try_from((handle & 0xffff_ffff) - 1).ok()?;
         let (chunk, offset) = place(index);
         let slot = self.chunks.get(chunk)?.get()?.get(offset)?;
+        // The counterpart of `Release` in `insert`.
         let generation = slot.generation.load(Ordering::Acquire);
+        // A negative handle has the highest bit set here, which no stored generation has. After
+        // 2³⁰ voices in one slot, its first handle would be valid again.
         let wanted = (handle >> 32) as u32;
         (generation % 2 == 1 && generation & 0x7fff_ffff == wanted).then_some(slot)
     }

@@ -106,6 +106,7 @@ impl Recorded {
     fn new(values: impl Iterator<Item = Option<f64>>) -> Self {
         let (mut low, mut high) = (f64::INFINITY, 0.0f64);
         for value in values {
+            // A range of only some of the conditions would be wrong for the others.
             let Some(x) = value else {
                 return Self::Unknown;
             };
@@ -178,6 +179,7 @@ impl Explored {
     /// Returns the scaling factors for a motion. `nearest` is the nearest recorded motion: speed,
     /// mm/s, and force, newtons.
     pub(crate) fn scaling(&self, motion: Motion, nearest: [f64; 2]) -> Scaling {
+        // The level gets the limited speed too, because the texture is played as if at that speed.
         let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]).clamp(MIN_RATIO, MAX_RATIO);
         let force = self.force.ratio(motion.force_n, nearest[1]);
         Scaling {

@@ -78,6 +78,8 @@ impl Follow {
     /// Sets reading speed and gain for a motion that is felt.
     pub(crate) fn scale(&mut self, motion: Motion, scaling: Scaling) {
         let Scaling { frequency, level } = scaling.with(self.effects);
+        // Without the effect of contact, a resting finger is felt too. Its speed of 0 sets no
+        // reading speed.
         if slides(motion.speed_mm_s, motion.force_n) {
             self.ratio = frequency.min(self.fastest);
         }
@@ -104,6 +106,7 @@ impl Follow {
     pub(crate) fn sounding(&self, len: usize, frame: u64) -> usize {
         let until_zero = match (self.contact.until_zero(), self.ends) {
             (Some(left), _) => u64::from(left),
+            // The fade begins where the hold ends.
             (None, Some(end)) => end.saturating_sub(frame) + u64::from(self.contact.ramp()),
             (None, None) => return len,
         };
@@ -124,6 +127,8 @@ impl Follow {
         });
         let (held, lost) = block.split_at_mut(held);
         self.contact.apply(held);
+        // The hold may end inside a block. The fade begins at that very sample, so that samples do
+        // not depend on the sizes of blocks.
         if !lost.is_empty() {
             self.contact.set(0.0);
             self.contact.apply(lost);

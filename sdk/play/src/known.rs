@@ -142,6 +142,7 @@ impl Known {
     pub(crate) fn at(&self, model: &LoadedModel, located: &Located) -> Result<Vec<f64>, Error> {
         let weights = &located.weights;
         let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.parameters[i][..]).collect();
+        // Without interpolation, the recorded parameters play bit for bit.
         if let [only] = sets[..] {
             return Ok(only.to_vec());
         }

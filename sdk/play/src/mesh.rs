@@ -198,6 +198,7 @@ impl Mesh {
             return Some(self.sides[side].weights(q));
         }
         let sum: f64 = areas.iter().sum();
+        // A triangle that rounding made flat has no weights.
         (sum > 0.0).then(|| Weights {
             condition: face.corners,
             weight: areas.map(|area| area / sum),

@@ -41,6 +41,7 @@ impl Output {
     pub(crate) fn set_gain(&mut self, gain: f64, rests: bool) -> Result<(), Error> {
         let gain = checked(gain)?;
         self.target = gain;
+        // Nothing is heard, so a ramp would only delay the new gain.
         if rests {
             self.gain.restart(gain)
         } else {
@@ -71,6 +72,7 @@ impl Output {
 }
 
 fn checked(gain: f64) -> Result<f32, Error> {
+    // Checked in single precision, in which a large number may be infinite.
     let number = gain as f32;
     if number.is_finite() && number >= 0.0 {
         return Ok(number);
@@ -106,6 +108,7 @@ impl Limiter {
 
     fn apply(&mut self, block: &mut [f32]) {
         for sample in block {
+            // The gain recovers before the check, so that the limit has the last word.
             self.gain += (1.0 - self.gain) * self.release;
             let peak = sample.abs();
             if peak * self.gain > self.limit {

@@ -60,6 +60,7 @@ impl SampleSource {
         let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
         Ok(Self {
             voice: model.voice(&parameters, band, rate_hz, seed)?,
+            // Reserved here, because `set_motion` must not allocate.
             sets: Vec::with_capacity(MIXED * known.longest()),
             mixed: vec![0.0; model.most_parameters()],
             known,

@@ -93,6 +93,7 @@ impl Travel {
         let on_mm = before.speed_mm_s * self.frames as f64 / self.rate_hz;
         let back = match position_mm.zip(self.given_mm) {
             Some((now, before)) if now != before => now < before,
+            // The sign of zero counts: a resting finger that moved backward has a speed of -0.
             _ => before.speed_mm_s.is_sign_negative(),
         };
         self.motion = Finger {

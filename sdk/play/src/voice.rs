@@ -283,6 +283,7 @@ impl Voice {
         let mut samples = [0.0; ADDED];
         for block in out.chunks_mut(ADDED) {
             let samples = &mut samples[..block.len()];
+            // The other blocks are rendered even after an error, so that the voice's time goes on.
             result = result.and(self.render(samples));
             for (sum, sample) in block.iter_mut().zip(samples) {
                 *sum += gain * *sample;

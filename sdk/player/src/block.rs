@@ -155,6 +155,7 @@ impl<'a> Block<'a> {
             Some((before, before.get(HEADER..)?, u32::from_le_bytes(*sum)))
         });
         let (summed, payload, sum) = payload.ok_or(OpenError::Length)?;
+        // Before the other numbers of the header are used, so that damage is reported as damage.
         if crc32(summed) != sum {
             return Err(OpenError::Checksum);
         }
@@ -191,6 +192,7 @@ impl<'a> Block<'a> {
             _ => row.is_multiple_of(4) && (4..=MOST_ROW).contains(&row),
         };
         let exponents = -MOST_EXPONENT..=MOST_EXPONENT;
+        // `contains` is false for NaN, so these checks also refuse it.
         let in_range = size > 0
             && (RATE_HZ.0..=RATE_HZ.1).contains(&rate_hz)
             && (1..=MOST_UP).contains(&up)
@@ -435,6 +437,7 @@ impl<'a> Block<'a> {
 
 /// Returns the value within the range of an axis that is nearest to a number.
 fn nearest_on(axis: Words<'_>, number: f32) -> f32 {
+    // Not `clamp`, which can panic.
     number.max(axis.at(0)).min(axis.last())
 }
 

@@ -8,6 +8,7 @@
 pub fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
     for byte in bytes {
+        // Half a byte at a time: the table has 64 bytes instead of 1 kB, for microcontrollers.
         crc = nibble(crc ^ u32::from(*byte));
         crc = nibble(crc);
     }

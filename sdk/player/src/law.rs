@@ -50,5 +50,6 @@ impl Law {
 
 /// Clamps a number to a range.
 fn within(number: f32, range: (f32, f32)) -> f32 {
+    // Not `clamp`, which can panic.
     number.max(range.0).min(range.1)
 }

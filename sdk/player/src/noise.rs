@@ -56,6 +56,7 @@ impl Noise {
             self.silence();
         }
         let half = self.half;
+        // `step` first receives the mix of the filters, which saves a second array of this size.
         let (mut centre, step) = (0.0, self.step.get_mut(..half).unwrap_or(&mut []));
         step.fill(0.0);
         for first in (0..block.filters()).step_by(AT_ONCE) {
@@ -77,6 +78,7 @@ impl Noise {
             let [w, x, y, z] = weights;
             let [a, b, c, d] = filters.map(|filter| filter.part(1, half).iter());
             for ((((sum, a), b), c), d) in step.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                // From left to right, as in `c/htex_player.c`, which must give the same bits.
                 *sum = *sum + w * a + x * b + y * c + z * d;
             }
         }
@@ -150,6 +152,7 @@ impl Noise {
         if is_gliding {
             self.glide();
         }
+        // The steps have rounding errors, which would leave a faint rest of noise.
         if becomes_silent {
             self.silence();
         }

@@ -128,6 +128,7 @@ impl<'a> Player<'a> {
 
     /// Changes to a motion at which the finger slides. Does nothing if the motion is unchanged.
     fn follow(&mut self, motion: (f32, f32)) {
+        // A fade does not change `last`, so the same motion must be able to end a silence.
         if self.memory.is_silent || self.memory.last != motion {
             self.sound(motion);
         }
@@ -204,6 +205,7 @@ impl<'a> Player<'a> {
             return;
         }
         match self.memory.held {
+            // Called with every sample from then on, but a silent player does nothing.
             0 => self.fade(),
             _ => self.memory.held -= 1,
         }

@@ -63,6 +63,7 @@ impl Tones {
                 amplitude += weight * values.at(2 * i + 1);
             }
             power += 0.5 * amplitude * amplitude;
+            // A silent sinusoid must not limit the frequencies of the others.
             if amplitude != 0.0 {
                 highest = highest.max(frequency);
             }
@@ -120,6 +121,7 @@ impl Tones {
         if is_gliding {
             self.glide();
         }
+        // The steps have rounding errors, which would leave a faint rest of sound.
         if becomes_silent {
             self.silence();
         }
@@ -130,6 +132,7 @@ impl Tones {
         let mut sum = 0.0;
         for tone in self.sounding() {
             sum += tone.amplitude * cosine(tone.phase);
+            // The factor is a power of two, so the product is exact.
             let step = (tone.frequency * (1.0 / CYCLES)) as u32;
             tone.phase = tone.phase.wrapping_add(step);
         }

@@ -28,6 +28,7 @@ impl Weights {
 
     /// Returns the conditions with a weight above zero.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        // A corner beyond the end of an axis always has weight 0, so its index is never used.
         self.of.iter().copied().filter(|(_, weight)| *weight > 0.0)
     }
 }

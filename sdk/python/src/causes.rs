@@ -43,12 +43,15 @@ pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
 pub(crate) fn attach(error: PyErr) -> PyErr {
     Python::attach(|py| {
         let text = error.to_string();
+        // Without the interpreter, which the thread that holds the lock may be waiting for.
         let cause = py.detach(|| {
             let mut raised = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
             let at = raised.iter().position(|(kept, _)| text.contains(kept))?;
             raised.remove(at)
         });
         match cause {
+            // `KeyboardInterrupt` and `SystemExit` must end the program as they would have without
+            // us.
             Some((_, cause)) if !cause.is_instance_of::<PyException>(py) => cause,
             Some((_, cause)) => {
                 error.set_cause(py, Some(cause));

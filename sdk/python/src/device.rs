@@ -91,6 +91,7 @@ impl Device {
     ) -> PyResult<usize> {
         let timeout = Duration::try_from_secs_f64(timeout_s)
             .map_err(|_| option(format!("timeout_s is {timeout_s}; at least 0")))?;
+        // Copied, because other threads may change the array once the interpreter is released.
         let samples = samples.as_slice()?.to_vec();
         let device = self.open()?;
         py.detach(|| device.write(&samples, timeout)).map_err(raised)
@@ -118,6 +119,7 @@ impl Device {
     /// Goes to rest.
     fn close(&mut self, py: Python<'_>) {
         let device = self.slot().take();
+        // Going to rest may take a while, and other threads go on meanwhile.
         py.detach(|| drop(device));
     }
 
@@ -133,6 +135,7 @@ impl Device {
         _value: Option<Bound<'_, PyAny>>,
         _traceback: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
+        // After an exception nothing is played to its end: the device goes to rest at once.
         let finished = match (kind, self.slot().is_some()) {
             (None, true) => self.finish(py),
             _ => Ok(()),

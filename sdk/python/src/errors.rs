@@ -44,6 +44,7 @@ pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     match error.raw_os_error() {
         Some(number) => {
             let text = error.to_string();
+            // Python writes the number itself.
             let text = text.split(" (os error").next().unwrap_or_default();
             let file = path.as_os_str().to_owned();
             PyOSError::new_err((number, text.to_owned(), file))

@@ -90,6 +90,7 @@ impl Importing {
     fn import(self, file: &Path) -> PyResult<(Texture, Vec<String>, Vec<String>)> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        // Only checked here, so that an unknown format is reported before wrong settings.
         Format::of_file(&name).map_err(raised)?;
         let metadata: Metadata = parsed(&self.metadata)?;
         metadata.check().map_err(|error| option(error.to_string()))?;

@@ -166,6 +166,7 @@ impl Library {
 impl Library {
     fn matching(&self, query: &Query) -> PyResult<Vec<Entry>> {
         let entries = self.library.entries();
+        // An entry that cannot be read is kept, so that `collect` returns its error.
         let matching = entries.filter(|entry| !matches!(entry, Ok(e) if !query.matches(e)));
         matching.collect::<Result<_, _>>().map_err(raised)
     }

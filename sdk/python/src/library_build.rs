@@ -72,6 +72,8 @@ impl Build {
         py.detach(|| match &mut *self.lock() {
             Some(build) => {
                 let ready = match build.pending().len() {
+                    // The store is tested only before fits, which would be lost time if it refused
+                    // files.
                     0 => Ok(()),
                     _ => self.1.try_out(),
                 };

@@ -110,6 +110,7 @@ pub(crate) fn count(given: &[Option<&Series>], block: usize) -> PyResult<usize> 
     }
     let lengths = given.iter().copied().flatten().filter_map(Series::len);
     let lengths: Vec<usize> = lengths.collect();
+    // Without arrays, the path is a single block.
     let blocks = lengths.first().copied().unwrap_or(1);
     if lengths.iter().any(|len| *len != blocks) {
         let text =

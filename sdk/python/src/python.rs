@@ -64,6 +64,7 @@ pub(crate) fn spectrum(
 /// `MemoryError` when there is not enough memory.
 pub(crate) fn zeros(n: usize) -> PyResult<Vec<f32>> {
     let mut samples = Vec::new();
+    // `vec!` would end the interpreter if there is not enough memory.
     let reserved = samples.try_reserve_exact(n);
     reserved.map_err(|_| {
         PyMemoryError::new_err(format!("no memory for {n} samples; render fewer at a time"))

@@ -52,6 +52,7 @@ pub(crate) fn register_model(
         all.push((descriptor, model));
         old
     });
+    // Here, with the interpreter and without the lock, because it may run code of the author.
     drop(old);
     Ok(())
 }
@@ -69,6 +70,7 @@ pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
 
 /// Adds the registered models to the results of a search.
 pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
+    // A copy, so that the lock is free while the models are checked and added.
     let all = registered().clone();
     for (descriptor, model) in all {
         registry.add_runtime_model(ORIGIN, descriptor, model).map_err(raised)?;
@@ -173,6 +175,7 @@ impl RuntimeModel for PythonModel {
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error> {
         let model =
+            // A `Py` can be cloned only while the interpreter is held.
             Python::attach(|py| Self { adapter: self.adapter.clone_ref(py), plays: self.plays });
         if self.plays {
             let voice = Python::attach(|py| {

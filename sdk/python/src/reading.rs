@@ -105,6 +105,7 @@ impl Reading {
     fn read(&self, source: &Source, options: &ReadOptions) -> PyResult<Recording> {
         let path = match source {
             Source::Bytes(name, bytes) => {
+                // Bytes have no JSON file next to them.
                 return recording_from_bytes(Path::new(name), bytes, options).map_err(raised);
             }
             Source::File(path) => path,

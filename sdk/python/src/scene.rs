@@ -101,6 +101,7 @@ impl Scene {
         seconds: Option<f64>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let samples = py.detach(|| {
+            // A copy, because the length is changed for this call only.
             let mut loaded = self.loaded.clone();
             if let Some(seconds) = seconds {
                 if !(seconds > 0.0 && seconds <= 1e9) {
@@ -182,6 +183,7 @@ impl Scene {
         let around =
             Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
         let device = DeviceOverride { live: true, ..self.device.clone() };
+        // Loaded again, because some settings of devices have another default for a live motion.
         let mut loaded = LoadedScene::open(&self.file, &around, &device).map_err(raised)?;
         loaded.scene.motion = Motion::Live;
         loaded.scene.duration_s = None;

@@ -32,6 +32,8 @@ pub(crate) fn tradeoff(
     request: Sweep,
 ) -> PyResult<Bound<'_, PyAny>> {
     let reading = Reading::new(&reading)?;
+    // A journal is continued only by the same build. The running program is the interpreter, which
+    // says nothing about that.
     let program: PathBuf = py.import("htex._htex")?.getattr("__file__")?.extract()?;
     let tradeoff = py.detach(|| measured(&sources, &reading, &request, program))?;
     from_json(py, &tradeoff)
@@ -64,6 +66,7 @@ fn measured(
         }
         subjects.push(subject);
     }
+    // Made in any case, because it has to outlive the journal.
     let folder = tempfile::tempdir().map_err(|error| of_file(&std::env::temp_dir(), &error))?;
     let kept = request.journal.clone();
     let file = kept.unwrap_or_else(|| folder.path().join("sweep.part"));

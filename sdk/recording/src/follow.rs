@@ -15,6 +15,7 @@ use crate::tracker::Tracker;
 use crate::velocity::velocity;
 
 /// Shortest time between two rows, seconds.
+// The speed is a difference divided by this time, which must not become infinite.
 const SHORTEST_S: f64 = 1e-9;
 /// Longest time between two rows without a warning, seconds. The position is interpolated between
 /// the rows.
@@ -178,6 +179,8 @@ impl Motion {
             Path::Position(coordinates) => coordinates,
         };
         let start_s = self.first_s();
+        // A clock that counts from 1970 has so large numbers that products of them would lose the
+        // digits below a millisecond.
         let from_start: Vec<f64> = self.time_s.iter().map(|t| t - start_s).collect();
         let along = |position: &Vec<f64>| {
             let at_s = at_s.clone().map(|t| t - start_s);

@@ -87,6 +87,8 @@ use input::{Opened, file_name};
 /// # Errors
 /// See [`ReadError`]: every error names the file, and the place in it if there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
+    // Before the file is read, so that a change during the reading makes the hash unknown instead
+    // of wrong.
     let file = RecordedFile::at(path);
     let recording = read(path, || Opened::file(path), options)?;
     Ok(Recording { file, ..recording })

@@ -166,6 +166,7 @@ impl Recording {
     /// When it differs in length from the axes or is not finite.
     pub fn with_normal(mut self, mut normal_n: Vec<f64>) -> Result<Self, RecordingError> {
         check("normal force", &normal_n, self.samples())?;
+        // The sum decides and not the first sample, because noise may make single samples negative.
         if normal_n.iter().sum::<f64>() < 0.0 {
             normal_n.iter_mut().for_each(|force| *force = -*force);
         }
@@ -202,6 +203,7 @@ impl Recording {
         to_s: Option<f64>,
     ) -> Result<Self, RecordingError> {
         let sample = |second: f64| {
+            // Times are those of the file, of which this recording may already be a part.
             let at = (second * self.rate_hz).round() - self.first_sample as f64;
             at.clamp(0.0, self.samples() as f64) as usize
         };

@@ -107,6 +107,7 @@ fn stroke(opened: Opened<'_>) -> Result<StrokeColumns, Fault> {
         check_size(&csv, column)?;
     }
     speed_mm_s.iter_mut().for_each(|speed| *speed = speed.abs());
+    // The columns are looked for twice if the file turns out to be a trace.
     warnings.dedup();
     Ok(StrokeColumns { t_s, speed_mm_s, force_n, warnings })
 }

@@ -26,11 +26,14 @@ pub fn velocity(t_s: &[f64], position: &[f64], at_s: impl IntoIterator<Item = f6
     let rows = t_s.len().min(position.len());
     let (t_s, position) = (&t_s[..rows], &position[..rows]);
     let end_s = t_s.last().copied().unwrap_or(0.0);
+    // A short recording still has to fit both sides of the window.
     let reach_s = REACH_S.min(end_s / 2.0);
     if rows < 2 || reach_s.is_nan() || reach_s <= 0.0 {
         return at_s.map(|_| 0.0).collect();
     }
     let mut before = Integral::new(t_s, position);
+    // Three integrals that only move forwards take linear time. One integral would have to go back
+    // for each time.
     let (mut here, mut after) = (before.clone(), before.clone());
     let at = |t: f64| {
         let t = t.clamp(reach_s, end_s - reach_s);
@@ -63,6 +66,7 @@ impl<'a> Integral<'a> {
 
     fn at(&mut self, t_s: f64) -> f64 {
         let last = self.t_s.len() - 1;
+        // It stops one row early, so that a time at the end still has a row after it.
         while self.row + 1 < last && self.t_s[self.row + 1] <= t_s {
             let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
             self.sum += 0.5 * (x0 + x1) * (t1 - t0);

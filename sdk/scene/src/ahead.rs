@@ -43,11 +43,14 @@ impl Ahead {
     /// Moves the buffer out, resized to the next length but at most `left` samples. [`Self::end`]
     /// moves it back.
     pub(crate) fn begin(&mut self, left: u64) -> Vec<f32> {
+        // An empty vector takes no memory, so nothing is allocated. The renderer needs itself whole
+        // while it fills the samples.
         let mut samples = std::mem::take(&mut self.samples);
         let frames = match samples.len() {
             0 => self.first,
             _ => AHEAD,
         };
+        // Within the capacity, so this does not allocate.
         samples.resize((frames as u64).min(left) as usize, 0.0);
         samples
     }

@@ -65,6 +65,7 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
             at_mm: motion.from_mm,
         }],
         (Motion::Trace(_), Some(trace)) => {
+            // `step_by` panics at 0, which an empty trace would give.
             let every = trace.t_s.len().div_ceil(MOST_ROWS).max(1);
             let points = trace.t_s.iter().step_by(every).map(|t| trace.at(*t));
             let finger = |point: crate::trace::TracePoint| Finger {

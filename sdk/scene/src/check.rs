@@ -14,6 +14,7 @@ pub(crate) fn check(scene: &Scene, limits: &Limits, findings: &mut Findings) {
         Motion::Trace(_) | Motion::Live => {}
     }
     check_device(&scene.device, findings);
+    // A missing value is valid, so any valid number stands for it.
     let duration = scene.duration_s.unwrap_or(1.0);
     let is_length = duration > 0.0 && duration <= 1e9;
     findings.require(is_length, rule::DURATION_INVALID, "/duration_s", || {
@@ -31,6 +32,7 @@ fn check_surfaces(surfaces: &[Surface], limits: &Limits, findings: &mut Findings
         let message =
             format!("the scene has {there} surfaces and the limit is {most}; split the scene");
         findings.add(rule::SURFACES_TOO_MANY, "/surfaces", message);
+        // The check of overlaps compares all pairs, so it must not see too many surfaces.
         return;
     }
     for (i, surface) in surfaces.iter().enumerate() {
@@ -79,6 +81,7 @@ fn overlap(a: Option<&Region>, b: Option<&Region>) -> bool {
     let (Some(a), Some(b)) = (a, b) else {
         return true;
     };
+    // Upper edges do not belong to a region, so regions may touch.
     let share = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] && b[0] < a[1];
     share(a.x_mm, b.x_mm) && share(a.y_mm, b.y_mm)
 }
@@ -137,6 +140,7 @@ struct Range(f64, f64);
 impl Range {
     fn require(self, value: f64, rule: &Rule, pointer: String, findings: &mut Findings) {
         let Self(low, high) = self;
+        // The smallest positive number stands for a range without 0, and means nothing to a reader.
         findings.require((low..=high).contains(&value), rule, pointer, || match low {
             f64::MIN_POSITIVE => {
                 format!("{value} is out of range; it must be above 0 and at most {high}")

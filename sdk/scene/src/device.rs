@@ -113,11 +113,14 @@ fn settle(
     let is_hardware = |s: &Setting| s.from_scene == FromScene::Never;
     if change.rehearsal {
         report_hardware(descriptor, &asked, findings);
+        // In a rehearsal the scene's settings count as the user's, because those of the hardware
+        // would be ignored otherwise.
         for (name, value) in std::mem::take(&mut asked) {
             given.entry(name).or_insert(value);
         }
         profile = profile.or(choice.profile.as_deref());
     } else if !descriptor.settings.iter().any(is_hardware) {
+        // Without settings of the hardware, a profile cannot describe hardware.
         profile = profile.or(choice.profile.as_deref());
     } else if let (None, Some(named)) = (profile, &choice.profile) {
         findings.add(rule::DEVICE_HARDWARE, "/device/profile", format!(

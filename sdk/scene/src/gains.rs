@@ -131,6 +131,7 @@ impl Gains {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
             Err(error) => return Err(error),
+            // Checked before the file is read into memory.
             Ok(found) if found.len() > MAX_BYTES => {
                 return Err(io::Error::other("the file is too large for a gains file"));
             }

@@ -98,6 +98,7 @@ impl LoadError {
     fn pointing_into(mut self, bytes: &[u8]) -> Self {
         if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
             for Finding { pointer, .. } in findings {
+                // The empty pointer means the whole document, so this ends.
                 while document.pointer(pointer).is_none() {
                     pointer.truncate(pointer.rfind('/').unwrap_or_default());
                 }
@@ -237,6 +238,7 @@ fn finish(loaded: Option<LoadedScene>, findings: Findings) -> Result<LoadedScene
 
 /// Reads a file up to one byte above the size limit.
 fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
+    // One byte more than allowed shows that the file is too long.
     let most = Limits::default().file_bytes + 1;
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes));
@@ -260,10 +262,12 @@ fn load(
 ) -> Option<LoadedScene> {
     let assets = open_assets(&scene, place, around, findings);
     let trace = open_trace(&scene, place, findings);
+    // Before the response is opened, because another adapter drops the scene's response.
     device.0.apply(&mut scene.device);
     let response = open_response(&scene, place, findings);
     let held = assets.as_ref().and_then(|all| all.first()).map(Asset::quantity);
     let settings = check_device(&scene.device, device, around.devices, held, findings);
+    // Only now, so that a missing asset does not hide the findings of the device.
     let assets = assets?;
     check_quantities(&assets, findings);
     // An invalid motion already has a finding.
@@ -292,6 +296,7 @@ fn open_assets(
     findings: &mut Findings,
 ) -> Option<Vec<Asset>> {
     type Opened = Result<Asset, (&'static Rule, String)>;
+    // Nothing depends on the order of this map.
     let mut opened: HashMap<&Path, Opened> = HashMap::new();
     let mut assets = Vec::new();
     for (i, surface) in scene.surfaces.iter().enumerate() {
@@ -364,6 +369,7 @@ fn check_quantities(assets: &[Asset], findings: &mut Findings) {
 /// Returns whether the path is a regular file or missing. Scenes may come from untrusted sources,
 /// and reading a device or a pipe may never end.
 fn may_be_read(path: &Path) -> bool {
+    // A missing file passes here, because opening it gives the better message.
     std::fs::metadata(path).map_or(true, |what| what.is_file())
 }
 

@@ -98,6 +98,7 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
             .and_then(|()| pulls.map(|block| voice.render(block)).fold(Ok(()), Result::and));
     });
     failed?;
+    // `least` returns the time per sample, and each block was retuned once.
     Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))
 }
 

@@ -79,6 +79,7 @@ impl Readings {
         self.held += blocks;
         let known = if self.held <= self.most { self.last } else { Finger::AWAY };
         let is_placed = |at: &[f64; 2]| at.iter().all(|x| x.is_finite());
+        // The place may be good although speed or force is not.
         Finger { at_mm: finger.at_mm.filter(is_placed).or(self.last.at_mm), ..known }
     }
 
@@ -91,6 +92,7 @@ impl Readings {
 /// Index of the surface under the finger: the one on the highest layer.
 pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
     let under = |i: &usize| finger.is_in(surfaces[*i].region.as_ref());
+    // Surfaces on one layer never overlap (`REGION_OVERLAP`), so there are no ties.
     (0..surfaces.len()).filter(under).max_by_key(|&i| surfaces[i].layer)
 }
 
@@ -147,5 +149,6 @@ impl Course {
 fn first_way(trace: &Trace) -> [f64; 2] {
     let moving = trace.t_s.iter().map(|t| trace.at(*t));
     let mut sliding = moving.filter(|point| point.speed_mm_s >= MIN_SLIDING_MM_S);
+    // Only the sign of its product with other velocities counts, so it is not normalised.
     sliding.next().map_or([1.0, 0.0], |point| [point.vx_mm_s, point.vy_mm_s])
 }

@@ -124,6 +124,7 @@ impl LivePath {
         let integrated = self.at(t_s).position_mm;
         self.position_mm = match self.at_mm.zip(finger.at_mm) {
             Some(([x0, y0], [x1, y1])) => {
+                // The places do not tell a forward stroke from a back stroke.
                 let way = libm::hypot(x1 - x0, y1 - y0).copysign(finger.speed_mm_s);
                 // Replaces the integral of the speed since the last update, which is only an
                 // extrapolation.

@@ -110,6 +110,7 @@ pub(crate) struct Mix {
 /// See [`SceneError`].
 pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result<Plan, SceneError> {
     let mut required = Requirements::gather(scene, device)?;
+    // No cost depends on the reference level, which is known only after this choice.
     let choices = {
         let cost = |surfaces: &[PlayedSurface]| {
             let mut draft = Draft::new(scene, &required, costs);
@@ -158,6 +159,7 @@ const MOST_CLAMPED_PERCENT: f64 = 5.0;
 /// only once in 75,000 samples.
 fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneError> {
     let over = loudest_rms / required.level_rms;
+    // Without a reference level the gain is 0, and nothing is clipped.
     if required.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
         return Ok(());
     }
@@ -267,6 +269,7 @@ impl<'a> Draft<'a> {
     fn renderer_ns(&self) -> f64 {
         let ends = |(entry, _): &(&Entry, bool)| entry.effect == Effect::Contact;
         let constant = is_constant(self.required, &self.surfaces);
+        // The ramp at the end needs updates even if the motion never changes.
         self.costs.renderer_ns[usize::from(!constant || self.device.iter().any(ends))]
     }
 
@@ -298,6 +301,8 @@ impl<'a> Draft<'a> {
     /// Adds the stages of one surface, at its model's rate.
     fn surface(&mut self, played: &PlayedSurface) -> Result<(), SceneError> {
         let surface = Some(played.surface);
+        // A voice is rendered only while its surface is touched, and a constant ratio reads it
+        // faster.
         let per_frame = played.share * played.rate_hz * played.fixed_ratio / self.required.rate_hz;
         let model_ns = self.costs.model(&played.model) * per_frame;
         self.push("synthesis", surface, always(played), played.rate_hz, model_ns);
@@ -310,6 +315,7 @@ impl<'a> Draft<'a> {
             let ns = Ns {
                 needed: match entry.effect {
                     Effect::Interpolation => {
+                        // Parameters change once per control block, not per sample.
                         self.costs.retune(&played.model) * played.share
                             / self.required.control as f64
                     }
@@ -320,6 +326,7 @@ impl<'a> Draft<'a> {
             let need = need(self.required, played);
             let decided = self.decide(entry, surface, need, played.mix_rate_hz, ns)?;
             effects.extend(decided.map(|neutral| (entry.effect, neutral)));
+            // The same place as in `Track::new`.
             if entry.effect == Effect::FrequencyScaling {
                 let level_ns = self.costs.stage("level") * per_frame;
                 let reason = "the model's samples have unit RMS; the asset gives the level";

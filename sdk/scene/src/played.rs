@@ -103,6 +103,8 @@ impl PlayedSurface {
             gain: scene.scene.surfaces[surface].gain,
             level_rms: 0.0,
         };
+        // The order matters: the rate of the source depends on the frequency factors, and its level
+        // on the gain.
         played.find_factors(scene, touch);
         played.scale_frequencies();
         let most_gain = played.scale_level();
@@ -135,6 +137,8 @@ impl PlayedSurface {
             &VoiceOptions::default()
                 .with_model(&self.model)
                 .with_rate_hz(wanted_hz)
+                // Surfaces of one asset must not play the same noise: cross-fades assume that they
+                // are uncorrelated.
                 .with_seed(required.seed.wrapping_add(self.surface as u64))
                 .with_motion(self.start),
         )
@@ -148,6 +152,7 @@ impl PlayedSurface {
         let moves_frequencies =
             is_on(Effect::FrequencyScaling) && !follows && explored.moves_frequencies();
         let moves_level = is_on(Effect::LevelScaling) && !follows && explored.moves_level();
+        // A live scene has no list of motions.
         if touch.speed_mm_s == Span::ANY {
             self.frequency = if moves_frequencies { Span::ANY } else { Span::ONE };
             self.level = if moves_level { Span::ANY } else { Span::ONE };
@@ -176,6 +181,8 @@ impl PlayedSurface {
     /// Increases the oversampling for a changing speed until the rate is an integer fraction of the
     /// device's. Converting by an integer factor takes a fraction of the time of other conversions.
     fn divide_rate(&mut self, device_hz: f64) {
+        // At least one part is required, because the rate of the voice must not exceed the
+        // device's.
         let parts = (device_hz / (self.rate_hz * self.fixed_ratio * self.oversampling)).floor();
         if self.oversampling > 1.0 && parts >= 1.0 {
             self.oversampling = device_hz / parts / (self.rate_hz * self.fixed_ratio);

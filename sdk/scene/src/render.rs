@@ -81,6 +81,7 @@ impl Renderer {
                 device.slots.push(Slot::new(entry.name, None, stage));
             }
         }
+        // The contact stage fades at the end, so it needs updates even if nothing else changes.
         let ends = plan.device.iter().any(|(entry, _)| entry.effect == Effect::Contact);
         let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
         Ok(Self {
@@ -144,6 +145,7 @@ impl Renderer {
     /// [`SceneError::Motion`] if a number is not finite or the force is negative. This also counts
     /// as a failed reading.
     pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
+        // A bad reading is stored too, so that `Readings` sees that it failed.
         self.live = finger;
         if finger.is_reading() {
             self.path.moved(&finger, self.seconds());
@@ -163,6 +165,7 @@ impl Renderer {
 
     /// Ends the scene as early as possible, with a ramp to silence.
     pub fn stop(&mut self) {
+        // The stages learn of the end at the next control block, which may be a whole block away.
         let end = self.frame + self.timing.ramp + self.timing.control as u64;
         self.timing.frames = Some(self.timing.frames.map_or(end, |frames| frames.min(end)));
     }
@@ -255,6 +258,7 @@ impl Renderer {
         };
         let finger = self.readings.take(reading, 1);
         let mut point = self.path.at(t_s);
+        // When the hold is over, the path would otherwise continue at its last speed.
         if !self.readings.is_good() && !finger.slides() {
             point.speed_mm_s = 0.0;
         }
@@ -282,6 +286,7 @@ impl Renderer {
     pub fn stages_run(&self) -> Vec<StageRun> {
         let frames = self.timed.then_some(self.frame);
         let mut tracks: Vec<&Track> = self.mixes.iter().flat_map(|mix| &mix.tracks).collect();
+        // Mixes group the surfaces by rate, and the plan lists them by number.
         tracks.sort_by_key(|track| track.surface);
         let tracks = tracks.into_iter().flat_map(|track| track.runs(frames));
         let mixes = self.mixes.iter().flat_map(|mix| &mix.chain.slots);

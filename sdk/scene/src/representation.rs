@@ -162,6 +162,7 @@ fn nearest_within(
         }
         quickest_ns = Some(quickest_ns.map_or(takes_ns, |least_ns| least_ns.min(takes_ns)));
     }
+    // Without a touched surface there are no bounds, and nothing to choose.
     let Some(quickest_ns) = quickest_ns else {
         return Ok(Vec::new());
     };

@@ -18,6 +18,7 @@ const SAME: f64 = 1e-6;
 /// longer scene is sampled at larger intervals.
 const MOST_LOOKS: u64 = 1 << 20;
 /// Duration of a control block, seconds.
+// These are 64 frames at the 20 kHz of the paper.
 const CONTROL_S: f64 = 0.0032;
 /// Level of a preview by ear, dB relative to full scale.
 const PREVIEW_DBFS: f64 = -18.0;
@@ -164,6 +165,7 @@ impl Requirements {
             motions: Vec::new(),
         };
         self.touches = vec![untouched; surfaces.len()];
+        // A live motion can go anywhere, so no surface, speed or force can be ruled out.
         if self.live {
             for (touch, surface) in self.touches.iter_mut().zip(surfaces) {
                 touch.share = 1.0;

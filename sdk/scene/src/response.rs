@@ -68,6 +68,7 @@ impl Inverse {
         let (re, im) = self.response.at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;
         let gain = part / (part * part + self.floor * self.floor);
+        // If the response is 0 in the whole band, this is 0 / 0.
         if gain.is_finite() { gain } else { 0.0 }
     }
 

@@ -90,6 +90,7 @@ impl Trace {
         let good = readings(&t_s, |row| {
             speed_mm_s[row] <= MOST_SPEED_MM_S && force_n[row] <= MOST_FORCE_N
         });
+        // Judged apart, because a recorded speed may be good where the positions jump.
         let steady = readings(&t_s, |row| moved[row] <= MOST_SPEED_MM_S);
         Self {
             t_s,

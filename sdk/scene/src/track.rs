@@ -80,6 +80,7 @@ impl Track {
         let level = Slot::new("level", Some(played.surface), Box::new(level));
         chain.slots.insert(usize::from(scaled), level);
         let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
+            // A neutral cross-fade stays at full weight; a needed one starts silent.
             let fade = Crossfade::new(played.mix_rate_hz, *neutral);
             (fade, Count::default())
         });
@@ -119,6 +120,7 @@ impl Track {
                 }
             });
         }
+        // The voice was retuned first, so that the level stage gets the level of this motion.
         self.chain.follow(&Context { level_rms: self.synthesis.level_rms(), ..*context });
     }
 
@@ -129,6 +131,7 @@ impl Track {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;
         };
+        // The voice stood still while the surface was silent, so its time is behind the scene's.
         let skipped_s = follower.skipped as f64 / follower.rate_hz;
         let motion = htex_play::Finger {
             speed_mm_s: finger.point.speed_mm_s,

@@ -73,6 +73,7 @@ fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
             let names: Vec<&str> = Effect::ALL.iter().map(|effect| effect.name()).collect();
             let message = format!("unknown effect {name}; the effects are {}", names.join(", "));
             findings.add(rule::EFFECT_UNKNOWN, format!("/effects/{}", escape(name)), message);
+            // No early return, so that all unknown names are reported.
             all_known = None;
         }
     }

@@ -98,6 +98,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     for name in ["htex", "static", "whole", "whole_static"] {
         samples.push(installed.played(&format!("built/app_{name}"))?);
     }
+    // `play.c` renders 625 blocks of 64 samples of four bytes.
     let is_whole = samples[0].len() == 4 * 64 * 625;
     ensure!(
         is_whole && samples.windows(2).all(|pair| pair[0] == pair[1]),
@@ -134,6 +135,7 @@ fn examples(installed: &Installed, capi: &Path) -> Result<()> {
     )))?;
     let mut play = installed.program("play_sdl");
     play.arg(&installed.asset).arg("1");
+    // No sound card is needed.
     run(play.env("SDL_AUDIODRIVER", "dummy"))
 }
 
@@ -173,6 +175,7 @@ fn names(installed: &Installed) -> Result<()> {
             let names: Vec<&str> = text.lines().filter_map(|line| line.split(' ').nth(2)).collect();
             let is_ours = |name: &&str| match file {
                 "libhtex.a" => name.starts_with("htex_"),
+                // The version itself is also listed as a name.
                 _ => name.ends_with("@@HTEX_1.0") || *name == "HTEX_1.0",
             };
             let strange: Vec<_> = names.iter().filter(|name| !is_ours(name)).collect();

@@ -13,6 +13,7 @@ use crate::places::{cargo, target, workspace};
 use crate::platform::Build;
 use crate::programs::{program, run};
 
+// Odd, so that the median is one of the rounds.
 const ROUNDS: usize = 15;
 const MODELS: [&str; 2] = ["ar", "sbeta"];
 

@@ -166,6 +166,7 @@ fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Resul
             bail!("vinyl.csv: six columns are expected in {row:?}");
         };
         sensors += &format!("{t_s},{fx},{fy},{fz}\n");
+        // 20,000 rows a second become 60, at a rate that does not divide the recording's.
         if i % 333 == 0 {
             tracker += &format!("{},{x},{y}\n", t_s.parse::<f64>()? * 1000.0);
         }

@@ -65,6 +65,7 @@ fn leads(page: &Path, link: &str, anchors: &BTreeMap<&Path, BTreeSet<String>>) -
     };
     let known = anchors.get(file.as_path());
     file.is_file()
+        // Only pages have known anchors. A fragment of another file is not checked.
         && (fragment.is_empty() || known.is_none_or(|known| known.contains(&unquoted(fragment))))
 }
 

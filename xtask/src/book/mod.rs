@@ -64,6 +64,7 @@ const TOP: &str = r#"<!DOCTYPE html>
 /// the link.
 pub fn book(out: &Path) -> Result<()> {
     let out = std::path::absolute(out)?;
+    // Only these two, because the folder may contain other files.
     for part in ["source", "html"] {
         if out.join(part).exists() {
             fs::remove_dir_all(out.join(part))?;

@@ -69,6 +69,7 @@ impl Assembly {
             }
         }
         let (mut from_top, mut in_folder) = (text.to_owned(), text.to_owned());
+        // From the end, so that the ranges before stay valid.
         for (range, linked) in found.into_iter().rev() {
             from_top.replace_range(range.clone(), &linked.display().to_string());
             let path = text[range.clone()].trim_end_matches('/');

@@ -42,7 +42,9 @@ fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Resul
     // Section groups are dissolved: a linker keeps only one group of each name, and references to
     // another library's group would then refer to a name that is local here.
     link.args(["-r", "--gc-sections", "--force-group-allocation"]);
+    // The functions for Windows paths exist only on Windows.
     for name in functions()?.iter().filter(|name| !name.ends_with("_wide")) {
+        // Marks the name as used. Otherwise everything would be dropped.
         link.args(["-u", name]);
     }
     link.arg("--whole-archive").arg(built.join("libhtex_c.a"));
@@ -61,11 +63,14 @@ fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Resul
     localise.args(["--wildcard", "--keep-global-symbol=htex_*"]);
     localise.args(["--strip-debug", "-R", ".llvmbc", "-R", ".llvmcmd"]);
     run(localise.args(["-R", ".comment"]).arg(&object))?;
+    // After the names were made local, because global names are kept.
     run(build.utility("objcopy").arg("--strip-unneeded").arg(&object))?;
     let archive = lib.join("libhtex.a");
+    // `ar` would add to it.
     if archive.exists() {
         fs::remove_file(&archive)?;
     }
+    // `D` leaves out times and users, which would change the bytes.
     run(build.utility("ar").arg("rcsD").arg(archive).arg(&object))?;
     Ok(fs::remove_file(object)?)
 }
@@ -97,6 +102,7 @@ fn put_shared(build: &Build, built: &Path, lib: &Path) -> Result<()> {
     link.arg("-Wl,--whole-archive").arg(built.join("libhtex_c.a"));
     link.args(["-Wl,--no-whole-archive", "-lpthread", "-ldl", "-lm"]);
     if build.is_release() {
+        // zig has LLVM's unwinder instead of GCC's.
         link.arg("-lunwind");
     }
     run(link.arg("-o").arg(lib.join(&full)))?;

@@ -42,6 +42,7 @@ fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
 fn set_aside(folder: &Path, package: &Path) -> Result<()> {
     for folder in entries(folder)?.iter().filter(|entry| entry.is_dir()) {
         set_aside(folder, package)?;
+        // Only now, because moving the files below may have emptied it.
         if entries(folder)?.is_empty() {
             fs::remove_dir(folder)?;
         }

@@ -33,6 +33,7 @@ impl Outcome {
         let tail: Vec<&str> = log.lines().skip(first).take(TOLD).collect();
         Self {
             target: target.to_owned(),
+            // A run that was cut off has no `stat::` lines, and the last status has the numbers.
             executions: after(log, "stat::number_of_executed_units:")
                 .or_else(|| number(status.trim_start_matches('#')))
                 .unwrap_or(0),

@@ -24,6 +24,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
     for place in [&corpus, &artifacts, &folder().join("logs")] {
         fs::create_dir_all(place)?;
     }
+    // What an earlier run has found is no finding of this one.
     let before = found(&artifacts);
     let mut program = Command::new(programs.join(target));
     program
@@ -49,6 +50,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
         .with_context(|| target.to_owned())?;
     let text = String::from_utf8_lossy(&fs::read(&log)?).into_owned();
     let new = found(&artifacts).into_iter().find(|file| !before.contains(file));
+    // A run that fails without an input, e.g. at its start, is shown by its log.
     let finding = (!status.success()).then(|| new.unwrap_or(log));
     Ok(Outcome::read(target, &text, finding))
 }

@@ -108,7 +108,9 @@ fn hash(folder: &Path) -> Result<()> {
     let found = find.output().context("find")?;
     let found = String::from_utf8_lossy(&found.stdout).into_owned();
     let mut files: Vec<&str> = found.lines().collect();
+    // `find` lists files in the order of the folders, which differs between machines.
     files.sort_unstable();
+    // The length of a command line is limited.
     for some in files.chunks(500) {
         run(program("sha256sum", folder).args(some))?;
     }

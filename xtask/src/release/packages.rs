@@ -57,6 +57,7 @@ fn tar(folder: &Path, to: &Path, compressor: &str, commit: &Commit) -> Result<()
     let mut tar = program("tar", folder.parent().unwrap_or(folder));
     tar.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--format=gnu"]);
     tar.args([
+        // The umask of this machine must not change the bytes.
         "--mode=u+rwX,go+rX,go-w",
         &format!("--mtime=@{}", commit.seconds),
         "-I",
@@ -113,9 +114,11 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
     put_notices(notices, &package)?;
     let folder = anew("wheel")?;
     let built = run(maturin.arg("--out").arg(&folder));
+    // Also after a failed build, because it is among the sources.
     fs::remove_file(package.join(notices.file_name().unwrap_or_default()))?;
     built?;
     for wheel in crate::places::files(&folder)? {
+        // A wheel is compressed, so paths in it show only when it is unpacked.
         let unpacked = anew("wheel-unpacked")?;
         run(program("python3", &unpacked).args(["-m", "zipfile", "-e"]).arg(&wheel).arg("."))?;
         tree::check_paths(&unpacked)?;
@@ -149,6 +152,7 @@ pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
     };
     metadata("--offline")?;
     metadata("--locked")?;
+    // `-n` leaves out the time of packing.
     tar(&folder, &out.join(name), "gzip -n -9", commit)
 }
 

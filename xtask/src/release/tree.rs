@@ -49,6 +49,7 @@ pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> R
     help(platform, &folder)?;
     if let Some(notices) = notices {
         put_notices(notices, &folder.join("share/doc/htex"))?;
+        // Only a release is built without this machine's paths (`Build::for_release`).
         check_paths(&folder)?;
     }
     Ok(folder)

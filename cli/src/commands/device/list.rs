@@ -70,6 +70,7 @@ fn listed_quietly() -> Option<Exit> {
     Some(match command.status().ok()?.code() {
         Some(0) => Exit::SUCCESS,
         Some(code) if code == i32::from(Exit::USAGE.code()) => Exit::USAGE,
+        // Also for a process that was ended by a signal, which has no exit code.
         _ => Exit::FAILURE,
     })
 }

@@ -79,6 +79,8 @@ fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Differences, Failure> {
             (None, Some(_)) => Ordering::Greater,
             (Some(a), Some(b)) => a.name.cmp(&b.name),
         };
+        // Only one entry of each library is in memory, because a library may have any number of
+        // them.
         let ours = if order.is_le() { a.step()? } else { None };
         let theirs = if order.is_ge() { b.step()? } else { None };
         match (ours, theirs) {

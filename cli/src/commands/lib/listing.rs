@@ -48,6 +48,7 @@ impl Listing {
 
     fn flush(&mut self) -> Result<(), Failure> {
         let text = std::mem::take(&mut self.text);
+        // `print` would escape with `\u{…}`, which is not JSON.
         if self.is_json { write(&text) } else { print(&text) }
     }
 }

@@ -48,6 +48,8 @@ pub(crate) struct Pack {
 impl Pack {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let is_library = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
+        // Without this, `htex lib pack oak.htex birch.htex` would replace the first texture by a
+        // library.
         if !is_library && (self.output.extension().is_some() || self.output.is_dir()) {
             let output = shown(&self.output);
             return Err(Failure::Usage(format!(

@@ -42,6 +42,7 @@ fn search(
     for entry in std::fs::read_dir(folder).reading(folder)? {
         let entry = entry.reading(folder)?;
         let (path, inside) = (entry.path(), inside.join(entry.file_name()));
+        // `file_type` does not follow a link, but `is_file` below does: links to files are packed.
         if entry.file_type().reading(folder)?.is_dir() {
             search(&path, &inside, found)?;
         } else if is_called_texture(&path) && path.is_file() {

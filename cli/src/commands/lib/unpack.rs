@@ -66,6 +66,7 @@ impl Unpack {
             let absent = || LibraryError::Absent { name: name.clone() }.of(&file);
             write(entry.ok_or_else(absent)?)?;
         }
+        // After an error before this, files that are not in their places yet are removed.
         batch.finish().writing(&self.output)?;
         bar.finish_and_clear();
         print(&format!("{}: {count} files\n", shown(&self.output)))?;
@@ -79,6 +80,7 @@ impl Unpack {
         let path = self.output.join(&inside);
         match path.symlink_metadata() {
             Err(_) => {}
+            // A link is no regular file here, so nothing is written through it.
             Ok(is) if self.force && is.is_file() => {}
             Ok(_) if self.force => {
                 let problem =

@@ -52,9 +52,11 @@ impl New {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let dir = self.dir.clone().unwrap_or_else(|| (&self.name).into());
         self.check(&dir)?;
+        // Before the folder is made, so that a wrong --sdk leaves nothing behind.
         let sdk = (self.lang == Lang::Rust).then(|| self.sdk()).transpose()?;
         let own = OwnFolder::new(&dir);
         own.make_folder(Path::new("")).writing(&dir)?;
+        // The folder has to exist, because only then its path can be made canonical.
         let values = self.values(&sdk_from(&dir, sdk)?);
         for (file, template) in self.lang.files() {
             let fill = |text: String, (key, value): &(&str, String)| text.replace(key, value);
@@ -121,6 +123,7 @@ impl New {
 
 /// Capitalises the first letter of a word.
 fn capital(word: &str) -> String {
+    // The name is ASCII, so the first byte is the first letter.
     let (first, rest) = word.split_at(word.len().min(1));
     first.to_uppercase() + rest
 }
@@ -132,6 +135,7 @@ fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
         return Ok(String::new());
     };
     let dir = dir.canonicalize().reading(dir)?;
+    // Compares the parts of the paths as they are written, so both have to be canonical.
     let path = pathdiff::diff_paths(&sdk, dir).unwrap_or(sdk);
     // Cargo accepts slashes on every system. A backslash would begin an escape sequence.
     Ok(path.display().to_string().replace('\\', "/"))

@@ -141,6 +141,7 @@ impl Record {
         let mut takes = Vec::new();
         let recorded = record(&mut session, &mut guide, &mut takes);
         guide.end(&recorded);
+        // Also after an error, because the complete takes are on disk.
         if self.json {
             print_json(&json!({
                 "recovered": recovered,
@@ -201,6 +202,7 @@ fn record(
     if guide.wait_for_start() == Next::Stop {
         return Err(RecordError::Left { kept: None });
     }
+    // Both closures show something, and the session holds both at the same time.
     let guide = RefCell::new(guide);
     let mut watch = |moment: &Moment<'_>| guide.borrow_mut().show(moment);
     session.record(&mut watch, &mut |take| {

@@ -55,12 +55,14 @@ impl Screen {
         if self.begun != Some((moment.phase, moment.number)) {
             self.begun = Some((moment.phase, moment.number));
             self.signal.clear();
+            // Otherwise the text would be written into the two lines that are redrawn.
             self.end();
             tell!("{}", beginning(moment, self.required));
         }
         self.signal.push(moment.texture);
         let motion_s = moment.phase.motion_s(moment.elapsed_s, moment.of_s);
         let turns = motion_s.and_then(|at_s| self.guidance.turns(at_s));
+        // The first moment has no turn before it, so the bell does not ring at the start.
         let is_beat = self.turns.is_some() && turns > self.turns;
         self.turns = turns;
         let is_due = self.drawn.is_none_or(|drawn| drawn.elapsed() >= PERIOD);
@@ -80,6 +82,7 @@ impl Screen {
     /// Leaves the lines that are redrawn.
     pub(super) fn end(&mut self) {
         if std::mem::take(&mut self.has_lines) {
+            // Two line ends, because the cursor is in the first of two lines.
             tell!("\n");
         }
     }

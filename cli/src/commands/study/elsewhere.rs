@@ -16,6 +16,7 @@ pub(crate) struct Elsewhere {
 impl Elsewhere {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let sentence = "this program has no statistics; `pip install htex[lab]` brings a command `htex` that has them, with the same arguments";
+        // They are parsed only so that any arguments lead to this sentence.
         drop(self.arguments);
         Err(Failure::Usage(sentence.to_owned()))
     }

@@ -64,10 +64,12 @@ impl FeltArgs {
         let asked = pairs("--source-set", &self.source_settings)?;
         let given = paced(&name, asked.clone(), is_fast);
         let sources = self.input.sources.sources()?;
+        // Opened once now, so that a wrong source or map is found before the session.
         let source = sources.open(&name, None, &given)?;
         let signals = self.input.signals(&name, &*source)?;
         warn(signals.warnings());
         let rate_hz = source.rate_hz();
+        // Each trial opens it again.
         drop(source);
         let setup = FeltSetup {
             folder: folder.to_owned(),

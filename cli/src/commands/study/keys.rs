@@ -57,10 +57,12 @@ impl Keys {
         let before = tcgetattr(stdin()).ok()?;
         let mut single = before.clone();
         single.local_modes -= LocalModes::ICANON | LocalModes::ECHO;
+        // A read returns as soon as there is one byte, with all bytes that are there by then.
         single.special_codes[SpecialCodeIndex::VMIN] = 1;
         single.special_codes[SpecialCodeIndex::VTIME] = 0;
         tcsetattr(stdin(), OptionalActions::Now, &single).ok()?;
         let (sender, presses) = channel();
+        // A read from a terminal cannot be cancelled, so the thread ends with the process.
         std::thread::spawn(move || {
             let mut bytes = [0; 64];
             loop {
@@ -81,6 +83,7 @@ impl Keys {
     pub(super) fn forget(&mut self) {
         while let Some(press) = self.pressed() {
             if press == Press::End {
+                // The end comes only once and must not be forgotten. `next` looks for it here.
                 self.last = Some((Press::End, Instant::now()));
                 break;
             }
@@ -94,6 +97,7 @@ impl Keys {
             return Some(Press::End);
         }
         loop {
+            // `pressed` replaces it.
             let before = self.last;
             let press = self.pressed()?;
             let is_held = before.is_some_and(|(own, at)| own == press && at.elapsed() < HELD);

@@ -157,6 +157,7 @@ impl Rig for StudyRig<'_> {
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Failure> {
+        // Taken out, because `play_with` borrows the whole rig.
         let mut felt = self.felt.take();
         self.playing = None;
         let played = self.play_with(felt.as_mut(), stimulus, ends);
@@ -212,11 +213,13 @@ impl StudyRig<'_> {
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.path))?;
         if ready.scene.scene.motion == Motion::Live {
+            // Without a reading yet, there is no contact.
             renderer.set_motion(Finger::AWAY).map_err(of_file(&self.path))?;
         }
         let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
         if let Some((felt, name)) = recorded {
             let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
+            // Before the device plays, so that the beginning of the trial is recorded.
             felt.begin(name, seconds).map_err(StudyError::from)?;
         }
         let mut output = Output::open(&ready, &plan)?;
@@ -229,6 +232,7 @@ impl StudyRig<'_> {
         loop {
             let goes_on = output.step(&mut renderer)?;
             if let Some((_, meter)) = &mut self.playing {
+                // Also for the last block, which may be shorter.
                 meter.take(output.last_block());
             }
             if let Some(felt) = felt.as_deref().filter(|felt| felt.waits()) {
@@ -249,6 +253,8 @@ impl StudyRig<'_> {
         let underruns = output.device.status().underruns;
         output.finish()?;
         if underruns > 0 {
+            // The device went on, but the participant felt a gap. The session can play the trial
+            // again.
             return Err(ran_dry(&ready).into());
         }
         let levels = self.playing.as_ref().map(|(_, meter)| meter.levels());

@@ -104,6 +104,7 @@ impl Card {
         };
         let mut all: Vec<(f64, f64)> = self.configs.iter().map(ends).collect();
         if all.iter().any(|(min, max)| min < max) {
+            // Gaps between the ranges are not reported. `config` refuses a rate in one.
             let min_hz = all.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
             let max_hz = all.iter().map(|r| r.1).fold(0.0, f64::max).min(MAX_RATE_HZ);
             return Rates::Range { min_hz, max_hz };

@@ -51,6 +51,7 @@ impl SourceAdapter for AudioInput {
         let channels = Some(settings.number("channels") as u16).filter(|channels| *channels > 0);
         let (rate_hz, wanted) = (rate_hz.unwrap_or(preferred.0), channels.unwrap_or(preferred.1));
         let (config, format) = card.config(rate_hz, wanted)?;
+        // `config` chooses the nearest number of channels, which may not be the one asked for.
         if channels.is_some_and(|channels| channels != config.channels) {
             return Err(refuse(
                 "channels",

@@ -98,6 +98,7 @@ impl Player {
             Some(sample) => {
                 self.shared.taken.fetch_add(1, Ordering::Relaxed);
                 (self.last, self.dry) = (sample, false);
+                // Samples after a gap would begin with a click, so they fade in.
                 self.gain = (self.gain + self.step).min(1.0);
             }
             None => {

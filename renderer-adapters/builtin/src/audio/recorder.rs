@@ -121,6 +121,7 @@ impl Source for Recorder {
             let played = stream.play();
             played.map_err(|error| failed(&self.name, error.to_string()))?;
             self.is_running = true;
+            // The time since the opening does not count as a standstill.
             self.last_call.1 = Instant::now();
         }
         Ok(())
@@ -140,6 +141,8 @@ impl Source for Recorder {
                 self.delivered += frames as u64;
                 return Ok(Delivered::Frames(frames));
             }
+            // A read of no samples must not end the source, because some may still wait in the
+            // ring.
             if let (Some(fault), false) = (fault, samples.is_empty()) {
                 self.stream = None;
                 return Err(fault);

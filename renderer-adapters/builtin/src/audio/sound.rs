@@ -62,6 +62,7 @@ impl Sound {
             Channels::All => vec![1.0; usize::from(config.channels)],
             Channels::Factors(factors) => factors.to_vec(),
         };
+        // Two blocks at least, so that one can be written while the other plays.
         let buffered = (buffer_s * format.rate_hz) as usize;
         let (ring, samples) =
             RingBuffer::new(buffered.max(2 * format.block_frames as usize).max(2));
@@ -174,6 +175,7 @@ impl Device for Sound {
             Some(_) => self.shared.delay.load(Ordering::Relaxed),
             None => 0,
         };
+        // Frames that the card took are not output before its delay is over.
         Status {
             frames_written: self.written,
             frames_played: taken.saturating_sub(delay),

@@ -33,6 +33,8 @@ impl To {
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let to = settings.text("to");
         let (card, path) = (settings.text("device"), settings.text("path"));
+        // Settings do not tell whether the user gave a value, so only other values than the
+        // defaults are refused.
         if to != "sound" && card != DEFAULT_CARD {
             return refuse("device", format!("it is for to=sound, and to={to}"));
         }

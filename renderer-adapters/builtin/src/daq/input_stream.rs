@@ -100,6 +100,7 @@ impl Source for InputStream {
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {
         let since = Instant::now();
         loop {
+            // The time is checked after the read, so a timeout of 0 still takes what is there.
             match self.read_now(samples)? {
                 Err(fault) => return Err(self.fail(&fault)),
                 Ok(frames) if frames > 0 || since.elapsed() >= timeout => {
@@ -112,6 +113,7 @@ impl Source for InputStream {
     }
 
     fn stop(&mut self) -> Result<(), DeviceError> {
+        // Taken even if it does not run, so that it is cleared and no start can follow.
         let Some(task) = self.task.take().filter(|_| self.is_running) else {
             return Ok(());
         };

@@ -60,6 +60,7 @@ impl Inputs {
         }
         let card = self.channels[0].split('/').next().unwrap_or_default();
         let rates = driver.input_rates(card).map_err(|fault| fault.missing(&self.given))?;
+        // The inputs of a card share its converter's rate.
         let (min_hz, max_hz) = (rates.0, rates.1 / self.channels.len() as f64);
         if (min_hz..=max_hz).contains(&self.rate_hz) {
             Ok(())
@@ -87,10 +88,12 @@ fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
         let wrong = || refuse(format!("`{part}` names no analog input"));
         let (card, range) = part.split_once("/ai").ok_or_else(wrong)?;
         let (first, last) = range.split_once(':').unwrap_or((range, range));
+        // The last number of a range may repeat the prefix, as in `ai0:ai5`.
         let number = |text: &str| text.trim_start_matches("ai").parse::<usize>().ok();
         let (Some(first), Some(last)) = (number(first), number(last)) else {
             return Err(wrong());
         };
+        // Checked before the range is expanded, so that `ai0:999999999` takes no memory.
         if card.is_empty() || last < first || last - first >= MOST_CHANNELS {
             return Err(wrong());
         }

@@ -41,11 +41,13 @@ impl Rig {
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let gain = settings.number("amplifier_gain");
         let full_scale_v = settings.number("dac_full_scale_v");
+        // The setting is a number and may have a fraction.
         let codes = settings.number("dac_bits").floor().exp2();
         let rig = Self {
             device: settings.text("device").to_owned(),
             driver: settings.text("driver").to_owned(),
             gain,
+            // The card cannot output more than its full scale, whatever the user allows.
             limit_v: settings.number("limit_v").min(gain * full_scale_v),
             step_v: 2.0 * full_scale_v * gain / codes,
             dc_limit_v: settings.number(DIRECT_SETTING),
@@ -88,6 +90,7 @@ impl Rig {
             );
             return Err(refuse("carrier_hz", &what));
         }
+        // A slow card may not reach the lowest useful rate.
         let min_hz = min_hz.max(LOWEST_RATE_HZ).max(carried_hz).min(max_hz);
         Ok(Capabilities {
             quantity: Quantity::DisplayVoltage,
@@ -115,6 +118,7 @@ impl Rig {
     /// or not a number.
     pub(crate) fn card_v(&self, display_v: f64) -> Option<f64> {
         let within = display_v.abs() <= self.limit_v * (1.0 + ROUNDING);
+        // What the tolerance lets through is still kept within the limit.
         within.then(|| display_v.clamp(-self.limit_v, self.limit_v) / self.gain)
     }
 }

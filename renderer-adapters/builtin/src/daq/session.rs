@@ -105,9 +105,10 @@ impl Session {
     /// Takes the samples that fit now and returns their number.
     pub(crate) fn write(&mut self, samples: &[f32]) -> Result<usize, DeviceError> {
         self.usable()?;
-        // All samples of the call, also those for which there is no space: none may be output before
-        // a later one is refused.
+        // All samples of the call, also those for which there is no space: none may be output
+        // before a later one is refused.
         let mut volts = self.checked(samples)?;
+        // The driver's buffer holds no more, so the rest waits for the next call.
         volts.truncate(self.capacity);
         if volts.is_empty() {
             return Ok(0);
@@ -115,6 +116,7 @@ impl Session {
         if self.task.is_none() {
             self.start(&volts)?;
         }
+        // After the start, because the lead belongs to the mean as well.
         self.check_direct(&volts)?;
         let fitting = self.space()?.min(volts.len());
         let taken = self.give(&volts[..fitting])?;
@@ -295,9 +297,12 @@ impl Session {
         let task = Task::new(self.driver, &self.rig.device, limit_v)?;
         let capacity = u32::try_from(self.capacity).unwrap_or(u32::MAX);
         task.set_clock(self.rate_hz, capacity)?;
+        // The lead is in the buffer before the clock starts, or the buffer would run dry at once.
         task.write(lead, false)?;
+        // Recorded before the start, because the start itself may hang.
         self.emergency.runs(Some(task.stopper()));
         let started = task.start();
+        // The task is cleared on return, and nobody may hold its handle then.
         if started.is_err() {
             self.emergency.runs(None);
         }
@@ -355,6 +360,7 @@ impl Session {
         let zero = self.end();
         if fault.is_dry() {
             self.status.underruns += 1;
+            // A buffer that ran dry has output everything.
             self.generated = self.given;
         }
         match zero {
@@ -380,9 +386,12 @@ impl Session {
     fn end(&mut self) -> Result<(), Fault> {
         self.closed = true;
         if let Some(task) = self.task.take() {
+            // The task is cleared at the end of this block, and the emergency must not stop it
+            // after that.
             self.emergency.runs(None);
             self.generated = task.generated().unwrap_or(self.generated);
         }
+        // No task reserves the output any more, so a task of its own can write the zero.
         let zero = self.emergency.zero.put();
         self.not_zero = zero.is_err();
         self.claim = None;

@@ -35,6 +35,7 @@ impl Stream {
     ) -> Result<Self, DeviceError> {
         let (device, buffer_s) = (rig.device.clone(), rig.buffer_s);
         let shared = Arc::new(Shared::new(Session::open(rig, driver, format)?));
+        // At most 0.1 s: `HANG` counts on it to reach zero within half a second.
         let period = Duration::from_secs_f64((buffer_s / 4.0).min(0.1));
         let start = |watches| {
             let started = Watchdog::start(&shared, period, watches);
@@ -99,6 +100,7 @@ impl Device for Stream {
         self.session()?.usable()?;
         let running = self.session()?.is_running();
         let drained = if running { self.drain() } else { Ok(()) };
+        // Closed even if the end could not be played. Its error came first and is the one returned.
         let closed = self.session().and_then(|mut session| session.close());
         drained.and(closed)
     }

@@ -46,6 +46,7 @@ impl Watchdog {
         let shared = Arc::clone(shared);
         let watch = move || {
             let mut told = false;
+            // Nothing is ever sent: the thread ends when the sender is dropped.
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
                 let error = look(&shared, watches);
                 // The watchdog has to print, because a thread whose call hangs, or a writer that

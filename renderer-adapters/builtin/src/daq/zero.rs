@@ -117,6 +117,7 @@ impl Emergency {
     /// output is at zero.
     fn begin(&self) -> Hung {
         if self.has_begun.swap(true, Ordering::SeqCst) {
+            // The first emergency may still run, so until it ends the output counts as not at zero.
             let error = self.error().unwrap_or_else(|| self.hangs(NOT_ZERO));
             let is_first = false;
             return Hung { error, is_first };
@@ -177,6 +178,7 @@ impl Shared {
         loop {
             match self.session.try_lock() {
                 Ok(session) => return Ok(self.taken(session)),
+                // A panic elsewhere must not prevent anybody from setting the output to zero.
                 Err(TryLockError::Poisoned(session)) => return Ok(self.taken(session.into_inner())),
                 Err(TryLockError::WouldBlock) => {}
             }

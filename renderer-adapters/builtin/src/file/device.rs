@@ -27,6 +27,8 @@ impl FileDevice {
         plan.check_rate(rate_hz)?;
         let path = plan.path.display().to_string();
         let created = Unfinished::create(&plan.path).and_then(|mut file| {
+            // The writer has its own handle. `Unfinished` keeps the other one until it renames the
+            // file.
             let writer = file.file().try_clone()?;
             Ok((Sink::new(writer, plan, rate_hz)?, file))
         });

@@ -34,6 +34,7 @@ impl Encoding {
         match self {
             Self::F32 => None,
             Self::Integer { bits, step } => {
+                // The lowest code has no counterpart of the other sign.
                 let most = (1_i32 << (bits - 1)) - 1;
                 Some((step, f64::from(most) * step))
             }

@@ -44,6 +44,7 @@ impl Plan {
         let form = form(settings.text("format"), &path)?;
         let named = settings.text("quantity");
         let mut all = Quantity::ALL.into_iter();
+        // The descriptor allows only these names, so the last part is never needed.
         let quantity =
             all.find(|quantity| quantity.name() == named).unwrap_or(Quantity::LateralForce);
         let plan = Self {

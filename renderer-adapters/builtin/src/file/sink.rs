@@ -71,6 +71,7 @@ impl Sink {
             }
             Out::Plain(out) if form == Form::Csv => {
                 for (i, sample) in samples.iter().enumerate() {
+                    // Divided anew for each row, so that rounding errors do not add up.
                     let t_s = (self.frames + i as u64) as f64 / rate_hz;
                     writeln!(out, "{t_s},{sample}")?;
                 }
@@ -88,6 +89,7 @@ impl Sink {
             Out::Plain(mut out) => {
                 if self.form == Form::Npy {
                     let header = npy_header(self.encoding, self.frames);
+                    // `seek` writes the buffered samples first.
                     out.seek(SeekFrom::Start(0))?;
                     out.write_all(&header)?;
                 }
@@ -161,6 +163,8 @@ fn npy_header(encoding: Encoding, frames: u64) -> Vec<u8> {
     };
     let dictionary =
         format!("{{'descr': '<{kind}', 'fortran_order': False, 'shape': ({frames}, ), }}");
+    // After 10 bytes of magic, version and length, 118 bytes (0x76) of text make 128. NPY wants a
+    // multiple of 64.
     let text = format!("{dictionary:<117}\n");
     [b"\x93NUMPY\x01\x00\x76\x00", text.as_bytes()].concat()
 }

@@ -46,6 +46,7 @@ impl Paced {
         let capacity = ((plan.buffer_s * rate_hz) as usize).max(least);
         let delayed = (motor.delay_s() * rate_hz).round() as usize;
         let shared = Arc::new(Shared::default());
+        // The motor's thread uses the same lock, so a write must not allocate under it.
         shared.lock().waiting.reserve_exact(capacity);
         let worker = Worker {
             name: name.to_owned(),
@@ -100,12 +101,14 @@ impl Paced {
         let fits = self.capacity.saturating_sub(state.waiting.len());
         let taken = samples.get(..fits).unwrap_or(samples);
         state.waiting.extend(taken);
+        // The thread needs a whole block, or the motor would run dry at once.
         let enough = (self.capacity / 2).max(self.block_frames);
         if state.wish == Wish::Wait && state.waiting.len() >= enough {
             state.wish = Wish::Play;
             self.shared.changed();
         }
         drop(state);
+        // The motor's thread can go on meanwhile.
         let peak = taken.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
         self.peak = self.peak.max(f64::from(peak));
         self.written += taken.len() as u64;
@@ -130,6 +133,7 @@ impl Device for Paced {
                 return Ok(samples.len() - left.len());
             }
             let state = self.shared.lock();
+            // Space may have appeared in the meantime. Then nothing would end the wait early.
             if state.waiting.len() >= self.capacity && !state.ended {
                 drop(self.shared.wait(state, time));
             } else {

@@ -78,6 +78,7 @@ impl Shared {
     fn wait_for_start(&self) {
         let mut state = self.lock();
         while state.wish == Wish::Wait {
+            // Only a change ends the wait, so any long duration will do.
             state = self.wait(state, Duration::from_secs(3_600));
         }
     }
@@ -129,6 +130,7 @@ impl Worker {
                 Next::Block => {}
                 Next::End => return self.motor.end().map_err(|what| self.failed(what)),
                 Next::Stop => return self.stop(),
+                // A motor that cannot be stopped matters more than one that ran dry.
                 Next::Dry => return self.stop().and(Err(self.ran_dry())),
             }
             analyser.push(&samples);

@@ -170,6 +170,7 @@ impl Envelopes {
 impl Motor for Envelopes {
     fn play(&mut self, block: &Block<'_>) -> Result<(), String> {
         let measured = block.measured;
+        // Silence has no mean frequency, so the last one stays.
         if measured.centroid_hz > 0.0 {
             self.frequency_hz = measured.centroid_hz.clamp(self.scale.low_hz, self.scale.high_hz);
         }

@@ -125,6 +125,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
     let mut all = vec![empty; count as usize];
     // SAFETY: there are as many places as said.
     done(call, unsafe { enumerate(null(), count, &mut count, all.as_mut_ptr()) })?;
+    // The runtime may write fewer than it announced.
     all.truncate(count as usize);
     let name = |one: &xr::ExtensionProperties| {
         let bytes = one.extension_name.iter().take_while(|c| **c != 0);

@@ -128,6 +128,7 @@ impl Motor for Stream {
         self.catch_up();
         let points = self.points.block(&block.measured, &self.scale, self.rate_hz);
         self.waiting.extend(points);
+        // Half a sample more, because the durations are rounded.
         let unsent_s = self.there_s() - self.sent_s + 0.5 / self.rate_hz;
         match self.since {
             None if unsent_s >= self.first_s => {

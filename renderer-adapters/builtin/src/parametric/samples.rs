@@ -93,6 +93,7 @@ impl Motor for Samples {
 
     fn end(&mut self) -> Result<(), String> {
         let since = Instant::now();
+        // Twice the time in which a full runtime plays everything.
         let most = Duration::from_secs_f64(2.0 * (MOST as f64 / self.rate_hz).max(self.block_s));
         while !self.waiting.is_empty() {
             self.send()?;

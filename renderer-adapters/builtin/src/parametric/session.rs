@@ -88,6 +88,8 @@ struct State {
 impl Session {
     /// Returns the session of the runtime that a setting names. Creates it if no device has it.
     pub(crate) fn of(path: &str) -> Result<Arc<Self>, DeviceError> {
+        // The lock stays until the new session is in the map, so that two threads do not create
+        // two.
         let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(session) = in_use.get(path).and_then(Weak::upgrade) {
             return Ok(session);
@@ -115,6 +117,7 @@ impl Session {
         // SAFETY: the structure is that of the header; without graphics it has no next one.
         let code = unsafe { (instance.table.create_session)(instance.handle, &info, &mut handle) };
         done("xrCreateSession", code)?;
+        // Built before the next calls, so that `drop` destroys the session if one of them fails.
         let mut session = Self {
             handle,
             action: xr::Action::NULL,
@@ -124,6 +127,7 @@ impl Session {
             instance,
         };
         session.make_action()?;
+        // The runtime refuses suggestions once the action set is attached.
         session.suggest()?;
         session.attach()?;
         session.wait_for_focus()?;
@@ -221,11 +225,13 @@ impl Session {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         while let Some(now) = self.next_state()? {
             state.now = now;
+            // The runtime refuses to begin a session that runs.
             if now == xr::SessionState::READY && !state.begun {
                 self.begin_session()?;
                 state.begun = true;
             }
         }
+        // Without the focus, the runtime makes all actions inactive, and haptics have no effect.
         if state.now != xr::SessionState::FOCUSED {
             return Err(format!("its session lost the focus (it is {:?})", state.now));
         }

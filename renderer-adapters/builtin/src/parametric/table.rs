@@ -71,6 +71,7 @@ fn negotiated(negotiate: pfn::NegotiateLoaderRuntimeInterface) -> Result<Entry, 
         min_interface_version: version,
         max_interface_version: version,
         min_api_version: VERSION,
+        // Any minor version and patch of OpenXR 1.
         max_api_version: xr::Version::new(1, 0x3ff, 0xfff),
     };
     let mut request = xr::NegotiateRuntimeRequest {

@@ -61,6 +61,7 @@ fn start(table: &Table) -> Result<(), DeviceError> {
         for (name, value) in HINTS {
             (table.set_hint)(name.as_ptr(), value.as_ptr());
         }
+        // Otherwise SDL refuses to start in a program whose `main` is not its own.
         (table.set_main_ready)();
         (table.init)(JOYSTICK)
     };

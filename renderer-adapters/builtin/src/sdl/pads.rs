@@ -28,6 +28,7 @@ impl Driver {
         // SAFETY: under the lock the list does not change; indices below its length are valid.
         unsafe {
             (sdl.lock)();
+            // SDL notices pads that came or went only in an update.
             (sdl.update)();
             for index in 0..(sdl.count)() {
                 let (name, instance) = (text((sdl.name)(index)), (sdl.instance)(index));

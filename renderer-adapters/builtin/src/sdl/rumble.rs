@@ -43,6 +43,7 @@ impl Rumble {
         let rumble = Self {
             driver,
             handle,
+            // `two_motors` has its own frequencies, so the range is not used.
             scale: Scale { gain: plan.gain, low_hz: 0.0, high_hz: 0.0 },
             hold_ms: (HOLD_BLOCKS * plan.block_s * 1e3) as u32,
             _claim: claim,
@@ -74,6 +75,7 @@ impl Motor for Rumble {
         let sdl = &self.driver.table;
         // SAFETY: the handle is open.
         let attached = unsafe {
+            // SDL notices a disconnection only in an update.
             (sdl.update)();
             (sdl.attached)(self.handle)
         };

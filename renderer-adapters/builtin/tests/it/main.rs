@@ -2,9 +2,13 @@
 #![allow(unreachable_pub, clippy::unwrap_used, unsafe_code, reason = "a failed test may panic")]
 
 mod channels;
+#[cfg(feature = "daq")]
 mod daq;
+#[cfg(feature = "daq")]
 mod daq_faults;
+#[cfg(feature = "daq")]
 mod daq_input;
+#[cfg(feature = "daq")]
 mod daq_simulated;
 mod file;
 mod motor;

@@ -58,6 +58,7 @@ fn prepared(mut command: Command, known: &KnownDevice) -> Command {
     }
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    // `CREATE_NEW_PROCESS_GROUP` of the Windows API.
     #[cfg(windows)]
     std::os::windows::process::CommandExt::creation_flags(&mut command, 0x0000_0200);
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -82,6 +83,7 @@ impl Attempt {
                 told(by_process(&display, &child));
                 // The helper ends when its pipes are closed.
                 let child = child.lock().unwrap_or_else(PoisonError::into_inner).take();
+                // The wait does not hold the lock, so `kill` never blocks.
                 let _ = child.map(|mut child| child.wait());
             }
             By::Player => told(by_player(&display)),
@@ -103,6 +105,7 @@ impl Attempt {
 fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), String> {
     let mut started = display.start().map_err(|error| error.to_string())?;
     let pipes = started.stdin.take().zip(started.stdout.take());
+    // Stored before the conversation, which may hang: `kill` needs the process then.
     *child.lock().unwrap_or_else(PoisonError::into_inner) = Some(started);
     let Some((mut to, mut from)) = pipes else {
         return Err("it has no pipes".to_owned());

@@ -168,6 +168,7 @@ enum Step {
 
 impl Default for Player {
     fn default() -> Self {
+        // As if the player had made an attempt, so that a process makes the first.
         Self { state: State::Idle, attempt: 0, own: None, last: By::Player, why: None }
     }
 }
@@ -185,6 +186,7 @@ impl Player {
             Event::Failed(attempt) => self.failed(attempt, now),
             Event::Tick => Vec::new(),
         };
+        // Every event brings the time, so a deadline does not depend on ticks alone.
         actions.extend(self.due(now));
         actions
     }
@@ -302,6 +304,7 @@ impl Player {
                 self.state = State::Leaving { until };
                 vec![Action::ClosePipe]
             }
+            // The worker's thread continues a rescue without the caller.
             _ => vec![Action::LetGo],
         }
     }
@@ -367,6 +370,7 @@ impl Player {
         }
         if now >= rescue.say_at {
             actions.push(Action::Say);
+            // The caller waits for one answer. Later warnings are only printed.
             if !std::mem::replace(&mut rescue.has_said, true) {
                 actions.push(Action::GiveNotZero);
             }

@@ -118,6 +118,7 @@ impl Guarded {
         let mut body = timeout_ms.to_le_bytes().to_vec();
         body.extend(samples.iter().flat_map(|sample| sample.to_le_bytes()));
         match self.ask(WRITE, body, self.waits.answer())? {
+            // A wrong answer must not lead beyond the end of the samples.
             Answer::Done(taken) => Ok((taken as usize).min(samples.len())),
             _ => Ok(0),
         }
@@ -138,6 +139,7 @@ impl Device for Guarded {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let (begun, mut taken) = (Instant::now(), 0);
         loop {
+            // Computed before the request, so that a timeout of zero still makes one.
             let left = timeout.saturating_sub(begun.elapsed());
             taken += self.write_some(&samples[taken..], left)?;
             if taken == samples.len() || left.is_zero() {
@@ -165,6 +167,7 @@ impl Drop for Guarded {
             let _ = self.end(ABORT, self.waits.abort());
         }
         let (reply, replied) = channel();
+        // Both waits together are at most as long as one answer.
         let patience = self.waits.answer().saturating_sub(begun.elapsed());
         let worker = self.worker.get_mut().unwrap_or_else(PoisonError::into_inner);
         if worker.send(Message::Close { patience, reply }).is_ok() {

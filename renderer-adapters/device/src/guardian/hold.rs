@@ -35,7 +35,9 @@ pub fn hold(
             WRITE => write(&mut *device, &body),
             STATUS => Ok(Answer::Status(device.status().into())),
             FINISH => device.finish().map(|()| Answer::Done(0)),
+            // An unknown request aborts too, because zero is always safe.
             _ => {
+                // Dropped before the answer, which says that the output is at zero.
                 drop(device);
                 let _ = answer(&mut to, &Answer::Done(0));
                 return;

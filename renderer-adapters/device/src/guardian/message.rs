@@ -66,6 +66,7 @@ pub(crate) fn take(from: &mut impl Read) -> std::io::Result<(u8, Vec<u8>)> {
     from.read_exact(&mut head)?;
     let [tag, a, b, c, d] = head;
     let length = u32::from_le_bytes([a, b, c, d]);
+    // A wrong length must not allocate gigabytes.
     if length > LONGEST {
         return Err(std::io::Error::other("a message is too long"));
     }

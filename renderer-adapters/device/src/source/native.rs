@@ -229,6 +229,7 @@ impl Source for NativeSource {
             return Err(DeviceError::Closed(self.name().to_owned()));
         }
         let width = self.stream.channels.len();
+        // The width is not 0, because `SourceStream::check` refuses a source without channels.
         let frames = samples.len() / width;
         let (data, len) = (samples.as_mut_ptr(), frames * width);
         let read = self.opened.table().read;

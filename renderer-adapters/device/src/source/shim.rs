@@ -83,6 +83,7 @@ impl<A: SourceAdapter + Default> State<A> {
             let timeout = Duration::from_millis(u64::from(timeout_ms));
             let delivered = self.0.with(handle, |source| {
                 let channels = source.channels().len();
+                // `checked_rem` also covers a faulty source without channels.
                 if samples.len().checked_rem(channels) != Some(0) {
                     let len = samples.len();
                     return Err(argument(format!("{len} samples of {channels} channels")));

@@ -131,6 +131,7 @@ fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, St
     let mut all: Vec<Condition> = Vec::new();
     for condition in [a, b].iter().flat_map(|part| &part.asset.manifest().conditions) {
         let known = |c: &Condition| (c.speed_mm_s.is_some(), c.force_n.is_some());
+        // A player needs both numbers of every condition, or of none.
         if all.first().is_some_and(|first| known(first) != known(condition)) {
             return Err("the speed or the force of one alone is known; edit or fit it".to_owned());
         }
@@ -198,6 +199,8 @@ fn mixed(
             Motion::new(place.speed_mm_s.unwrap_or_default(), place.force_n.unwrap_or_default());
         let (first, first_level) = a.asset.parameters(Some(model.id()), Some(motion))?;
         let (second, second_level) = b.asset.parameters(Some(model.id()), Some(motion))?;
+        // At the ends no model is asked: interpolation could change the last digit, or fail for a
+        // model that cannot interpolate.
         let flat = match weight {
             0.0 => first,
             1.0 => second,

@@ -97,6 +97,7 @@ impl Powers {
         let segments = choose_segments(recording, SegmentChoice::Auto);
         let (len, samples) = (segments.len, recording.samples());
         let long_len = (LONG * len).min(samples).min(MOST);
+        // Values are divided by the largest one, which must not be 0.
         let is_silent = recording.axes.iter().flatten().all(|x| *x == 0.0);
         if segments.starts.is_empty() || long_len < 2 * len || is_silent {
             return None;
@@ -106,6 +107,8 @@ impl Powers {
         let mut next = 0;
         let is_due = |start: &usize| {
             let is_due = *start >= next;
+            // Segments overlap, and a window of one second around each of them would read the same
+            // samples ten times.
             next = if is_due { start + long_len / 4 } else { next };
             is_due
         };
@@ -121,6 +124,7 @@ impl Powers {
 
 /// Periodic four-term Blackman-Harris window.
 fn blackman_harris(len: usize) -> Vec<f64> {
+    // The remainder keeps the angle below one turn, where the cosine has all its digits.
     let cosine = |k: usize, i: usize| libm::cos(TAU * (k * i % len) as f64 / len as f64);
     let value = |i| (0..4).map(|k| COSINES[k] * cosine(k, i)).sum();
     (0..len).map(value).collect()

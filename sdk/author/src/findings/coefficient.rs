@@ -35,6 +35,7 @@ pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {
         return;
     };
+    // With the error, so that a slope that is only uncertain is no finding.
     if line.slope.abs() + 2.0 * line.error > LARGEST_EXPONENT {
         return;
     }

@@ -85,6 +85,7 @@ impl Centred {
         let middle = 0.5 * (count - 1.0);
         let places = self.values.iter().enumerate();
         let both: f64 = places.map(|(at, x)| (at as f64 - middle) * x).sum();
+        // The sum of the squares of the sample numbers less their mean.
         let own = count * (count * count - 1.0) / 12.0;
         both * both / (own * self.squares)
     }

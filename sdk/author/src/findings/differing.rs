@@ -10,6 +10,7 @@ use htex_recording::rules::RECORDING_LEVELS_DIFFER;
 /// reported: 8 dB. In ten slides over each of 20 materials by a robot, no slide is further than 5.0
 /// dB from its material's median; the two slides of a material that are furthest apart differ by
 /// 6.2 dB.
+// Ten to the power of 8 / 20, written out because a constant cannot call libm.
 const DIFFERS: f64 = 2.511_886_431_509_58;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.

@@ -58,6 +58,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
     }
     match count_levels(values) {
         1 => return Levels::ClippedAt(Vec::new()),
+        // Counting stops there, so this means "that many or more".
         FEWEST_LEVELS => {}
         levels => {
             findings.add(RECORDING_COARSE, format!("/{name}"), format!(
@@ -126,6 +127,8 @@ fn clip(values: &[f64], side: f64) -> Option<Clip> {
     if top.abs() < REST * magnitude / values.len() as f64 {
         return None;
     }
+    // A converter with coarse steps has no value within this fraction, so the next value counts as
+    // well.
     let beside = second.min(top - BESIDE * (top - bottom));
     let (mut count, mut near, mut visits, mut first, mut before) = (0, 0, 0, None, false);
     for (at, value) in values.iter().map(|value| side * value).enumerate() {

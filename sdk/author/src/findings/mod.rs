@@ -45,6 +45,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     for axis in 0..recording.axes.len() {
         let levels = levels::judge(recording, axis, &mut findings);
         let has_course = course::judge_axis(recording, axis, &mut findings);
+        // A ramp or a coarse signal leaks too, and has its own finding, which says more.
         is_texture &= !has_course && matches!(levels, Levels::ClippedAt(_));
         if let Levels::ClippedAt(clips) = levels {
             stuck::judge_axis(recording, axis, &clips, &mut findings);
@@ -54,6 +55,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     if is_texture {
         band::judge(recording, &mut findings);
     }
+    // Where the texture is the normal force, its axis has just been checked.
     if recording.quantity != Quantity::NormalForce {
         stuck::judge_normal(recording, &mut findings);
         spikes::judge_normal(recording, &mut findings);

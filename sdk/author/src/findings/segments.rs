@@ -78,6 +78,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         .filter(|(_, level)| usual > 0.0 && **level > LOUD * usual)
         .map(|(start, level)| (*start, *level))
         .collect();
+    // If many segments are loud, the motion changes throughout, which other findings report.
     let Some((first, _)) = loud.first().filter(|_| loud.len() <= levels.len() / EXCEPTION) else {
         return;
     };

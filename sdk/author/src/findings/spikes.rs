@@ -98,6 +98,7 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
 /// both the usual one and a floor. If there are more single-sample outliers than such spikes,
 /// returns the outliers instead.
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
+    // At low rates a block would have too few samples for its largest corner to mean anything.
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
     let sharpest: Vec<(usize, f64)> = (0..values.len())
         .step_by(block)
@@ -139,6 +140,7 @@ fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
     };
     let large = single(LARGE.0);
     let small = single(SMALL.0);
+    // The small ones include the large ones, so they are returned if both are too many.
     if small.len() as f64 >= SMALL.1 * values.len() as f64 {
         small
     } else if large.len() >= LARGE.1 {

@@ -50,6 +50,7 @@ pub(super) fn judge_axis(
     let (mut stuck, mut silent) = (Vec::new(), Vec::new());
     for run in runs(values, shortest(STUCK_S)) {
         let value = values[run.start];
+        // A clipped signal stays at its limit too, and that has its own finding.
         if clipped.contains(&value) {
             continue;
         }

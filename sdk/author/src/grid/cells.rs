@@ -73,10 +73,12 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usiz
     let own: Vec<usize> = all().filter(|i| inside[*i] < 1.0).collect();
     let mut borrowed: Vec<usize> =
         all().filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0).collect();
+    // The order is stable, so that equal distances give the same windows on every machine.
     order::sort_by(&mut borrowed, |a, b| around[*a].total_cmp(&around[*b]));
     borrowed.truncate(ENOUGH.saturating_sub(own.len()));
     order::sort(&mut borrowed);
     let slower = |i: &usize| motions[*i][0] < at[0];
+    // Windows from one side alone would make this condition a copy of its neighbour.
     let both_sides = borrowed.iter().any(slower) && !borrowed.iter().all(slower);
     Cell {
         surrounded: !own.is_empty() || both_sides,

@@ -111,6 +111,7 @@ impl<'a> Played<'a> {
         }
         let recorded_hz: Vec<f64> = reference.frequency_hz.iter().map(|f| f / ratio).collect();
         let shape = self.model.magnitude(&mixed, reference.band, &recorded_hz)?;
+        // Noise that is stretched spreads its power over more bins; a line stays a line.
         let spread = if self.model.has_lines() { 1.0 } else { ratio.sqrt() };
         let gain = level * scaling.level / spread;
         Ok(shape.iter().map(|m| m * gain).collect())

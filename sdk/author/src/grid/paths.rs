@@ -65,6 +65,8 @@ impl<'a> Paths<'a> {
             self.readers.entry(len).or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
         let mut bins = reader.read(&recording.axes, start)?;
         if let Some(response) = &self.options.response {
+            // The bins carry the numbers of the line's frequencies, but the setup passed the
+            // frequencies at which the finger really moved.
             let faster = window.len as f64 / len as f64;
             let inverse = self.inverses.entry([window.len, len]).or_insert_with(|| {
                 let frequency_hz = band.grid_hz().into_iter().map(|f| f * faster);
@@ -97,9 +99,11 @@ impl<'a> Paths<'a> {
     fn length(&self, window: &Window, log_speed: f64) -> usize {
         let most = libm::log(MOST);
         let ratio = libm::exp((log_speed - window.motion[0]).clamp(-most, most));
+        // An even step keeps all lengths even, if the window's own length is.
         let step = libm::round(window.len as f64 / (2.0 * STEPS)).max(1.0) * 2.0;
         let len = (libm::round(window.len as f64 * ratio / step) * step) as usize;
         let samples = self.takes[window.take].recording.samples();
+        // Half the samples is the number of the last bin of a Fourier transform of this length.
         if len / 2 >= self.band.last_bin() && len <= samples { len } else { window.len }
     }
 }

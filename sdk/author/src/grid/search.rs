@@ -77,6 +77,8 @@ impl<'a> Search<'a> {
         let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
         let all: Vec<usize> = (0..self.windows.len()).collect();
         let cells = gather(&lines, &self.motions, &all);
+        // The same windows for all candidates: with cells of their own, denser grids would be
+        // compared with fewer and better placed windows.
         let compared = self.all_held(&cells)?;
         let one_condition_rms_db = self.one_condition_db(&compared)?;
         let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
@@ -124,6 +126,7 @@ impl<'a> Search<'a> {
         let mut spectra = Vec::with_capacity(cells.len());
         let mut without: Vec<Vec<_>> = cells_without.iter().map(|_| Vec::new()).collect();
         for (i, cell) in cells.iter().enumerate() {
+            // Read once for all folds, because reading takes nearly all of the time.
             let reads = read_around(&mut self.paths, self.windows, cell)?;
             spectra.push(self.spectrum(&reads, cell));
             for (cells, spectra) in cells_without.iter().zip(&mut without) {
@@ -187,6 +190,8 @@ impl<'a> Search<'a> {
 
     /// Returns the chosen grid fitted without each block of time, together with the blocks.
     fn left_out(&mut self, gathered: &Gathered) -> Result<Vec<LeftOutBlock>, AuthorError> {
+        // Gathered again, because the blocks for models belong to the conditions of the chosen
+        // lines.
         let all_held = self.all_held(&gathered.cells)?;
         let blocks = gathered.without.iter().zip(all_held);
         let block = |(spectra, held): (&Vec<Option<TextureSpectrum>>, Vec<Held>)| {

@@ -114,5 +114,6 @@ fn steady_motion(axes: &[MotionAxis<'_>; 2], start: usize, len: usize) -> Option
         MotionAxis::Measured(known) => known.steady_mean(start, len, STEADY),
     });
     let (speed, force) = (speed?, force?);
+    // The logarithms need both above 0.
     (speed >= SLOWEST_MM_S && force > 0.0).then(|| [libm::log(speed), libm::log(force)])
 }

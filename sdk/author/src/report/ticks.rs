@@ -48,6 +48,7 @@ fn linear(low: f64, high: f64, count: f64) -> Vec<Tick> {
 fn nice_step(step: f64) -> (f64, i32) {
     let exponent = step.log10().floor() as i32;
     let rest = step / 10f64.powi(exponent);
+    // Without the tolerance, rounding of the logarithm could turn a step of 2 into 5.
     match [1.0, 2.0, 5.0].into_iter().find(|m| rest <= m * (1.0 + 1e-9)) {
         Some(mantissa) => (mantissa, exponent),
         None => (1.0, exponent + 1),

@@ -154,6 +154,7 @@ impl FitSettings {
         let models = named_models(registry, self.models.as_deref().unwrap_or_default())?;
         let mut options = Vec::new();
         for (name, value) in &self.options {
+            // A model's id has dots of its own, so the option is what follows the last dot.
             let (owner, option) = name.rsplit_once('.').ok_or_else(|| {
                 let text = format!("{name}={value}");
                 SettingsError::OptionForm { text }

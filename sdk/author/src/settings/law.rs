@@ -81,6 +81,7 @@ impl GivenLaw {
 }
 
 fn is_exponent(x: f64) -> bool {
+    // Written so that NaN, which compares with nothing, is refused.
     x.abs() <= MOST_EXPONENT
 }
 
@@ -96,6 +97,7 @@ impl FromStr for GivenLaw {
                 )
             };
             let (name, value) = part.split_once('=').ok_or_else(form)?;
+            // Recipes write the same names with underscores.
             let kept = match &*name.trim().replace('_', "-") {
                 "frequency-speed" => &mut law.frequency_speed,
                 "level-speed" => &mut law.level_speed,

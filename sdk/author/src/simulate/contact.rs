@@ -105,7 +105,9 @@ impl Contact {
     /// it.
     pub(super) fn tick(&mut self, finger: &Finger, level: f64) -> Force {
         let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
+        // A sign would jump at each turn and excite all frequencies.
         let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
+        // At rest the direction of motion is undefined.
         let slope = if speed > 0.0 { finger.across_mm_s / speed } else { 0.0 };
         let slowness = speed / STRIBECK.1;
         let friction = self.friction * (1.0 + STRIBECK.0 * libm::exp(-slowness * slowness));
@@ -182,11 +184,13 @@ impl Rig {
 pub(super) fn noise_density(rate_hz: f64) -> f64 {
     let noise = NOISE_N * NOISE_N / 20_000.0;
     let quantisation = STEP_N * STEP_N / 12.0 / rate_hz;
+    // One-sided instead of two-sided, and for two axes instead of one.
     4.0 * (noise + quantisation)
 }
 
 /// Adds the sensor's noise and quantisation to a force.
 pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Normal) -> Force {
+    // The density stays the same at every rate, as that of a real sensor does.
     let noise = NOISE_N * libm::sqrt(rate_hz / 20_000.0);
     let mut read =
         |force: f64| STEP_N * libm::round((force + noise * random.next_normal()) / STEP_N);

@@ -98,9 +98,11 @@ impl FreeHand {
         let log_speed = self.speed.draw(random);
         let log_force = self.force.draw(random);
         let wanted_s = STROKE_S[0] + (STROKE_S[1] - STROKE_S[0]) * random.next_unit();
+        // The stroke is planned for its highest speed, so that it cannot leave the sheet.
         let highest = libm::exp(log_speed + self.speed.wander);
         let left_s = |direction: f64| (HALF_SHEET_MM - direction * self.finger.along_mm) / highest;
         let mut direction = -self.stroke.direction;
+        // Near the end of the sheet a full stroke may not fit in the other direction either.
         if left_s(direction) < STROKE_S[0] && left_s(-direction) > left_s(direction) {
             direction = -direction;
         }

@@ -144,6 +144,7 @@ impl Hand {
         let speed = self.speed_mm_s * scatter;
         let end = self.direction * SWEEP_MM / 2.0 + END_SCATTER_MM * self.random.next_normal();
         let length = (end - self.finger.along_mm).abs();
+        // A very short or fast sweep still needs time between its two ramps.
         let ramp_s = RAMP_S.min(0.25 * length / speed);
         self.time_s = 0.0;
         self.sweep = Sweep {
@@ -165,6 +166,7 @@ impl Hand {
     fn press(&mut self) {
         let scatter = FORCE_SCATTER[0] * self.drift.tick(&mut self.random)
             + FORCE_SCATTER[1] * self.tremor.tick(&mut self.random);
+        // Unlike clipping, this leaves no corner in the force, which would excite all frequencies.
         self.finger.normal_n =
             self.force_n * (1.0 + FORCE_BOUND * libm::tanh(scatter / FORCE_BOUND));
         self.finger.contact =
@@ -191,6 +193,8 @@ struct SlowNoise {
 impl SlowNoise {
     fn new(hz: f64, rate_hz: f64) -> Self {
         let keep = libm::exp(-2.0 * PI * hz / rate_hz);
+        // Variance of white noise after two equal one-pole filters, whose impulse response is
+        // `n·keepⁿ`.
         let power =
             (1.0 - keep) * (1.0 + keep * keep) / ((1.0 + keep) * (1.0 + keep) * (1.0 + keep));
         Self {
@@ -213,6 +217,8 @@ struct Tremor {
 
 impl Tremor {
     fn new(rate_hz: f64) -> Self {
+        // The noise bandwidth of the band-pass, π·f/2Q, as a part of the whole band of half the
+        // rate.
         let power = PI * TREMOR_HZ / TREMOR_Q / rate_hz;
         Self {
             filter: Cascade::new(&[band_pass(TREMOR_Q, TREMOR_HZ, rate_hz)]),

@@ -290,6 +290,8 @@ impl SimulationOptions {
         match self.motion {
             Motion::Sweeps => Material::Piece(Relief::new(parameters, &mut stream(1)), 0.0),
             Motion::Free(_) => {
+                // The second track must not repeat the first one, so it draws from a stream of its
+                // own.
                 let tracks = [1, 3].map(|part| Track::new(parameters, stream(part)));
                 Material::Endless(Box::new(tracks))
             }
@@ -371,6 +373,7 @@ impl Simulation {
 
     fn push(&mut self, force: Force, finger: &Finger) {
         self.t_s.push(self.t_s.len() as f64 / self.rate_hz);
+        // Rounded here as in the written file, so that both give the same recording.
         self.fx_n.push(rounded(force.x, FORCE_DECIMALS));
         self.fy_n.push(rounded(force.y, FORCE_DECIMALS));
         self.fz_n.push(rounded(force.z, FORCE_DECIMALS));
@@ -403,6 +406,8 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     let parameters = options.surface.parameters();
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;
     let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
+    // Each part draws from its own stream, so an option that makes one draw more leaves the others
+    // alone.
     let stream = |part: u64| stream(options.seed, 16 * parameters.label + part);
     let mut hand = options.hand(stream(0));
     let material = options.material(stream);
@@ -413,8 +418,11 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     let mut simulation = Simulation::new(options, samples);
     for step in 0..samples * inner_steps {
         let mut finger = hand.tick();
+        // After the hand and before the contact: a lift changes the force with which the contact is
+        // computed.
         let level = course.tick(&mut finger);
         let force = rig.tick(contact.tick(&finger, level));
+        // The rig's anti-aliasing filter ran at the inner rate, so samples between may be dropped.
         if step % inner_steps == 0 {
             simulation.push(sense(force, options.rate_hz, &mut noise), &finger);
         }

@@ -65,6 +65,7 @@ impl SimulationOptions {
         }
         let band = Band { high_hz: Band::TACTILE.high_hz.min(0.5 * self.rate_hz), ..Band::TACTILE };
         let cell_hz = GRID_HZ / CELLS as f64;
+        // The window of the last bin takes power from above the band.
         let cells = (band.last_bin() + WINDOW_BINS + 1) * CELLS;
         let rate_hz = self.inner_hz();
         let mut sections: Vec<Biquad> = Rig::new(rate_hz, self.rate_hz).lateral().to_vec();
@@ -76,6 +77,7 @@ impl SimulationOptions {
         };
         Ok(Truth {
             filters: (0..cells).map(gain).collect(),
+            // A sine of amplitude A has the power A²/2, and a Hann window is 1.5 bins wide.
             noise_power: 3.0 * GRID_HZ * noise_density(self.rate_hz),
             options: self.clone(),
             band,
@@ -127,6 +129,7 @@ impl Truth {
                 let below = (middle > i).then(|| power[middle - 1 - i]);
                 transfer * (above + below.unwrap_or(0.0))
             });
+            // The spectrum holds amplitudes, and a sine of amplitude A has the power A²/2.
             libm::sqrt(2.0 * taken.sum::<f64>())
         };
         (self.band.first_bin()..=self.band.last_bin()).map(at).collect()
@@ -144,6 +147,7 @@ impl Truth {
         let both_axes = 1.0 + ACROSS.0 * ACROSS.0;
         let power = |(cell, filter): (usize, &f64)| {
             let per_mm = (cell as f64 + 0.5) * width;
+            // The points of the relief cannot hold shorter waves.
             if per_mm >= 0.5 * POINTS_PER_MM {
                 return 0.0;
             }
@@ -230,6 +234,7 @@ fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64)
 /// Returns the gain, at a spatial frequency, of smoothing by the contact and of interpolating
 /// between points.
 fn reading(kernel: &[f64], per_mm: f64) -> f64 {
+    // The kernel is symmetric, so its transform has cosines alone.
     let turn = 2.0 * PI * per_mm / POINTS_PER_MM;
     let middle = (kernel.len() / 2) as f64;
     let smoothing =
@@ -264,6 +269,7 @@ fn cubic_gain(turn: f64) -> f64 {
 fn window_powers() -> Vec<f64> {
     let power = |cell: usize| {
         let x = (cell as f64 + 0.5) / CELLS as f64;
+        // Middles of cells are never at 0 or 1, where this would divide by zero.
         let sinc = libm::sin(PI * x) / (PI * x);
         (sinc / (1.0 - x * x)).powi(2)
     };

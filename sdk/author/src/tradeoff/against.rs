@@ -101,6 +101,8 @@ fn ties(mut along: &[usize], tied: impl Fn(usize, usize) -> bool) -> Vec<&[usize
     let mut runs = Vec::new();
     while let Some(&first) = along.first() {
         let end = along.iter().position(|&i| !tied(first, i));
+        // A cost that is not a number is not tied even with itself; without the 1 the loop would
+        // not end.
         let (run, rest) = along.split_at(end.unwrap_or(along.len()).max(1));
         runs.push(run);
         along = rest;

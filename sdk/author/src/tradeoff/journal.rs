@@ -52,6 +52,7 @@ impl Journal {
     pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
         let key = &format!("{HEAD}{key}");
         self.entries = self.kept(self.read(key))?;
+        // The rest of a truncated line must go: appending to it would spoil the next entry too.
         let file = self.kept(self.rewrite(key))?;
         self.file = Some(Mutex::new(file));
         Ok(())
@@ -66,6 +67,7 @@ impl Journal {
         };
         let mut lines = BufReader::new(file).lines().map_while(Result::ok);
         let first = lines.next().unwrap_or_default();
+        // An empty file is taken over: a program may have stopped before it wrote the first line.
         if !first.is_empty() && !first.starts_with(HEAD) {
             return Err(io::Error::other(
                 "it exists and is not the journal of an interrupted sweep; move it, or name another output",
@@ -74,6 +76,8 @@ impl Journal {
         if first != key {
             return Ok(Vec::new());
         }
+        // An interrupted program leaves a part of a line. Whatever follows such a line is measured
+        // again.
         let entries = lines.map_while(|line| serde_json::from_str(&line).ok());
         Ok(entries.collect())
     }

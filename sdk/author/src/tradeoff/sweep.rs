@@ -65,6 +65,7 @@ pub fn sweep(
                 step(1, &format!("{}: measuring", subject.name));
             })?;
         step(0, &format!("{}: timing", subject.name));
+        // Only now: all threads have ended, and nothing else takes time from the contenders.
         let timed = time_all(recording, subject, &contenders, &measured, request.quick, journal)?;
         step(contenders.len(), &subject.name);
         for one in &contenders {
@@ -119,6 +120,7 @@ fn measure_all(
     }
     let open: Vec<&Contender> =
         contenders.iter().filter(|c| !known.contains_key(&c.id())).collect();
+    // What the journal already has counts as done, so that the progress reaches its end.
     (open.len()..contenders.len()).for_each(|_| step());
     let (next, found) = (AtomicUsize::new(0), Mutex::new(known));
     let work = || {
@@ -130,6 +132,8 @@ fn measure_all(
                 },
                 Err(error) => Outcome::Failed { reason: error.to_string() },
             };
+            // Written before the step counts as finished: a sweep that is interrupted here measures
+            // it again.
             let contender = one.id();
             journal.keep(&Entry::Measured {
                 recording,
@@ -145,7 +149,9 @@ fn measure_all(
     };
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(open.len().max(1));
     std::thread::scope(|scope| {
+        // One thread fewer than cores, because this thread works as well.
         let threads: Vec<_> = (1..cores).map(|_| scope.spawn(work)).collect();
+        // All threads are joined even after an error, so that a panic of one is not lost.
         let own = work();
         threads.into_iter().fold(own, |all, thread| {
             all.and(thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))

@@ -93,10 +93,12 @@ impl Playing<'_> {
             let mut calls = 0..samples.div_ceil(block);
             calls.try_for_each(|_| (self.sound.render)(black_box(&mut out)))
         };
+        // Another contender ran just before and has filled the caches with its own data.
         render(WARM_UP)?;
         let begun = Instant::now();
         render(SAMPLES)?;
         let ns = 1e9 * begun.elapsed().as_secs_f64();
+        // Whole blocks were rendered, so their samples count and not those that were asked for.
         Ok(ns / (SAMPLES.div_ceil(block) * block) as f64)
     }
 }
@@ -122,6 +124,7 @@ fn turns<T>(
 fn median(mut times: Vec<f64>) -> Median {
     times.sort_by(f64::total_cmp);
     let at = |share: f64| times[(share * (times.len() - 1) as f64).round() as usize];
+    // A clock that is too coarse may give a median of 0, and the spread must stay a number.
     Median { median: at(0.5), spread: 0.5 * (at(0.75) - at(0.25)) / at(0.5).max(f64::MIN_POSITIVE) }
 }
 

@@ -60,6 +60,8 @@ impl Batch {
             Target::Direct(mut file) => file.write_all(bytes)?,
             Target::Beside(mut beside, path) => {
                 let written = beside.write_all(bytes);
+                // Recorded even if the write failed: other files of this folder may be in the
+                // group.
                 self.folders.insert(folder(&path).to_owned());
                 // The file is closed, because a process may only have a few open files.
                 self.written.push((beside.into_temp_path(), path));
@@ -116,6 +118,7 @@ fn flush(_: &[(TempPath, PathBuf)], folders: &BTreeSet<PathBuf>) -> io::Result<(
     let mut systems = BTreeSet::new();
     for folder in folders {
         let folder = std::fs::File::open(folder)?;
+        // `syncfs` flushes a whole file system, so one call is enough for all folders on it.
         if systems.insert(folder.metadata()?.st_dev()) {
             rustix::fs::syncfs(&folder)?;
         }

@@ -50,6 +50,7 @@ impl Key {
     /// Returns the keyed hash of a file's name and content.
     pub fn tag(&self, name: &str, content: &[u8]) -> [u8; blake3::OUT_LEN] {
         let mut hasher = blake3::Hasher::new_keyed(&self.0);
+        // The length comes first, so that no other pair of name and content gives the same bytes.
         hasher.update(&(name.len() as u64).to_le_bytes());
         hasher.update(name.as_bytes());
         hasher.update(content);
@@ -68,12 +69,15 @@ fn make(folder: &Path, path: &Path) -> io::Result<()> {
     options.write(true).create_new(true);
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    // A hard link fails if the path exists, while a rename would replace the key of another
+    // process, whose tags would then be refused.
     let written = options
         .open(&beside)
         .and_then(|mut file| file.write_all(&key))
         .and_then(|()| std::fs::hard_link(&beside, path));
     let removed = std::fs::remove_file(&beside);
     match written {
+        // Another process was faster. Its key is read next.
         Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
         _ => removed,
     }

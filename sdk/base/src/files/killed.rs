@@ -26,6 +26,8 @@ pub(crate) static OWN: LazyLock<String> =
     LazyLock::new(|| format!("{BEGINNING}{}-{}-", *MACHINE, std::process::id()));
 
 static MACHINE: LazyLock<String> = LazyLock::new(|| {
+    // Process numbers mean something only until the next start of the system, and only inside one
+    // namespace, which each container has of its own.
     let boot = std::fs::read("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     let space = std::fs::read_link("/proc/self/ns/pid").unwrap_or_default();
     let bytes = boot.iter().chain(space.as_os_str().as_encoded_bytes());
@@ -41,6 +43,8 @@ static MACHINE: LazyLock<String> = LazyLock::new(|| {
 /// for each folder has an effect. A file that cannot be removed is not an error.
 pub(crate) fn remove_from(folder: &Path, own: &Metadata) {
     let mut done = DONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // Listing a folder of 100,000 files for every file that is written would take far longer than
+    // the writing.
     if !done.insert(folder.to_owned()) {
         return;
     }

@@ -60,6 +60,7 @@ pub fn remove_unfinished() {
     for path in unfinished.iter() {
         let _ = std::fs::remove_file(path);
     }
+    // The lock stays taken for ever, so that no other thread can rename a file after its removal.
     std::mem::forget(unfinished);
 }
 
@@ -118,6 +119,8 @@ impl Target {
         readable_by: Readers,
     ) -> io::Result<Self> {
         let beside = builder(readable_by).tempfile_in(folder(&path))?;
+        // The owner is taken from the new file, because on some file systems it is not the user of
+        // the process.
         killed::remove_from(folder(&path), &beside.as_file().metadata()?);
         if let Some(there) = there {
             beside.as_file().set_permissions(there.permissions())?;

@@ -91,6 +91,8 @@ impl OwnFolder {
         for folder in folders.into_iter().rev() {
             let path = self.at(folder)?;
             match self.create_dir(&path) {
+                // What exists may be a link to a folder, which the system would follow for
+                // everything below.
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => check_folder(&path)?,
                 made => made?,
             }
@@ -278,6 +280,7 @@ impl OwnFolder {
         let mut names = Vec::new();
         for entry in fs::read_dir(path)? {
             let entry = entry?;
+            // `file_type` is that of the entry itself, so links are left out.
             if entry.file_type()?.is_file()
                 && let Ok(name) = entry.file_name().into_string()
             {
@@ -333,6 +336,7 @@ impl OwnFolder {
         let create = || OpenOptions::new().write(true).create_new(true).open(path);
         match create() {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                // This removes a link itself, never its target.
                 fs::remove_file(path)?;
                 create()
             }
@@ -381,6 +385,8 @@ fn no_file(path: &Path) -> io::Error {
 #[cfg(unix)]
 fn no_follow(options: &mut OpenOptions) {
     use std::os::unix::fs::OpenOptionsExt;
+    // The checks before may be outdated when the file is opened. With these flags, the system
+    // itself refuses a link and does not wait for a pipe.
     let flags = rustix::fs::OFlags::NOFOLLOW | rustix::fs::OFlags::NONBLOCK;
     options.custom_flags(flags.bits().cast_signed());
 }

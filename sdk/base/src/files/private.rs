@@ -11,6 +11,7 @@ use std::path::Path;
 /// If the folder cannot be created, belongs to another user, or is writable by others.
 pub fn folder(path: &Path) -> io::Result<()> {
     make_folder(path)?;
+    // Others may read the folder: each file in it is private by its own permissions.
     check(&File::open(path)?.metadata()?, 0o022)
 }
 

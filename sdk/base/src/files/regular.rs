@@ -18,6 +18,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
     without_waiting(&mut options);
+    // Opened first and checked then, by the open file, so that the path cannot change in between.
     let file = options.open(path)?;
     check_regular(&file.metadata()?)?;
     Ok(file)
@@ -50,6 +51,8 @@ pub fn read_regular(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         let words = format!("it has more than {most_bytes} bytes, which is the most here");
         io::Error::new(io::ErrorKind::FileTooLarge, words)
     };
+    // Refused before it is read. The second check is for files that grow, and for kernel files that
+    // state a length of 0.
     if file.metadata()?.len() > most_bytes {
         return Err(too_long());
     }

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 /// assert_eq!(htex_base::finding::as_text("cotton"), "cotton");
 /// ```
 pub fn as_text(text: &str) -> Cow<'_, str> {
+    // Spreadsheets skip a tab or a carriage return at the start and then see the formula.
     if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         Cow::Owned(format!("'{text}"))
     } else {

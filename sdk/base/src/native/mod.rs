@@ -50,6 +50,8 @@ impl Library {
     /// # Errors
     /// If the file does not exist, or is not a library for this machine.
     pub unsafe fn from_file(path: &Path) -> Result<Self, LoadError> {
+        // A loader searches its own folders for a bare name, and only an absolute path keeps it
+        // from that.
         let path = absolute(path).map_err(|error| LoadError(error.to_string()))?;
         // SAFETY: guaranteed by the caller.
         unsafe { load(path.as_os_str()) }

@@ -70,6 +70,8 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
                 .unwrap_or(&path)
                 .to_string_lossy()
                 .replace(std::path::MAIN_SEPARATOR, "/");
+            // A file may have been removed since the folder was listed, and a link may lead
+            // nowhere.
             let Ok(is) = path.metadata() else { continue };
             if !is.is_file() || !matches(pattern, &relative) {
                 continue;

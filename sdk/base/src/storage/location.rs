@@ -295,6 +295,7 @@ fn without_secrets(text: &str) -> String {
     let Some((scheme, rest)) = split_scheme(text) else {
         return text.to_owned();
     };
+    // The query may hold a signature, and what stands before an `@` may be a password.
     let (rest, query) = match rest.split_once('?') {
         Some((before, _)) => (before, "?…"),
         None => (rest, ""),

@@ -220,10 +220,13 @@ impl Storage {
                 return Err(StorageProblem::NoList.at(folder));
             }
             LocalOrRemote::Remote(uri) => {
+                // Stores would list nothing below a key that ends with two slashes, and callers
+                // write folders with and without one.
                 let uri = uri.without_last_slash();
                 self.store(&folder.with_key(&uri.path), &uri)?.list(pattern)?
             }
         };
+        // Local folders come in any order, and stores in the order of their bytes.
         found.sort_by_cached_key(|entry| entry.location.to_string());
         Ok(found)
     }

@@ -88,6 +88,7 @@ impl Remote {
             head: Vec::new(),
             head_start: head.start,
         };
+        // A store cuts a range off at the end of the file, so local files do too.
         let end = head.end.min(len);
         if head.start < end {
             remote.head = remote.fetch(head.start..end)?;

@@ -101,6 +101,7 @@ pub unsafe extern "C" fn htex_index_give(
         let State::Opening(opening) = &mut *state else {
             return Err(Failure::argument("the library is open already"));
         };
+        // `give` consumes it. After an error nothing is left to go on with.
         let opening = opening.take().ok_or(Failure::argument("the library could not be opened"))?;
         *state = match opening.give(bytes, file_bytes as u64)? {
             Progress::More(opening) => State::Opening(Some(opening)),
@@ -178,6 +179,7 @@ pub unsafe extern "C" fn htex_index_read_page(
         let mut state = INDEXES.exclusive(index)?;
         // SAFETY: the pointers are the caller's.
         let bytes = unsafe { slice(bytes, len) }?;
+        // Read before it replaces the old page, which stays after an error.
         let read = state.index()?.read_leaf(page as usize, bytes)?;
         if let State::Open(_, entries) = &mut *state {
             *entries = read;

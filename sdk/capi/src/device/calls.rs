@@ -160,6 +160,7 @@ pub(super) unsafe fn write(
         let mut open = DEVICES.exclusive(device.id)?;
         // SAFETY: the pointers are the caller's.
         let (samples, written) = unsafe { (slice(samples, frames)?, place(written)?) };
+        // Also right if the device fails.
         *written = 0;
         let timeout = Duration::from_millis(timeout_ms.into());
         *written = open.device.write(samples, timeout)?;

@@ -162,6 +162,7 @@ unsafe fn open(
             Surroundings { models: &models.registry, embedded: models.embedded, devices: &devices };
         let device = DeviceOverride {
             adapter: Some(ADAPTER.to_owned()),
+            // The quantity is a setting of the device, so it is read before the scene is loaded.
             settings: settings(source.quantity()),
             rate_hz: (asked.rate_hz != 0.0).then_some(asked.rate_hz),
             rehearsal: true,
@@ -192,6 +193,7 @@ fn start(scene: &LoadedScene, devices: &Devices) -> Result<(Renderer, Plan), Fai
     let device = |error| Failure::of(htex_status::HTEX_STATUS_INVALID_SCENE, error);
     let adapter = &devices.find(ADAPTER).map_err(device)?.adapter;
     let capabilities = adapter.capabilities(&scene.settings).map_err(device)?;
+    // Not the costs measured on this machine, so that the plan depends on no file of the user.
     let plan = plan(scene, &capabilities, &Costs::embedded())?;
     Ok((Renderer::new(scene, &plan)?, plan))
 }
@@ -232,6 +234,7 @@ pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -
                 "the finger's size is not that of its struct; set it to sizeof(htex_finger)",
             ));
         }
+        // A single NaN is a failed reading, not an unknown position.
         let unknown = finger.x_mm.is_nan() && finger.y_mm.is_nan();
         Ok(scene.renderer.set_motion(Finger {
             speed_mm_s: finger.speed_mm_s,

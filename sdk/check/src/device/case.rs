@@ -142,6 +142,7 @@ impl<A: CaseKind + ?Sized> Case<A> {
 
     /// Returns the first endpoint that belongs to this setting.
     pub(crate) fn first_endpoint(&self, setting: &str) -> Option<String> {
+        // Errors of listing are the subject of another check.
         let all = self.adapter.connected().unwrap_or_default();
         let first = all.into_iter().find(|endpoint| endpoint.setting == setting);
         first.map(|endpoint| endpoint.name)

@@ -24,6 +24,7 @@ impl Growth {
         of: &'static str,
         mut repeat: impl FnMut(usize) -> Result<(), Finding>,
     ) -> Result<Self, Finding> {
+        // The first repetitions fill caches and pools, which is no leak.
         repeat(count.div_ceil(10))?;
         let before = resident_bytes().unwrap_or_default();
         repeat(count)?;

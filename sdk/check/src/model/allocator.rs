@@ -62,6 +62,7 @@ fn count() {
 
 unsafe extern "C" fn malloc(size: size_t) -> *mut c_void {
     count();
+    // The table of this program is not replaced, so this is the real function.
     // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::malloc(size) }
 }
@@ -223,6 +224,7 @@ impl Library {
 
     fn replace_one(&self, relocation: &Relocation) -> bool {
         let symbol = (relocation.info >> 32) as usize;
+        // Relocations without a symbol are relative, and a function's own address has no addend.
         if symbol == 0 || relocation.addend != 0 {
             return false;
         }

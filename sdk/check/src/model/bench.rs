@@ -141,6 +141,7 @@ impl Runner {
         let mut out = [0.0; 1024];
         for (block, times) in BLOCKS.into_iter().chain([1]).zip(&mut self.rounds) {
             let start = Instant::now();
+            // Every block size divides the number of samples.
             for _ in 0..SAMPLES / block {
                 self.voice.render(&mut out[..block])?;
             }

@@ -80,6 +80,7 @@ impl<T: Copy + Default> Pages<T> {
         let place = STARTS.iter().position(free)?;
         LINES[place].store(self.line.as_mut_ptr(), Ordering::SeqCst);
         LENGTHS[place].store(self.line.len(), Ordering::SeqCst);
+        // The start comes last: from then on the handler uses the line.
         STARTS[place].store(fence, Ordering::SeqCst);
         Some(place)
     }
@@ -94,6 +95,7 @@ impl<T: Copy + Default> Pages<T> {
 impl<T> Drop for Pages<T> {
     fn drop(&mut self) {
         if let Some(place) = self.place {
+            // Given up first, so that the handler no longer uses the line.
             STARTS[place].store(0, Ordering::SeqCst);
         }
         // SAFETY: the mapping of this value, which nobody uses any more.

@@ -31,6 +31,7 @@ impl Random {
             // `max - min` would be shorter, but may be infinite.
             false => min * (1.0 - part) + max * part,
         };
+        // Rounding may lead slightly beyond the ends.
         x.clamp(min, max)
     }
 

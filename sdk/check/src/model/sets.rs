@@ -57,6 +57,7 @@ impl Case {
         let lists = self.lists(parameters)?;
         let mut sets = Vec::new();
         for (i, field) in self.model.descriptor().fields.iter().enumerate() {
+            // Halves are subtracted, because the whole range may be infinite.
             let step = 1e-3 * (0.5 * field.max - 0.5 * field.min);
             for (bound, inner) in [(field.min, field.min + step), (field.max, field.max - step)] {
                 let with = |number: f64| {

@@ -53,6 +53,7 @@ pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
             break;
         }
         held += reference[i] * reference[i];
+        // No bin is 0 here: the strongest come first, and they end at 99 % of the energy.
         let db = 20.0 * (gain * measured[i] / reference[i]).log10();
         sum += db * db;
         n += 1.0;
@@ -94,6 +95,7 @@ pub(crate) fn sharpest_bend(samples: &[f32]) -> f32 {
 
 /// Returns the index of the first sample whose bits differ between two signals.
 pub(crate) fn first_difference(a: &[f32], b: &[f32]) -> Option<usize> {
+    // Bits, so that NaN equals itself and -0 differs from 0.
     a.iter().zip(b).position(|(a, b)| a.to_bits() != b.to_bits())
 }
 

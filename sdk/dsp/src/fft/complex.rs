@@ -182,12 +182,18 @@ pub(super) struct Chirp {
 
 impl Chirp {
     fn new(len: usize) -> Self {
+        // The chirp repeats after `2 len` in `n²`. Reducing `n²` in whole numbers keeps the angle
+        // within one turn, where its sine is precise.
         let (square, turn) = (|n: usize| n * n % (2 * len), 2 * len);
         let chirp: Vec<_> = (0..len).map(|n| unit(square(n), turn)).collect();
+        // A convolution of this length does not wrap around. Its only prime factors are 2, 3 and 5,
+        // so `longer` is never a chirp itself.
         let long = crate::inverse_fft::smooth_length(2 * len - 1);
         let mut longer = ComplexFft::new(long);
         let mut kernel = Points::zeros(long);
         for (n, x) in chirp.iter().enumerate() {
+            // The chirp is the same for `-n`. The values are set and not added, because both places
+            // are one for `n = 0`.
             for at in [n, (long - n) % long] {
                 kernel.re[at] = x.re / long as f64;
                 kernel.im[at] = -x.im / long as f64;

@@ -70,6 +70,8 @@ impl Control {
     fn of(entries: &[Entry], id: &str, usual: f64) -> Self {
         let mut curves: Vec<Vec<Point>> =
             entries.iter().filter_map(|entry| own_curve(entry, id)).collect();
+        // Files may list curves in any order. The sort is stable: of equal starts, the later entry
+        // comes last.
         curves.sort_by(|a, b| start_s(a).total_cmp(&start_s(b)));
         let mut points: Vec<Point> = Vec::new();
         for curve in curves {
@@ -111,6 +113,7 @@ impl Control {
             over.push(point(p.time_s, p.value));
         }
         let end = match first {
+            // The value just before the end: a jump at the end belongs to the next event.
             Some(first) if first.time_s < to_s => {
                 side(&self.points, to_s, true).unwrap_or(self.usual)
             }

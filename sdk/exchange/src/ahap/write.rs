@@ -43,6 +43,8 @@ impl Ahap {
 /// Splits a curve into parts. Each part begins with the last point of the previous one, because a
 /// control keeps its value between curves.
 fn curves(id: &'static str, points: &[Point]) -> Vec<Entry> {
+    // The last point of a curve is the first of the next one, or the control would stand still
+    // between them.
     let step = POINTS_OF_A_CURVE - 1;
     let count = points.len().saturating_sub(1).div_ceil(step).max(1);
     let part = |index: usize| {
@@ -67,6 +69,8 @@ fn events(from_s: f64, to_s: f64) -> impl Iterator<Item = Entry> {
             time,
             event_type: EventType::HapticContinuous,
             event_duration: Some((to_s - time).min(LONGEST_EVENT_S)),
+            // Controls multiply the intensity and are added to the sharpness, so the curves alone
+            // decide.
             event_parameters: parameters(1.0, 0.0),
         })
     })
@@ -82,6 +86,7 @@ fn transient(t: &Transient, levels: &[Point], parts: &[Point], profile: &Profile
         Some(first) if first.time_s <= t.time_s => value_at(points, t.time_s).unwrap_or(usual),
         _ => usual,
     };
+    // Controls also change transients, so the event states what gives the amplitude after them.
     let intensity = libm::sqrt(t.amplitude.clamp(0.0, 1.0)) / control(levels, 1.0).max(1e-6);
     let sharpness = profile.part_of(t.frequency_hz) - control(parts, 0.0);
     Entry::Event(Event {

@@ -34,6 +34,8 @@ pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
         return Err(Fault::new(place, "the first chunk is not JSON"));
     }
     let next = if json.end < file.len() { Some(Chunk::at(file, json.end)?) } else { None };
+    // A second chunk of another kind is no error: the specification lets readers skip unknown
+    // chunks.
     Ok(Chunks { json: json.bytes, binary: next.filter(|c| c.kind == BINARY).map(|c| c.bytes) })
 }
 
@@ -91,6 +93,7 @@ impl<'a> Chunk<'a> {
 /// Writes a container of less than 4 GiB.
 #[cfg(feature = "export")]
 pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
+    // The specification pads text with blanks, so that it stays JSON, and bytes with zeros.
     let chunks = [(JSON, padded(json, b' ')), (BINARY, padded(binary, 0))];
     let lengths = chunks.iter().map(|(_, bytes)| CHUNK_HEADER_BYTES + bytes.len());
     let length = HEADER_BYTES + lengths.sum::<usize>();

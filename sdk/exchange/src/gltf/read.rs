@@ -123,6 +123,8 @@ impl Document {
         for (key, version) in versions {
             let Some(version) = version else { continue };
             let is_read = match key {
+                // A file that needs a later version may use what is unknown here; one that is
+                // merely written for a later 2.x must still be readable.
                 "minVersion" => version == "2.0",
                 _ => version.starts_with("2."),
             };

@@ -41,6 +41,8 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
     }
     let mut buffer = Buffer::of_rectangle();
     let texture = Material {
+        // After the rectangle: offsets of its numbers must be multiples of four, and an asset has
+        // any length.
         buffer_view: buffer.add(&asset, None),
         mime_type: MediaType::Htex,
         tex_coord: 0,
@@ -116,6 +118,7 @@ impl Buffer {
 fn document(name: &str, texture: &Material, buffer: &Buffer) -> Value {
     let vector = |view: usize, kind: &str| json!({"bufferView": view, "componentType": FLOAT, "count": CORNERS.len(), "type": kind});
     let mut positions = vector(0, "VEC3");
+    // The specification demands both ends for positions, and for nothing else.
     positions["min"] = json!([-HALF_M, -HALF_M, 0.0]);
     positions["max"] = json!([HALF_M, HALF_M, 0.0]);
     let indices = json!({

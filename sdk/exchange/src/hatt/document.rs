@@ -31,6 +31,7 @@ pub(super) fn root(bytes: &[u8]) -> Result<Element, Fault> {
         let place = Place { line, element: String::new() };
         Fault::at(place, "this is no UTF-8; save the file as UTF-8")
     })?;
+    // Some editors write a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     Builder::new(text).build()
 }
@@ -95,6 +96,8 @@ impl<'a> Builder<'a> {
             Event::End(_) => self.close(),
             Event::Text(text) => self.words(&decoded(text.decode()))?,
             Event::CData(text) => self.words(&decoded(text.decode()))?,
+            // No entity is defined in a file, so none can expand to a text that is longer than the
+            // file.
             Event::GeneralRef(reference) => {
                 let word = self.resolved(&reference)?;
                 self.words(&word)?;
@@ -147,6 +150,7 @@ impl<'a> Builder<'a> {
         match self.open.last_mut() {
             Some(parent) => {
                 self.filled = parent.text.trim_end().len();
+                // The blanks before a child would otherwise add up with each child of a long list.
                 parent.text.truncate(self.filled);
                 parent.children.push(closed);
             }

@@ -80,6 +80,7 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
     if models.is_empty() {
         return Err(root.fault("it has no element model"));
     }
+    // One limit for all nodes: a file of many small models takes as long as one of a large model.
     let mut work = Work::default();
     let nodes = models
         .iter()

@@ -53,6 +53,8 @@ pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>,
         }
     }
     let mut made = product(&zeros);
+    // Zeros close to each other are found with few digits, so the result is compared and not
+    // trusted.
     if !is_same(used, &made, gain) {
         return Err(NotFound::Here);
     }
@@ -64,6 +66,7 @@ pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>,
 fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, NotFound> {
     let order = coefficients.len();
     let last = coefficients.last().ok_or(NotFound::Here)?.abs();
+    // The last coefficient is the product of all zeros, so this is their mean radius.
     let radius = libm::pow(last, 1.0 / order as f64).max(1e-3);
     // The quarter keeps the starting points from being symmetric about the real axis.
     let start = |i: usize| turned(radius, TAU * (i as f64 + 0.25) / order as f64);
@@ -78,11 +81,14 @@ fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, Not
             let others = zeros.iter().enumerate().filter(|(j, _)| *j != i);
             let pushed: Complex<f64> = others.map(|(_, other)| (at - other).inv()).sum();
             let step = newton / (Complex::new(1.0, 0.0) - newton * pushed);
+            // The slope may be 0, or two estimates may meet. Such a zero waits until the others
+            // have moved.
             if step.re.is_finite() && step.im.is_finite() {
                 *zeros.get_mut(i).ok_or(NotFound::Here)? -= step;
                 moved = moved.max(step.norm_sqr() / at.norm_sqr().max(1e-30));
             }
         }
+        // A square: a relative step of 1e-15, about the precision of a double.
         if moved < 1e-30 {
             break;
         }
@@ -111,6 +117,8 @@ fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
             *b -= previous * zero;
         }
     }
+    // The zeros of real coefficients come in conjugate pairs, so imaginary parts are rounding
+    // alone.
     made.iter().skip(1).map(|b| b.re).collect()
 }
 

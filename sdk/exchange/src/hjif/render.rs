@@ -71,6 +71,7 @@ fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usiz
             }
             end_s = end_s.max(to_s);
             work += band.work(effect.effect, to_s - from_s);
+            // Inside the loop: references let a short file name a long effect many times.
             check_work(work, rate_hz, at)?;
         }
     }
@@ -178,6 +179,7 @@ impl<'a> Timed<'a> {
     fn add_block(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
         let values = effect.keyframes.iter().map(|k| k.amplitude_modulation.unwrap_or(0.0));
         let mut coefficients: Vec<f64> = values.collect();
+        // The last keyframe of a block is not a coefficient but the factor of all others.
         let scale = coefficients.pop().unwrap_or(0.0);
         coefficients.iter_mut().for_each(|c| *c *= scale);
         let block = synthesised(&coefficients);

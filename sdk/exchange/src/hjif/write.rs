@@ -57,6 +57,7 @@ impl Space {
     fn block_ticks(self) -> i64 {
         let most = BLOCK as f64 * f64::from(self.timescale()) * self.per_s() / LEAST_RATE_HZ;
         match self.speed_mm_s {
+            // 512 samples in 200 ms: 2560 Hz, a whole number above the least rate.
             None => 200,
             // With blocks of more than 2^13 ticks, the number of samples in a metre would not be
             // whole.

@@ -40,6 +40,7 @@ pub(crate) fn held(image: &Image, surface: &Surface<'_>) -> Result<Held, Fault> 
     let [pitch_mm, speed_mm_s, force_n] =
         [surface.pitch_mm, surface.speed_mm_s, surface.force_n].map(|x| f64::from(x as f32));
     let rms = htex_map::rms(image.width, pitch_mm, speed_mm_s, &grey, Band::TACTILE);
+    // The level is computed from the stored number, so that both agree to the last bit.
     let rms = f64::from(rms.map_err(|error| fault(&error))? as f32);
     let numbers = [image.width as f64, pitch_mm, speed_mm_s, force_n, rms, grey.len() as f64];
     let flat = [&numbers[..], &grey].concat();

@@ -50,6 +50,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(failed)?;
     let (width, height, depth) = (header.width as usize, header.height as usize, header.bit_depth);
+    // Before the pixels are unpacked: a small file may state any size.
     if width > MOST_SIDE || height > MOST_SIDE {
         return Err(Fault::new(
             "IHDR",
@@ -58,6 +59,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
             ),
         ));
     }
+    // A map holds a byte for each pixel, and dropping half of the bits would go unnoticed.
     if depth == BitDepth::Sixteen {
         return Err(Fault::new("IHDR", "it has 16 bits a channel; save it with 8"));
     }
@@ -65,6 +67,7 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
     let frame = reader.next_frame(&mut pixels).map_err(failed)?;
     let info = reader.info();
+    // Only the first frame was decoded, and nothing says that it is the one that is meant.
     if info.animation_control.is_some() {
         return Err(Fault::new("acTL", "it has several frames; save one of them"));
     }
@@ -155,6 +158,7 @@ pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault>
     encoder.set_color(ColorType::Grayscale);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_pixel_dims(image.pitch_mm.map(|pitch_mm| {
+        // The chunk holds whole pixels in a metre, so the distance is rounded.
         let in_metre = libm::round(1e3 / pitch_mm) as u32;
         PixelDimensions { xppu: in_metre, yppu: in_metre, unit: Unit::Meter }
     }));

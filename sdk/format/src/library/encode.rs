@@ -30,6 +30,8 @@ impl Pages {
     /// Adds an entry. Its name must sort after all names added before.
     pub(crate) fn add(&mut self, entry: Entry) {
         let size = self.size_of(&entry);
+        // A leaf has at least one entry, however large. Even an entry with the most words and cuts
+        // stays below the 64 KiB that readers allow.
         if !self.entries.is_empty() && self.size + size > LEAF_BYTES {
             self.end_leaf();
         }
@@ -38,6 +40,9 @@ impl Pages {
             // The shortest start of this name that sorts after the last name of the leaf before. It
             // keeps the root page small.
             let is_first = self.separators.is_empty();
+            // This name sorts after the last one, so it has a byte behind what both share. The cut
+            // may be inside a character, which is why separators are bytes. The first separator is
+            // empty, so that every name has a leaf.
             let separator = if is_first { 0 } else { shared + 1 };
             self.separators.push(entry.name.as_bytes()[..separator].to_vec());
         }
@@ -57,6 +62,7 @@ impl Pages {
     fn size_of(&self, entry: &Entry) -> usize {
         let before: &[u8] = if self.entries.is_empty() { &[] } else { &self.last };
         let name = entry.name.as_bytes();
+        // Two lengths of up to 255, which take up to two bytes each.
         let name = name.len() - common_prefix(before, name) + 4;
         let words = entry.tags.iter().chain(&entry.models);
         let new = words.clone().filter(|word| !self.words.contains(*word));
@@ -138,6 +144,7 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
 fn put_words(page: &mut Vec<u8>, words: &[&str], chosen: &[String]) {
     put_varint(page, chosen.len() as u64);
     for word in chosen {
+        // `words` has all words of the leaf, so the search always succeeds.
         let index = words.binary_search(&word.as_str()).unwrap_or_else(|at| at);
         put_varint(page, index as u64);
     }

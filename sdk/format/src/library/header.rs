@@ -46,6 +46,8 @@ impl Header {
     /// Reads and checks the header at the start of `bytes`. `file_bytes` is the size of the file.
     pub(crate) fn read(bytes: &[u8], file_bytes: u64, limits: &Limits) -> Result<Self, Fault> {
         let start = &bytes[..bytes.len().min(MAGIC.len())];
+        // A file of a few bytes that begins correctly is a library that was cut off, and gets that
+        // error below.
         if start.is_empty() || !MAGIC.starts_with(start) {
             let message = "it does not begin as a library; name a .htexlib file, or get it again";
             return Err(Fault::new(rule::LIBRARY_UNRECOGNISED, PLACE, message));
@@ -131,6 +133,7 @@ impl Header {
             );
             return Err(Fault::new(rule::LIBRARY_LEAVES_TOO_MANY, PLACE, message));
         }
+        // Every leaf has at least one entry.
         if (entries == 0) != (leaves == 0) || leaves > entries {
             return Err(invalid(&format!("{entries} textures are in {leaves} pages")));
         }

@@ -128,6 +128,8 @@ impl Index {
         entry: &Entry,
         parts: &[B],
     ) -> Result<Vec<u8>, LibraryError> {
+        // The empty file has another hash than any texture, so a missing part becomes the same
+        // error as a changed one.
         let asset = assembled(entry, parts).unwrap_or_default();
         if blake3::hash(&asset).as_bytes() == &entry.blake3 {
             return Ok(asset);

@@ -19,6 +19,8 @@ use crate::library::rules as rule;
 use crate::library::wire::{Cursor, Malformed};
 
 /// Smallest size of an entry, bytes: its hash, three exponents, and one byte in most columns.
+// A name has two lengths. The other columns with a byte at least are tags, models, conditions, law,
+// own length and number of cuts.
 const LEAST_ENTRY_BYTES: usize = 32 + 3 * 8 + 2 + 6;
 /// Largest number of shared objects in a texture: the largest number of entries in its archive.
 pub(crate) const MOST_CUTS: usize = 256;
@@ -107,6 +109,7 @@ impl LeafReader<'_> {
                 let message = format!("{name:?} is not allowed: {problem}");
                 return Err(Fault::new(rule::LIBRARY_NAME_INVALID, place(), message));
             }
+            // A name outside these bounds would be listed, and could not be found by its name.
             let inside = name.as_bytes() >= low && high.is_none_or(|high| name.as_bytes() < high);
             if !inside || before.is_some_and(|before| name.as_str() <= before) {
                 let message = format!(
@@ -217,6 +220,7 @@ fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
         let source = SOURCES.get((bits >> (2 * i + 2)) & 3).copied();
         one.source = source.ok_or_else(|| unknown(cursor))?;
         one.exponent = f64::from_le_bytes(cursor.array()?);
+        // A zero has only one form, so -0 is refused.
         let is_zero = one.exponent == 0.0 && one.exponent.is_sign_negative();
         if !in_range(one.exponent) || is_zero {
             return Err(cursor.malformed("an exponent is not a number from -4 to 4"));
@@ -234,6 +238,8 @@ fn interval(
     }
     let min = f64::from_le_bytes(cursor.array()?);
     let max = if is_one { min } else { f64::from_le_bytes(cursor.array()?) };
+    // The sign is tested instead of the value, so that -0 is refused: each number has only one
+    // form.
     let is_number = min.is_finite() && max.is_finite() && min.is_sign_positive();
     if !is_number || (!is_one && min >= max) {
         return Err(cursor.malformed("a range of conditions is not finite, negative or reversed"));
@@ -256,6 +262,7 @@ fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Ma
 }
 
 fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {
+    // A cut consists of three integers.
     let count = cursor.count(3)?;
     if count > MOST_CUTS {
         return Err(cursor.malformed("a texture has more than 256 shared objects"));

@@ -171,6 +171,9 @@ impl<S: LibrarySource> Library<S> {
 
     /// Returns the entries of a leaf page. Reads the page unless it is the one that was read last.
     fn leaf(&self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
+        // The lock is not held while a page is read, so that threads do not wait for each other's
+        // requests. A thread that panics cannot leave half a page here, because pages are replaced
+        // as a whole.
         let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(leaf) = recent().as_ref().filter(|leaf| leaf.number == number) {
             return Ok(leaf.entries.clone());
@@ -234,6 +237,7 @@ impl<S: LibrarySource> Iterator for Entries<'_, S> {
                 Ok(entries) => (self.entries, self.next) = (entries, 0),
                 Err(error) => {
                     (self.entries, self.next) = (Arc::default(), 0);
+                    // This ends the iteration.
                     self.next_leaf = self.library.index.leaves();
                     return Some(Err(error));
                 }

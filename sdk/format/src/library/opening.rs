@@ -75,6 +75,7 @@ impl Opening {
     pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
         let wanted = self.wanted();
         let most = usize::try_from(wanted.end - wanted.start).unwrap_or(usize::MAX);
+        // A server without ranges may send the whole file, so what was not wanted is dropped.
         self.start.extend_from_slice(&bytes[..bytes.len().min(most)]);
         let header = match self.header.take() {
             Some(header) => header,
@@ -95,6 +96,8 @@ impl Opening {
     fn read_header(&self, file_bytes: u64) -> Result<Header, Fault> {
         let header = Header::read(&self.start, file_bytes, &self.limits)?;
         let packed = header.root.end - header.root.start;
+        // Checked before the caller is asked for the root, because it allocates what the header
+        // states.
         page::check_packed_size(packed, self.limits.root_bytes, PLACE)?;
         Ok(header)
     }

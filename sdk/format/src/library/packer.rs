@@ -150,6 +150,8 @@ impl<S: Store> Packer<S> {
 
     /// Writes the library to `target`.
     pub(crate) fn finish(self, target: &mut impl Write) -> Result<Packed, LibraryError> {
+        // Only here, when all textures are known, so that the message can say how many have no
+        // licence.
         self.check_licences()?;
         let Self { path, name, spool, added, .. } = self;
         let (mut spool, modules) = spool.finish().map_err(LibraryError::unchanged(&path))?;

@@ -31,6 +31,8 @@ pub(crate) fn unpack(page: &[u8], most: u64, place: &str) -> Result<Vec<u8>, Fau
             format!("its checksum is {found:08x} instead of {stated:08x}; get the file again");
         return Err(Fault::new(rule::LIBRARY_PAGE_CHECKSUM, place, message));
     }
+    // The size is part of the checksum but still only a claim, so it is limited before memory is
+    // allocated.
     check_size(u64::from(size), most, place)?;
     inflate(stream, size as usize).map_err(corrupt)
 }
@@ -103,6 +105,7 @@ pub(crate) fn pack(contents: &[u8]) -> Vec<u8> {
 fn deflate(contents: &[u8]) -> Vec<u8> {
     use flate2::{Compress, Compression, FlushCompress};
     let mut stream = Vec::with_capacity(most_packed(contents.len() as u64) as usize);
+    // The level decides the bytes, and equal textures must give an equal file.
     let mut deflater = Compress::new(Compression::new(9), false);
     loop {
         let consumed = deflater.total_in() as usize;

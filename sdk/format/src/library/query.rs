@@ -54,6 +54,7 @@ impl Query {
 
 /// Returns a text in a form that ignores case, for searches.
 fn caseless(text: &str) -> String {
+    // Not lower case, which keeps `ß` and `ss` apart, and the two small forms of sigma.
     text.to_uppercase()
 }
 

@@ -36,6 +36,7 @@ impl Root {
             let message = format!("the library's name is not allowed: {problem}");
             return Err(Fault::new(rule::LIBRARY_NAME_INVALID, PLACE, message));
         }
+        // A leaf has two lengths of its separator and its own length, a byte each at least.
         let count = cursor.count(3).map_err(malformed)?;
         if count as u64 != u64::from(header.leaf_count) {
             let message = format!(
@@ -125,6 +126,8 @@ impl Texts {
         for leaf in 0..count {
             let before = text.clone();
             cursor.following(&mut text).map_err(|m| Fault::page(PLACE, m))?;
+            // Only the first separator is empty, so every name sorts at or after it and has a leaf
+            // to be looked for in.
             if (leaf == 0) != text.is_empty() || leaf > 0 && text <= before {
                 let message = format!(
                     "the first name of leaf {leaf} is not above the one before; pack the library again"

@@ -72,6 +72,7 @@ pub(crate) struct Spooled {
 }
 
 /// Number of bytes collected in memory before they are written.
+// A texture has a few kilobytes, so without this buffer each would cost a call of the system.
 const BUFFER_BYTES: usize = 1 << 20;
 
 impl<S: Store> Spool<S> {
@@ -94,6 +95,8 @@ impl<S: Store> Spool<S> {
         let (mut at, mut cuts) = (0, Vec::with_capacity(ranges.len()));
         for (range, module) in ranges.iter().zip(found) {
             self.write(&asset[at..range.start])?;
+            // A valid asset has at most 16 MiB, so 32 bits are enough. They keep the memory for
+            // each texture small.
             cuts.push(((self.end - start) as u32, module));
             at = range.end;
         }

@@ -99,6 +99,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                 }
                 Err(fault) => {
                     fault.add_to(&mut self.findings);
+                    // The next leaf can still be checked, but not where its first texture must
+                    // begin, nor any total.
                     (self.next, self.is_whole) = (None, false);
                 }
             }
@@ -195,6 +197,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
     fn check_asset(&mut self, entry: &Entry, place: &str) -> Result<(), LibraryError> {
         let ranges = self.library.index().asset_ranges(entry).into_iter();
         let parts: Result<Vec<_>, _> = ranges.map(|r| self.library.read_range(r)).collect();
+        // The empty file has another hash than any texture, so a missing part is reported as a
+        // changed texture.
         let asset = assembled(entry, &parts?).unwrap_or_default();
         if blake3::hash(&asset).as_bytes() != &entry.blake3 {
             changed(entry, place).add_to(&mut self.findings);

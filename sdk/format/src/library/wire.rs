@@ -58,6 +58,7 @@ impl<'a> Cursor<'a> {
         for i in 0..VARINT_BYTES {
             let byte = self.byte()?;
             let bits = u64::from(byte & 0x7f);
+            // Nine bytes hold 63 bits, so the tenth has only one left.
             if i == VARINT_BYTES - 1 && byte > 1 {
                 return Err(self.malformed("an integer exceeds 64 bits"));
             }

@@ -79,6 +79,8 @@ pub(super) fn check(expression: &str) -> Result<Option<&str>, &'static str> {
             ),
             Token::And | Token::Or | Token::Close => ends_term(last),
             Token::Exception | Token::AdditionRef => last == Some(Token::With),
+            // An id that is in neither list may be a newer licence or a newer exception, so it fits
+            // in both places.
             Token::Unlisted => begins_term(last) || last == Some(Token::With),
         };
         if !fits {

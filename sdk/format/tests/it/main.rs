@@ -10,11 +10,17 @@
 mod common;
 mod conformance;
 mod hostile;
+#[cfg(feature = "library")]
 mod library_common;
+#[cfg(feature = "library")]
 mod library_conformance;
+#[cfg(feature = "library")]
 mod library_hostile;
+#[cfg(feature = "library")]
 mod library_ratio;
+#[cfg(feature = "library")]
 mod library_round_trip;
+#[cfg(feature = "library")]
 mod library_specification;
 mod limits;
 mod measures;

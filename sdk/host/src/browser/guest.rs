@@ -41,6 +41,7 @@ impl Guest {
         let functions = Functions::of(&mut names, module.shared.follows_motion())?;
         let start = Instant::now();
         let raw = module.guest.instance(&names.0.join(","));
+        // The start function may have run, so its time counts even if it failed.
         module.budget.spend(start.elapsed());
         let raw = raw.map_err(|what| Fault::Start(Box::new(Fault::Refused { what })))?;
         usage.grow(raw.memory_bytes())?;
@@ -71,6 +72,7 @@ impl Guest {
             let ms = most.as_millis();
             return Err(Fault::Deadline { ms });
         }
+        // A browser does not ask before a memory grows, so the growth is counted after the call.
         let returned = result?;
         self.usage.grow(self.raw.memory_bytes())?;
         Ok(returned)

@@ -43,6 +43,7 @@ pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Sec
         let (body, behind) = rest.split_at_checked(len as usize).ok_or(invalid.clone())?;
         rest = behind;
         match id {
+            // Imports are refused, so all memories and tables are in the two sections below.
             IMPORT if body != [0] => return Err(SectionError::Import),
             MEMORY | TABLE => {
                 let body = within(id, body, limits)?;
@@ -90,6 +91,7 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Secti
             out.push(kind);
         }
         let flags = byte(&mut body).ok_or(invalid.clone())?;
+        // Further flags mean shared or 64-bit memories.
         if flags > HAS_MAXIMUM {
             return Err(SectionError::Kind);
         }

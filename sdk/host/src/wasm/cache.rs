@@ -50,6 +50,7 @@ impl Cache {
         let name = name(engine, module);
         let bytes = std::fs::read(self.folder.join(&name)).ok()?;
         let (tag, artifact) = bytes.split_at_checked(HASH)?;
+        // The tag covers the name, so that a file cannot be renamed to stand in for another module.
         if self.key.tag(&name, artifact) != *<&[u8; HASH]>::try_from(tag).ok()? {
             return None;
         }
@@ -87,6 +88,7 @@ impl Cache {
 }
 
 fn name(engine: &Engine, module: &[u8]) -> String {
+    // Another version of Rust may hash differently. Its modules are then compiled again.
     let mut hasher = DefaultHasher::new();
     engine.precompile_compatibility_hash().hash(&mut hasher);
     let hash = blake3::hash(module).to_hex();
@@ -116,6 +118,8 @@ fn forget_oldest(folder: &Path) -> io::Result<()> {
         }
     }
     files.sort();
+    // Oldest by the time of writing. Reading does not change that time, so modules in use are
+    // compiled again now and then.
     for (_, path) in files.iter().rev().skip(MOST_FILES) {
         std::fs::remove_file(path)?;
     }

@@ -18,6 +18,7 @@ impl Instance {
     }
 
     pub(super) fn descriptor(&mut self, out: &mut [u8]) -> Result<i64, Fault> {
+        // An empty buffer would be at address 0, which a module may refuse as null.
         let at = self.buffer(out.len().max(8))?;
         let behind = at + out.len() as u32;
         self.guard(behind)?;
@@ -46,11 +47,13 @@ impl Instance {
     ) -> Result<i64, Fault> {
         let bins = call.frequency_hz.len().min(call.magnitude.len());
         let numbers = 2 * bins + call.signal.len() + call.options.len() + parameters.len() + 1;
+        // All arrays consist of f64, so each one that follows another is aligned.
         let frequency = self.buffer(numbers * 8)?;
         let magnitude = self.write(frequency, &call.frequency_hz[..bins])?;
         let signal = self.write(magnitude, &call.magnitude[..bins])?;
         let options = self.write(signal, call.signal)?;
         let level = self.write(options, call.options)?;
+        // NaN, so that a level that the module does not write is noticed (`LoadedModel::fit_at`).
         let out = self.write(level, &[f64::NAN])?;
         let behind = out + (parameters.len() * 8) as u32;
         self.guard(behind)?;

@@ -36,6 +36,8 @@ pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, Compil
     let cache = Cache::of(&limits.cache);
     let find = |engine: &Engine| cache.as_ref()?.find(engine, bytes);
     let optimised = engine(limits, Effort::Optimised)?;
+    // The cache comes before the estimate: what was compiled once needs no time to compile, however
+    // it is estimated.
     if let Some(module) = find(&optimised) {
         return Ok(module);
     }
@@ -53,6 +55,7 @@ pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, Compil
     let start = Instant::now();
     let compiled = compile(&engine, bytes, limits, effort, time);
     sandbox.budget.spend(start.elapsed());
+    // After the time was spent, so that modules that cannot be compiled use up the budget as well.
     let module = compiled?;
     if let Some(cache) = cache
         && let Ok(artifact) = module.serialize()

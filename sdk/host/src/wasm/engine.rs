@@ -36,6 +36,7 @@ static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 /// Waits until the clock threads of engines without modules have ended, at most 50 ms each. A
 /// program must call this before it unloads this code.
 pub fn end_wasm_clocks() {
+    // Taken out, so that the lock is free while threads end.
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));
     let (live, ended): (Vec<Clock>, Vec<Clock>) =
         clocks.into_iter().partition(|clock| clock.engine.upgrade().is_some());
@@ -64,6 +65,7 @@ impl ClockedEngine {
         let counting = move || {
             while let Some(engine) = clock.upgrade() {
                 engine.increment_epoch();
+                // Kept during the sleep, it would keep an unused engine alive.
                 drop(engine);
                 std::thread::sleep(tick);
             }

@@ -71,6 +71,8 @@ fn function_us(
     let mut cost = Cost::new(f64::from(function.len_locals()));
     while !operators.eof() {
         let (operator, at) = operators.read_with_offset()?;
+        // Before the validator takes the operator, because its stack is then still the one that the
+        // operator meets. So an operator that is counted here may be invalid.
         cost.add(&operator, &function);
         function.op(at, &operator)?;
     }
@@ -102,6 +104,7 @@ struct Block {
 impl Cost {
     fn new(locals: f64) -> Self {
         let mut us = Estimate::default();
+        // Even an empty function takes time, and a module may have very many.
         us.add(40.0 + 0.1 * locals);
         Self {
             us,
@@ -172,6 +175,7 @@ impl Cost {
 
     /// Adds a branch. A branch to a loop merges all live values there.
     fn branch(&mut self, relative_depth: u32, live: f64) {
+        // The branch has not been validated yet, so its depth may be too large.
         let at = self.around.len().checked_sub(1 + relative_depth as usize);
         let target = at.and_then(|at| self.around.get_mut(at));
         let to_loop = target.is_some_and(|block| {
@@ -184,6 +188,7 @@ impl Cost {
     }
 
     fn estimate(self) -> Estimate {
+        // Without optimisation the time is nearly linear, so the quick estimate has no squares.
         let n = self.operators;
         Estimate {
             optimised_us: self.us.optimised_us

@@ -26,9 +26,11 @@ impl Guest {
         store.limiter(|usage| usage);
         let time = limits.call.min(module.budget.time_left()?);
         let fault = |e| Fault::of(&e, limits, time.as_millis());
+        // The start function is code of the module too, so it gets a deadline.
         arm(&mut store, module, time).map_err(fault)?;
         let start = Instant::now();
         let raw = Instance::new(&mut store, &module.module, &[]);
+        // Before the result is checked: a failed start has taken time as well.
         module.budget.spend(start.elapsed());
         let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
         let memory = raw.get_memory(&mut store, "memory").ok_or(Fault::NoMemory)?;

@@ -98,6 +98,7 @@ impl Instance {
         self.spend(taken);
         let returned = self.guest.returned(&self.module, result, taken, time);
         returned.map_err(|fault| match self.time_left() {
+            // The interruption does not say which limit it came from, but an empty budget does.
             Err(used_up) => Fault::Stopped(Box::new(used_up)),
             Ok(_) => fault,
         })
@@ -120,14 +121,18 @@ impl Instance {
             return Ok(self.buffer.0);
         }
         let too_much = || Fault::TooManyBytes { bytes, most: self.module.limits.memory_bytes };
+        // Powers of two, so that slowly growing calls rarely need a new buffer.
         let bytes = bytes.next_power_of_two();
         let fits = bytes <= self.module.limits.memory_bytes;
         let len = Usize::try_from(bytes).ok().filter(|_| fits).ok_or_else(too_much)?;
+        // Forgotten first: if a call below fails, no freed address stays behind.
         let old = std::mem::take(&mut self.buffer);
         if old.1 > 0 {
             self.call(Deadline::Call, |f| &f.free, old)?;
         }
         let at = self.call(Deadline::Call, |f| &f.alloc, len)?;
+        // In 64 bits, because the address is the module's own answer and the sum may exceed 32
+        // bits.
         let inside = u64::from(at) + u64::from(len) <= self.memory_bytes() as u64;
         if at == 0 || at % 8 != 0 || !inside {
             return Err(Fault::Allocation { at, len });

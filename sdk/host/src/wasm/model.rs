@@ -42,6 +42,8 @@ impl WasmModel {
         // again.
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
+                // The first instance was made without the functions of the extension, so it is
+                // replaced.
                 module.shared.require_motion();
                 Some(first(&module, origin)?)
             }

@@ -113,6 +113,8 @@ impl Request {
             signals: limits.engine == WasmEngine::Signals,
             stack_bytes: limits.stack_bytes,
             memory_bytes: limits.compile_bytes,
+            // The limit of the system has whole seconds, so it is rounded up. The host's own timer
+            // is exact.
             time_s: time.as_secs() + 1,
         }
     }
@@ -145,6 +147,7 @@ impl Request {
     fn compile(self, module: &[u8]) -> Result<Vec<u8>, CompileError> {
         let limits = WasmLimits {
             stack_bytes: self.stack_bytes,
+            // The machine code depends on whether instructions are counted, but not on their limit.
             fuel: self.fuel.then_some(1),
             engine: if self.signals { WasmEngine::Signals } else { WasmEngine::Checked },
             ..WasmLimits::default()

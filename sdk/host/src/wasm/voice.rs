@@ -42,6 +42,7 @@ impl WasmVoice {
         if handle == 0 {
             return Err(fault(Fault::HandleZero));
         }
+        // Only now, so that creating the voice counts for the budget of all modules.
         instance.limit_as_voice(rate_hz);
         Ok(Self { instance, handle, last_error: String::new(), faulted: false, _place: place })
     }
@@ -73,6 +74,7 @@ impl RawVoice for WasmVoice {
             if status != 0 {
                 return status;
             }
+            // Only after success: a call that fails earns no time.
             self.instance.earn(block.len());
         }
         0

@@ -195,7 +195,7 @@ fn folders_of_the_environment() {
     write(&user, "a.wasm", "1.0.0");
     let listed = std::env::join_paths([dir.path().join("missing"), listed]).unwrap();
     let inside = std::process::Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "folders_of_the_environment"])
+        .args(["--exact", "registry::folders_of_the_environment"])
         .env(INSIDE, "1")
         .env("HTEX_PLUGIN_PATH", listed)
         .env("XDG_DATA_HOME", dir.path().join("data"))

@@ -118,6 +118,7 @@ fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
     if kind_of(&name) != HTML {
         return (name, bytes);
     }
+    // A byte order mark would become text of the page, because it would no longer come first.
     let text = bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(&bytes);
     let begun = [BEGINNING.as_bytes(), text].concat();
     (name, begun.into())
@@ -126,8 +127,10 @@ fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
 /// Returns the name at which a folder is served: 32 hexadecimal digits that nobody without the key
 /// can know.
 fn name(folder: &Path, key: &Key) -> String {
+    // A folder has one name, whichever path leads to it.
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let tag = key.tag("page", folder.as_os_str().as_encoded_bytes());
+    // All 32 bytes would be 64 digits, and a label of a host name has at most 63.
     hexadecimal(&tag[..16])
 }
 
@@ -148,6 +151,7 @@ fn read(
         let entry = entry.map_err(failed)?;
         let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
         let name = format!("{below}{}", entry.file_name().to_string_lossy());
+        // The type of a link is its own and not its target's, so `own.read` below refuses it.
         if kind.is_dir() {
             if depth == MOST_DEPTH {
                 return Err(wrong(&path, "the folders lie too deep for a page"));
@@ -202,6 +206,7 @@ impl Answers for Files {
         for (name, value) in HEADERS {
             headers.insert(name, HeaderValue::from_static(value));
         }
+        // Replaces the policy of the pages, because an image may contain scripts.
         if kind == SVG {
             headers.insert(POLICY, HeaderValue::from_static(PICTURE_POLICY));
         }

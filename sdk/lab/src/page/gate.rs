@@ -109,6 +109,7 @@ impl Owner {
             None => true,
             Some((owner, last)) => owner == tab || now.duration_since(*last) > SILENT,
         };
+        // A request without a tab must not take the page over.
         let admitted = is_free && !tab.is_empty();
         if admitted {
             *owner = Some((tab.to_owned(), now));

@@ -208,6 +208,7 @@ async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
         };
         guests.retain(|guest| !guest.task.is_finished());
         if guests.len() >= MOST_CONNECTIONS {
+            // If all of them have passed the gate, the oldest one leaves.
             let is_stranger = |guest: &Guest| !guest.is_known.load(Ordering::Relaxed);
             let leaves = guests.iter().position(is_stranger).unwrap_or(0);
             if let Some(guest) = guests.remove(leaves) {
@@ -276,6 +277,7 @@ impl<C: Content> Answers for Desk<C> {
 /// Reads a body that is short and arrives soon. A body that is not JSON counts as null.
 async fn read(body: Incoming) -> Result<Value, Refusal> {
     let too_long = (StatusCode::PAYLOAD_TOO_LARGE, "the request is too long");
+    // The head states this length, so nothing of a long body is read.
     if body.size_hint().lower() > MOST_BYTES as u64 {
         return Err(too_long);
     }

@@ -77,6 +77,7 @@ impl KnownTake {
 /// describe a take. A header of another version is [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
+    // A longer file is cut, which makes it invalid, and so it counts as no take.
     open_regular(beside)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
     let mut json = serde_json::from_slice::<Value>(&bytes).unwrap_or_default();
     let take = json.get_mut("take").map(Value::take);

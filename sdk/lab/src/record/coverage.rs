@@ -49,6 +49,7 @@ impl Required {
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);
+        // With fewer than two strokes the number is negative, and none is required.
         u32::try_from((strokes - 2) / 2).unwrap_or(0)
     }
 }
@@ -171,6 +172,7 @@ fn share(on: &[bool]) -> f64 {
 fn longest_off(on: &[bool]) -> Option<[usize; 2]> {
     let mut longest: Option<[usize; 2]> = None;
     let mut begin = 0;
+    // The added end closes a stretch that lasts until the last sample.
     for (at, is_on) in on.iter().copied().chain([true]).enumerate() {
         if is_on {
             let is_longer = longest.is_none_or(|[from, to]| at - begin > to - from);

@@ -149,6 +149,7 @@ impl TakeData {
     /// Appends interleaved rows of the tracker. Leaves out rows that are not finite or not later
     /// than the row before, because a position cannot be interpolated across them.
     pub(crate) fn extend_tracker(&mut self, rows: &[f64]) {
+        // Without a tracker there are no columns, and chunks of 0 would panic.
         for row in rows.chunks_exact(self.tracker.len().max(1)) {
             let last_s = self.tracker.first().and_then(|time_s| time_s.last());
             if row.iter().all(|value| value.is_finite()) && last_s.is_none_or(|t| row[0] > *t) {
@@ -200,6 +201,7 @@ impl TakeHeader {
             };
             signals.iter().all(|(_, unit)| is_unit(unit))
         };
+        // A WAV file stores its rate as a whole number of 32 bits.
         let is_whole = self.rate_hz.fract() == 0.0 && self.rate_hz <= f64::from(u32::MAX);
         let checks = [
             (self.number >= 1, "its number is 0; takes count from 1"),

@@ -59,6 +59,7 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
             })
         }
     };
+    // Only now, when the recording is on disk. After a crash before this, the take is recovered.
     let name = path.file_name().unwrap_or_default();
     OwnFolder::new(folder).remove(Path::new(name)).writing(path)?;
     Ok(recorded)

@@ -134,6 +134,7 @@ fn speed(data: &TakeData) -> Option<Vec<f64>> {
     };
     let of = |role: &str| data.header.signal(role).map(|at| &data.signals[at][..]);
     let (time_s, speed, position) = match data.tracker.first() {
+        // A speed needs two rows.
         Some(time_s) if time_s.len() < 2 => return None,
         Some(time_s) => (time_s, tracked("speed"), [tracked("x"), tracked("y")]),
         None => (&at_s, of("speed"), [of("x"), of("y")]),

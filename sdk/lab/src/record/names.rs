@@ -64,6 +64,7 @@ fn number(stem: &str, name: &str) -> Option<u32> {
 
 /// Returns the part files of a folder, sorted by name.
 pub(crate) fn parts(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    // Hidden files are unfinished ones of `OwnFolder`, and not takes.
     let is_part = |path: &PathBuf| {
         let is_hidden =
             path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));

@@ -193,6 +193,7 @@ impl GuidePage {
     pub fn show(&self, moment: &Moment<'_>) {
         let mut state = self.shown.lock();
         let before = state.now.map(|now| (now.phase, now.number));
+        // A spectrum must not mix the samples of two phases.
         if before != Some((moment.phase, moment.number)) {
             state.signal.clear();
         }
@@ -211,6 +212,7 @@ impl GuidePage {
     /// Shows a completed take.
     pub fn told(&self, take: &Recorded) {
         let about = &self.shown.session;
+        // Read before the lock is taken, because the recording waits for the lock.
         let kept = match take.outcome {
             Outcome::Kept => kept_spectrum(&self.shown.folder, &about.title, about.quantity),
             Outcome::Rejected | Outcome::Incomplete => None,

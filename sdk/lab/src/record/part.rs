@@ -45,6 +45,7 @@ impl PartFile {
         let begun = || -> std::io::Result<File> {
             let (folder, name) = OwnFolder::of_file(path)?;
             let mut file = OwnFolder::private(folder.path()).create(&name)?;
+            // Locked before the header is written: `recover` removes a file without a whole header.
             file.try_lock().map_err(std::io::Error::other)?;
             file.write_all((serde_json::to_string(header)? + "\n").as_bytes())?;
             file.sync_all()?;

@@ -76,6 +76,7 @@ impl Phases {
             };
             let values = &block.values;
             done += values.first().map_or(0, Vec::len) as u64;
+            // Stored before it is shown, so that a stop does not lose this block.
             take(&block)?;
             let texture: Vec<&[f64]> = self.texture.iter().map(|at| &values[*at][..]).collect();
             let moment = Moment {

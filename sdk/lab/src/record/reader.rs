@@ -69,6 +69,7 @@ impl Reader {
     /// [`RecordError::Ended`].
     pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, RecordError> {
         let (rate_hz, width) = (self.source.rate_hz(), self.source.channels().len());
+        // At least one frame, because a block of a rate below 50 Hz would have none.
         let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
         self.samples.resize(block * width, 0.0);
         let since = *self.since.get_or_insert_with(Instant::now);

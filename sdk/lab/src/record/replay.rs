@@ -116,6 +116,7 @@ impl Player {
             return most;
         }
         let there = || (begun.elapsed().as_secs_f64() * self.rate_hz) as usize;
+        // A frame is due only at the end of its period.
         let first_s = (self.next + 1) as f64 / self.rate_hz;
         let wait = Duration::from_secs_f64(first_s).saturating_sub(begun.elapsed());
         std::thread::sleep(wait.min(timeout));

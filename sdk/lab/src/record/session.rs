@@ -83,6 +83,8 @@ impl Session {
                 (Tare::Never, _) | (Tare::Once, 1..) => {}
                 (Tare::Once | Tare::Each, 0) => self.tare(watch)?,
                 (Tare::Each, 1..) => {
+                    // The finger must leave the surface before the forces can be measured without
+                    // it.
                     let lift = Span::new(Phase::Lift, 0, self.setup.countdown_s);
                     self.phases.run(lift, watch, &mut |_| Ok(()))?;
                     self.tare(watch)?;

@@ -105,6 +105,8 @@ impl Signals {
                 let mut volts = [0.0; AXES];
                 volts.copy_from_slice(&frame[AXES * sensor..AXES * (sensor + 1)]);
                 let forces = calibration.forces(volts);
+                // The forces end after six axes, so the channels of the next sensor stay as they
+                // are.
                 for (channel, force) in channels[AXES * sensor..].iter_mut().zip(forces) {
                     channel.push(force);
                 }

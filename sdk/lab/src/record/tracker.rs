@@ -100,6 +100,7 @@ pub struct LineTracker {
 impl LineTracker {
     /// Reads lines in its own thread, which ends with the input.
     pub fn new(name: &str, input: impl BufRead + Send + 'static) -> Self {
+        // Bounded, so that a tracker that nobody reads does not fill the memory.
         let (sender, lines) = sync_channel(MOST_LINES);
         std::thread::spawn(move || {
             for (index, line) in bounded_lines(input, MOST_LINE_BYTES).enumerate() {
@@ -135,6 +136,7 @@ impl TrackerRows for LineTracker {
                 });
             };
             let at_s = now_s - now.saturating_duration_since(arrived).as_secs_f64();
+            // Times must ascend, even if several lines arrived at once.
             self.last_s = at_s.max(self.last_s + SHORTEST_S);
             rows.extend([self.last_s, x, y]);
         }

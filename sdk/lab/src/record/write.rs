@@ -80,6 +80,7 @@ pub(crate) fn write_signals(
         Format::Npy => npy(data, file),
         Format::Wav => wav(data, file),
     })?;
+    // The JSON comes last, so that it never describes a recording that is not there.
     put(&inside.join(format!("{stem}.json")), &|file| file.write_all(beside.as_bytes()))?;
     Ok(Written { recording, fit })
 }

@@ -20,6 +20,7 @@ pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) ->
         Overloads::find_given(record, Channel::Input, options.input_limit),
         Overloads::find(record, Channel::Output, options.output_limit),
     ];
+    // The first start that is too late, so that a record of exactly one window has one.
     let last = (input.len() + 1).saturating_sub(len);
     let starts = || (0..last).step_by((len / 2).max(1));
     let rms: Vec<f64> = starts().map(|start| spread(&input[start..start + len])).collect();

@@ -50,6 +50,7 @@ pub(crate) fn hits(
             .cut_off()
             .or_else(|| overloads.iter().find_map(|all| all.within(record, &inside)))
             .or_else(|| window.double(rest.level, peak, rise));
+        // At least one sample further, so that the search ends.
         from = inside.end.max(trigger + 1);
         let (file, time_s) = (record.file().to_owned(), record.second(trigger));
         let piece = Piece { file, time_s, peak, thrown_out };

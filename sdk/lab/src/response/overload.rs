@@ -75,6 +75,7 @@ fn repeated(values: &[f64]) -> Vec<Range<usize>> {
 fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;
+    // The added end closes a run that lasts until the last sample.
     for (at, value) in values.iter().map(|value| Some(*value)).chain([None]).enumerate() {
         match (start, value.is_some_and(&is_so)) {
             (None, true) => start = Some(at),

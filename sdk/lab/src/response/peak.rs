@@ -35,6 +35,7 @@ impl Peak {
         let bend = y0 - 2.0 * y1 + y2;
         let shift = if bend > 0.0 { 0.5 * (y0 - y2) / bend } else { 0.0 };
         let least = y1 - 0.25 * (y0 - y2) * shift;
+        // If the points do not belong to one resonance, the parabola may fall below 0.
         let magnitude = if least > 0.0 { 1.0 / least.sqrt() } else { magnitude[top] };
         Some(Self {
             frequency_hz: frequency_hz[top] + shift * step_hz,

@@ -24,6 +24,7 @@ pub(crate) fn check(study: &Study, findings: &mut Findings) {
     check_numbers(study, findings);
     check_matching(&study.gain, findings);
     let scale = &study.scale;
+    // Participants answer with one digit key.
     let sound = scale.min < scale.max && scale.max <= 9;
     findings.require(sound, rule::STUDY_SCALE_INVALID, "/scale", || {
         let (min, max) = (scale.min, scale.max);
@@ -48,6 +49,7 @@ fn check_participants(participants: &Participants, findings: &mut Findings) {
     for (i, name) in names.iter().enumerate() {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         let sound = !name.is_empty() && name.len() <= 64 && name.chars().all(plain);
+        // Each participant has a file, and some file systems ignore case.
         let is_new = seen.insert(name.to_ascii_lowercase());
         let pointer = format!("/participants/{i}");
         let rule = rule::STUDY_PARTICIPANTS_INVALID;
@@ -83,6 +85,7 @@ fn check_models(study: &Study, findings: &mut Findings) {
         study.hidden_reference.iter().map(|model| ("/hidden_reference".to_owned(), model));
     let gain = [("/gain/model".to_owned(), &study.gain.model)];
     for (pointer, model) in named.chain(reference).chain(gain) {
+        // With `auto` the planner would choose, and two conditions could be the same model.
         findings.require(model != "auto", rule, pointer, || {
             "auto is no model of a study; name one".to_owned()
         });

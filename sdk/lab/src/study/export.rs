@@ -102,6 +102,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
             files.push(path);
         }
     }
+    // A folder lists its files in any order, and the table must not depend on it.
     files.sort();
     if files.is_empty() {
         Err(StudyError::NoAnswers { folder: folder.to_owned() })
@@ -178,6 +179,7 @@ fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export,
             ratings += 1;
         }
     }
+    // Writing to a vector cannot fail.
     let bytes = csv.into_inner().unwrap_or_default();
     Ok(Export {
         csv: String::from_utf8_lossy(&bytes).into_owned(),
@@ -212,6 +214,7 @@ impl Answers {
             let felt = answer.felt.as_ref()?;
             Some((answer.number, felt.is_off_target()?))
         });
+        // A trial has an answer for each attribute, but counts once.
         let recorded: BTreeSet<(u32, bool)> = recorded.collect();
         (recorded.iter().filter(|(_, off)| *off).count(), recorded.len())
     }

@@ -130,6 +130,7 @@ impl Felt {
     /// # Errors
     /// If the source cannot be opened or started, or has another sample rate than before.
     pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), RecordError> {
+        // A recording that was not finished may still run.
         self.abort();
         let mut source = (self.open)()?;
         if source.rate_hz() != self.rate_hz {
@@ -147,6 +148,7 @@ impl Felt {
         }
         let header = self.header(name, seconds, &inputs);
         if let Err(error) = source.start() {
+            // Given back, so that the next trial can try again.
             self.inputs = Some(inputs);
             return Err(error.into());
         }
@@ -221,6 +223,7 @@ impl Felt {
         stimulus: &Stimulus,
         played: &Played,
     ) -> Result<Option<FeltFile>, StudyError> {
+        // `end` is called even if nothing is recorded, because it joins a thread that may run.
         let (Some(name), Some(data)) = (&stimulus.felt, self.end()) else {
             return Ok(None);
         };

@@ -65,6 +65,7 @@ impl Match {
     pub fn new(settings: &Matching, start_db: f64) -> Self {
         Self {
             settings: settings.clone(),
+            // Nothing may be stronger than the maximum.
             gain_db: start_db.min(0.0),
             stage: Stage::Rising,
             ends_when_felt: false,

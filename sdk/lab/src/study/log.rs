@@ -135,6 +135,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
     let Some(Line::Header(header)) = lines.next().transpose()?.filter(|_| count > 0) else {
         return Err(damaged(1, "this is not the header of answers".to_owned()));
     };
+    // The filter above has made sure that `count` is not 0.
     let rest = lines.take(count - 1).collect::<Result<Vec<Line>, _>>()?;
     match rest.iter().position(|line| matches!(line, Line::Header(_))) {
         Some(i) => Err(damaged(i + 2, "there is a second header".to_owned())),

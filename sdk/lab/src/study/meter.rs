@@ -46,6 +46,7 @@ impl Meter {
             let value = f64::from(*sample);
             self.peak = self.peak.max(value.abs());
             self.energy += value * value;
+            // One sample at a time, because the largest mean may lie inside a block.
             self.last.take(std::slice::from_ref(sample));
             self.direct = self.direct.max(self.last.mean_v().abs());
         }

@@ -115,6 +115,7 @@ impl Asker for Page {
 impl Drop for Page {
     fn drop(&mut self) {
         self.served.wait_for_end(|| {
+            // Otherwise the page would stay at the view before and never show the end.
             let state = self.asked.lock();
             state.seen == state.step
         });

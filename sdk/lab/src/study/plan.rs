@@ -80,6 +80,7 @@ fn training(study: &Study, name: &str) -> Vec<Trial> {
     if !study.has(Phase::Training) {
         return Vec::new();
     }
+    // Each phase has dice of its own, so a change of one phase leaves the others as they are.
     let mut dice = Dice::new(study.seed, &["training", name]);
     let mut drawn = Vec::new();
     while drawn.len() < study.training.trials as usize {

@@ -168,6 +168,7 @@ impl Progress {
                 stops(&step, stopped)?;
                 self.stops += 1;
                 self.last_ms = line.at_ms();
+                // The end of this function would set the number of stops to 0 again.
                 return Ok(());
             }
             (Step::Rest { after, .. }, Line::Rest { after: is, .. }) if after == *is => {
@@ -215,6 +216,7 @@ impl Level {
     /// Applies a key. The level after it must be `gain_db`. Otherwise the line was written under
     /// other rules, and nobody knows what was felt.
     fn press(&mut self, key: GainKey, gain_db: f64, reference_rms: f64) -> Result<(), String> {
+        // On a copy, so that a line that does not fit changes nothing.
         let mut pressed = self.matching.clone();
         if !pressed.press(key) {
             return Err(format!("this key for {} does not come next", self.texture));

@@ -13,6 +13,7 @@ impl Dice {
         let mut hash = blake3::Hasher::new();
         hash.update(&seed.to_le_bytes());
         for part in purpose {
+            // The length keeps the parts apart: `ab`, `c` must not give the numbers of `a`, `bc`.
             hash.update(&(part.len() as u64).to_le_bytes());
             hash.update(part.as_bytes());
         }

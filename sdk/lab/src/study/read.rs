@@ -50,6 +50,7 @@ pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
         findings.add(rule::STUDY_VERSION_MISSING, "", message.to_owned());
         return None;
     }
+    // As JSON, the study is checked by the same code as a scene.
     let json = serde_json::to_vec(&value).ok()?;
     let opened = DOCUMENT.open(&json, MOST_DEPTH, findings)?;
     if opened.newer {

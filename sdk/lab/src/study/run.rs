@@ -125,6 +125,7 @@ impl<R: Rig> Run<'_, '_, R> {
     fn rate(&mut self, phase: Phase, trial: &Trial, asked: &Attribute) -> Result<bool, R::Error> {
         let stimulus = self.session.stimulus(phase, trial);
         let this = (phase, stimulus.file.clone());
+        // A trial with several questions is felt only once.
         if self.felt.as_ref() != Some(&this) {
             if !self.play(phase, &stimulus)? {
                 return Ok(false);
@@ -152,6 +153,7 @@ impl<R: Rig> Run<'_, '_, R> {
             let texture = stimulus.texture.clone();
             self.show(&View::Playing { texture });
             let mut ends = |asker: &mut dyn Asker| {
+                // Remembered, because the rig may ask once more after it was told to end.
                 left |= asker.key() == Some(Key::Quit);
                 left
             };
@@ -351,6 +353,7 @@ impl<R: Rig> Run<'_, '_, R> {
         } else if !self.rested(end_ms) {
             return Ok(false);
         }
+        // Recorded even after an interruption, so that the rest is not repeated.
         let at_ms = self.clock.now_ms();
         self.session.rested(at_ms)?;
         Ok(!self.rig.is_interrupted())

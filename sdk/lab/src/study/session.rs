@@ -63,6 +63,7 @@ impl<'a> Session<'a> {
             let applied = progress.apply(study, plan, line);
             applied.map_err(|problem| StudyError::Line {
                 file: path.clone(),
+                // The header is line 1 of the file.
                 line: i + 2,
                 problem,
             })?;
@@ -162,6 +163,7 @@ impl<'a> Session<'a> {
 
     /// Returns a seed for the samples of one trial of one participant.
     fn seed(&self, what: &str, number: u32) -> u64 {
+        // It depends on names and trial numbers, so a continued session plays the same samples.
         let purpose = ["samples", self.participant(), what, &number.to_string()];
         crate::study::random::Dice::new(self.study.seed, &purpose).bits()
     }
@@ -228,6 +230,7 @@ impl<'a> Session<'a> {
         let Step::Match { phase, texture, model, mut matching } = self.step() else {
             return Err(self.misplaced("no gain is matched now"));
         };
+        // Read first, because the press may end the rise.
         let was_rising = matching.is_rising();
         matching.press(key);
         let gain_db = matching.gain_db();
@@ -320,6 +323,7 @@ impl<'a> Session<'a> {
     }
 
     fn misplaced(&self, problem: &str) -> StudyError {
+        // The line is not in the file, so it has no number.
         StudyError::Line { file: self.log.path().to_owned(), line: 0, problem: problem.to_owned() }
     }
 }

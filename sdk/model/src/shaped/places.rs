@@ -29,6 +29,8 @@ impl Places {
         let first = band.first_bin() as f64;
         let last = band.bins().saturating_sub(1) as f64;
         let place = |hz: &f64| {
+            // An edge of the band need not be on the grid, so a frequency may lie beyond the
+            // outermost bins.
             let place = (hz / GRID_HZ - first).clamp(0.0, last);
             BinPosition { below: place as u32, part: place - f64::from(place as u32) }
         };

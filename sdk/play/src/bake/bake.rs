@@ -148,6 +148,7 @@ pub fn bake(
         // More conditions do not help if the filters themselves are less accurate.
         let reachable_db = within_db.max(1.1 * designed.shape.at_conditions_db);
         let refined = grid.refined(&designed.between, reachable_db);
+        // An axis that is full stays as it is, so a refinement may change nothing.
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
         if between_db <= within_db || is_last {
             let baked = designed.baked(&texture, grid, within_db)?;
@@ -180,6 +181,8 @@ impl Designs {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),
             _ => {
                 let designer = Rc::new(Designer::new(design, texture.band()));
+                // A new design may need another length, so the search starts from the shortest
+                // again.
                 *self = Self { designer: Some(Rc::clone(&designer)), ..Self::new(self.lengths) };
                 designer
             }
@@ -210,9 +213,13 @@ impl Designs {
             Shape::within(spectra, texture, moments, within_db)
         };
         let mut best: Option<(usize, Shape)> = None;
+        // The grid only grows, and with it the largest error at its conditions. A length that
+        // failed for fewer conditions fails for more, so the search never goes back.
         let lengths =
             if self.is_best { self.length..self.length + 1 } else { self.length..self.lengths };
         for length in lengths {
+            // A longer filter is of use only if it is more accurate, so its first worse condition
+            // ends it.
             let least_db = best.as_ref().map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
             let Some(shape) = with(length, least_db)? else {
                 continue;
@@ -260,6 +267,8 @@ impl Designed {
             let spectra = Spectra::Tones(tones, random);
             Shape::within(spectra, texture, &moments, f64::INFINITY)?
         } else {
+            // The slowest condition has the closest bins, and they decide how fine the design has
+            // to be.
             let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
             let designer = designs.designer(design, texture);
             Some(designs.shape(&designer, texture, &moments)?)
@@ -315,6 +324,7 @@ impl Designed {
         };
         let bytes = encode(&grid, &self.interpolator, &content);
         let numbers = Block::open(&bytes)?.numbers();
+        // A stored filter is its centre and one side.
         let (taps, filters, tones) = match &content.spectra {
             Encoded::Noise(stored) => (2 * stored.filters[0].len() - 1, stored.filters.len(), 0),
             Encoded::Tones { count, .. } => (0, 0, *count),
@@ -327,6 +337,7 @@ impl Designed {
             numbers,
             grid,
             model: texture.id().to_owned(),
+            // `bake` knows the asset and fills in its rights.
             rights: Rights::default(),
             quantity: content.quantity,
             law,
@@ -405,6 +416,8 @@ impl Designed {
         let stated = self.moments.iter().map(|m| m.level_rms);
         let pairs = self.shape.levels.iter().zip(stated);
         let loudest = pairs.max_by(|a, b| a.0.total_cmp(b.0));
+        // Stored levels include the part beyond the edges of the band, so the ceiling grows with
+        // them.
         let raised = loudest.map_or(1.0, |(stored, stated)| stored / stated);
         texture.ceiling_rms() * raised
     }
@@ -414,6 +427,7 @@ impl Designed {
         let crest = |i: usize| match &self.shape.spectra {
             Spectra::Noise(..) => CREST,
             Spectra::Tones(tones, _) => {
+                // All sinusoids may peak at once, so their amplitudes add.
                 let amplitudes = || tones[i].iter().map(|(_, a)| a.abs());
                 let power: f64 = amplitudes().map(|a| 0.5 * a * a).sum();
                 amplitudes().sum::<f64>() / power.sqrt()

@@ -51,11 +51,14 @@ impl Factors {
         };
         let responses = weighted(conditions.iter().map(respond).collect());
         let columns = independent(&responses, most);
+        // The product of the columns with their transpose has the same eigenvalues, but one row for
+        // each condition. Its eigenvectors follow from those of this smaller matrix.
         let (values, vectors) = eigen(products(&columns));
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
         let weights: Vec<Vec<f64>> = order
             .into_iter()
+            // Rounding may make the smallest eigenvalues negative.
             .filter(|&k| values[k] > 0.0)
             .map(|k| {
                 let scale = 1.0 / values[k].sqrt();
@@ -74,6 +77,7 @@ impl Factors {
     /// Returns the first `count` filters and their weights as integers.
     pub(crate) fn stored(&self, count: usize) -> Stored {
         let (weights, filters) = (&self.weights[..count], &self.filters[..count]);
+        // The small start avoids a division by zero if all numbers are zero.
         let largest = |all: &[f64]| all.iter().fold(1e-30, |most: f64, x| most.max(x.abs()));
         let integer = |x: f64, largest: f64| (x / largest * LARGEST).round() as i16;
         let scale =
@@ -116,6 +120,7 @@ fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for response in &responses {
         let most = response.iter().fold(0.0, |most: f64, r| most.max(r * r));
         let pairs = inverse.iter_mut().zip(response);
+        // The second floor is for a frequency at which the whole response is zero.
         pairs.for_each(|(sum, r)| *sum += 1.0 / (r * r).max(FLOOR * most).max(1e-30));
     }
     for response in &mut responses {
@@ -144,6 +149,7 @@ fn independent(vectors: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
         let column: Vec<f64> = (0..vectors.len()).map(at).collect();
         let pairs = left.iter_mut().zip(&column);
         pairs.for_each(|(left, c)| *left -= c * c);
+        // Rounding may leave a small rest, and the same pivot would be chosen again.
         left[pivot] = 0.0;
         columns.push(column);
     }
@@ -181,11 +187,15 @@ fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
         for p in 0..n {
             for q in p + 1..n {
                 let apq = a[p][q];
+                // The limit is relative to the diagonal, so that small eigenvalues become as
+                // accurate as large ones.
                 if apq.abs() <= f64::EPSILON * (a[p][p] * a[q][q]).abs().sqrt() {
                     continue;
                 }
                 rotated = true;
                 let theta = (a[q][q] - a[p][p]) / (2.0 * apq);
+                // Of the two rotations that zero the element, the smaller one makes the sweeps
+                // converge. `signum` is 1 at 0, so equal diagonal elements are rotated too.
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;

@@ -49,6 +49,7 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend([kind, flags]);
+    // The length is filled in at the end.
     bytes.extend([0; 4]);
     bytes.extend((interpolator.rate_hz as f32).to_le_bytes());
     for number in [interpolator.up, interpolator.row, size, usize::from(glide)] {
@@ -79,9 +80,11 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
         }
         Encoded::Tones { numbers, .. } => put(numbers),
     }
+    // The 16-bit integers may end between two words.
     bytes.resize(bytes.len().next_multiple_of(4), 0);
     let length = (bytes.len() + CHECKSUM) as u32;
     bytes[8..12].copy_from_slice(&length.to_le_bytes());
+    // The checksum covers the length, so the length is written first.
     bytes.extend(crc32(&bytes).to_le_bytes());
     bytes
 }

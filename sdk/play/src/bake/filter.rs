@@ -57,6 +57,7 @@ impl Design {
         let window = window(half);
         let mut magnitude = wanted.magnitude.clone();
         let mut side = self.sampled(&magnitude, &window);
+        // The error may rise again in a later round, so the best filter is remembered.
         let mut best = (f64::INFINITY, side.clone());
         for _ in 0..=ROUNDS {
             let read = bins.read(&self.response(&side));
@@ -64,12 +65,15 @@ impl Design {
             if !(rms > 0.0 && rms.is_finite()) {
                 break;
             }
+            // Only the shape is compared here. The level is stored apart from the filter.
             let unit: Vec<f64> = read.iter().map(|m| m / rms).collect();
             let error_db = wanted.bands.distance_db(wanted.stated, &unit);
             if error_db < best.0 {
                 best = (error_db, side.clone());
             }
             let ratio = |(stated, read): (&f64, &f64)| {
+                // A bin that the filter hardly reaches must not change by orders of magnitude in
+                // one round. The limits also cover a bin that reads as zero.
                 if *stated > 0.0 { (stated / read).clamp(0.5, 2.0) } else { 1.0 }
             };
             let corrections: Vec<f64> = wanted.stated.iter().zip(&unit).map(ratio).collect();
@@ -94,12 +98,14 @@ impl Design {
     }
 
     fn sampled(&mut self, magnitude: &[f64], window: &[f64]) -> Vec<f64> {
+        // A spectrum without phase gives a filter that is symmetrical about sample 0.
         let mut bins = self.fft.make_bins();
         for (bin, m) in bins.iter_mut().zip(magnitude) {
             bin.re = *m;
         }
         let mut samples = vec![0.0; 2 * self.steps];
         self.fft.inverse(&bins, &mut samples);
+        // The inverse transform does not divide by its length.
         let scale = 0.5 / self.steps as f64;
         let windowed = window.iter().zip(&samples);
         windowed.map(|(w, x)| w * x * scale).collect()
@@ -110,6 +116,7 @@ impl Design {
         let mut samples = vec![0.0; 2 * self.steps];
         for (lag, c) in side.iter().enumerate() {
             samples[lag] = *c;
+            // Lag 0 is its own mirror image.
             let mirrored = (2 * self.steps - lag) % (2 * self.steps);
             samples[mirrored] = *c;
         }
@@ -122,6 +129,7 @@ impl Design {
 /// Returns the energy of a filter, given its centre and one side.
 pub(crate) fn energy(side: &[f64]) -> f64 {
     let sum: f64 = side.iter().map(|c| c * c).sum();
+    // The centre has no mirror image.
     2.0 * sum - side.first().map_or(0.0, |centre| centre * centre)
 }
 
@@ -158,6 +166,8 @@ impl Bins {
             let range = first..=index(hz + reach);
             let lobe = range.map(|i| hann_main_lobe((design.hz(i) - hz) / spacing_hz).powi(2));
             let mut weights: Vec<f64> = lobe.collect();
+            // At 0 Hz and at half the rate the lobe is cut off, so the weights are normalised by
+            // what is left.
             let scale = density / weights.iter().sum::<f64>();
             weights.iter_mut().for_each(|weight| *weight *= scale);
             (first, weights)
@@ -203,6 +213,7 @@ fn window(half: usize) -> Vec<f64> {
 /// Returns the modified Bessel function of the first kind and order 0, computed by its series.
 pub(crate) fn bessel(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
+    // The largest argument is below 7, for the interpolator's window. Its terms vanish well before.
     for k in 1..64 {
         let factor = 0.5 * x / f64::from(k);
         term *= factor * factor;

@@ -45,6 +45,7 @@ impl Grid {
             at.iter().map(|m| m.speed_mm_s).collect(),
             at.iter().map(|m| m.force_n).collect(),
         )?;
+        // Motions are compared as the grid stores them, in single precision.
         let is_there = |wanted: &Motion| {
             at.iter().any(|m| {
                 m.speed_mm_s as f32 == wanted.speed_mm_s as f32
@@ -94,6 +95,7 @@ impl Grid {
         let worst = || errors.iter().filter(|(_, error)| *error > within_db);
         let axis = |own: &[f64], more: Vec<f64>| {
             let mut all: Vec<f64> = own.iter().copied().chain(more).collect();
+            // In single precision a midpoint may equal one of its neighbours.
             all = all.iter().map(|x| f64::from(*x as f32)).collect();
             all.sort_by(f64::total_cmp);
             all.dedup();
@@ -110,6 +112,8 @@ impl Grid {
         if refined != *self {
             return refined;
         }
+        // Only centres of cells are left. With their speeds on the axis they become centres of
+        // edges, to which the next round can add a force.
         Self {
             speeds_mm_s: axis(&self.speeds_mm_s, worst().map(|(m, _)| m.speed_mm_s).collect()),
             forces_n: self.forces_n.clone(),
@@ -123,6 +127,7 @@ impl Grid {
         let mut all = Vec::new();
         for (j, forces) in spans(&self.forces_n) {
             for (i, speeds) in spans(&self.speeds_mm_s) {
+                // A single speed and a single force are a condition, not a midpoint.
                 if forces.len() + speeds.len() == 2 {
                     continue;
                 }
@@ -146,6 +151,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64>, BakeError> {
+    // A block stores single precision, so the range is checked after rounding.
     let mut rounded: Vec<f64> = values.iter().map(|x| f64::from(*x as f32)).collect();
     let [least, largest] = range.map(f64::from);
     let in_range = rounded.iter().all(|x| (least..=largest).contains(x));

@@ -31,11 +31,13 @@ impl Interpolator {
     /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`. Chooses the lowest
     /// internal rate that is sufficient.
     pub(crate) fn new(rate_hz: f64, top_hz: f64) -> Result<Self, BakeError> {
+        // The block stores the rate in single precision, so everything is computed for that rate.
         let rate_hz = f64::from(rate_hz as f32);
         let (least_hz, most_hz) = ((LEAST * top_hz).max(RATE_HZ.0.into()), RATE_HZ.1.into());
         if !(least_hz..=most_hz).contains(&rate_hz) {
             return Err(BakeError::Rate { rate_hz, least_hz, most_hz, top_hz });
         }
+        // Rounded down, so that the internal rate is not below the preferred one.
         let up = ((rate_hz / (PREFERRED * top_hz)) as usize).clamp(1, MOST_UP);
         let internal_hz = rate_hz / up as f64;
         let row = match up {
@@ -48,6 +50,7 @@ impl Interpolator {
             internal_hz,
             up,
             row,
+            // Without a filter, everything up to half the rate passes.
             highest: if up == 1 { 0.5 } else { top_hz / internal_hz },
             rows: phases.collect(),
         })
@@ -56,6 +59,7 @@ impl Interpolator {
 
 /// Kaiser's estimate of the filter's length, in inputs. A multiple of four.
 fn row(internal_hz: f64, top_hz: f64) -> usize {
+    // The first image of the band begins at the internal rate minus the highest frequency.
     let transition = 2.0 * PI * (internal_hz - 2.0 * top_hz) / internal_hz;
     let length = (ATTENUATION_DB - 8.0) / (2.285 * transition);
     (length.ceil() as usize).next_multiple_of(4).min(MOST_ROW)
@@ -63,6 +67,7 @@ fn row(internal_hz: f64, top_hz: f64) -> usize {
 
 /// The coefficients of a phase, which is given as the position after an input. Their sum is 1.
 fn coefficients(row: usize, phase: f64) -> Vec<f64> {
+    // Kaiser's formula for attenuations above 50 dB.
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
     let half = 0.5 * row as f64;
     let at = |input: usize| {
@@ -72,6 +77,7 @@ fn coefficients(row: usize, phase: f64) -> Vec<f64> {
         sinc * bessel(beta * (1.0 - x * x).max(0.0).sqrt())
     };
     let all: Vec<f64> = (0..row).map(at).collect();
+    // If the sums of the phases differed, a steady signal would ripple at the internal rate.
     let sum: f64 = all.iter().sum();
     all.into_iter().map(|c| c / sum).collect()
 }

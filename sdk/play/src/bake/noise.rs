@@ -57,6 +57,8 @@ impl Designer {
         if let Some(known) = self.filters.borrow().get(&key) {
             return Ok(Rc::clone(known));
         }
+        // `bins` borrows the design itself, so it is called before the design is borrowed for
+        // writing.
         let bins = self.bins(moment.ratio);
         let mut design = self.design.borrow_mut();
         let played = design.frequencies_hz().into_iter();
@@ -74,6 +76,7 @@ impl Designer {
     /// Returns the magnitude at the bins of unit noise that passes a filter; the frequencies of the
     /// bins are multiplied by `ratio`.
     pub(crate) fn read(&self, side: &[f64], ratio: f64) -> Vec<f64> {
+        // A statement of its own, so that the borrow ends before `bins` needs the design.
         let response = self.design.borrow_mut().response(side);
         self.bins(ratio).read(&response)
     }

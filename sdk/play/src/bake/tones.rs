@@ -53,6 +53,7 @@ pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
 fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
     let (&count, rest) = moment.parameters.split_first()?;
     let (frequencies, rest) = rest.split_at_checked(count as usize)?;
+    // Each list comes after its length, and both have the same one.
     let (amplitudes, rest) = rest.get(1..)?.split_at_checked(count as usize)?;
     let tone = |(&hz, &amplitude): (&f64, &f64)| {
         if band.contains(hz) { (hz * moment.ratio, amplitude) } else { (hz * moment.ratio, 0.0) }
@@ -64,6 +65,7 @@ fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
 fn matched(all: &[Vec<Tone>]) -> Vec<Vec<Tone>> {
     let mut union: Vec<f64> = all.iter().flatten().map(|(hz, _)| *hz).collect();
     union.sort_by(f64::total_cmp);
+    // `dedup_by` passes the later element first, so the difference is not negative.
     union.dedup_by(|a, b| *a - *b < SAME_HZ);
     let amplitude = |tones: &[Tone], hz: f64| -> f64 {
         let same = tones.iter().filter(|(f, _)| (f - hz).abs() < SAME_HZ);

@@ -35,6 +35,8 @@ impl Axis {
         let mut groups: Vec<Group> = Vec::new();
         for x in values {
             match groups.last_mut() {
+                // Compared with the lowest value of the group, so that a row of close values cannot
+                // become one wide group.
                 Some(group) if is_one(&group.low, x) => group.high = x,
                 _ => groups.push(Group { low: x, high: x, place: 0.0 }),
             }

@@ -48,6 +48,7 @@ fn cells(triangles: &[Corners], places: &[[f64; 2]]) -> BTreeMap<usize, Vec<usiz
         });
         if are_on_a_circle(a.map(|c| places[c]), opposite) {
             let (i, k) = (root(&mut parent, i), root(&mut parent, k));
+            // The lowest index becomes the root, so cells do not depend on the order of the edges.
             parent[i.max(k)] = i.min(k);
         }
     }
@@ -93,6 +94,8 @@ fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
     };
     let (sin_a, cos_a) = angle(opposite[0], edge);
     let (sin_b, cos_b) = angle(opposite[1], [edge[1], edge[0]]);
+    // Sine and cosine of the sum of the angles, both times the same lengths, which cancel below.
+    // The cosine is negative near half a turn.
     let (sin, cos) = (sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b);
     sin.abs() <= -ON_CIRCLE * cos
 }
@@ -113,5 +116,6 @@ fn fan(cell: impl Iterator<Item = Corners>, places: &[[f64; 2]]) -> Option<Vec<C
         from = *to;
     }
     let is_upright = |[a, b, c]: &Corners| area(places[*a], places[*b], places[*c]) > 0.0;
+    // If the outline visits a condition twice, `next` has lost an edge, and the fan is too short.
     (3 * fan.len() == all.len() && fan.iter().all(is_upright)).then_some(fan)
 }

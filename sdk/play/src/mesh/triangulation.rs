@@ -145,6 +145,7 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     let spread = |axis: usize| {
         let [low, high] = places
             .iter()
+            // No coordinate is negative, so 0 is a safe start for the maximum.
             .fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p[axis]), high.max(p[axis])]);
         high - low
     };

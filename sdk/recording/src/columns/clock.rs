@@ -101,6 +101,8 @@ fn measure(
     noticed: &mut Noticed,
 ) -> Result<f64, Fault> {
     let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    // This must be known first: the median of steps that are not positive would make every step a
+    // gap.
     if let Some(row) = steps().position(|step| step <= 0.0) {
         let (before, after) = (time_s[row], time_s[row + 1]);
         return Err(ReadProblem::Time { before, after }.at(sheet.place(row + 1)));
@@ -116,6 +118,7 @@ fn measure(
             gaps += 1;
         }
     }
+    // Gaps are left out, because they would lower the rate of all samples between them.
     let mean: f64 = sum / count;
     let rate_hz = snap(1.0 / mean);
     check_rate(rate_hz)?;
@@ -128,6 +131,7 @@ fn measure(
             sheet.place(row + 1)
         ));
     }
+    // For an even clock, rounding can make the difference slightly negative.
     let jitter = (squares / count / (mean * mean) - 1.0).max(0.0).sqrt();
     if jitter > JITTER {
         let used = match given {
@@ -150,6 +154,8 @@ fn measure(
 fn longest_step(mut steps: Vec<f64>) -> f64 {
     let last = steps.len() - 1;
     let mut rank = |at: usize| *steps.select_nth_unstable_by(at, f64::total_cmp).1;
+    // Each rank is selected on its own, which takes linear time; sorting millions of steps would
+    // not.
     let [low, median, high] = [last / 4, last / 2, last - last / 4].map(&mut rank);
     let is_even = high - low <= UNEVEN * median;
     // A step that is too long only because of rounding is not a gap.

@@ -255,6 +255,8 @@ impl Formula {
                     Operation::Column(column) => of(*column)[row],
                     Operation::Negate => -stack.pop().unwrap_or(f64::NAN),
                     Operation::Binary(operator) => {
+                        // The right operand was pushed last. The stack is never empty here, because
+                        // the parser wrote both operands before their operator.
                         let right = stack.pop().unwrap_or(f64::NAN);
                         let left = stack.pop().unwrap_or(f64::NAN);
                         operator.of(left, right)

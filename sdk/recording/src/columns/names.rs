@@ -109,6 +109,7 @@ pub(crate) fn base_unit(role: Role, quantity: Quantity) -> &'static str {
 fn normalise(name: &str) -> String {
     name.trim()
         .to_ascii_lowercase()
+        // Two characters look alike: the micro sign and the Greek letter.
         .replace(['µ', 'μ'], "u")
         .replace([' ', '-'], "_")
         .replace('²', "2")

@@ -47,6 +47,8 @@ impl RowMap {
     ) -> Result<Self, ReadError> {
         let mut row_map =
             Self::with(source, channels, map, quantity, |columns| select(columns, map, quantity))?;
+        // A notice has no code, so this depends on the words of `Selection::warn_of_unused`. A card
+        // has more channels than a texture needs, so the warning would always be there.
         let is_unused = |warning: &Notice| warning.starts_with("Columns not used");
         let warnings = &mut row_map.selection.warnings;
         warnings.retain(|warning| !is_unused(warning));
@@ -109,6 +111,7 @@ impl RowMap {
                     return Err(columns.refuse(problem));
                 }
             }
+            // The words are those of `Selection::assume_unit`: the unit is known after all.
             let assumed =
                 format!("Column {:?} ({}) has no unit", columns.name(column), chosen.role);
             let warnings = &mut self.selection.warnings;

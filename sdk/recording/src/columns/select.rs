@@ -279,6 +279,8 @@ impl Selection {
         if !self.is_motion && !self.has_axis() {
             let (one, several) = axis_roles(self.quantity);
             let count = several.iter().filter(|role| named(**role)).count();
+            // `fx` alone is one axis of several, and a file with `lateral` and `fx` has its texture
+            // in `lateral`.
             if count > 1 || !named(one) {
                 roles.extend(several);
             } else {

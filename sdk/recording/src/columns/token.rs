@@ -92,6 +92,7 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
 /// operator may come next.
 fn token(text: &str, first: char, ends_operand: bool) -> Result<(TokenKind, usize), String> {
     if let Some(operator) = operator(first)
+        // After an operand a slash divides; before one it begins a path.
         && (first != '/' || ends_operand || !path_follows(text))
     {
         return Ok((operator, 1));
@@ -194,6 +195,8 @@ fn name_length(text: &str) -> usize {
             (Some(end), _) if c == end => closing = None,
             (Some(_), _) => {}
             (None, '[') => closing = closes(&text[at..], ']'),
+            // A bracket that no other closes is the expression's own, as in `a*(b`, and ends the
+            // name.
             (None, '(') => match closes(&text[at..], ')') {
                 None => return at,
                 end => closing = end,

@@ -222,6 +222,7 @@ impl Arrow {
         let missing =
             ArrowError::Layout("the batch has fewer buffers than its schema; write the file again");
         let size = kind.size() as u64;
+        // Buffers are padded, so a buffer may be longer than its values.
         let wanted = batch.rows.saturating_mul(size);
         let (validity, numbers) = self.with_batch(batch.message, |metadata| {
             let codec = metadata.compression().map(|compression| compression.codec());
@@ -236,6 +237,7 @@ impl Arrow {
             else {
                 return Err(missing);
             };
+            // The bits may be left out if no value is missing, so they are read only if one is.
             let validity = match nulls {
                 0 => None,
                 _ => Some(self.buffer(batch.message, bits, codec, batch.rows.div_ceil(8))?),

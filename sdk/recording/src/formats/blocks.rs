@@ -59,6 +59,7 @@ impl<'a> Blocks<'a> {
         self.taken = match line_end {
             _ if self.ended => self.filled,
             Some(last) => last + 1,
+            // A block may end inside a character, whose other bytes come with the next block.
             None => whole_characters(filled),
         };
         let block = checked(&self.buffer[..self.taken], before)?;

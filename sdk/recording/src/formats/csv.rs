@@ -57,6 +57,7 @@ fn layout(head: &str) -> Result<(Table, Start), Fault> {
     let (header, start) = if cells.iter().any(is_name) {
         (Some(cells), after)
     } else {
+        // Without a line of names, the first line is already numbers and is read again.
         (commented_header(comment, delimiter, width), before)
     };
     let columns = match header {

@@ -30,6 +30,7 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
         limit,
         order: Order::Interleaved,
         samples: Box::new(Decoded {
+            // Samples are signed, so one bit is the sign.
             full_scale: libm::exp2(f64::from(info.bits_per_sample) - 1.0),
             expected: info.samples,
             reader,
@@ -61,6 +62,8 @@ impl<R: Read> Decoded<R> {
     /// Decodes the next block; returns false at the end.
     fn advance(&mut self) -> Result<bool, Fault> {
         self.before += u64::from(self.block.duration());
+        // The decoder fills the buffer of the last block again, so that not every block allocates
+        // one.
         let buffer = std::mem::replace(&mut self.block, Block::empty()).into_buffer();
         let place = |at: u64| format!("sample {at} (counted from 0)");
         let block = self.reader.blocks().read_next_or_eof(buffer).map_err(|error| {
@@ -69,6 +72,8 @@ impl<R: Read> Decoded<R> {
         })?;
         let Some(block) = block else {
             return match self.expected {
+                // The decoder takes the end of the file after a whole block for the end of the
+                // stream.
                 Some(expected) if self.before < expected => {
                     let problem = format!(
                         "the file ends here, its header says {expected} samples; copy it again"

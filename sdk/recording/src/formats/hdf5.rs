@@ -194,6 +194,8 @@ fn read(
     shape: Shape,
     keep: &mut dyn FnMut(u64, f64),
 ) -> hdf5_reader::error::Result<()> {
+    // All channels at once, because they often share the same chunks, each of which has to be
+    // decompressed as a whole.
     let at_once = (AT_ONCE / shape.channels).max(1);
     let mut from = 0;
     while from < shape.samples {

@@ -103,6 +103,7 @@ impl Mat {
                 // Other top-level elements are not variables.
                 _ => {}
             }
+            // MATLAB aligns elements to eight bytes, except compressed ones.
             let padding = if kind == COMPRESSED { 0 } else { bytes.wrapping_neg() % 8 };
             scan.element.at += bytes + padding;
         }
@@ -131,6 +132,8 @@ impl Sheet for Mat {
     }
 
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
+        // Taken out for the time of reading, because the closure needs the input of the same
+        // struct.
         let arrays = std::mem::replace(&mut self.arrays, Arrays::new('.'));
         let (limit, endian) = (self.limit, self.endian);
         let columns = arrays.numbers(limit, wanted, |data, shape, keep| {
@@ -172,6 +175,7 @@ impl Scan {
         depth: usize,
     ) -> Result<(), MatError> {
         let end = inside.at + bytes;
+        // A field is counted again inside its struct, so this is at most the depth times too much.
         self.scanned = self.scanned.saturating_add(bytes);
         if self.scanned > MOST_BYTES {
             return Err(MatError::TooLarge);
@@ -221,6 +225,7 @@ impl Scan {
                 tag.bytes
             )));
         }
+        // MATLAB stores column after column.
         if let Some(shape) = Shape::of(columns, rows) {
             let data = Data { element: self.element, before: inside.at, kind };
             if !self.arrays.add(name, shape, data) {
@@ -254,6 +259,7 @@ impl Scan {
         let fields: Vec<String> = names.chunks(width.max(1)).map(up_to_nul).collect();
         let count = sizes.iter().try_fold(1_u64, |n, size| n.checked_mul((*size).into()));
         let count = count
+            // A struct array without fields holds nothing, however large it claims to be.
             .filter(|count| fields.is_empty() || *count <= MOST_COLUMNS as u64)
             .ok_or(MatError::TooMany)?;
         if fields.is_empty() {

@@ -52,6 +52,7 @@ impl Tag {
     pub(crate) fn read(inside: &mut ByteReader<impl Read>) -> io::Result<Self> {
         let word = inside.u32()?;
         // Data of up to four bytes may be stored inside the eight bytes of the tag.
+        // The size is in the upper half of the word in either byte order.
         let short = word >> 16;
         if short != 0 {
             return Ok(Self {

@@ -62,6 +62,7 @@ fn plain_number(text: &[u8]) -> Option<(f64, &[u8])> {
         decimals = behind.len() - rest.len();
     }
     let count = integer_digits + decimals;
+    // Up to 2^53 an integer is exact, and so are powers of ten up to 10^22.
     if count == 0 || count > 16 || mantissa > 1 << 53 {
         return None;
     }

@@ -112,6 +112,7 @@ impl Parquet {
                 levels: descriptor.max_def_level(),
                 values: &mut values,
             };
+            // Smaller unsigned numbers need no conversion, because 32 signed bits hold them.
             let is_unsigned = matches!(
                 descriptor.converted_type(),
                 ConvertedType::UINT_32 | ConvertedType::UINT_64
@@ -262,6 +263,7 @@ impl Append<'_> {
                 let value = if is_there { present.next() } else { None };
                 self.values.push(value.map_or(f64::NAN, |value| to_f64(*value)));
             }
+            // The footer's number of rows was checked before, but the pages may hold more.
             if let Err(error) = self.limit.check(self.values.len() as u64) {
                 return Ok(Err(error));
             }

@@ -71,6 +71,8 @@ fn read_chunk(input: &mut Random, piece: &Piece, values: &mut Vec<f64>) -> Resul
         return Ok(reader.values(piece.kind, piece.values, |_, value| values.push(value))?);
     }
     // Reads whole rows of interleaved channels, several at once.
+    // A read for every value would cost a call of the system each. One row at least, however many
+    // channels it has.
     let rows_at_once = (256 << 10) / piece.stride + 1;
     let mut done = 0;
     while done < piece.values {
@@ -115,6 +117,8 @@ impl Sheet for Tdms {
                 }
             }
         }
+        // The file states the time between samples, and its inverse is rarely the whole number that
+        // was set.
         Ok(first.map(|(_, step_s)| snap(1.0 / step_s)))
     }
 

@@ -109,6 +109,8 @@ impl Directory {
         let mut input = BufReader::new(input);
         while self.segment < length {
             let here = input.stream_position()?;
+            // A relative seek keeps what is in the buffer. Files of many small segments would
+            // otherwise be read again for each of them.
             input.seek_relative(self.segment.wrapping_sub(here) as i64)?;
             let mut reader = ByteReader::new(&mut input, Endian::Little);
             let segment = self.lead_in(&mut reader, length)?;
@@ -169,6 +171,8 @@ impl Directory {
                 (_, u32::MAX) => {}
                 (Some(channel), 0) => self.add_current(channel),
                 (None, 0) => {}
+                // The two marks of DAQmx data: the bytes 69 12 00 00 and 69 13 00 00, read in
+                // either byte order.
                 (channel, 0x1269 | 0x1369 | 0x6912_0000 | 0x6913_0000) => {
                     daqmx_index(reader)?;
                     if let Some(channel) = channel {

@@ -70,6 +70,7 @@ impl<'a> Lines<'a> {
             return false;
         };
         let length = self.rest.len() - left.len();
+        // The slower parser reads the same line again and reports its length.
         if length > MAX_LINE {
             return false;
         }

@@ -84,6 +84,7 @@ impl Walk<'_> {
         if kinds.iter().any(|kind| TRUTH_VALUES.contains(kind)) {
             return Err("its header has a list of truth values, which none of Parquet's has");
         }
+        // Without this check, a few bytes could keep the library busy for hours.
         if count > (self.bytes.len() - self.at) as u64 {
             return Err("its header claims a list longer than the file");
         }

@@ -38,6 +38,7 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
         limit,
         order: Order::Interleaved,
         samples: if are_integers {
+            // Samples are signed, so one bit is the sign.
             let full_scale = libm::exp2(f64::from(spec.bits_per_sample) - 1.0);
             let samples = reader.into_samples::<i32>();
             let fractions = samples.map(move |s| s.map(|s| f64::from(s) / full_scale));

@@ -38,6 +38,7 @@ struct Carrier {
 
 impl Carrier {
     fn advance(&mut self) {
+        // A rotation is cheaper than a cosine, but its rounding errors add up until it is renewed.
         let ([c, s], [a, b]) = (self.at, self.turn);
         self.at = [c * a - s * b, c * b + s * a];
         self.phase = self.phase.wrapping_add(self.step);

@@ -28,6 +28,7 @@ fn need(required: &Requirements) -> Need {
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let ramp = (CONTACT_RAMP_S * required.rate_hz).ceil() as u32;
+    // The gain starts at 0, so that a scene fades in.
     Box::new(Contact { neutral, ramp, gain: Glide::new(if neutral { 1.0 } else { 0.0 }, ramp) })
 }
 

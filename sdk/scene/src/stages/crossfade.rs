@@ -46,6 +46,7 @@ impl Crossfade {
     }
 
     pub(crate) fn apply(&mut self, block: &mut [f32]) {
+        // Most of the time nothing fades, and no roots are needed.
         if self.weight.rests_at(1.0) {
             return;
         }

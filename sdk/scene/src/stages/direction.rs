@@ -45,6 +45,7 @@ struct Direction {
 
 impl Stage for Direction {
     fn follow(&mut self, context: &Context) {
+        // A resting finger keeps the sign of its last stroke.
         if !self.neutral && context.finger.slides() {
             self.sign.set(if context.finger.speed_mm_s < 0.0 { -1.0 } else { 1.0 });
         }

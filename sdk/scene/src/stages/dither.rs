@@ -33,6 +33,8 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     Box::new(Dither {
         step: step as f32,
         limit: limit.map_or(f32::INFINITY, |limit| limit as f32),
+        // The constant is `dither` in ASCII. Voices use the scene's seed too, and must not share
+        // the numbers.
         random: Xoshiro256PlusPlus::seed_from_u64(required.seed ^ 0x6469_7468_6572),
     })
 }
@@ -48,8 +50,10 @@ impl Stage for Dither {
         source(out);
         for sample in out {
             let bits = self.random.next_u64();
+            // 24 bits fit a 32-bit float exactly, so the result never rounds up to 1.
             let uniform = |bits: u64| (bits & 0xff_ffff) as f32 / 16_777_216.0;
             let noise = uniform(bits) - uniform(bits >> 32);
+            // The limiter came before, and the noise could exceed the limit again.
             *sample = (*sample + self.step * noise).clamp(-self.limit, self.limit);
         }
     }

@@ -68,6 +68,7 @@ struct FrequencyScaling {
 
 impl Stage for FrequencyScaling {
     fn follow(&mut self, context: &Context) {
+        // A resting finger has no speed that could set the ratio, so the last one stays.
         if self.scales && context.finger.slides() {
             self.ratio = self.motions.scaling(context.finger.motion(), CEILING).frequency;
         }

@@ -29,6 +29,8 @@ fn limit(required: &Requirements) -> Option<f64> {
         (Quantity::DisplayVoltage, Some(limit)) => {
             let most = limit.min(required.drive_v);
             let step = required.device.step.unwrap_or(0.0);
+            // If rounding puts the quotient just below a whole number, a step is lost, on the safe
+            // side.
             let steps = (most / step).floor();
             Some(if step > 0.0 && steps > 0.0 { steps * step } else { most })
         }
@@ -43,6 +45,7 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
 
 /// Returns the largest 32-bit float that is not above a number.
 fn at_most(limit: f64) -> f32 {
+    // `as` rounds to the nearest float, which may be above the limit.
     let near = limit as f32;
     if f64::from(near) > limit { near.next_down() } else { near }
 }
@@ -58,6 +61,7 @@ impl Stage for Limiter {
         let (limit, mut held) = (self.limit, 0);
         for sample in out {
             held += u64::from(sample.is_nan() || sample.abs() > limit);
+            // `clamp` would let NaN through.
             *sample = if sample.is_nan() { 0.0 } else { sample.clamp(-limit, limit) };
         }
         self.held += held;

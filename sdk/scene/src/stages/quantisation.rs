@@ -34,8 +34,10 @@ impl Stage for Quantisation {
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         source(out);
         let Some(step) = self.step else { return };
+        // Rounded down, so that no step is above the limit.
         let most = (self.limit / step).floor();
         for sample in out {
+            // Ties to even have no mean error.
             let steps = (f64::from(*sample) / step).round_ties_even();
             *sample = (steps.clamp(-most, most) * step) as f32;
         }

@@ -57,6 +57,7 @@ impl Stage for SquareRoot {
         for sample in out {
             let radicand = *sample + self.shift;
             held += u64::from(radicand < 0.0);
+            // `max` also turns NaN into 0.
             *sample = radicand.max(0.0).sqrt();
         }
         self.held += held;

@@ -35,6 +35,7 @@ impl Document {
     }
 
     fn take(&mut self, name: &'static str) -> Option<Value> {
+        // For the message of `finish`, which lists what could have been given.
         self.known.push(name);
         self.left.remove(name)
     }
@@ -118,6 +119,7 @@ impl Document {
 
 /// A finite number.
 pub(crate) fn number(value: &Value) -> Option<f64> {
+    // JSON has neither NaN nor infinity, so no check is needed.
     value.as_f64()
 }
 

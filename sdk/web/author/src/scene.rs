@@ -112,6 +112,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let notes = open.loaded.notes.iter().map(ToString::to_string).collect();
     let unit = open.able.quantity.unit();
     let id = SCENES.with_borrow_mut(|scenes| {
+        // Numbers are not used again, so a freed scene is never mistaken for another.
         scenes.last += 1;
         scenes.open.insert(scenes.last, open);
         scenes.last
@@ -186,6 +187,7 @@ pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     let frames = count(&mut call, "frames")?;
     call.finish()?;
     of_scene(id, |open| {
+        // Taken out, because making a renderer borrows the whole scene.
         let mut renderer = match open.playing.take() {
             Some(renderer) => renderer,
             None => open.renderer(&open.loaded)?.0,
@@ -221,6 +223,7 @@ pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         let mut samples = zeros(motions.len().saturating_mul(block))?;
         for (i, (part, motion)) in samples.chunks_mut(block).zip(motions).enumerate() {
             let [speed_mm_s, force_n, x_mm, y_mm] = *motion;
+            // A single NaN is a failed reading, not an unknown place.
             let unknown = x_mm.is_nan() && y_mm.is_nan();
             let moved = renderer.set_motion(Finger {
                 speed_mm_s,
@@ -270,6 +273,7 @@ fn of_scene(
 fn zeros(frames: usize) -> Result<Vec<f32>, Refusal> {
     let mut samples = Vec::new();
     samples
+        // `vec!` would end the module if there is not enough memory.
         .try_reserve_exact(frames)
         .map_err(|_| Refusal::argument(format!("{frames} samples do not fit into memory")))?;
     samples.resize(frames, 0.0);
@@ -304,6 +308,7 @@ impl Open {
         let around =
             Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
         let device = DeviceOverride { live: true, ..self.device.clone() };
+        // Loaded again, because some settings of devices have another default for a live motion.
         let mut loaded = LoadedScene::from_files(&self.bytes, &self.files, &around, &device)?;
         loaded.scene.motion = Motion::Live;
         loaded.scene.duration_s = None;

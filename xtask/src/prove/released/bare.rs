@@ -169,6 +169,7 @@ fn root(processor: &Processor) -> Result<PathBuf> {
         run(debootstrap.arg(&root).arg("http://deb.debian.org/debian")).context(
             "as root, with the package debootstrap; for another processor qemu-user-static and binfmt-support, too",
         )?;
+        // Last, so that an interrupted root does not count as made.
         fs::write(is_made, "")?;
     }
     Ok(root)

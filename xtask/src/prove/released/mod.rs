@@ -88,6 +88,7 @@ impl Compiler {
             ".",
             "-B",
             ".",
+            // The players run in the root, where paths of this machine do not exist.
             "-DCMAKE_SKIP_RPATH=ON",
             "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=..",
         ]);

@@ -29,6 +29,7 @@ pub(crate) struct Driver {
 impl Driver {
     /// Loads the library at `path`, or the installed one if `path` is empty.
     pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
+        // Locked while the library is loaded, so that it is loaded only once.
         let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(driver) = loaded.get(path) {
             return Ok(driver);

@@ -11,6 +11,7 @@ use crate::daq::fault::Fault;
 
 // Constants from `NIDAQmx.h`.
 const DO_NOT_ALLOW_REGENERATION: i32 = 10158;
+// A task has one channel, for which both groupings are the same.
 const GROUP_BY_CHANNEL: u32 = 0;
 /// Status when the buffer is full. The samples that fitted were taken.
 const NOT_YET: i32 = -200292;
@@ -48,6 +49,7 @@ impl Task {
         self.set_card_clock(rate_hz, frames)?;
         // SAFETY: numbers only.
         self.check(unsafe { (self.table().set_buffer)(self.handle, frames) })?;
+        // Otherwise the card plays the old samples of its buffer again when the host is late.
         // SAFETY: numbers only.
         self.check(unsafe {
             (self.table().set_regeneration)(self.handle, DO_NOT_ALLOW_REGENERATION)

@@ -78,6 +78,7 @@ impl Nesting {
         };
         if self.run > *most {
             *most = self.run;
+            // Outside brackets, `levels` adds the dots from `outside`.
             self.inside += usize::from(!self.open.is_empty());
         }
     }

@@ -31,6 +31,7 @@ pub(super) const INNER: &str = "it leads to an address of this machine or networ
 /// Returns whether an address is not public: it belongs to this machine, its network or a provider,
 /// stands for several machines, or is unassigned.
 pub(super) fn is_inner(address: IpAddr) -> bool {
+    // An IPv6 address can hold an IPv4 address (`::ffff:127.0.0.1`), to which the same rules apply.
     match address.to_canonical() {
         IpAddr::V4(v4) => is_inner_v4(v4),
         IpAddr::V6(v6) => is_inner_v6(v6),
@@ -108,6 +109,8 @@ impl Resolve for Resolver {
     fn resolve(&self, name: Name) -> Resolving {
         let here = Self(self.0);
         Box::pin(async move {
+            // The addresses are filtered here and not beforehand, because a name could resolve to
+            // another address the next time.
             let found = tokio::net::lookup_host((name.as_str(), 0)).await?;
             let usable: Vec<SocketAddr> = found.filter(|a| here.may_connect(a.ip())).collect();
             if usable.is_empty() {

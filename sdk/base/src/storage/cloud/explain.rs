@@ -94,6 +94,8 @@ impl Store {
             416 => StorageProblem::Refused {
                 what: format!("{what}: the range begins after the end of the file"),
             },
+            // Too slow, too many requests, and failures of the server: the library has already
+            // tried again.
             408 | 429 | 500.. => self.unavailable(what, seconds),
             200..=299 => StorageProblem::Refused {
                 what: format!(

@@ -142,6 +142,7 @@ impl Logged {
     fn is_list(&self, request: &HttpRequest) -> bool {
         let query = request.uri().query().unwrap_or_default();
         let is = |part: &str| part.starts_with("list-type=") || part == "comp=list";
+        // The query of a web server's URL is the user's and may contain anything.
         matches!(self.client, Client::Store(_)) && query.split('&').any(is)
     }
 }
@@ -180,6 +181,7 @@ impl HttpService for Logged {
             .and_then(|code| Some(code.to_str().ok()?.to_owned()));
         let code = named.or_else(|| code_in(&text)).filter(|code| is_code(code));
         self.log.ended(Last::Status { status, code });
+        // The body was consumed to find the code, and the library reads it again.
         Ok(HttpResponse::from_parts(parts, text.into()))
     }
 }

@@ -114,6 +114,7 @@ impl Store {
             while let Some(meta) = all.next().await {
                 let meta = meta?;
                 listed += 1;
+                // Files that do not match cost requests too, so they are limited separately.
                 if listed > MOST_LISTED {
                     return Err(Fail::Own(listing::too_many(&here.location)));
                 }

@@ -120,6 +120,7 @@ impl Store {
         let mut stream = found.into_stream();
         while let Some(chunk) = stream.next().await {
             let chunk = chunk.map_err(|_| Fail::Body)?;
+            // A server may send more than it stated, which would exceed the limit that was checked.
             rest = rest.checked_sub(chunk.len() as u64).ok_or(Fail::Body)?;
             sink.take(&chunk)?;
         }
@@ -136,10 +137,12 @@ impl Store {
             ..GetOptions::default()
         };
         let found = match self.store.get_opts(&self.key, options).await {
+            // An empty file has no first byte, so a server refuses every range of it.
             Err(_) if range.start == 0 && self.is_beyond_end() => return Ok(ReadPart::of_empty()),
             found => found?,
         };
         let is = Version::of(&found.meta);
+        // Not every server obeys `If-Match`, and weak tags cannot be sent in it.
         if version.is_some_and(|version| version != is) {
             return Err(Fail::Own(StorageProblem::Changed.at(&self.location)));
         }

@@ -36,6 +36,8 @@ impl Following {
             let Some(to) = target(&method, &at, &response)? else {
                 return Ok(response);
             };
+            // Only the named server itself may be in the user's network. A redirect may also lead
+            // back to it.
             let is_first = to.origin() == first.origin();
             if !is_first {
                 check_number(&to)?;

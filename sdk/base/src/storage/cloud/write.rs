@@ -52,6 +52,8 @@ impl Store {
             file.read_to_end(&mut bytes).map_err(StorageError::io_at(path.display()))?;
             return self.write(bytes);
         }
+        // The work itself may take the total time. After a failure, the parts still under way are
+        // awaited and the others removed, each within this much longer.
         let limit = self.settings.total + 2 * ABORT;
         self.run_within(limit, self.clone().in_parts(file))
     }

@@ -158,6 +158,7 @@ fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
     single.extend(descriptor.settings.iter().flat_map(wrong_lines));
     let in_place = single.into_iter().map(|line| {
         let begins = line.trim_end().split('=').next().unwrap_or_default();
+        // Without the valid line of the same setting, because two lines would be a second error.
         let others = good.lines().filter(|l| !l.starts_with(&format!("{begins}=")));
         let others: String = others.flat_map(|l| [l, "\n"]).collect();
         WrongLines {

@@ -28,6 +28,7 @@ pub(crate) fn finishes(case: &Case) -> Found {
         };
     }
     drop(device);
+    // Only the numbers of files are compared, because finishing may rename them.
     if self::files(case).len() < files.len() {
         return Err(Finding::failed("what was written is gone when the device is closed"));
     }

@@ -12,6 +12,7 @@ pub(crate) fn over(case: &Case) -> Found {
     let Some(limit) = case.capabilities()?.limit else {
         return Ok(Finding::skipped("it has no limit"));
     };
+    // 1 % over the limit is more than any tolerance for rounding.
     for sample in [1.01 * limit, -1.01 * limit, 1e6 * limit] {
         refuses(case, sample as f32)?;
     }

@@ -29,7 +29,9 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
         [] => return Err(Finding::failed("it has no rates")),
     };
     let mut wrong = vec![f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12, 0.5 * lowest, 2.0 * highest];
+    // A rate between two of a list.
     wrong.push(lowest + 0.123);
+    // A range contains some of these rates.
     wrong.retain(|rate_hz| !can.rates.has(*rate_hz));
     for rate_hz in &wrong {
         match case.open_at(&case.settings()?, *rate_hz) {

@@ -35,6 +35,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
 pub(crate) fn status(case: &Case) -> Found {
     let (mut device, settings) = case.open()?;
     let before = device.status();
+    // The latency may be known before anything is written.
     if before != (Status { latency_s: before.latency_s, ..Status::default() }) {
         return Err(Finding::failed(format!("nothing was written, and it says {before:?}")));
     }
@@ -73,6 +74,7 @@ pub(crate) fn memory(case: &Case) -> Found {
         let write = |count: usize| (0..count).try_for_each(|_| write_all(device.as_mut(), &tone));
         let written = Growth::measure(blocks, "blocks", write)?;
         drop(device);
+        // Opening and closing a device with a clock takes longer.
         let opened = if can.paced { OPENED / 20 } else { OPENED };
         let open = |count: usize| (0..count).try_for_each(|_| case.open().map(drop));
         Ok([written, Growth::measure(opened, "openings", open)?])

@@ -96,6 +96,7 @@ fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32])
             "no library of this process calls the C library's allocator by name",
         ));
     }
+    // A new voice allocates as a rule, so this number shows that calls are counted at all.
     let (made, of_a_voice) = allocator.during(|| case.voice(&sets[0].parameters, case.seed));
     drop(made?);
     let (played, calls) = allocator.during(|| play(voice, sets, out, BLOCKS));

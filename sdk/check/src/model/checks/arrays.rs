@@ -192,6 +192,7 @@ fn keeps_nothing(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
         let mut next = Fenced::input(&other, "voice_retune", "parameters");
         let part = |voice: &mut ModelVoice, array: &mut Fenced<f64>, out: &mut [f32]| {
             if scrub {
+                // NaN reaches the samples if the voice still reads the array.
                 array.get().fill(f64::NAN);
             }
             voice.render(out)

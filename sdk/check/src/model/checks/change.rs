@@ -63,6 +63,7 @@ pub(crate) fn follows(case: &Case) -> Found {
     for i in 1..=sets.len() {
         let (before, now) = (i - 1, i % sets.len());
         stream.retune(&sets[now].parameters)?;
+        // What the old parameters left fades out in this second.
         stream.render(&mut settling)?;
         let apart = distance_db(&magnitudes[before], &magnitudes[now]);
         if apart.is_nan() || apart < APART_DB {
@@ -116,6 +117,7 @@ pub(crate) fn interpolate(case: &Case) -> Found {
                 10 => b,
                 _ => continue,
             };
+            // Bits are compared, so that -0 is not taken for 0.
             let bits = |set: &[f64]| set.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             if bits(&mix) != bits(end) {
                 let what = format!("{mix:?} is not the set {end:?}; it must be, to the bit");

@@ -90,6 +90,7 @@ fn sequence(case: &Case, fitted: &[Vec<f64>], seed: u64) -> Result<bool, Finding
     let what = || format!("{first:?} in {low_hz} to {high_hz} Hz at {rate_hz} Hz");
     let wrong = |f: Finding| Finding::failed(format!("{}: {}", what(), f.message));
     let whole = play(&mut Random::new(0)).map_err(wrong)?;
+    // Not the seed itself, because its numbers have drawn the steps.
     let cut = play(&mut Random::new(seed ^ 0x5bd1_e995)).map_err(wrong)?;
     match first_difference(&whole, &cut) {
         None => Ok(true),
@@ -152,6 +153,7 @@ fn play(
 ) -> Result<Vec<f32>, Finding> {
     let mut buffer = vec![0.0; case.model.most_parameters()];
     let mut all: Vec<f32> = Vec::new();
+    // A generator does not tell its seed, so its next number is compared.
     let is_cut = cut.clone().bits() != Random::new(0).bits();
     for step in steps {
         let changed = match step {

@@ -64,6 +64,7 @@ pub(crate) fn grid(case: &Case) -> Found {
         let ways = [
             ("one by one", by_chunks(&grid, 1, ask)?),
             ("in reversed chunks of ten", by_chunks(&grid, 10, ask)?),
+            // Every tenth frequency of the fine grid is one of the usual grid.
             ("within a 0.5 Hz grid", ask(&fine_grid())?.into_iter().step_by(10).collect()),
         ];
         for (way, magnitude) in ways {

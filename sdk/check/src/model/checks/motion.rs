@@ -192,6 +192,7 @@ fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
     }
     for (speed_mm_s, force_n) in [(-1.0, 0.4), (80.0, -1.0), (f64::INFINITY, 0.4)] {
         let condition = known(Some(speed_mm_s), Some(force_n));
+        // CANNOT_FIT is about the spectrum, so the condition was accepted before.
         let taken = REFERENCES.iter().find(
             |reference| !matches!(case.fit_at(reference, condition), Err(e) if !is_cannot_fit(&e)),
         );

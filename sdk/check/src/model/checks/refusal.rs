@@ -77,6 +77,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
     ];
     let mut at = 0;
     for (i, field) in descriptor.fields.iter().enumerate() {
+        // A range of one value has no width, and the number must still leave it.
         let span = (field.max - field.min).max(1.0);
         let wrong = [field.min - span, field.max + span, f64::NAN, f64::INFINITY];
         for number in wrong.into_iter().filter(|_| !lists[i].is_empty()) {
@@ -92,6 +93,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
                 set[at] = len;
                 broken.push((format!("`{}` of length {len}", field.name), set));
             }
+            // A list is stored behind its length.
             at += 1;
         }
         at += lists[i].len();

@@ -34,6 +34,7 @@ pub(crate) fn agrees(case: &Case) -> Found {
         if a.parameters.len() != b.parameters.len() {
             return Err(say("the two models have different numbers of parameters"));
         }
+        // The floor is for parameters that are 0 in both.
         let relative = |(a, b): (&f64, &f64)| (a - b).abs() / a.abs().max(b.abs()).max(1e-12);
         let pairs = a.parameters.iter().zip(&b.parameters);
         fits = pairs.map(relative).fold(fits, f64::max);

@@ -27,11 +27,13 @@ pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let metadata: Metadata = settings.table(Metadata::NAMES)?;
     settings.finish()?;
     metadata.check()?;
+    // `Reading` has taken this key, which is in both tables.
     fitting.strict = Some(reading.strict);
     let registry = Registry::builtin();
     let request = request(&reading, &fitting, &metadata, &registry)?;
     progress::start(reading.count() + request.models.len());
     let fitted = fitted(&reading, &conditions, &request);
+    // Before an error returns, because the next call must not report the steps of this one.
     progress::end();
     let mut fitted = fitted?;
     metadata.apply(&mut fitted.asset.manifest);

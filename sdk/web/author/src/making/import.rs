@@ -139,6 +139,7 @@ pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Ref
     progress::start(1);
     progress::begin("import", &file);
     let imported = htex_exchange::import(&file, bytes, &how, &registry);
+    // Before an error returns, because the next call must not report the steps of this one.
     progress::end();
     let imported = imported?;
     Answer::new(&Report::of(format, &imported), imported.to_bytes()?)

@@ -92,6 +92,7 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
         ..Condition::default()
     };
     let level_rms = given.number("level")?;
+    // Only the model knows these names, and it checks them later.
     let parameters = given.object("parameters")?.rest();
     given.finish()?;
     let mut values = BTreeMap::new();

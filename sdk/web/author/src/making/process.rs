@@ -115,6 +115,7 @@ impl<'a> Processed<'a> {
             [recording.second(part.start), recording.second(part.end)]
         };
         Self {
+            // Empty here and below: the caller fills in columns and picture.
             columns: Columns { columns: Vec::new(), rate_hz: None, map: "", problem: None },
             rate_hz: recording.rate_hz,
             duration_s: recording.duration_s(),
@@ -150,6 +151,7 @@ impl Picture {
     /// Returns the picture, and its numbers as bytes.
     fn of(recording: &Recording) -> (Self, Vec<u8>) {
         let samples = recording.samples();
+        // `chunks` panics at 0.
         let per_step = samples.div_ceil(STEPS).max(1);
         let axes = ["signal", "signal_y", "signal_z"];
         let axes = axes.into_iter().zip(recording.axes.iter().map(Some));

@@ -46,6 +46,7 @@ impl<'a> Reading<'a> {
         settings: &mut Document,
         files: Files<'a>,
     ) -> Result<Self, Refusal> {
+        // These three are no settings of the table that follows.
         let given =
             Given { speed: settings.number("speed_mm_s")?, force: settings.number("force_n")? };
         let strict = settings.flag("strict")?;

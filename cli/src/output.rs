@@ -56,6 +56,11 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
 /// Writes a value as JSON with a line end. Characters that could control a terminal or change the
 /// direction of text are escaped as JSON escapes, because such characters occur only in strings.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    write(&(json_line(value)? + "\n"))
+}
+
+/// Returns a value as JSON on one line, in which every character that steers a terminal is escaped.
+pub(crate) fn json_line(value: &impl Serialize) -> Result<String, Failure> {
     use std::fmt::Write as _;
     let text = serde_json::to_string(value)?;
     let mut escaped = String::with_capacity(text.len() + 1);
@@ -66,7 +71,7 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
             false => escaped.push(c),
         }
     }
-    write(&(escaped + "\n"))
+    Ok(escaped)
 }
 
 /// Whether a character is a control character, changes the direction of text, or ends a line.

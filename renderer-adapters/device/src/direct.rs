@@ -65,7 +65,8 @@ impl DirectVoltage {
         let mut sum_v = self.sum_v;
         for (at, (sample, leaves)) in samples.iter().zip(leaving).enumerate() {
             sum_v += (*sample).into() - leaves;
-            if sum_v.abs() > most_v {
+            // A sum that is not a number must not count as a small one.
+            if !(sum_v.abs() <= most_v) {
                 let mean_v = sum_v / frames as f64;
                 return Some(Excess { at, mean_v });
             }
@@ -124,6 +125,12 @@ mod tests {
             let sum: f64 = samples[from..=i].iter().sum();
             sum.abs() > limit_v * (1.0 + ROUNDING) * frames as f64
         })
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_an_excess() {
+        let direct = DirectVoltage::new(1.0, 1_000.0);
+        assert_eq!(direct.excess(&[0.5, f64::NAN, 0.5]).unwrap().at, 1);
     }
 
     #[test]

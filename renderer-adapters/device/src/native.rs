@@ -188,10 +188,14 @@ impl NativeDevice {
         let Some(excess) = direct.excess(samples) else {
             return Ok(());
         };
-        let error = DeviceError::DirectVoltage {
-            frame: self.written + excess.at as u64,
-            mean_v: excess.mean_v,
-            limit_v: direct.limit_v(),
+        let error = match self.capabilities.check_samples(samples, self.written) {
+            // A library may take what it must refuse, and would then hide later excesses.
+            Err(not_a_number) if excess.mean_v.is_nan() => not_a_number,
+            _ => DeviceError::DirectVoltage {
+                frame: self.written + excess.at as u64,
+                mean_v: excess.mean_v,
+                limit_v: direct.limit_v(),
+            },
         };
         // Closing is what takes the output of a library's device to zero.
         self.opened.close()?;

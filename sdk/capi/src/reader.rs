@@ -80,7 +80,13 @@ impl Reader {
                 "the reader's size is not that of its struct; set it to sizeof(htex_reader)",
             ));
         }
-        let read = reader.read.ok_or(Failure::argument("the reader's function `read` is NULL"))?;
+        let Some(read) = reader.read else {
+            if let Some(close) = reader.close {
+                // SAFETY: the caller vouches for the function, which is called once.
+                unsafe { close(reader.context) };
+            }
+            return Err(Failure::argument("the reader's function `read` is NULL"));
+        };
         Ok(Self { len: reader.len, context: reader.context, read, close: reader.close })
     }
 

@@ -5,7 +5,7 @@ use htex_format::library::{Entry, IndexedLaw, Interval};
 
 use crate::assets::short_name;
 use crate::failure::Failure;
-use crate::output::{print, write};
+use crate::output::{json_line, print, write};
 
 /// Number of bytes that are buffered before they are written.
 const BUFFER_BYTES: usize = 64 << 10;
@@ -24,7 +24,7 @@ impl Listing {
 
     pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
         if self.is_json {
-            let json = serde_json::to_string(entry)?;
+            let json = json_line(entry)?;
             self.text += if self.count == 0 { "[" } else { ",\n " };
             self.text += &json;
         } else {

@@ -333,7 +333,12 @@ impl OwnFolder {
 
     /// Creates a file for writing. First removes what a killed process left under its name.
     fn create_new(&self, path: &Path) -> io::Result<File> {
-        let create = || OpenOptions::new().write(true).create_new(true).open(path);
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        if self.readable_by == Readers::User {
+            private::only_user(&mut options);
+        }
+        let create = || options.open(path);
         match create() {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
                 // This removes a link itself, never its target.
@@ -398,6 +403,16 @@ fn no_follow(_: &mut OpenOptions) {}
 mod tests {
     use super::*;
     use std::os::unix::fs::symlink;
+
+    #[test]
+    fn files_of_a_private_folder_are_for_this_user_alone() {
+        use std::os::unix::fs::PermissionsExt;
+        let place = tempfile::tempdir().unwrap();
+        let own = OwnFolder::private(&place.path().join("takes"));
+        own.write(Path::new("take.csv"), b"1").unwrap();
+        let mode = fs::metadata(place.path().join("takes/take.csv")).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o600);
+    }
 
     /// Links of every kind at every place do not lead to anything outside being read, written or
     /// removed.

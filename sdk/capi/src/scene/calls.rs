@@ -89,7 +89,7 @@ impl Source<'_> {
         };
         let data = match self {
             Self::Path(path) => {
-                let asset = first(&std::fs::read(path).ok()?)?;
+                let asset = first(&bounded(path).ok()?)?;
                 AssetData::open(&path.parent()?.join(asset)).ok()?
             }
             Self::Memory(bytes, files) => {
@@ -98,6 +98,14 @@ impl Source<'_> {
         };
         Some(data.manifest.quantity)
     }
+}
+
+/// Reads as much of a scene file as a valid one may have.
+fn bounded(path: &Path) -> io::Result<Vec<u8>> {
+    use std::io::Read;
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(Limits::default().file_bytes).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 impl SceneFiles for Files {

@@ -3,13 +3,17 @@
 use std::collections::VecDeque;
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::thread::JoinHandle;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::harness::{Finding, Outcome};
 
 /// Maximum number of bytes of a child's output that are kept.
 const MOST_OUTPUT: usize = 1 << 20;
+
+/// Longest time that output is awaited after the child has ended.
+const AFTER_THE_END: Duration = Duration::from_secs(1);
 
 /// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds
 /// `timeout`, the finding says so.
@@ -25,15 +29,15 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
             let seconds = timeout.as_secs_f64();
             let message = format!("it did not end within {seconds} s");
             let finding = Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds);
-            announced(finding, last_finding(&text(out)))
+            announced(finding, last_finding(&text(&out)))
         }
-        Some(status) => match last_finding(&text(out)) {
+        Some(status) => match last_finding(&text(&out)) {
             // A finding that the check printed before a step that may crash.
             Some(finding) if finding.outcome == Outcome::Crashed => {
-                announced(crashed(status, &text(err)), Some(finding))
+                announced(crashed(status, &text(&err)), Some(finding))
             }
             Some(finding) => finding,
-            None => crashed(status, &text(err)),
+            None => crashed(status, &text(&err)),
         },
     }
 }
@@ -47,26 +51,40 @@ fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
     finding
 }
 
-/// Reads a pipe to its end, so that the child never blocks on it. Keeps the last [`MOST_OUTPUT`]
-/// bytes.
-fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
+/// The last [`MOST_OUTPUT`] bytes of a child's output.
+struct Drained {
+    kept: Arc<Mutex<VecDeque<u8>>>,
+    /// Is closed at the end of the pipe.
+    end: Receiver<()>,
+}
+
+/// Reads a pipe to its end, so that the child never blocks on it.
+fn drain(pipe: Option<impl Read + Send + 'static>) -> Drained {
+    let (open, end) = channel();
+    let kept = Arc::new(Mutex::new(VecDeque::new()));
+    let drained = Drained { kept: Arc::clone(&kept), end };
     std::thread::spawn(move || {
-        let mut kept = VecDeque::new();
+        let _open: Sender<()> = open;
         let mut part = vec![0; 65_536];
         if let Some(mut pipe) = pipe {
             // A pipe that cannot be read counts as ended. The finding then has only the exit
             // status.
             while let Ok(len @ 1..) = pipe.read(&mut part) {
+                let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
                 kept.extend(&part[..len]);
-                kept.drain(..kept.len().saturating_sub(MOST_OUTPUT));
+                let excess = kept.len().saturating_sub(MOST_OUTPUT);
+                kept.drain(..excess);
             }
         }
-        kept.into()
-    })
+    });
+    drained
 }
 
-fn text(drained: JoinHandle<Vec<u8>>) -> String {
-    String::from_utf8_lossy(&drained.join().unwrap_or_default()).into_owned()
+fn text(drained: &Drained) -> String {
+    // A process that the child has started may hold the pipe open for ever.
+    let _ = drained.end.recv_timeout(AFTER_THE_END);
+    let mut kept = drained.kept.lock().unwrap_or_else(PoisonError::into_inner);
+    String::from_utf8_lossy(kept.make_contiguous()).into_owned()
 }
 
 /// Waits for the child to end; kills it after `timeout`.
@@ -95,4 +113,20 @@ fn crashed(status: ExitStatus, err: &str) -> Finding {
     let last = err.lines().rev().find(|line| !line.trim().is_empty());
     let said = last.map(|line| format!("; its last line: {line}")).unwrap_or_default();
     Finding::new(Outcome::Crashed, format!("the process ended with {status}{said}"))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_that_the_check_leaves_behind_delays_nothing() {
+        let start = Instant::now();
+        let mut check = Command::new("sh");
+        check.args(["-c", "sleep 20 & echo left behind >&2"]);
+        let finding = run_process(&mut check, Duration::from_secs(10));
+        assert_eq!(finding.outcome, Outcome::Crashed);
+        assert!(finding.message.contains("left behind"), "{}", finding.message);
+        assert!(start.elapsed() < Duration::from_secs(10));
+    }
 }

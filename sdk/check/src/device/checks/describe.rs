@@ -179,7 +179,12 @@ fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
 fn wrong_lines(setting: &Setting) -> Vec<String> {
     let values = match &setting.kind {
         SettingKind::Number { max, .. } => {
-            vec!["".to_owned(), "NaN".to_owned(), "one".to_owned(), format!("{}", max * 2.0 + 1.0)]
+            vec![
+                "".to_owned(),
+                "NaN".to_owned(),
+                "one".to_owned(),
+                format!("{}", max + max.abs() + 1.0),
+            ]
         }
         SettingKind::Choice { .. } => vec!["".to_owned(), "no such choice".to_owned()],
         SettingKind::Path | SettingKind::Text => Vec::new(),

@@ -66,7 +66,7 @@ impl DirectVoltage {
         for (at, (sample, leaves)) in samples.iter().zip(leaving).enumerate() {
             sum_v += (*sample).into() - leaves;
             // A sum that is not a number must not count as a small one.
-            if !(sum_v.abs() <= most_v) {
+            if sum_v.is_nan() || sum_v.abs() > most_v {
                 let mean_v = sum_v / frames as f64;
                 return Some(Excess { at, mean_v });
             }

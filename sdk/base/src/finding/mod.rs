@@ -17,7 +17,7 @@
 #![forbid(unsafe_code)]
 
 mod cell;
-mod finding;
+mod entry;
 mod hint;
 mod page;
 mod plain;
@@ -27,7 +27,7 @@ mod rule;
 
 pub use crate::rule_table;
 pub use cell::as_text;
-pub use finding::{Finding, Severity, listed, summary};
+pub use entry::{Finding, Severity, listed, summary};
 pub use hint::{Hint, Notice};
 pub use page::rules_page;
 pub use plain::{plain, steers};

@@ -12,9 +12,9 @@
 //! The faults in `tests/bad-devices` and `tests/bad-sources` test these checkers.
 #![forbid(unsafe_code)]
 
+mod adapter;
 mod case;
 mod checks;
-mod device;
 mod report;
 pub mod source;
 mod table;

@@ -3,9 +3,9 @@
 use crate::harness::Check;
 use htex_device::Adapter;
 
+use crate::device::adapter::Case;
 use crate::device::case::CheckedKind;
 use crate::device::checks::{describe, end, limit, open, write};
-use crate::device::device::Case;
 
 impl CheckedKind for dyn Adapter {
     const CHECKS: &'static [Check<Case>] = CHECKS;

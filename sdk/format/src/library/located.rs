@@ -5,8 +5,8 @@ use std::io;
 use htex_base::storage::{Location, Remote, Storage};
 
 use crate::library::error::LibraryError;
-use crate::library::library::Library;
 use crate::library::opening::FIRST_READ;
+use crate::library::reader::Library;
 use crate::library::source::{LibrarySource, LocalFile};
 
 /// A local or remote file, of which only the requested ranges are read.

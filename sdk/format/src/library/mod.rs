@@ -47,7 +47,6 @@ mod fault;
 mod header;
 mod index;
 mod leaf;
-mod library;
 mod limits;
 #[cfg(feature = "storage")]
 mod located;
@@ -58,6 +57,7 @@ mod packer;
 mod page;
 mod query;
 mod ratio;
+mod reader;
 mod root;
 mod rules;
 #[cfg(feature = "write")]
@@ -74,7 +74,6 @@ pub use entry::{Conditions, Entry, IndexedExponent, IndexedLaw, Interval};
 pub use error::LibraryError;
 pub use header::{EXTENSION, MAGIC};
 pub use index::Index;
-pub use library::{Entries, Library};
 pub use limits::Limits;
 #[cfg(feature = "storage")]
 pub use located::Located;
@@ -84,6 +83,7 @@ pub use opening::{FIRST_READ, Opening, Progress};
 pub use packer::Packed;
 pub use query::Query;
 pub use ratio::Ratio;
+pub use reader::{Entries, Library};
 pub use rules::{RULES, findings_page};
 pub use source::{LibrarySource, LocalFile};
 pub use validate::{validate, validate_source};

@@ -12,10 +12,10 @@ use crate::library::facts::Facts;
 use crate::library::fault::entry_place;
 use crate::library::index::{assembled, changed};
 use crate::library::leaf::length;
-use crate::library::library::Library;
 use crate::library::limits::Limits;
 use crate::library::name::Names;
 use crate::library::ratio::Ratio;
+use crate::library::reader::Library;
 use crate::library::rules as rule;
 use crate::library::source::{LibrarySource, LocalFile};
 

@@ -21,8 +21,8 @@
 //! are inserted.
 #![forbid(unsafe_code)]
 
-mod bake;
 mod compress;
+mod design;
 mod encode;
 mod error;
 mod filter;
@@ -35,7 +35,7 @@ mod source;
 mod texture;
 mod tones;
 
-pub use bake::{BakeLimits, Baked, bake};
+pub use design::{BakeLimits, Baked, bake};
 pub use error::BakeError;
 pub use grid::Grid;
 pub use source::{c_header, c_name, is_c_name, is_rust_name, rust_name, rust_source};

@@ -5,8 +5,8 @@ use crate::harness::{Finding, Found, made_up_extensions};
 use htex_device::abi::Code;
 use htex_device::{Descriptor, DeviceError, Setting, SettingKind, Settings, StreamFormat};
 
+use crate::device::adapter::Case;
 use crate::device::case::{self, CheckedKind};
-use crate::device::device::Case;
 
 const INVALID_SETTING: i64 = Code::InvalidSetting as i64;
 /// Block size of a device that is opened only to test its settings, frames.

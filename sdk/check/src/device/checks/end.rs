@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::harness::{Finding, Found};
 use htex_device::{Adapter, Device, DeviceError, StreamFormat};
 
-use crate::device::device::{Case, write_all};
+use crate::device::adapter::{Case, write_all};
 
 /// All frames must be played, and nothing can be written afterwards.
 pub(crate) fn finishes(case: &Case) -> Found {

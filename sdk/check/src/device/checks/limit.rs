@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::harness::{Finding, Found};
 use htex_device::DeviceError;
 
-use crate::device::device::{Case, write_all};
+use crate::device::adapter::{Case, write_all};
 
 /// Samples beyond the limit must be refused, both positive and negative.
 pub(crate) fn over(case: &Case) -> Found {

@@ -4,7 +4,7 @@ use crate::harness::{Finding, Found};
 use htex_device::DeviceError;
 use htex_device::abi::{Code, MAX_BLOCK_FRAMES};
 
-use crate::device::device::{Case, rates, write_all};
+use crate::device::adapter::{Case, rates, write_all};
 
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::harness::{Finding, Found, Growth};
 use htex_device::Status;
 
-use crate::device::device::{Case, write_all};
+use crate::device::adapter::{Case, write_all};
 
 /// Number of blocks over which memory must not grow.
 const BLOCKS: usize = 10_000;

@@ -49,7 +49,7 @@ pub struct Conditions {
     pub force_n: Option<Interval>,
 }
 
-/// A motion law ([`htex_format::Law`]) without its measurements.
+/// A motion law ([`crate::Law`]) without its measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct IndexedLaw {
     /// How frequencies change with the speed.

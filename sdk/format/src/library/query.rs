@@ -26,7 +26,7 @@ pub struct Query {
     /// Tags that the texture must have, ignoring case.
     pub tags: Vec<String>,
     /// Speed, mm/s, that must lie in the recorded range, or outside it by at most 5 %
-    /// ([`htex_format::SAME_CONDITION`]).
+    /// ([`crate::SAME_CONDITION`]).
     pub speed_mm_s: Option<f64>,
     /// Force, newtons, with the same tolerance as the speed.
     pub force_n: Option<f64>,

@@ -20,7 +20,7 @@ use crate::library::rules as rule;
 use crate::library::source::{LibrarySource, LocalFile};
 
 /// Validates a library file within the default limits: every page of the index, and every texture
-/// as [`htex_format::validate`] does.
+/// as [`crate::validate`] does.
 ///
 /// # Errors
 /// If the file cannot be read. Anything wrong with its contents is a finding.

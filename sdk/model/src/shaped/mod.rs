@@ -186,7 +186,7 @@ pub trait Curve: Sized + Send + 'static {
     }
 }
 
-/// Writes a curve's magnitude at unit RMS, as [`htex_model::Model::magnitude`] requires it.
+/// Writes a curve's magnitude at unit RMS, as [`crate::Model::magnitude`] requires it.
 /// Frequencies outside the band get zero.
 ///
 /// # Errors

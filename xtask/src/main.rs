@@ -32,7 +32,8 @@ enum Task {
     Dist {
         #[arg(long, value_name = "DIR")]
         prefix: PathBuf,
-        /// Also install, in lib/whole, libhtex with scenes, libraries and the engine of WASM modules
+        /// Also install, in lib/whole, libhtex with scenes, libraries and the engine of WASM
+        /// modules
         #[arg(long)]
         whole: bool,
     },

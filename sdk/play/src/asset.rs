@@ -420,8 +420,8 @@ impl Asset {
         sorted.into_iter().map(|(i, _)| i).collect()
     }
 
-    /// Returns the first of [`Self::ranked`]. Asks whether a model is there only as often as needed,
-    /// since that takes longer than the rest of the choice.
+    /// Returns the first of [`Self::ranked`]. Asks whether a model is there only as often as
+    /// needed, since that takes longer than the rest of the choice.
     fn best(&self, measure: ErrorMeasure) -> Option<usize> {
         let all = &self.data.manifest.representations;
         let sorted = self.by_error(measure);

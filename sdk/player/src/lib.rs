@@ -10,9 +10,9 @@
 //! ```
 //!
 //! For identical bits no operations are fused; cosines, logarithms and powers are polynomials, and
-//! the square root is the one of `libm`. `sdk/play/tests/it/bake_board.rs` compares the bits of an emulated
-//! Cortex-M4F with the host's. `c/htex_player.c` is the same player in C, with the same bits
-//! (`tests/it/c.rs`).
+//! the square root is the one of `libm`. `sdk/play/tests/it/bake_board.rs` compares the bits of an
+//! emulated Cortex-M4F with the host's. `c/htex_player.c` is the same player in C, with the same
+//! bits (`tests/it/c.rs`).
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,8 +1,8 @@
 //! Makes inputs that differ from a valid one in one value, or in two adjacent values, which take
 //! every extreme that can be written, always in the same order.
 //!
-//! `tests/tests/it/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer
-//! covers the rest.
+//! `tests/tests/it/edges.rs` sets values, cells and bytes of the seeds to every boundary; the
+//! fuzzer covers the rest.
 
 use serde_json::Value;
 

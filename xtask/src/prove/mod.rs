@@ -44,19 +44,19 @@ pub enum Proof {
     Scenes,
     /// 10,000 random recipes and tables touch nothing outside their folder of results
     ///
-    /// They lie in a folder with traps. They request nothing, and each takes at most 512 MiB and 30 s.
-    /// Tests take 300.
+    /// They lie in a folder with traps. They request nothing, and each takes at most 512 MiB and 30
+    /// s. Tests take 300.
     Recipes,
     /// 1,000 random scenes and studies, and 1,000 hostile programs at a page, harm no finger
     ///
-    /// At most 1 V of direct voltage and the limit reach a display, and zero within half a second. The
-    /// page loses no answer and delays no press. Tests take 20 and 60.
+    /// At most 1 V of direct voltage and the limit reach a display, and zero within half a second.
+    /// The page loses no answer and delays no press. Tests take 20 and 60.
     Fingers,
     /// Any two failures leave zero at a display, or a sentence every second
     ///
-    /// Player, guardian, helpers, driver and card fail at any moments, with Ctrl-C at any other. The
-    /// display is at zero 0.5 s after the detection, or the sentence to switch the amplifier off is
-    /// printed every second. Tests take one failure.
+    /// Player, guardian, helpers, driver and card fail at any moments, with Ctrl-C at any other.
+    /// The display is at zero 0.5 s after the detection, or the sentence to switch the amplifier
+    /// off is printed every second. Tests take one failure.
     Zero,
     /// Voices of a day keep their power and phase, and do not repeat; tests take an hour
     Days {

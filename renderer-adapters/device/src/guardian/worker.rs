@@ -1,4 +1,5 @@
-//! The player's thread that talks to the guardian and carries out what [`crate::guardian::decision`] decides.
+//! The player's thread that talks to the guardian and carries out what
+//! [`crate::guardian::decision`] decides.
 //!
 //! It never blocks. Pipes, attempts and standard error may all hang, so each has its own thread.
 

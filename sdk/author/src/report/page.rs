@@ -23,7 +23,8 @@ impl Page {
         self.html(&Element::new("h2").text(text).render());
     }
 
-    /// Appends HTML without escaping, such as the result of [`Plot::to_svg`](crate::report::Plot::to_svg),
+    /// Appends HTML without escaping, such as the result of
+    /// [`Plot::to_svg`](crate::report::Plot::to_svg),
     /// [`Table::to_html`](crate::report::Table::to_html) or [`paragraph`].
     pub fn html(&mut self, html: &str) {
         self.body.push('\n');

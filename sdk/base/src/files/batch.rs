@@ -39,8 +39,8 @@ impl Batch {
     /// Writes a file. It is in its place after [`Self::finish`], or earlier.
     ///
     /// # Errors
-    /// The errors of [`crate::files::write_file`], and the errors of earlier files if this file completes
-    /// their group.
+    /// The errors of [`crate::files::write_file`], and the errors of earlier files if this file
+    /// completes their group.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_to(Target::of(path, Readers::All)?, bytes)
     }

@@ -6,8 +6,8 @@ use crate::library::fault::Fault;
 use crate::library::rules as rule;
 
 /// Adds up the bytes of textures that are read one after another, and compares them with
-/// [`crate::library::Limits::ratio`] times the bytes of the file. A program that reads all textures, to
-/// check or to unpack them, must count each one first.
+/// [`crate::library::Limits::ratio`] times the bytes of the file. A program that reads all
+/// textures, to check or to unpack them, must count each one first.
 #[derive(Debug, Clone)]
 pub struct Ratio {
     file_bytes: u64,

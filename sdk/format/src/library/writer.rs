@@ -53,8 +53,8 @@ impl Writer {
     /// Adds a texture. `asset` holds the bytes of a `.htex` file, which are stored unchanged.
     ///
     /// # Errors
-    /// - The name breaks a rule of [`check_name`](crate::library::check_name), or was added before in the
-    ///   same or another case.
+    /// - The name breaks a rule of [`check_name`](crate::library::check_name), or was added before
+    ///   in the same or another case.
     /// - The asset is not valid, or has more tags or longer tags than the index can hold (64 tags
     ///   of 255 bytes).
     /// - The bytes cannot be written.

@@ -14,11 +14,11 @@
 //! model.
 //!
 //! Because mixing is linear, a block stores only a few filters, and each condition mixes them. The
-//! model `bands` on the grid of `tests/it/bake_sizes.rs` takes 16 kB; with one filter in single precision
-//! for each of its 60 conditions it would take 77 kB. A lattice would be cheaper for AR. But
-//! between conditions its spectra would differ from the model's, which interpolates line spectral
-//! frequencies. Where the mixed filters differ from the model by more than `--within`, conditions
-//! are inserted.
+//! model `bands` on the grid of `tests/it/bake_sizes.rs` takes 16 kB; with one filter in single
+//! precision for each of its 60 conditions it would take 77 kB. A lattice would be cheaper for AR.
+//! But between conditions its spectra would differ from the model's, which interpolates line
+//! spectral frequencies. Where the mixed filters differ from the model by more than `--within`,
+//! conditions are inserted.
 #![forbid(unsafe_code)]
 
 mod compress;

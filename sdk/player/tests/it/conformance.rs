@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 
 use xtask::generated::{file, only};
 
-/// The bits are the same on every processor: `sdk/play/tests/it/bake_board.rs` compares blocks of models
-/// with a Cortex-M4F.
+/// The bits are the same on every processor: `sdk/play/tests/it/bake_board.rs` compares blocks of
+/// models with a Cortex-M4F.
 #[test]
 fn generated_blocks_and_samples_are_fresh() {
     let files = cases::files();

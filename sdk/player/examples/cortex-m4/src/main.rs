@@ -1,8 +1,8 @@
 //! Plays the block at [`BLOCK`] with the script of the tests. Prints a hash of the samples and the
 //! number of instructions per sample.
 //!
-//! `docs/microcontroller.md` has the commands. `sdk/play/tests/it/bake_board.rs` compares the hash with the
-//! host's.
+//! `docs/microcontroller.md` has the commands. `sdk/play/tests/it/bake_board.rs` compares the hash
+//! with the host's.
 #![no_std]
 #![no_main]
 

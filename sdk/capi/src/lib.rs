@@ -13,6 +13,8 @@
 
 mod asset;
 #[cfg(target_family = "wasm")]
+// Pages call these functions by their exported names.
+#[allow(unreachable_pub)]
 mod browser;
 mod device;
 mod handles;

@@ -16,14 +16,13 @@ const VARIABLE: &str = "HTEX_GENERATE";
 /// The test programs that have generated files.
 const PROGRAMS: [&str; 2] = ["command", "it"];
 
-/// Writes all generated files. It builds the whole workspace with the same features as
-/// `cargo test`.
+/// Writes all generated files, in the same build as `cargo test`.
 ///
 /// # Errors
 /// When a test of a generated file fails.
 pub fn generate() -> Result<()> {
     let mut cargo = Command::new(crate::places::cargo());
-    cargo.args(["test", "--quiet", "--workspace"]);
+    cargo.args(["test", "--quiet"]);
     cargo.args(PROGRAMS.iter().flat_map(|test| ["--test", test]));
     // One test at a time, because several write parts of the same document.
     cargo.args(["--", "generated_", "--test-threads=1"]);

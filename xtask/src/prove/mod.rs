@@ -160,7 +160,7 @@ impl Proof {
 /// Runs the tests of these names on everything that they normally sample, in the same build as
 /// `cargo test`.
 fn whole_test(program: &str, tests: &str) -> Result<()> {
-    let test = ["test", "--locked", "--workspace", "--test", program, tests, "--", "--nocapture"];
+    let test = ["test", "--locked", "--test", program, tests, "--", "--nocapture"];
     cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")])
 }
 

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the environment is set.
 
 #[allow(dead_code)]
-#[path = "it/parametric_mock/mod.rs"]
+#[path = "paced/parametric_mock/mod.rs"]
 mod mock;
 
 use htex_device::{Adapter, StreamFormat};

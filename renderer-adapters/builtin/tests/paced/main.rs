@@ -1,0 +1,14 @@
+//! Tests of devices that keep a clock, in one program without tests that compute for long: their
+//! threads must be woken in time.
+#![allow(unreachable_pub, clippy::unwrap_used, unsafe_code, reason = "a failed test may panic")]
+
+mod channels;
+mod motor;
+mod parametric_envelopes;
+mod parametric_mock;
+mod parametric_points;
+mod parametric_rules;
+#[cfg(target_os = "linux")]
+mod sdl;
+#[cfg(all(not(feature = "audio"), target_os = "linux"))]
+mod with_alsa;

@@ -50,6 +50,12 @@ fn bursts_follow(file: &Path) {
         println!("{speed_mm_s} mm/s: {a_second} bursts a second");
         assert!((a_second / speed_mm_s - 0.2).abs() < 0.02, "{speed_mm_s} mm/s: {a_second}");
         assert!(matches!(voice.coverage(htex::Motion::new(100.0, FORCE_N)).speed, Reach::Followed));
+        // A voice that is made at a speed must not also be read faster than it was recorded.
+        let at = options().with_motion(htex::Motion::new(speed_mm_s, FORCE_N));
+        let mut made = asset.voice(&at).unwrap();
+        let a_second =
+            bursts_a_second(&self::played(&mut made, 10.0, |_| (speed_mm_s, FORCE_N, None)));
+        assert!((a_second / speed_mm_s - 0.2).abs() < 0.02, "made at {speed_mm_s}: {a_second}");
     }
     // The force determines the level, as the model specifies.
     let loudness = |force_n| rms(&played(&mut voice(&asset), 4.0, |_| (SPEED_MM_S, force_n, None)));
@@ -213,9 +219,12 @@ fn fitted(file: &Path, recording: &[f64]) -> Asset {
     Asset::with_registry(fitted.asset, registry)
 }
 
+fn options() -> VoiceOptions<'static> {
+    VoiceOptions::default().with_rate_hz(RATE_HZ).with_seed(3)
+}
+
 fn voice(asset: &Asset) -> Voice {
-    let options = VoiceOptions::default().with_rate_hz(RATE_HZ).with_seed(3);
-    let voice = asset.voice(&options).unwrap();
+    let voice = asset.voice(&options()).unwrap();
     assert!(voice.follows_motion());
     voice
 }

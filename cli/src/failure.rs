@@ -121,7 +121,7 @@ impl Failure {
         }
         let findings = self.findings();
         let first = match text.split_once('\n') {
-            // The message lists the findings, too, but without their flags. They are listed below.
+            // The message also lists the findings, but without their flags. They are listed below.
             Some((first, _)) if !findings.is_empty() => first,
             _ => &text,
         };

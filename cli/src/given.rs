@@ -13,7 +13,7 @@ pub(crate) struct Given<T> {
 
 impl<T: Args> Given<T> {
     fn settings_of(matches: &ArgMatches) -> Vec<String> {
-        // The parsed command has other arguments, too. This one has only those of `T`.
+        // The parsed command has further arguments. This one has only the arguments of `T`.
         let command = T::augment_args(Command::new("given"));
         let given = command.get_arguments().filter(|argument| {
             let source = matches.value_source(argument.get_id().as_str());

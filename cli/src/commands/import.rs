@@ -82,7 +82,7 @@ impl Import {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let plugins = self.plugins.files().iter().map(PathBuf::as_path);
         let beside = license_file(&self.file);
-        // The licence file is read, too, so the output must not replace it.
+        // The command also reads the licence file, so the output must not replace it.
         let inputs = [self.file.as_path(), &beside].into_iter().chain(plugins);
         check_outputs([self.output.as_path()], inputs)?;
         checked(&self.metadata)?;

@@ -88,7 +88,7 @@ impl Synth {
         let beyond = self.choice.beyond(&asset, options.effects).map_err(of_file(&self.asset))?;
         warn(&Vec::from_iter(beyond));
         let mut voice = asset.voice(&options).map_err(of_file(&self.asset))?;
-        // At least one, because a very short time is more than 0, too.
+        // At least one, because a very short time is also more than 0.
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::of(asset.manifest());
         let wav = Written::Named(&self.output);

@@ -74,7 +74,7 @@ impl Reader {
     }
 
     fn new(reader: &htex_reader) -> Result<Self, Failure> {
-        // A longer struct is that of a newer header, which begins in the same way.
+        // A longer struct comes from a newer header, which begins in the same way.
         if (reader.size as usize) < size_of::<htex_reader>() {
             return Err(Failure::argument(
                 "the reader's size is not that of its struct; set it to sizeof(htex_reader)",

@@ -119,7 +119,7 @@ impl Device {
     /// Goes to rest.
     fn close(&mut self, py: Python<'_>) {
         let device = self.slot().take();
-        // Going to rest may take a while, and other threads go on meanwhile.
+        // Going to rest may take a while, and other threads must not wait for it.
         py.detach(|| drop(device));
     }
 

@@ -82,7 +82,7 @@ impl Voice {
             let text = "expected a one-dimensional NumPy array of float32";
             return Err(PyTypeError::new_err(text));
         };
-        // `as_slice_mut` would refuse it, too, but without advice.
+        // `as_slice_mut` would also refuse it, but without advice.
         if !array.is_c_contiguous() {
             let text = "the array is not contiguous; give one without gaps, or render and copy";
             return Err(PyValueError::new_err(text));

@@ -74,7 +74,7 @@ pub fn release(release: &Release) -> Result<()> {
         "{} is missing: its README says how the files of a version are kept",
         kept.display()
     );
-    // Sources contain no parts of others, so they need no list of licences.
+    // Sources contain no third-party parts, so they need no list of licences.
     let is_compiled = release.has("npm") || !platforms.is_empty();
     let notices =
         if is_compiled && !release.trial { Some(parts::notices(&platforms)?) } else { None };

@@ -108,7 +108,7 @@ impl Paced {
             self.shared.changed();
         }
         drop(state);
-        // The motor's thread can go on meanwhile.
+        // The motor's thread can go on until then.
         let peak = taken.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
         self.peak = self.peak.max(f64::from(peak));
         self.written += taken.len() as u64;

@@ -63,7 +63,7 @@ pub(super) fn corrected(
         let mut spectrum = window.spectrum.clone();
         for (bins, slope) in octaves.iter().zip(&slopes) {
             let change = [0, 1].map(|axis| slope[axis] * (window.motion[axis] - cell.at[axis]));
-            // Half of it, because the slopes are those of energies and the bins are amplitudes.
+            // Half of it, because the slopes belong to energies and the bins are amplitudes.
             let gain = libm::exp(-0.5 * (change[0] + change[1]));
             let bins = spectrum.get_mut(bins.clone());
             bins.into_iter().flatten().for_each(|bin| *bin *= gain);

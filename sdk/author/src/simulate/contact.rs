@@ -190,7 +190,7 @@ pub(super) fn noise_density(rate_hz: f64) -> f64 {
 
 /// Adds the sensor's noise and quantisation to a force.
 pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Normal) -> Force {
-    // The density stays the same at every rate, as that of a real sensor does.
+    // The density stays the same at every rate, as a real sensor's does.
     let noise = NOISE_N * libm::sqrt(rate_hz / 20_000.0);
     let mut read =
         |force: f64| STEP_N * libm::round((force + noise * random.next_normal()) / STEP_N);

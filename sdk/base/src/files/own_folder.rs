@@ -280,7 +280,7 @@ impl OwnFolder {
         let mut names = Vec::new();
         for entry in fs::read_dir(path)? {
             let entry = entry?;
-            // `file_type` is that of the entry itself, so links are left out.
+            // `file_type` describes the entry itself, so links are left out.
             if entry.file_type()?.is_file()
                 && let Ok(name) = entry.file_name().into_string()
             {

@@ -71,7 +71,7 @@ pub unsafe extern "C" fn htex_author_call(
             bytes: handed_over(bytes)?,
             bytes_len: bytes.len(),
         };
-        // After `out` is written, because the document of an error is handed over, too.
+        // After `out` is written, because the document of an error is also handed over.
         answer.map(drop).map_err(Failure::from)
     })
 }

@@ -81,6 +81,9 @@ struct Frames {
     fade_len: usize,
     first: usize,
     component_hz: Vec<f64>,
+    /// Amplitudes of the first and of the last component, relative to the curve: the root of the
+    /// part of the component's interval that lies between the edges of the noise.
+    edges: [f64; 2],
     /// Part of each component's power that the bins of the band measure.
     read: Vec<f64>,
 }
@@ -170,14 +173,26 @@ impl Frames {
         let overlap = len.div_ceil(OVERLAP);
         let hop = len - overlap;
         let spacing = rate_hz / len as f64;
-        // Each bin of the texture spectrum represents half a bin on either side. The tolerance of
-        // 1e-9 keeps a component that rounding has moved just beyond the edge.
-        let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
-        let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
+        // Each bin of the texture spectrum represents half a bin on either side, and each component
+        // half a spacing. Where the noise ends must not depend on the rate, or a steep spectrum has
+        // another level at each rate: the power of a component at the edge is that of the part of
+        // its interval inside. The edges are those of the components at the usual spacing. The
+        // tolerance of 1e-9 keeps a component that rounding has moved just beyond the edge.
+        let usual = 0.5 / HALF_S;
+        let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / usual - 1e-9).max(1.0);
+        let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / usual + 1e-9).max(low);
+        let [low_hz, high_hz] = [(low - 0.5) * usual, (high + 0.5) * usual];
+        let low = (libm::floor(low_hz / spacing + 0.5 + 1e-9) as usize).max(1);
+        let high = libm::ceil(high_hz / spacing - 0.5 - 1e-9) as usize;
         // The inverse FFT has no bin at the Nyquist frequency.
-        let high = high.min(half - 1);
+        let high = high.min(half - 1).max(low);
+        let inside = |j: usize| {
+            let [begin, end] = [j as f64 - 0.5, j as f64 + 0.5].map(|j| j * spacing);
+            let part = (end.min(high_hz) - begin.max(low_hz)) / spacing;
+            if part > 1.0 - 1e-9 { 1.0 } else { crate::root::sqrt(part.max(0.0)) }
+        };
         let part = ReadPart::new(band);
-        let components = || (low..=high.max(low)).map(|j| j as f64 * spacing);
+        let components = || (low..=high).map(|j| j as f64 * spacing);
         Self {
             key,
             inverse: InverseRealFft::new(half),
@@ -187,7 +202,8 @@ impl Frames {
             // A fade that did not fit into a hop would never begin (`begin_fade`).
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
-            // Components up to half a bin outside the band have the magnitude of the edge.
+            edges: [low, high].map(inside),
+            // Components outside the band have the magnitude of the edge.
             component_hz: components().map(|hz| hz.clamp(band.low_hz, band.high_hz)).collect(),
             read: components().map(|hz| frame_read_part(&part, hz, spacing)).collect(),
         }
@@ -290,6 +306,9 @@ impl ShapedNoise {
     /// Scales the magnitudes to amplitudes that together measure as unit RMS. Returns false if
     /// there is no power.
     fn normalise(&mut self) -> bool {
+        let [first, last] = self.frames.edges;
+        self.pending_amplitude.first_mut().into_iter().for_each(|a| *a *= first);
+        self.pending_amplitude.last_mut().into_iter().for_each(|a| *a *= last);
         let mut power = 0.0;
         for (a, read) in self.pending_amplitude.iter_mut().zip(&self.frames.read) {
             if !a.is_finite() || *a <= 0.0 {

@@ -12,7 +12,7 @@ use crate::columns::Column;
 pub(crate) struct Reported<'a> {
     pub(crate) fitted: &'a FittedAsset,
     /// The asset with the models that can play it.
-    pub(crate) asset: &'a htex::Asset,
+    pub(crate) asset: &'a htex::Texture,
     pub(crate) summary: &'a AssetSummary,
     /// Total size of the recordings' files, bytes.
     pub(crate) recording_bytes: u64,

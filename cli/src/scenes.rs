@@ -268,7 +268,7 @@ pub(crate) fn is_asset(file: &Path) -> bool {
 
 /// Returns the motion of an asset's default condition.
 pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
-    let asset = htex::Asset::new(htex_format::Asset::open(file).map_err(of_file(file))?);
+    let asset = htex::Texture::new(htex_format::Asset::open(file).map_err(of_file(file))?);
     let htex::Motion { speed_mm_s, force_n, .. } =
         asset.motion(None, None, None).map_err(of_file(file))?;
     Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))

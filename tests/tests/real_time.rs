@@ -4,7 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use htex::{Asset, VoiceOptions};
+use htex::{Texture, VoiceOptions};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_host::{Registry, Search};
@@ -41,8 +41,8 @@ fn count(run: impl FnOnce()) -> usize {
     CALLS.with(Cell::get) - before
 }
 
-fn asset() -> Asset {
-    Asset::from_bytes(&bytes()).unwrap()
+fn asset() -> Texture {
+    Texture::from_bytes(&bytes()).unwrap()
 }
 
 /// A texture with two conditions and all models.
@@ -139,7 +139,7 @@ fn follow(voice: &mut htex::Voice, what: &str) {
 fn following_the_finger_does_not_allocate() {
     assert!(count(|| drop(std::hint::black_box(vec![1u8]))) >= 2, "the counter counts");
     // One interpolates between two speeds, the other scales from a single speed.
-    let one = Asset::from_bytes(&recorded_at(&[80.0])).unwrap();
+    let one = Texture::from_bytes(&recorded_at(&[80.0])).unwrap();
     let assets = [asset(), one];
     let of_all = |asset| Registry::builtin_names().into_iter().map(move |model| (asset, model));
     for (asset, model) in assets.iter().flat_map(of_all) {
@@ -159,7 +159,7 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
     let files = names.map(|model| modules.join(format!("htex_{model}.wasm")));
     let search = Search::builtin().with_files(files.collect());
     let data = htex_format::Asset::from_bytes(&bytes()).unwrap();
-    let asset = Asset::with_registry(data, Registry::search(&search).unwrap());
+    let asset = Texture::with_registry(data, Registry::search(&search).unwrap());
     for model in Registry::builtin_names() {
         assert!(asset.registry().find(model).unwrap().origin().to_string().contains("wasm"));
         let options = VoiceOptions::default().with_model(model);
@@ -203,7 +203,7 @@ fn a_scene_is_rendered_without_allocating() {
 }
 
 /// Two surfaces side by side, with every effect on, and an arbitrary motion.
-fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
+fn live_scene(asset: &Texture, model: &str) -> LoadedScene {
     let surface = |from: f64| file::Surface {
         region: Some(Region { x_mm: [from, from + 20.0], y_mm: [-1.0, 1.0] }),
         representation: model.to_owned(),

@@ -170,7 +170,7 @@ impl Export {
         }
     }
 
-    fn path(&self, asset: &htex::Asset) -> Result<Path, Failure> {
+    fn path(&self, asset: &htex::Texture) -> Result<Path, Failure> {
         let settings = &self.given.values;
         if let Some(stroke) = &settings.stroke {
             return Ok(Path::Stroke(Stroke::open(stroke)?));

@@ -57,7 +57,10 @@ pub(crate) struct ChoiceArgs {
 impl ChoiceArgs {
     /// Returns the requested motion. Missing values come from the asset's default condition, or
     /// else from the paper's default.
-    pub(crate) fn motion(&self, asset: &htex::Asset) -> Result<Option<htex::Motion>, htex::Error> {
+    pub(crate) fn motion(
+        &self,
+        asset: &htex::Texture,
+    ) -> Result<Option<htex::Motion>, htex::Error> {
         if self.speed.is_none() && self.force.is_none() {
             return Ok(None);
         }
@@ -69,7 +72,7 @@ impl ChoiceArgs {
     /// Returns a note on how a motion that was not recorded is played.
     pub(crate) fn beyond(
         &self,
-        asset: &htex::Asset,
+        asset: &htex::Texture,
         effects: htex::Effects,
     ) -> Result<Option<String>, htex::Error> {
         let Some(motion) = self.motion(asset)? else {

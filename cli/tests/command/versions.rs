@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::common::{Place, Run};
 use crate::model::{ID, with_descriptor};
-use htex::{Asset, Registry, Search, VoiceOptions};
+use htex::{Registry, Search, Texture, VoiceOptions};
 
 const FIELDS: &str = concat!(
     r#"{"name":"centre_hz","unit":"Hz","kind":{"type":"scalar"},"min":5,"max":2000,"store":{"type":"f32"},"description":"C."},"#,
@@ -206,7 +206,7 @@ fn an_older_installed_model_does_not_break_an_asset() {
     registry.add_wasm_bytes("module 0", &bytes).unwrap();
     let data = htex_format::Asset::open(&place.path("embedded.htex")).unwrap();
     let options = VoiceOptions::default().with_model(ID);
-    let asset = Asset::with_registry(data, registry);
+    let asset = Texture::with_registry(data, registry);
     let refused = asset.voice(&options).unwrap_err().to_string();
     assert!(refused.contains("install version 1.1.0 or newer"), "{refused}");
     assert!(asset.with_embedded().voice(&options).is_ok());

@@ -103,7 +103,7 @@ impl Difference {
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.
 pub fn compare(
-    asset: &htex_play::Asset,
+    asset: &htex_play::Texture,
     reference: &TextureSpectrum,
     found: Exploration,
 ) -> Result<Vec<ComparedModel>, CompareError> {

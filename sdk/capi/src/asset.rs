@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use htex::Asset;
+use htex::Texture;
 
 use crate::handles::{Kind, Table};
 use crate::motion::{htex_motion, motion};
@@ -39,16 +39,16 @@ pub struct htex_band {
     pub high_hz: f64,
 }
 
-pub(crate) static ASSETS: Table<Asset> = Table::new(Kind::Asset);
+pub(crate) static ASSETS: Table<Texture> = Table::new(Kind::Asset);
 
 pub(crate) fn keep(
-    data: htex::AssetData,
+    data: htex::format::Asset,
     models: Models,
     out: *mut htex_asset,
 ) -> Result<(), Failure> {
     // SAFETY: the place is the caller's.
     let out = unsafe { place(out) }?;
-    let asset = Asset::with_registry(data, models.registry);
+    let asset = Texture::with_registry(data, models.registry);
     let asset = if models.embedded { asset.with_embedded() } else { asset };
     out.id = ASSETS.insert(asset)?;
     Ok(())
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn htex_asset_open(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (path, models) = unsafe { (needed_text(path)?, models(options)?) };
-        let data = htex::AssetData::open(path.as_ref()).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::open(path.as_ref()).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (path, models) = unsafe { (crate::pointers::wide_path(path)?, models(options)?) };
-        let data = htex::AssetData::open(&path).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::open(&path).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn htex_asset_open_reader(
         let (reader, models) = unsafe { (Reader::of(reader)?, models(options)?) };
         let bytes =
             reader.read_whole().map_err(|error| Failure::of(htex_status::HTEX_STATUS_IO, error))?;
-        let data = htex::AssetData::from_bytes(&bytes).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -115,7 +115,7 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (bytes, models) = unsafe { (slice(bytes, len)?, models(options)?) };
-        let data = htex::AssetData::from_bytes(bytes).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::from_bytes(bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }

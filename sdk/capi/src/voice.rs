@@ -3,7 +3,7 @@
 use std::ffi::c_char;
 use std::ops::{Deref, DerefMut};
 
-use htex::{Asset, Voice, VoiceOptions};
+use htex::{Texture, Voice, VoiceOptions};
 
 use crate::asset::{ASSETS, htex_asset};
 use crate::handles::{Kind, Table};
@@ -23,7 +23,7 @@ pub struct htex_voice {
 /// A voice, and everything needed to make it again.
 pub(crate) struct Playing {
     voice: Voice,
-    asset: Asset,
+    asset: Texture,
     /// The representation, as the id of its model.
     model: String,
     options: VoiceOptions<'static>,
@@ -31,7 +31,7 @@ pub(crate) struct Playing {
 
 impl Playing {
     fn new(
-        asset: &Asset,
+        asset: &Texture,
         model: Option<&str>,
         options: VoiceOptions<'static>,
     ) -> Result<Self, Failure> {

@@ -6,7 +6,7 @@ use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;
 use htex_dsp::vibrotactile::Listener;
 use htex_format::{Manifest, Quantity, Rights};
-use htex_play::{Asset, Motion, VoiceOptions};
+use htex_play::{Motion, Texture, VoiceOptions};
 
 use crate::error::ExchangeError;
 use crate::stroke::Stroke;
@@ -42,7 +42,7 @@ pub struct SceneSound<'a> {
 /// The source of what is played.
 #[derive(Clone, Copy)]
 pub(crate) enum Source<'a> {
-    Asset { asset: &'a Asset, model: Option<&'a str>, path: &'a Path, seed: u64 },
+    Asset { asset: &'a Texture, model: Option<&'a str>, path: &'a Path, seed: u64 },
     Scene(&'a SceneSound<'a>),
 }
 

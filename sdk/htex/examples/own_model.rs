@@ -5,7 +5,7 @@
 
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex::simulate::{SimulationOptions, Surface, simulate};
-use htex::{Asset, Motion, Registry, VoiceOptions};
+use htex::{Motion, Registry, Texture, VoiceOptions};
 use htex_model::shaped::{Curve, ShapedVoice};
 use htex_model::{
     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
@@ -121,7 +121,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let request = AssetRequest::new("Sandpaper").with_models([ModelRequest::new(&model)]);
     let fitted = fit_asset(&[take], &request)?;
 
-    let asset = Asset::with_registry(fitted.asset, registry);
+    let asset = Texture::with_registry(fitted.asset, registry);
     let motion = Motion::new(80.0, 0.4);
     println!("{:?}", asset.parameters(Some("plateau"), Some(motion))?);
     let mut voice = asset.voice(&VoiceOptions::default().with_motion(motion))?;

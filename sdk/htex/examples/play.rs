@@ -2,11 +2,11 @@
 //!
 //! `cargo run --release -p htex --example play -- cloth.htex`
 
-use htex::{Asset, Motion, VoiceOptions};
+use htex::{Motion, Texture, VoiceOptions};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).ok_or("give an asset: play FILE.htex")?;
-    let asset = Asset::open(&path)?;
+    let asset = Texture::open(&path)?;
     let options = VoiceOptions::default();
     let mut voice = asset.voice(&options)?;
     let mut block = vec![0.0f32; (options.rate_hz / 10.0) as usize];

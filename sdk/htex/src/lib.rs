@@ -1,8 +1,8 @@
 //! Opens and plays texture assets.
 //!
 //! ```no_run
-//! use htex::{Asset, Motion, VoiceOptions};
-//! let asset = Asset::open("sandpaper.htex")?;
+//! use htex::{Texture, Motion, VoiceOptions};
+//! let asset = Texture::open("sandpaper.htex")?;
 //! let mut voice = asset.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
 //! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
@@ -18,7 +18,7 @@
 //! - `write` (default): `format::Asset::write` and `to_bytes`.
 //! - `author`: `htex::author` reads recordings and makes assets, and `htex::simulate` simulates
 //!   recordings.
-//! - `library`: `htex::Library`, a file with thousands of textures. `Asset::from_library` opens one
+//! - `library`: `htex::Library`, a file with thousands of textures. `Texture::from_library` opens one
 //!   of them; `htex::library` has the full interface.
 //! - `storage`: `htex::storage`, which opens files by path or URI, and `Library::open_located`. The
 //!   feature `cloud` adds web servers and object stores.

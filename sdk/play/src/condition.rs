@@ -11,7 +11,7 @@ use crate::exploration::slides;
 /// silent, the first condition is the default.
 ///
 /// ```no_run
-/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let asset = htex::Texture::open("sandpaper.htex")?;
 /// let manifest = asset.manifest();
 /// let representation = &manifest.representations[0];
 /// let at = &representation.at[htex::default_condition(representation, &manifest.conditions)];

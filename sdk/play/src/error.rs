@@ -3,8 +3,8 @@
 /// An error from opening or playing an asset.
 ///
 /// ```
-/// use htex::{Asset, Error};
-/// let error = Asset::from_bytes(b"not an asset").unwrap_err();
+/// use htex::{Texture, Error};
+/// let error = Texture::from_bytes(b"not an asset").unwrap_err();
 /// assert!(matches!(error, Error::Read(_)));
 /// ```
 #[allow(missing_docs)] // The message says what a field is.
@@ -34,7 +34,7 @@ pub enum Error {
     )]
     NoEmbeddedModel { id: String },
     /// The only model that can play a representation is embedded in the asset, and embedded models
-    /// may not run. [`crate::Asset::with_embedded`] allows them.
+    /// may not run. [`crate::Texture::with_embedded`] allows them.
     #[error(
         "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
          install the model"

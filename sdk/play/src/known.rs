@@ -10,8 +10,8 @@ use crate::{Error, Motion};
 /// The motions at which a representation was recorded, with the level at each.
 ///
 /// ```no_run
-/// use htex::{Asset, Effects, Motion};
-/// let motions = Asset::open("sandpaper.htex")?.motions(None)?;
+/// use htex::{Texture, Effects, Motion};
+/// let motions = Texture::open("sandpaper.htex")?.motions(None)?;
 /// println!("{}", motions.coverage(Motion::new(160.0, 0.4), Effects::default()));
 /// # Ok::<(), htex::Error>(())
 /// ```

@@ -2,8 +2,8 @@
 //! scenes build on this crate directly.
 //!
 //! ```no_run
-//! use htex::{Asset, Motion, VoiceOptions};
-//! let asset = Asset::open("sandpaper.htex")?;
+//! use htex::{Texture, Motion, VoiceOptions};
+//! let asset = Texture::open("sandpaper.htex")?;
 //! let mut voice = asset.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
 //! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
@@ -19,7 +19,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
-mod asset;
 #[cfg(feature = "bake")]
 #[allow(missing_docs, reason = "fields and variants name what they hold")]
 // Blocks are measured against the asset when they are made, so their last digits may differ.
@@ -39,17 +38,15 @@ mod parameter;
 mod playable;
 mod source;
 mod spectrum;
+mod texture;
 mod travel;
 mod voice;
 
-pub use asset::Asset;
 pub use condition::default_condition;
 pub use envelope::Envelope;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
 pub use htex_base::finding::{Finding, Severity};
-/// An asset's data: the argument of [`Asset::new`].
-pub use htex_format::Asset as AssetData;
 pub use htex_format::{
     AtCondition, Condition, Contact, ErrorMeasure, Exponent, ExponentSource, Law, Limits, Manifest,
     Quantity, ReadError, Representation, Rights, Triangle, TrianglesError, check_triangles,
@@ -67,5 +64,6 @@ pub use options::VoiceOptions;
 pub use parameter::Parameter;
 pub use playable::{field_order, model_of};
 pub use source::SampleSource;
+pub use texture::Texture;
 pub use travel::Finger;
 pub use voice::Voice;

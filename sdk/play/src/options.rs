@@ -26,12 +26,12 @@ pub struct VoiceOptions<'a> {
     /// Seed of the noise; equal seeds give equal samples.
     pub seed: u64,
     /// The motion at the start; `None` for the default condition
-    /// ([`Asset::default_condition`](crate::Asset::default_condition)).
+    /// ([`Texture::default_condition`](crate::Texture::default_condition)).
     pub motion: Option<Motion>,
     /// How the samples are made: by the model's voice, or by a method that computes less and keeps
-    /// the spectrum constant. [`Asset::source`](crate::Asset::source) is always streamed.
+    /// the spectrum constant. [`Texture::source`](crate::Texture::source) is always streamed.
     pub synthesis: Synthesis,
-    /// Effects of a motion. [`Asset::source`](crate::Asset::source) applies none.
+    /// Effects of a motion. [`Texture::source`](crate::Texture::source) applies none.
     pub effects: Effects,
     /// Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
     /// recorded level; above 0 and finite. It never reduces a level that the motion does not raise.

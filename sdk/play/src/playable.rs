@@ -12,7 +12,7 @@ use crate::Error;
 /// otherwise the first.
 ///
 /// ```no_run
-/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let asset = htex::Texture::open("sandpaper.htex")?;
 /// for representation in &asset.manifest().representations {
 ///     let model = htex::model_of(asset.registry(), representation)?;
 ///     println!("{} is played by version {}", representation.model, model.descriptor().version);
@@ -57,7 +57,7 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 /// Returns the order in which to pass a representation's fields to its model.
 ///
 /// ```no_run
-/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let asset = htex::Texture::open("sandpaper.htex")?;
 /// let representation = &asset.manifest().representations[0];
 /// let model = htex::model_of(asset.registry(), representation)?;
 /// let order = htex::field_order(representation, model)?;

@@ -17,8 +17,8 @@ const MIXED: usize = 3;
 /// of a motion ([`crate::Effects`]).
 ///
 /// ```no_run
-/// use htex::{Asset, VoiceOptions};
-/// let mut source = Asset::open("sandpaper.htex")?.source(&VoiceOptions::default())?;
+/// use htex::{Texture, VoiceOptions};
+/// let mut source = Texture::open("sandpaper.htex")?.source(&VoiceOptions::default())?;
 /// let mut block = vec![0.0f32; (source.rate_hz() / 100.0) as usize];
 /// source.render(&mut block)?; // 10 ms of unit RMS
 /// # Ok::<(), htex::Error>(())

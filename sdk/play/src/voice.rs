@@ -24,13 +24,13 @@ const ADDED: usize = 256;
 const RAMP_S: f64 = 0.010;
 
 /// A voice: an endless stream of samples in the asset's unit
-/// ([`Asset::quantity`](crate::Asset::quantity)). It follows the finger's motion with the same
+/// ([`Texture::quantity`](crate::Texture::quantity)). It follows the finger's motion with the same
 /// [`Effects`](crate::Effects) as a scene.
 ///
 /// ```no_run
-/// use htex::{Asset, Motion, VoiceOptions};
+/// use htex::{Texture, Motion, VoiceOptions};
 /// // Recorded at 80 mm/s and 0.4 N.
-/// let mut voice = Asset::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
+/// let mut voice = Texture::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
 /// voice.set_motion(Motion::new(160.0, 0.8))?; // an octave higher, twice as strong
 /// voice.set_motion(Motion::new(0.0, 0.8))?; // silent
 /// println!("{}", voice.coverage(Motion::new(160.0, 0.8)));
@@ -300,9 +300,9 @@ impl Voice {
     /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
     ///
     /// ```no_run
-    /// use htex::{Asset, VoiceOptions};
+    /// use htex::{Texture, VoiceOptions};
     /// let options = VoiceOptions::default().with_envelope_bands(4);
-    /// let mut voice = Asset::open("sandpaper.htex")?.voice(&options)?;
+    /// let mut voice = Texture::open("sandpaper.htex")?.voice(&options)?;
     /// let (mut block, mut bands) = ([0.0; 200], [0.0; 4]);
     /// voice.render(&mut block)?; // 10 ms
     /// let envelope = voice.envelope(&mut bands)?;

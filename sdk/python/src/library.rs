@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::AssetData;
+use htex::format::Asset;
 use htex::library::{
     Entry, Interval, LibraryError, LibrarySource as Bytes, Located, Query, Writer,
 };
@@ -139,7 +139,7 @@ impl Library {
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Texture> {
         py.detach(|| {
             let bytes = self.library.get(name).map_err(raised)?;
-            let data = AssetData::from_bytes(&bytes).map_err(raised)?;
+            let data = Asset::from_bytes(&bytes).map_err(raised)?;
             Texture::new(data, self.plugins.clone(), self.embedded, self.installed)
         })
     }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::format::write_file;
-use htex::{Asset, AssetData, Effects, Motion, Parameter, Synthesis, VoiceOptions};
+use htex::format::{Asset, write_file};
+use htex::{Effects, Motion, Parameter, Synthesis, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ use crate::voice::Voice;
 /// A texture: an opened asset, and the models that play it.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Texture {
-    asset: Asset,
+    asset: htex::Texture,
     plugins: Vec<PathBuf>,
     embedded: bool,
     installed: bool,
@@ -37,8 +37,8 @@ pub(crate) fn open(
     let opened = Source::of(source)?;
     py.detach(|| {
         let data = match &opened {
-            Source::File(path) => AssetData::open(path),
-            Source::Bytes(bytes) => AssetData::from_bytes(bytes),
+            Source::File(path) => Asset::open(path),
+            Source::Bytes(bytes) => Asset::from_bytes(bytes),
         };
         Texture::new(data.map_err(raised)?, plugins, embedded, installed)
     })
@@ -84,12 +84,12 @@ fn is_named(value: &Bound<'_, PyAny>, names: &[&str]) -> PyResult<bool> {
 impl Texture {
     /// Makes a texture from an asset's data.
     pub(crate) fn new(
-        data: AssetData,
+        data: Asset,
         plugins: Vec<PathBuf>,
         embedded: bool,
         installed: bool,
     ) -> PyResult<Self> {
-        let asset = Asset::with_registry(data, registry(&plugins, installed)?);
+        let asset = htex::Texture::with_registry(data, registry(&plugins, installed)?);
         Ok(Self {
             asset: if embedded { asset.with_embedded() } else { asset },
             plugins,
@@ -100,27 +100,23 @@ impl Texture {
 
     /// Makes a texture from what the file of a new asset contains. Levels and errors have fewer
     /// digits there than in memory.
-    pub(crate) fn of(
-        made: &htex::format::Asset,
-        plugins: Vec<PathBuf>,
-        installed: bool,
-    ) -> PyResult<Self> {
+    pub(crate) fn of(made: &Asset, plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
         Self::new(stored(made)?, plugins, true, installed)
     }
 
     /// Makes a texture from an asset's file.
     pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
-        Self::new(AssetData::from_bytes(bytes).map_err(raised)?, plugins, true, installed)
+        Self::new(Asset::from_bytes(bytes).map_err(raised)?, plugins, true, installed)
     }
 
     /// Makes a texture from an asset that was made from this one and `others`. It does not run
     /// models that one of them does not run.
-    pub(crate) fn made_of(&self, made: &htex::format::Asset, others: &[&Self]) -> PyResult<Self> {
+    pub(crate) fn made_of(&self, made: &Asset, others: &[&Self]) -> PyResult<Self> {
         let embedded = self.embedded && others.iter().all(|other| other.embedded);
         Self::new(stored(made)?, self.plugins.clone(), embedded, self.installed)
     }
 
-    pub(crate) fn asset(&self) -> &Asset {
+    pub(crate) fn asset(&self) -> &htex::Texture {
         &self.asset
     }
 
@@ -396,8 +392,8 @@ impl Texture {
 }
 
 /// Returns what the file of a new asset contains.
-fn stored(made: &htex::format::Asset) -> PyResult<AssetData> {
-    AssetData::from_bytes(&made.to_bytes().map_err(raised)?).map_err(raised)
+fn stored(made: &Asset) -> PyResult<Asset> {
+    Asset::from_bytes(&made.to_bytes().map_err(raised)?).map_err(raised)
 }
 
 /// Returns the last part of a model's id.

@@ -48,7 +48,7 @@ fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
     let long = 1e4;
     let mut preview = scene(single(), constant(80.0, 0.4), long);
     preview.scene.device.pitch = Some(2.0);
-    let moved = |asset: &htex_play::Asset| {
+    let moved = |asset: &htex_play::Texture| {
         let mut moved = traced(asset, trace(600.0, swings, presses), 600.0);
         moved.scene.surfaces[0].representation = "ar".to_owned();
         moved

@@ -2,7 +2,7 @@
 //! recorded.
 
 use htex_base::finding::Findings;
-use htex_play::{Asset, Coverage, Effects, Motions};
+use htex_play::{Coverage, Effects, Motions, Texture};
 
 use crate::file::{Effect, Motion, Scene, Surface, Switch};
 use crate::motion::{Finger, topmost};
@@ -20,7 +20,7 @@ const MOST_ROWS: usize = 20_000;
 /// motion.
 pub(crate) fn check(
     scene: &Scene,
-    assets: &[Asset],
+    assets: &[Texture],
     trace: Option<&Trace>,
     findings: &mut Findings,
 ) {
@@ -44,7 +44,7 @@ pub(crate) fn check(
     }
 }
 
-fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex_play::Error> {
+fn motions(asset: &Texture, surface: &Surface) -> Result<Motions, htex_play::Error> {
     let name = surface.representation.as_str();
     asset.motions((name != "auto").then_some(name))
 }

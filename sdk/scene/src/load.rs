@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use htex_base::finding::{Finding, Findings, Report, Rule};
 use htex_device::{Devices, Settings};
 use htex_format::{Quantity, parse_json};
-use htex_play::{Asset, Registry, VoiceOptions};
+use htex_play::{Registry, Texture, VoiceOptions};
 use htex_recording::{ReadError, ReadProblem};
 
 use crate::check::check;
@@ -62,7 +62,7 @@ pub struct LoadedScene {
     /// Folder where relative paths start.
     pub folder: PathBuf,
     /// The assets, one for each surface.
-    pub assets: Vec<Asset>,
+    pub assets: Vec<Texture>,
     /// The motion, if it is a trace.
     pub trace: Option<Trace>,
     /// The response to compensate.
@@ -123,7 +123,7 @@ impl LoadedScene {
     /// Returns the quantity of the assets, which is the same for all of them.
     pub fn quantity(&self) -> Quantity {
         let first = self.assets.first();
-        first.map_or(Quantity::default(), Asset::quantity)
+        first.map_or(Quantity::default(), Texture::quantity)
     }
 
     /// Opens a scene file and the files it names.
@@ -265,7 +265,7 @@ fn load(
     // Before the response is opened, because another adapter drops the scene's response.
     device.0.apply(&mut scene.device);
     let response = open_response(&scene, place, findings);
-    let held = assets.as_ref().and_then(|all| all.first()).map(Asset::quantity);
+    let held = assets.as_ref().and_then(|all| all.first()).map(Texture::quantity);
     let settings = check_device(&scene.device, device, around.devices, held, findings);
     // Only now, so that a missing asset does not hide the findings of the device.
     let assets = assets?;
@@ -294,8 +294,8 @@ fn open_assets(
     place: &Place<'_>,
     around: &Surroundings<'_>,
     findings: &mut Findings,
-) -> Option<Vec<Asset>> {
-    type Opened = Result<Asset, (&'static Rule, String)>;
+) -> Option<Vec<Texture>> {
+    type Opened = Result<Texture, (&'static Rule, String)>;
     // Nothing depends on the order of this map.
     let mut opened: HashMap<&Path, Opened> = HashMap::new();
     let mut assets = Vec::new();
@@ -318,7 +318,7 @@ fn open_asset(
     asset: &Path,
     place: &Place<'_>,
     around: &Surroundings<'_>,
-) -> Result<Asset, (&'static Rule, String)> {
+) -> Result<Texture, (&'static Rule, String)> {
     let data = match place {
         Place::Folder(folder) => {
             let path = folder.join(asset);
@@ -334,7 +334,7 @@ fn open_asset(
     };
     let opened = data
         .map_err(htex_play::Error::from)
-        .map(|data| Asset::with_registry(data, around.models.clone()))
+        .map(|data| Texture::with_registry(data, around.models.clone()))
         .map(|asset| if around.embedded { asset.with_embedded() } else { asset });
     opened.map_err(|error| match &error {
         htex_play::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
@@ -345,8 +345,8 @@ fn open_asset(
 }
 
 /// Reports assets whose quantity differs from the first asset's.
-fn check_quantities(assets: &[Asset], findings: &mut Findings) {
-    let Some(first) = assets.first().map(Asset::quantity) else {
+fn check_quantities(assets: &[Texture], findings: &mut Findings) {
+    let Some(first) = assets.first().map(Texture::quantity) else {
         return;
     };
     for (i, asset) in assets.iter().enumerate() {
@@ -385,7 +385,7 @@ fn missing(path: &Path) -> String {
     format!("there is no file {}; correct the path, or put it there", path.display())
 }
 
-fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &mut Findings) {
+fn check_representation(asset: &Texture, surface: &Surface, i: usize, findings: &mut Findings) {
     let source = |model: &str| {
         let options = VoiceOptions::default().with_model(model);
         asset.source(&options).map(|_| ())
@@ -439,7 +439,7 @@ fn open_response(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> O
 /// amplifies.
 fn check_response(
     response: &Response,
-    assets: &[Asset],
+    assets: &[Texture],
     choice: &DeviceChoice,
     findings: &mut Findings,
 ) {

@@ -203,7 +203,7 @@ impl PlayedSurface {
     fn compensated(
         &self,
         required: &Requirements,
-        asset: &htex_play::Asset,
+        asset: &htex_play::Texture,
     ) -> Result<f64, htex_play::Error> {
         let Some(inverse) = &required.compensation else {
             return Ok(1.0);
@@ -222,13 +222,13 @@ impl PlayedSurface {
 }
 
 /// Returns the representation of a model.
-fn representation<'a>(asset: &'a htex_play::Asset, model: &str) -> Option<&'a Representation> {
+fn representation<'a>(asset: &'a htex_play::Texture, model: &str) -> Option<&'a Representation> {
     let all = &asset.manifest().representations;
     all.iter().find(|r| r.model == model)
 }
 
 /// Returns the largest level of a representation, in the asset's unit.
-fn loudest(asset: &htex_play::Asset, model: &str, level_rms: f64) -> f64 {
+fn loudest(asset: &htex_play::Texture, model: &str, level_rms: f64) -> f64 {
     let found = representation(asset, model).into_iter();
     let levels = found.flat_map(|r| &r.at).map(|at| at.level_rms);
     levels.fold(level_rms, f64::max)

@@ -25,7 +25,7 @@ pub fn hatt(input: &[u8]) -> bool {
         Ok(bytes) => bytes,
         Err(error) => return refused(&error),
     };
-    let asset = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let asset = htex::Texture::from_bytes(&bytes).expect("what was written opens");
     let grid = asset.band().grid_hz();
     for node in &texture.nodes {
         let motion = htex::Motion::new(node.speed_mm_s, node.force_n);
@@ -98,7 +98,7 @@ pub fn gltf(input: &[u8]) -> bool {
     let format = Format::named("gltf").expect("it is in the table");
     let mut how = Export::new(format);
     how.file = Some(&bytes);
-    let asset = htex::Asset::with_registry(imported.asset, registry);
+    let asset = htex::Texture::with_registry(imported.asset, registry);
     let again = match export(&asset, &how) {
         Ok(exported) => exported.bytes,
         Err(error) => return refused(&error),
@@ -134,7 +134,7 @@ pub fn png(input: &[u8]) -> bool {
         Err(error) => return refused(&error),
     };
     let bytes = imported.to_bytes().expect("an asset is written");
-    let asset = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let asset = htex::Texture::from_bytes(&bytes).expect("what was written opens");
     let format = Format::named("png").expect("it is in the table");
     let again = export(&asset, &Export::new(format)).expect("a map is exported");
     let again = htex_exchange::map::read(&again.bytes).expect("what was written is read");

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use htex::Asset;
+use htex::Texture;
 use htex_base::finding::{Finding, Rule};
 use htex_host::{HostError, Status};
 
@@ -58,7 +58,7 @@ pub(crate) fn finite(what: &str, numbers: impl IntoIterator<Item = f64>) {
 
 /// Plays each representation of an asset with the built-in models, moves the finger, and computes
 /// magnitudes.
-pub(crate) fn play(asset: &Asset) {
+pub(crate) fn play(asset: &Texture) {
     let band = asset.band();
     let edges = [band.low_hz, 0.5 * (band.low_hz + band.high_hz), band.high_hz];
     for representation in &asset.manifest().representations {

@@ -1,12 +1,12 @@
 //! Stored fields are matched by name.
 
-use htex::{Asset, Band, Error, Registry, VoiceOptions};
+use htex::{Band, Error, Registry, Texture, VoiceOptions};
 use htex_format::{FieldMismatch, StoredAs, StoredField, match_fields};
 use htex_model::{Descriptor, StaticDescriptor, StaticField};
 use htex_tests::workspace;
 
-fn conformance(name: &str) -> Asset {
-    Asset::open(workspace().join("spec/conformance").join(name)).unwrap()
+fn conformance(name: &str) -> Texture {
+    Texture::open(workspace().join("spec/conformance").join(name)).unwrap()
 }
 
 #[test]

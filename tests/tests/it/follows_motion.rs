@@ -7,7 +7,7 @@ use crate::common::builds;
 use std::path::{Path, PathBuf};
 
 use builds::*;
-use htex::{Asset, Reach, Registry, Search, Voice, VoiceOptions};
+use htex::{Reach, Registry, Search, Texture, Voice, VoiceOptions};
 use htex_author::recording::TraceColumns;
 use htex_author::{AssetRequest, Exploration, ModelRequest, Recording, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
@@ -76,7 +76,7 @@ fn bursts_follow(file: &Path) {
 }
 
 /// In a live scene, a reading with an impossible force or speed does not reach the model.
-fn one_bad_reading_is_not_felt(asset: &Asset) {
+fn one_bad_reading_is_not_felt(asset: &Texture) {
     let mut scene = traced(asset, trace(1.0, |t| 50.0 * t));
     (scene.scene.motion, scene.trace) = (Motion::Live, None);
     let plan = planned(&scene);
@@ -205,7 +205,7 @@ fn comb() -> Vec<f64> {
 // ---- ways and means ----
 
 /// An asset of a recording at 50 mm/s and 0.5 N, fitted by a model from a file.
-fn fitted(file: &Path, recording: &[f64]) -> Asset {
+fn fitted(file: &Path, recording: &[f64]) -> Texture {
     let search = Search::builtin().with_files(vec![file.to_owned()]);
     let registry = Registry::search(&search).unwrap();
     let model = registry.models()[0].clone();
@@ -216,14 +216,14 @@ fn fitted(file: &Path, recording: &[f64]) -> Asset {
         given: Exploration { speed_mm_s: Some(SPEED_MM_S), force_n: Some(FORCE_N) },
     };
     let fitted = fit_asset(&[take], &request).unwrap();
-    Asset::with_registry(fitted.asset, registry)
+    Texture::with_registry(fitted.asset, registry)
 }
 
 fn options() -> VoiceOptions<'static> {
     VoiceOptions::default().with_rate_hz(RATE_HZ).with_seed(3)
 }
 
-fn voice(asset: &Asset) -> Voice {
+fn voice(asset: &Texture) -> Voice {
     let voice = asset.voice(&options()).unwrap();
     assert!(voice.follows_motion());
     voice
@@ -259,7 +259,7 @@ fn trace(seconds: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
 }
 
 /// A scene with one surface that covers everything, and a finger that follows a trace.
-fn traced(asset: &Asset, trace: Trace) -> LoadedScene {
+fn traced(asset: &Texture, trace: Trace) -> LoadedScene {
     LoadedScene {
         scene: Scene {
             htex_scene: "1.0".to_owned(),

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use htex::{Asset, Registry, VoiceOptions};
+use htex::{Registry, Texture, VoiceOptions};
 use htex_author::by_hand::{ByHand, make};
 use htex_author::recording::TraceColumns;
 use htex_device::{Capabilities, Quantity, Rates, Settings};
@@ -104,12 +104,12 @@ impl MotionVoice for StripesVoice {
 }
 
 /// Stripes 4 mm wide with 0.1 N.
-fn stripes() -> Asset {
+fn stripes() -> Texture {
     let mut registry = Registry::builtin();
     registry.add_motion_model::<Stripes>().unwrap();
     let texture = ByHand::new("Stripes", 0.1, "test").with("width_mm", [4.0]);
     let model = registry.find("stripes").unwrap().clone();
-    Asset::with_registry(make(&model, &texture).unwrap(), registry)
+    Texture::with_registry(make(&model, &texture).unwrap(), registry)
 }
 
 /// A second of a voice whose finger moves along x at a distance across, if its place is known.

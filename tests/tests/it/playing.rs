@@ -119,7 +119,7 @@ fn valid_conformance_files_are_played() {
         if !sound || !name.ends_with(".htex") || NOT_PLAYED.contains(&&name[..]) {
             continue;
         }
-        let asset = htex::Asset::open(&path).unwrap();
+        let asset = htex::Texture::open(&path).unwrap();
         for representation in &asset.manifest().representations {
             let options = htex::VoiceOptions::default().with_model(&representation.model);
             let mut out = [0.0f32; 2_000];

@@ -14,7 +14,7 @@ use crate::stored::stored_fields;
 #[derive(Debug, Clone, Copy)]
 pub struct MixedAsset<'a> {
     /// The texture, with the models that play it.
-    pub asset: &'a htex_play::Asset,
+    pub asset: &'a htex_play::Texture,
     /// BLAKE3 of its file, hexadecimal.
     pub blake3: &'a str,
 }

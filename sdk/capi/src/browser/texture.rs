@@ -3,7 +3,7 @@
 
 use std::ffi::c_char;
 
-use htex::{Asset, Coverage, Motion, Parameter, Reach};
+use htex::{Coverage, Motion, Parameter, Reach, Texture};
 use serde_json::{Map, Value, json};
 
 use crate::asset::{ASSETS, htex_asset};
@@ -119,7 +119,7 @@ pub unsafe extern "C" fn htex_asset_read_magnitude(
 }
 
 fn read_magnitude(
-    asset: &Asset,
+    asset: &Texture,
     model: Option<&str>,
     condition: usize,
 ) -> Result<Vec<f64>, Failure> {

@@ -192,7 +192,7 @@ pub(super) unsafe fn asset(
         // SAFETY: the pointers are the caller's.
         let (name, models) = unsafe { (needed_text(name)?, models(options)?) };
         let bytes = library.get(name)?;
-        let data = htex::AssetData::from_bytes(&bytes).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }

@@ -5,12 +5,13 @@ use std::ffi::c_char;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use htex::Quantity;
 use htex::device::Devices;
+use htex::format::Asset;
 use htex::scene::{
     Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Plan, Renderer, SceneError,
     SceneFiles, Surroundings, plan, read_scene,
 };
-use htex::{AssetData, Quantity};
 
 use super::{htex_finger, htex_scene, htex_scene_options};
 use crate::handles::{Kind, Table};
@@ -90,10 +91,10 @@ impl Source<'_> {
         let data = match self {
             Self::Path(path) => {
                 let asset = first(&bounded(path).ok()?)?;
-                AssetData::open(&path.parent()?.join(asset)).ok()?
+                Asset::open(&path.parent()?.join(asset)).ok()?
             }
             Self::Memory(bytes, files) => {
-                AssetData::from_bytes(&files.read(&first(bytes)?).ok()?).ok()?
+                Asset::from_bytes(&files.read(&first(bytes)?).ok()?).ok()?
             }
         };
         Some(data.manifest.quantity)

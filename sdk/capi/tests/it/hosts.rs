@@ -13,7 +13,7 @@ use std::process::{Command, Output};
 
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, embed_plugins, fit_asset};
 use htex::simulate::{SimulationOptions, Surface, simulate};
-use htex::{Asset, Motion, Registry, Search, VoiceOptions};
+use htex::{Motion, Registry, Search, Texture, VoiceOptions};
 use programs::{Language, Project, asset};
 use xtask::needs;
 
@@ -89,7 +89,7 @@ fn voices_are_small_and_the_end_gives_everything_back() {
 }
 
 /// A texture recorded at two speeds, with these models.
-fn fitted(registry: &Registry, models: &[&str]) -> htex::AssetData {
+fn fitted(registry: &Registry, models: &[&str]) -> htex::format::Asset {
     let take = |speed_mm_s| {
         let options =
             SimulationOptions::new(Surface::Vinyl).with_speed_mm_s(speed_mm_s).with_duration_s(3.0);
@@ -170,7 +170,7 @@ fn calls_of_each_language_tell_the_same() {
     writer.finish().unwrap();
     let scene = asset().with_file_name("constant.scene.json");
 
-    let opened = Asset::open(asset()).unwrap();
+    let opened = Texture::open(asset()).unwrap();
     let options =
         VoiceOptions::default().with_seed(7).with_gain(0.5).with_limit(0.01).with_envelope_bands(3);
     let mut voice = opened.voice(&options).unwrap();

@@ -4,7 +4,7 @@ use htex_author::{AuthorError, Difference, TextureSpectrum};
 use htex_dsp::grid::level_rms;
 use htex_format::Rights;
 use htex_host::{FitCondition, FitRequest, Registry};
-use htex_play::{Asset, Motion};
+use htex_play::{Motion, Texture};
 
 use super::MODEL;
 use super::image::{Image, read, to_bytes};
@@ -33,7 +33,7 @@ pub(crate) struct Printed {
 /// # Errors
 /// When the texture is silent, the speed is unknown, or 255 pixels cannot hold any of it.
 pub(crate) fn written(
-    asset: &Asset,
+    asset: &Texture,
     model: Option<&str>,
     motion: Option<Motion>,
 ) -> Result<Printed, ExchangeError> {
@@ -52,7 +52,7 @@ pub(crate) fn written(
 
 /// The parameters and the level of a texture that is a map. They come from the model that is named,
 /// or else from the one that an app plays.
-fn own(asset: &Asset, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
+fn own(asset: &Texture, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
     match asset.loaded_model(model)?.id() {
         MODEL => Ok(Some(asset.parameters(model, None)?)),
         _ => Ok(None),
@@ -60,7 +60,7 @@ fn own(asset: &Asset, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, Ex
 }
 
 fn fitted(
-    asset: &Asset,
+    asset: &Texture,
     model: Option<&str>,
     motion: Option<Motion>,
 ) -> Result<Printed, ExchangeError> {
@@ -153,7 +153,7 @@ fn image(
 }
 
 /// Describes what the image does not state.
-fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
+fn said(parameters: &[f64], white: f64, asset: &Texture) -> String {
     // As 32-bit floats, as assets store them, so that no meaningless digits are shown.
     let at = |index: usize| parameters.get(index).copied().unwrap_or_default() as f32;
     let white = white as f32;

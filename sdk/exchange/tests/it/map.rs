@@ -6,7 +6,7 @@ use htex_exchange::map::{Image, read};
 use htex_exchange::{
     Export, Exported, Format, Import, Imported, Path, Physical, export, import, missing,
 };
-use htex_play::{Asset, Motion, Registry, VoiceOptions};
+use htex_play::{Motion, Registry, Texture, VoiceOptions};
 use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -57,11 +57,11 @@ fn refusal(bytes: &[u8], pitch_mm: Option<f64>) -> String {
 }
 
 /// Opens the asset as an app does.
-fn opened(imported: &Imported) -> Asset {
-    Asset::from_bytes(&imported.to_bytes().unwrap()).unwrap()
+fn opened(imported: &Imported) -> Texture {
+    Texture::from_bytes(&imported.to_bytes().unwrap()).unwrap()
 }
 
-fn exported(asset: &Asset) -> Exported {
+fn exported(asset: &Texture) -> Exported {
     export(asset, &Export::new(Format::named("png").unwrap())).unwrap()
 }
 
@@ -191,7 +191,7 @@ fn what_is_felt_follows_the_place() {
 }
 
 /// Two seconds of a straight stroke at 8 kHz.
-fn stroke(asset: &Asset, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
+fn stroke(asset: &Texture, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
     let mut voice = asset.voice(&VoiceOptions::default().with_rate_hz(8_000.0)).unwrap();
     let mut samples = vec![0.0; 16_000];
     for (block, samples) in samples.chunks_mut(40).enumerate() {

@@ -89,7 +89,7 @@ fn a_setting_that_means_nothing_is_refused() {
     assert!(error.contains("it is not written; there are haptic, ahap"), "{error}");
 }
 
-fn made() -> htex_play::Asset {
+fn made() -> htex_play::Texture {
     let registry = Registry::builtin();
     let how = Import {
         name: "hum",
@@ -108,7 +108,7 @@ fn made() -> htex_play::Asset {
     let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
         "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
     let imported = import("hum.haptic", file, &how, &registry).unwrap();
-    htex_play::Asset::with_registry(imported.asset, registry)
+    htex_play::Texture::with_registry(imported.asset, registry)
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use crate::{Asset, Motion, Quantity, Rights};
+use crate::{Motion, Quantity, Rights};
 use htex_dsp::grid::GRID_HZ;
 use htex_player::layout::{CHECKSUM, HEADER, MOST_FILTERS, MOST_HALF, MOST_LEVEL};
 use htex_player::{Block, Law};
@@ -11,9 +11,9 @@ use crate::bake::compress::{Factors, Stored};
 use crate::bake::encode::{Content, Encoded, encode};
 use crate::bake::filter::Design;
 use crate::bake::interpolator::Interpolator;
+use crate::bake::moments::{Moment, Moments};
 use crate::bake::noise::Designer;
 use crate::bake::shape::{Shape, Spectra};
-use crate::bake::texture::{Moment, Texture};
 use crate::bake::tones::{self, Tone};
 use crate::bake::{BakeError, Grid};
 
@@ -131,7 +131,7 @@ impl From<f64> for BakeLimits {
 /// # Errors
 /// If the asset cannot be played, or if a condition or the rate is out of range.
 pub fn bake(
-    asset: &Asset,
+    asset: &crate::Texture,
     model: Option<&str>,
     grid: &Grid,
     rate_hz: f64,
@@ -139,7 +139,7 @@ pub fn bake(
 ) -> Result<Baked, BakeError> {
     let limits = limits.into();
     let within_db = limits.within_db;
-    let texture = Texture::new(asset, model)?;
+    let texture = Moments::new(asset, model)?;
     let mut designs = Designs::new(limits.lengths());
     let mut grid = grid.clone();
     loop {
@@ -176,7 +176,7 @@ impl Designs {
     }
 
     /// Returns the designer for a design; makes a new one if the design has changed.
-    fn designer(&mut self, design: Design, texture: &Texture<'_>) -> Rc<Designer> {
+    fn designer(&mut self, design: Design, texture: &Moments<'_>) -> Rc<Designer> {
         match &self.designer {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),
             _ => {
@@ -194,7 +194,7 @@ impl Designs {
     fn shape(
         &mut self,
         designer: &Rc<Designer>,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         moments: &[Rc<Moment>],
     ) -> Result<Shape, BakeError> {
         let with = |length: usize, within_db: f64| {
@@ -250,7 +250,7 @@ struct Designed {
 
 impl Designed {
     fn new(
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: &Grid,
         rate_hz: f64,
         designs: &mut Designs,
@@ -292,7 +292,7 @@ impl Designed {
     /// Encodes the block, with as few filters as the accuracy allows.
     fn baked(
         mut self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: Grid,
         within_db: f64,
     ) -> Result<Baked, BakeError> {
@@ -359,7 +359,7 @@ impl Designed {
     /// and the errors by theirs.
     fn compress(
         &mut self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: &Grid,
         within_db: f64,
         designer: &Rc<Designer>,
@@ -412,7 +412,7 @@ impl Designed {
 
     /// Returns the largest level to which the law may raise a level of the grid, in the scale of
     /// the stored levels.
-    fn ceiling(&self, texture: &Texture<'_>) -> f64 {
+    fn ceiling(&self, texture: &Moments<'_>) -> f64 {
         let stated = self.moments.iter().map(|m| m.level_rms);
         let pairs = self.shape.levels.iter().zip(stated);
         let loudest = pairs.max_by(|a, b| a.0.total_cmp(b.0));

@@ -1,6 +1,6 @@
 //! The grid of baked conditions.
 
-use crate::{Asset, Motion};
+use crate::{Motion, Texture};
 use htex_player::layout::{
     LEAST_FORCE_N, MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_ON_AXIS, MOST_SPEED_MM_S,
 };
@@ -62,13 +62,13 @@ impl Grid {
     }
 
     /// Makes the grid of one condition, the default condition of a representation
-    /// ([`Asset::default_condition`]). `model` is the id or the short name of the representation's
+    /// ([`Texture::default_condition`]). `model` is the id or the short name of the representation's
     /// model; `None` selects the best representation. If the condition does not state a speed or a
     /// force, it is 80 mm/s or 0.4 N.
     ///
     /// # Errors
     /// As [`Self::new`], and if there is no such representation.
-    pub fn of_default_condition(asset: &Asset, model: Option<&str>) -> Result<Self, BakeError> {
+    pub fn of_default_condition(asset: &Texture, model: Option<&str>) -> Result<Self, BakeError> {
         Self::of_conditions(&[asset.motion(model, None, None)?])
     }
 

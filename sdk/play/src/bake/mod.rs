@@ -2,7 +2,7 @@
 //!
 //! ```no_run
 //! use htex_play::bake::{Grid, bake};
-//! let asset = htex_play::Asset::open("sandpaper.htex")?;
+//! let asset = htex_play::Texture::open("sandpaper.htex")?;
 //! let baked = bake(&asset, None, &Grid::new(vec![40.0, 160.0], vec![0.4])?, 8_000.0, 0.3)?;
 //! println!("{} bytes, within {:.2} dB", baked.bytes.len(), baked.between_db);
 //! # Ok::<(), htex_play::bake::BakeError>(())
@@ -28,11 +28,11 @@ mod error;
 mod filter;
 mod grid;
 mod interpolator;
+mod moments;
 mod noise;
 mod reading;
 mod shape;
 mod source;
-mod texture;
 mod tones;
 
 pub use design::{BakeLimits, Baked, bake};

@@ -9,7 +9,7 @@ use htex_host::Band;
 use crate::bake::BakeError;
 use crate::bake::compress::Factors;
 use crate::bake::filter::{Bins, Design, Wanted};
-use crate::bake::texture::{Moment, Texture};
+use crate::bake::moments::{Moment, Moments};
 
 /// The centre and one side of a filter with unit energy.
 pub(crate) type Filter = Rc<Vec<f64>>;
@@ -49,7 +49,7 @@ impl Designer {
     /// Returns the filter for a moment, with `half` coefficients on each side.
     pub(crate) fn filter(
         &self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         moment: &Moment,
         half: usize,
     ) -> Result<Filter, BakeError> {

@@ -6,8 +6,8 @@ use crate::Motion;
 use htex_player::layout::{MAX_RATIO, MIN_RATIO};
 
 use crate::bake::filter::energy;
+use crate::bake::moments::{Moment, Moments};
 use crate::bake::noise::{Designer, Filter};
-use crate::bake::texture::{Moment, Texture};
 use crate::bake::tones::{self, Tone};
 use crate::bake::{BakeError, Grid};
 
@@ -34,7 +34,7 @@ pub(crate) enum Spectra {
 impl Spectra {
     /// Returns the magnitude on the band's grid, at unit power, of conditions that are mixed in
     /// equal parts, as the player mixes them.
-    fn read(&self, mixed: &[usize], texture: &Texture<'_>, ratio: f64) -> Vec<f64> {
+    fn read(&self, mixed: &[usize], texture: &Moments<'_>, ratio: f64) -> Vec<f64> {
         let part = 1.0 / mixed.len() as f64;
         match self {
             Self::Noise(designer, filters) => {
@@ -69,7 +69,7 @@ impl Shape {
     /// exceeds `within_db`.
     pub(crate) fn within(
         spectra: Spectra,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         moments: &[Rc<Moment>],
         within_db: f64,
     ) -> Result<Option<Self>, BakeError> {
@@ -98,7 +98,7 @@ impl Shape {
     /// ends with the first error that exceeds `within_db`.
     pub(crate) fn between(
         &self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: &Grid,
         within_db: f64,
     ) -> Result<Vec<(Motion, f64)>, BakeError> {
@@ -117,7 +117,7 @@ impl Shape {
     /// Returns the largest error of the nine bands, dB, at half the lowest speed of the grid and at
     /// twice the highest one. There the level follows the law of the texture, but the player keeps
     /// the spectrum of the nearest condition.
-    pub(crate) fn beyond_db(&self, texture: &Texture<'_>, grid: &Grid) -> Result<f64, BakeError> {
+    pub(crate) fn beyond_db(&self, texture: &Moments<'_>, grid: &Grid) -> Result<f64, BakeError> {
         let law = texture.law();
         let last = grid.speeds_mm_s().len() - 1;
         let mut largest = 0.0f64;
@@ -136,7 +136,7 @@ impl Shape {
     /// parts.
     fn error_db(
         &self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         motion: Motion,
         mixed: &[usize],
         level: f64,

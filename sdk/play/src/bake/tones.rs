@@ -8,7 +8,7 @@ use htex_host::Band;
 use htex_player::layout::MOST_TONES;
 
 use crate::bake::BakeError;
-use crate::bake::texture::Moment;
+use crate::bake::moments::Moment;
 
 /// Frequencies that differ by less than this, hertz, count as one sinusoid.
 const SAME_HZ: f64 = 0.01;

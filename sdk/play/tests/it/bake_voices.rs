@@ -11,7 +11,7 @@ use htex_author::{
 };
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
 use htex_play::bake::{Grid, bake};
-use htex_play::{Asset, Band, Motion, Registry, VoiceOptions};
+use htex_play::{Band, Motion, Registry, Texture, VoiceOptions};
 use htex_player::{Block, Player};
 
 const RATE_HZ: f64 = 8_000.0;
@@ -33,7 +33,7 @@ fn energies(samples: Vec<f32>) -> Vec<f64> {
     bank.energies(&spectrum.magnitude)
 }
 
-fn of_host(asset: &Asset, model: &str, motion: Motion) -> Vec<f64> {
+fn of_host(asset: &Texture, model: &str, motion: Motion) -> Vec<f64> {
     let mut options =
         VoiceOptions::default().with_rate_hz(RATE_HZ).with_motion(Some(motion)).with_seed(3);
     options.model = Some(model);
@@ -98,7 +98,7 @@ fn one_recorded_speed_scales_frequencies_and_level() {
     for parameters in &mut data.parameters {
         parameters.truncate(1);
     }
-    let asset = Asset::new(data);
+    let asset = Texture::new(data);
     let grid = Grid::new(vec![45.0, 60.0], vec![0.2, 0.3]).unwrap();
     let baked = bake(&asset, Some("sslope"), &grid, RATE_HZ, 0.2).unwrap();
     let motion = Motion::new(45.0, 0.2);

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use htex_play::envelope::MOST_BANDS;
-use htex_play::{Asset, Error, Motion, Voice, VoiceOptions};
+use htex_play::{Error, Motion, Texture, Voice, VoiceOptions};
 
-fn asset() -> Asset {
+fn asset() -> Texture {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
-    Asset::open(path).unwrap()
+    Texture::open(path).unwrap()
 }
 
 /// Renders blocks of different lengths and returns all samples. Before some blocks the finger

@@ -1,6 +1,6 @@
 //! A voice has the same level at all sample rates.
 
-use htex_play::{Asset, VoiceOptions};
+use htex_play::{Texture, VoiceOptions};
 
 /// Sample rates at which no image from the filter's own rate lies next to its original frequency.
 const RATES_HZ: [f64; 8] =
@@ -8,9 +8,9 @@ const RATES_HZ: [f64; 8] =
 const SECONDS: f64 = 20.0;
 
 /// An AR texture with a resonance at a frequency, two bins wide.
-fn resonance(hz: f64) -> Asset {
+fn resonance(hz: f64) -> Texture {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
-    let mut data = Asset::open(file).unwrap().data().clone();
+    let mut data = Texture::open(file).unwrap().data().clone();
     let all = &mut data.manifest.representations;
     let ar = all.iter().position(|r| r.model == "org.htex.ar").unwrap();
     let radius = (-std::f64::consts::PI * 10.0 / 2_000.0).exp();
@@ -21,10 +21,10 @@ fn resonance(hz: f64) -> Asset {
         set[1] = 2.0 * radius * turn.cos();
         set[2] = -radius * radius;
     }
-    Asset::new(data)
+    Texture::new(data)
 }
 
-fn rms(asset: &Asset, rate_hz: f64) -> f64 {
+fn rms(asset: &Texture, rate_hz: f64) -> f64 {
     let options = VoiceOptions::default().with_model("ar").with_seed(3).with_rate_hz(rate_hz);
     let mut voice = asset.voice(&options).unwrap();
     let mut samples = vec![0.0; (SECONDS * rate_hz) as usize];

@@ -1,13 +1,13 @@
 //! A voice states the same magnitudes as its asset does for the same motion, with the voice's own
 //! options.
 
-use htex_play::{Asset, Effects, Motion, Parameter, VoiceOptions};
+use htex_play::{Effects, Motion, Parameter, Texture, VoiceOptions};
 
 const FREQUENCY_HZ: [f64; 4] = [40.0, 100.0, 250.0, 700.0];
 
-fn vinyl() -> Asset {
+fn vinyl() -> Texture {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
-    Asset::open(file).unwrap()
+    Texture::open(file).unwrap()
 }
 
 #[test]

@@ -14,7 +14,7 @@ use htex_scene::{LoadedScene, Renderer, Response};
 type Scene = (LoadedScene, Capabilities);
 
 /// A stroke at an average speed of 80 mm/s, which varies by the fraction `swing`.
-fn strokes(asset: &htex_play::Asset, swing: f64) -> LoadedScene {
+fn strokes(asset: &htex_play::Texture, swing: f64) -> LoadedScene {
     let x = move |t: f64| 80.0 * t + 80.0 * swing * (4.0 * t).sin() / 4.0;
     traced(asset, trace(0.5, x, |_| 0.4), 0.5)
 }

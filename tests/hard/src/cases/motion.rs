@@ -1,6 +1,6 @@
 //! Motions that no finger makes, on assets and in scenes.
 
-use htex::{Asset, Effects, VoiceOptions};
+use htex::{Effects, Texture, VoiceOptions};
 use htex_author::recording::Recording;
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_scene::file::{self, Budget, Constant, DeviceChoice, Effect, Motion, Scene, Switch};
@@ -20,11 +20,11 @@ pub(crate) const SECTION: Section = Section {
 const LIMIT_V: f64 = 150.0;
 
 /// An asset with one or two conditions and all models.
-fn asset(conditions: usize) -> Asset {
+fn asset(conditions: usize) -> Texture {
     let recording = |x| Recording::new("hard", RATE_HZ, vec![x]).unwrap();
     let takes = vec![(recording(friction()), 60.0), (recording(scaled(&noise(), 0.1)), 120.0)];
     let fitted = fitted(takes.into_iter().take(conditions).collect()).unwrap();
-    Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+    Texture::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
 }
 
 fn models() -> Vec<String> {

@@ -1,6 +1,7 @@
 //! Blocks for players on microcontrollers.
 
-use htex::{Asset, AssetData};
+use htex::Texture;
+use htex::format::Asset;
 use htex_format::Quantity;
 use htex_play::bake::{
     BakeError, Baked, Grid, bake as baked, c_header, c_name, rust_name, rust_source,
@@ -47,7 +48,7 @@ pub(crate) fn bake(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let [bytes] = files else {
         return Err(Refusal::argument("give one texture"));
     };
-    let asset = Asset::new(AssetData::from_bytes(bytes)?);
+    let asset = Texture::new(Asset::from_bytes(bytes)?);
     let grid =
         given(grid)?.map_or_else(|| Grid::of_default_condition(&asset, model.as_deref()), Ok)?;
     let baked = baked(&asset, model.as_deref(), &grid, rate_hz, within_db)?;

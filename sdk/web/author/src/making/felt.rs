@@ -1,6 +1,7 @@
 //! What a fingertip feels: the difference between two textures, and the detection threshold.
 
-use htex::{Asset, AssetData};
+use htex::Texture;
+use htex::format::Asset;
 use htex_author::by_hand::ByHandError;
 use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
 use htex_dsp::vibrotactile::Listener;
@@ -62,13 +63,13 @@ fn told(felt: Felt, if_sensitive: &Felt) -> Told {
 }
 
 /// Returns a texture, and its magnitudes at a motion according to a model.
-fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refusal> {
+fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Texture, Vec<f64>), Refusal> {
     let model = side.text("model")?;
     let mut at = side.object("at")?;
     let (speed, force) = (at.number("speed")?, at.number("force")?);
     at.finish()?;
     side.finish()?;
-    let asset = Asset::new(AssetData::from_bytes(bytes)?);
+    let asset = Texture::new(Asset::from_bytes(bytes)?);
     let grid = asset.band().grid_hz();
     let model = model.as_deref();
     let magnitude = match (speed, force) {

@@ -134,8 +134,8 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
 }
 
 /// Opens a texture and computes its hash.
-fn opened(bytes: &[u8]) -> Result<(htex::Asset, String), Refusal> {
-    let asset = htex::Asset::new(htex::AssetData::from_bytes(bytes)?);
+fn opened(bytes: &[u8]) -> Result<(htex::Texture, String), Refusal> {
+    let asset = htex::Texture::new(htex::format::Asset::from_bytes(bytes)?);
     Ok((asset, blake3::hash(bytes).to_hex().to_string()))
 }
 

@@ -3,7 +3,7 @@
 
 mod parameters;
 
-use htex::Asset;
+use htex::Texture;
 use htex_author::stored_fields;
 use htex_dsp::grid::Band;
 use htex_host::{LoadedModel, Registry};
@@ -185,7 +185,7 @@ pub fn files() -> Vec<File> {
     let mut files: Vec<File> = registry.models().iter().map(descriptor).collect();
     for (number, plan) in PLANS.iter().enumerate() {
         let bytes = asset(&registry, number, plan);
-        let numbers = numbers(plan, &Asset::from_bytes(&bytes).unwrap());
+        let numbers = numbers(plan, &Texture::from_bytes(&bytes).unwrap());
         let path = |ending: &str| format!("{CASES}/{}.{ending}", plan.name);
         files.push((path("htex"), bytes));
         files.push((path("json"), numbers.into_bytes()));
@@ -257,7 +257,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
 }
 
 /// The values read from an asset, one line of JSON per case.
-fn numbers(plan: &Plan, asset: &Asset) -> String {
+fn numbers(plan: &Plan, asset: &Texture) -> String {
     let mut frequency_hz = asset.band().grid_hz();
     frequency_hz.extend(BESIDE_HZ);
     let mut cases = Vec::new();

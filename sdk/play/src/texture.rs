@@ -23,12 +23,12 @@ const MOST_RATE_HZ: f64 = 1e7;
 /// An opened texture. Its clones share the data of the file.
 ///
 /// ```no_run
-/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let asset = htex::Texture::open("sandpaper.htex")?;
 /// println!("{} in {}", asset.manifest().name, asset.quantity().unit());
 /// # Ok::<(), htex::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Asset {
+pub struct Texture {
     data: Arc<htex_format::Asset>,
     registry: Registry,
     /// Whether embedded models may run.
@@ -37,7 +37,7 @@ pub struct Asset {
     models: Arc<[OnceLock<LoadedModel>]>,
 }
 
-impl Asset {
+impl Texture {
     /// Opens a file. The embedded and the built-in models can play it.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl Asset {
     ///
     /// ```no_run
     /// let library = htex::Library::open("cloth.htexlib".as_ref())?;
-    /// let asset = htex::Asset::from_library(&library, "woven/cotton")?;
+    /// let asset = htex::Texture::from_library(&library, "woven/cotton")?;
     /// # Ok::<(), htex::Error>(())
     /// ```
     ///
@@ -369,7 +369,7 @@ impl Asset {
     /// Returns the same parameters as [`Self::parameters`], with the names of the model's fields.
     ///
     /// ```no_run
-    /// let asset = htex::Asset::open("sandpaper.htex")?;
+    /// let asset = htex::Texture::open("sandpaper.htex")?;
     /// for (name, parameter) in asset.named_parameters(Some("sbeta"), None)? {
     ///     println!("{name}: {parameter:?}");
     /// }
@@ -392,7 +392,7 @@ impl Asset {
     /// smaller [`Representation::error_db`]. Ties keep the order of the file.
     ///
     /// ```no_run
-    /// let asset = htex::Asset::open("sandpaper.htex")?;
+    /// let asset = htex::Texture::open("sandpaper.htex")?;
     /// for i in asset.ranked(htex::ErrorMeasure::NineBand) {
     ///     println!("{}", asset.manifest().representations[i].model);
     /// }
@@ -533,7 +533,7 @@ impl Asset {
     /// [`Self::default_condition`]; if that condition does not state it, it is 80 mm/s or 0.4 N.
     ///
     /// ```no_run
-    /// let asset = htex::Asset::open("sandpaper.htex")?;
+    /// let asset = htex::Texture::open("sandpaper.htex")?;
     /// let faster = asset.motion(None, Some(160.0), None)?; // at the force of the default condition
     /// # Ok::<(), htex::Error>(())
     /// ```

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::exploration::CEILING;
-use crate::{Asset, Motion, Motions, Quantity};
+use crate::{Motion, Motions, Quantity};
 use htex_host::{Band, Descriptor, LoadedModel};
 use htex_player::Law;
 
@@ -13,8 +13,8 @@ use crate::bake::BakeError;
 use crate::bake::reading::Bands;
 
 /// A representation of an asset.
-pub(crate) struct Texture<'a> {
-    asset: &'a Asset,
+pub(crate) struct Moments<'a> {
+    asset: &'a crate::Texture,
     model: LoadedModel,
     id: String,
     motions: Motions,
@@ -44,8 +44,8 @@ impl Moment {
     }
 }
 
-impl<'a> Texture<'a> {
-    pub(crate) fn new(asset: &'a Asset, model: Option<&str>) -> Result<Self, BakeError> {
+impl<'a> Moments<'a> {
+    pub(crate) fn new(asset: &'a crate::Texture, model: Option<&str>) -> Result<Self, BakeError> {
         let loaded = asset.loaded_model(model)?;
         let id = asset.representation_id(model)?.to_owned();
         if loaded.follows_motion() {

@@ -209,8 +209,9 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
 }
 
 fn play(asset: &htex::Texture, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
-    let options = VoiceOptions::default().with_model(model).with_rate_hz(f64::from(WAV_RATE_HZ));
-    let mut voice = asset.voice(&options).map_err(of_file(file))?;
+    let options = VoiceOptions::default().with_rate_hz(f64::from(WAV_RATE_HZ));
+    let representation = asset.representation(model).map_err(of_file(file))?;
+    let mut voice = representation.voice(&options).map_err(of_file(file))?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     let rights = Rights::of(asset.manifest());
     write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).map_err(of_file(file)))

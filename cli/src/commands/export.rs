@@ -175,7 +175,7 @@ impl Export {
         if let Some(stroke) = &settings.stroke {
             return Ok(Path::Stroke(Stroke::open(stroke)?));
         }
-        let beyond = settings.choice.beyond(asset, htex::Effects::default());
+        let beyond = settings.choice.beyond(asset, htex::play::Effects::default());
         note(&Vec::from_iter(beyond.map_err(of_file(&self.asset))?));
         Ok(Path::Condition(settings.choice.motion(asset).map_err(of_file(&self.asset))?))
     }

@@ -167,7 +167,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
     let bytes = read_asset(path)?;
     let models = Registry::builtin();
     let known = |r: &Representation| {
-        let model = htex::model_of(&models, r).ok()?;
+        let model = htex::play::model_of(&models, r).ok()?;
         Some(model.descriptor())
     };
     let mut report = validate_with(&bytes, &limits, &known);

@@ -78,7 +78,7 @@ fn textures_are_mixed() {
     let magnitude = |file: &str| {
         let asset = htex::Texture::open(place.path(file)).unwrap();
         let hertz: Vec<f64> = (4..=200).map(|k| 5.0 * f64::from(k)).collect();
-        asset.magnitude(Some("bands"), None, &hertz).unwrap()
+        asset.representation("bands").unwrap().magnitude(None, &hertz).unwrap()
     };
     mix("0", "first.htex");
     mix("1", "second.htex");

@@ -2,7 +2,8 @@
 //! has them.
 
 use crate::common::Place;
-use htex::{Motion, Texture, Triangle};
+use htex::format::Triangle;
+use htex::{Motion, Texture};
 
 /// The asset of `spec/playing-conformance` that stores triangles.
 fn stored() -> Texture {
@@ -17,7 +18,7 @@ fn triangles(asset: &Texture) -> Vec<Triangle> {
 /// Level in the middle of a rectangle's corners: on the diagonal that is used.
 fn level(asset: &Texture) -> f64 {
     let middle = Some(Motion::new(100.0, 0.8));
-    asset.level_rms(Some("bands"), middle).unwrap()
+    asset.representation("bands").unwrap().level_rms(middle).unwrap()
 }
 
 #[test]

@@ -96,9 +96,10 @@ pub unsafe extern "C" fn htex_asset_open_reader(
     guarded(|| {
         // The reader first: if the options are invalid, it is dropped and thereby closed.
         // SAFETY: the pointers are the caller's.
-        let (reader, models) = unsafe { (Reader::of(reader)?, models(options)?) };
-        let bytes =
-            reader.read_whole().map_err(|error| Failure::of(htex_status::HTEX_STATUS_IO, error))?;
+        let (reader, models) = unsafe { (Reader::from_raw(reader)?, models(options)?) };
+        let bytes = reader
+            .read_whole()
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_IO, error))?;
         let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn htex_asset_manifest_json(
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
         let json = serde_json::to_string(asset.manifest())
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
         // SAFETY: the pointers are the caller's.
         unsafe { write_text(&json, out, capacity, length) }
     })
@@ -279,7 +280,7 @@ pub unsafe extern "C" fn htex_asset_magnitude(
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
         // SAFETY: as above.
         let frequency_hz = unsafe { slice(frequency_hz, len) }?;
-        let computed = asset.magnitude(model, at, frequency_hz)?;
+        let computed = asset.representation(model)?.magnitude(at, frequency_hz)?;
         // SAFETY: as above. `frequency_hz` is not used any more, and may be the same array.
         let magnitude = unsafe { slice_mut(magnitude, len) }?;
         magnitude.copy_from_slice(&computed);
@@ -300,7 +301,7 @@ pub unsafe extern "C" fn htex_asset_level_rms(
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
-        let level_rms = asset.level_rms(model, at)?;
+        let level_rms = asset.representation(model)?.level_rms(at)?;
         // SAFETY: the place is the caller's.
         *unsafe { place(out) }? = level_rms;
         Ok(())

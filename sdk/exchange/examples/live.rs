@@ -32,9 +32,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Time of a run that renders `samples` samples at a time, seconds.
 fn run_s(asset: &Texture, samples: usize, moves: bool) -> Result<f64, Box<dyn std::error::Error>> {
-    let mut options = VoiceOptions::default();
-    options.rate_hz = RATE_HZ;
-    options.motion = Some(Motion::new(100.0, 1.0));
+    let options =
+        VoiceOptions::default().with_rate_hz(RATE_HZ).with_motion(Motion::new(100.0, 1.0));
     let mut voice = asset.voice(&options)?;
     let mut block = vec![0.0f32; samples];
     let begun = Instant::now();

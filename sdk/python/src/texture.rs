@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use htex::format::{Asset, write_file};
-use htex::{Effects, Motion, Parameter, Synthesis, VoiceOptions};
+use htex::play::{Effects, Parameter, Synthesis};
+use htex::{Motion, Representation, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -34,7 +35,7 @@ pub(crate) fn open(
     embedded: bool,
     installed: bool,
 ) -> PyResult<Texture> {
-    let opened = Source::of(source)?;
+    let opened = Source::from_python(source)?;
     py.detach(|| {
         let data = match &opened {
             Source::File(path) => Asset::open(path),
@@ -52,7 +53,7 @@ pub(crate) enum Source {
 
 impl Source {
     /// Reads an argument: a path, bytes, or an object with the method `read`, which is called.
-    pub(crate) fn of(source: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub(crate) fn from_python(source: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(bytes) = source.cast::<PyBytes>() {
             return Ok(Self::Bytes(bytes.as_bytes().to_vec()));
         }
@@ -100,7 +101,11 @@ impl Texture {
 
     /// Makes a texture from what the file of a new asset contains. Levels and errors have fewer
     /// digits there than in memory.
-    pub(crate) fn of(made: &Asset, plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
+    pub(crate) fn from_asset(
+        made: &Asset,
+        plugins: Vec<PathBuf>,
+        installed: bool,
+    ) -> PyResult<Self> {
         Self::new(stored(made)?, plugins, true, installed)
     }
 
@@ -120,12 +125,16 @@ impl Texture {
         &self.asset
     }
 
+    fn representation(&self, model: Option<&str>) -> PyResult<Representation<'_>> {
+        self.asset.representation(model).map_err(raised)
+    }
+
     /// Returns the motion at a condition. A missing value comes from the default condition.
     fn motion(&self, model: Option<&str>, at: Option<At>) -> PyResult<Option<Motion>> {
         match at {
             None | Some(At { speed_mm_s: None, force_n: None }) => Ok(None),
             Some(At { speed_mm_s, force_n }) => {
-                self.asset.motion(model, speed_mm_s, force_n).map(Some).map_err(raised)
+                Ok(Some(self.representation(model)?.motion(speed_mm_s, force_n)))
             }
         }
     }
@@ -241,7 +250,8 @@ impl Texture {
     ) -> PyResult<Bound<'py, PyAny>> {
         let frequency_hz = frequency_hz.unwrap_or_else(|| self.asset.band().grid_hz());
         let motion = self.motion(model, at)?;
-        let magnitude = py.detach(|| self.asset.magnitude(model, motion, &frequency_hz));
+        let representation = self.representation(model)?;
+        let magnitude = py.detach(|| representation.magnitude(motion, &frequency_hz));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
         spectrum(py, quantity, band, frequency_hz, magnitude.map_err(raised)?)
     }
@@ -255,17 +265,17 @@ impl Texture {
         model: Option<&str>,
         condition: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let condition =
-            condition.map_or_else(|| self.asset.default_condition(model), Ok).map_err(raised)?;
+        let representation = self.representation(model)?;
+        let condition = condition.unwrap_or_else(|| representation.default_condition());
         let known = self.asset.manifest().conditions.get(condition);
         let known =
             known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
         let motion =
             known.speed_mm_s.zip(known.force_n).map(|(speed, force)| Motion::new(speed, force));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
-        let (parameters, _) = self.asset.parameters(model, motion).map_err(raised)?;
-        let level = self.asset.level_rms(model, motion).map_err(raised)?;
-        let loaded = self.asset.loaded_model(model).map_err(raised)?;
+        let (parameters, _) = representation.parameters(motion).map_err(raised)?;
+        let level = representation.level_rms(motion).map_err(raised)?;
+        let loaded = representation.model().map_err(raised)?;
         let (frequency_hz, silent) = (band.grid_hz(), vec![0.0; band.bins()]);
         let grid = SpectrumRef { band, frequency_hz: &frequency_hz, magnitude: &silent };
         let read = py.detach(|| read_spectrum(&loaded, &parameters, level, grid));
@@ -277,7 +287,8 @@ impl Texture {
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(model, at)?;
-        py.detach(|| self.asset.level_rms(model, motion)).map_err(raised)
+        let representation = self.representation(model)?;
+        py.detach(|| representation.level_rms(motion)).map_err(raised)
     }
 
     /// Returns the parameters of a representation at a condition, by name.
@@ -289,7 +300,8 @@ impl Texture {
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(model, at)?;
-        let all = py.detach(|| self.asset.named_parameters(model, motion)).map_err(raised)?;
+        let representation = self.representation(model)?;
+        let all = py.detach(|| representation.named_parameters(motion)).map_err(raised)?;
         let named = PyDict::new(py);
         for (name, parameter) in all {
             match parameter {
@@ -347,7 +359,7 @@ impl Texture {
             }
             None => None,
         };
-        let mut options = VoiceOptions::default()
+        let options = VoiceOptions::default()
             .with_rate_hz(rate_hz)
             .with_seed(seed)
             .with_motion(motion)
@@ -362,9 +374,9 @@ impl Texture {
                     .with_level_scaling(level_scaling)
                     .with_contact(contact),
             );
-        options.model = model;
-        let id = self.asset.representation_id(model).map_err(raised)?.to_owned();
-        let voice = py.detach(|| self.asset.voice(&options)).map_err(raised)?;
+        let representation = self.representation(model)?;
+        let id = representation.id().to_owned();
+        let voice = py.detach(|| representation.voice(&options)).map_err(raised)?;
         let unit = self.asset.quantity().unit();
         Ok(Voice::new(voice, id, rate_hz, seed, unit))
     }

@@ -64,7 +64,7 @@ impl Inverse {
     /// Returns the gain at a frequency: |H| / (|H|² + floor²), where H is relative to its largest
     /// magnitude in the band. It is near 1/|H| and at most 1/(2 floor), and 0 where the response is
     /// 0.
-    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+    pub(crate) fn gain_at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;
         let gain = part / (part * part + self.floor * self.floor);
@@ -80,7 +80,7 @@ impl Inverse {
     /// Returns which part of the band is amplified, and by how much.
     pub(crate) fn raised(&self) -> Option<Raised> {
         let grid = self.band.grid_hz();
-        raised(&grid, grid.iter().map(|&hz| self.at(hz)))
+        raised(&grid, grid.iter().map(|&hz| self.gain_at(hz)))
     }
 
     pub(crate) fn band(&self) -> Band {

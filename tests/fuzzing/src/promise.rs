@@ -62,14 +62,13 @@ pub(crate) fn play(asset: &Texture) {
     let band = asset.band();
     let edges = [band.low_hz, 0.5 * (band.low_hz + band.high_hz), band.high_hz];
     for representation in &asset.manifest().representations {
-        let model = Some(representation.model.as_str());
-        match asset.magnitude(model, None, &edges) {
+        let representation =
+            asset.representation(representation.model.as_str()).expect("it is listed");
+        match representation.magnitude(None, &edges) {
             Ok(magnitude) => finite("magnitude", magnitude),
             Err(error) => refusal(&error),
         }
-        let mut options = htex::VoiceOptions::default().with_rate_hz(8000.0);
-        options.model = model;
-        match asset.voice(&options) {
+        match representation.voice(&htex::VoiceOptions::default().with_rate_hz(8000.0)) {
             Ok(mut voice) => listen(&mut voice),
             Err(error) => refusal(&error),
         }

@@ -293,7 +293,8 @@ fn blocks() -> Vec<Seed> {
     let asset = htex::Texture::from_bytes(vinyl).expect("an example");
     let grid = htex_play::bake::Grid::new(vec![60.0, 80.0], vec![0.4]).expect("a sound grid");
     let seed = |model: &str| {
-        let baked = htex_play::bake::bake(&asset, Some(model), &grid, 8_000.0, 1.0);
+        let representation = asset.representation(model).expect("an example");
+        let baked = htex_play::bake::bake(representation, &grid, 8_000.0, 1.0);
         let block = baked.expect("a texture that can be baked").bytes;
         let motions = [70.0f32, 0.4, 0.0, 0.0].map(f32::to_le_bytes).concat();
         let all = [&[1], &motions[..], &block].concat();

@@ -1,6 +1,7 @@
 //! Signed and unsigned models embedded in assets.
 
-use htex::{Registry, Search, Texture};
+use htex::model::Search;
+use htex::{Registry, Texture};
 use htex_format::{Manifest, Plugin, Signature};
 
 use crate::block;

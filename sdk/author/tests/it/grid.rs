@@ -71,7 +71,7 @@ fn errors_db(asset: &Texture, model: &str, options: &SimulationOptions, count: u
             magnitude / re.hypot(im)
         });
         let truth_at: Vec<f64> = at_finger.collect();
-        let played = asset.magnitude(Some(model), Some(motion), &grid).unwrap();
+        let played = asset.representation(model).unwrap().magnitude(Some(motion), &grid).unwrap();
         errors.push(third_octave_error_rms_db(&grid, &truth_at, &played).unwrap());
     }
     errors.sort_by(f64::total_cmp);

@@ -131,7 +131,7 @@ fn lines_move_between_recorded_speeds() {
             for between in motions([(57.0, 0.4), (113.0, 0.4)]) {
                 let (grid, truth) = true_spectrum(surface, departures, between);
                 let error_db = |asset: &Texture| {
-                    let played = asset.magnitude(None, Some(between), &grid).unwrap();
+                    let played = asset.magnitude(Some(between), &grid).unwrap();
                     third_octave_error_rms_db(&grid, &truth, &played).unwrap()
                 };
                 let (moved, mixed) = (error_db(&asset), error_db(&plain));
@@ -157,7 +157,7 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
             // The recording at 80 mm/s shows nothing below 20 Hz, which would be below 40 Hz here.
             let known = grid.partition_point(|hz| *hz < 40.0);
             let asset = recorded(surface, departures, contact, &recorded_at);
-            let of = |motion| asset.magnitude(None, Some(motion), &grid).unwrap();
+            let of = |motion| asset.magnitude(Some(motion), &grid).unwrap();
             let error_db = |played: Vec<f64>| {
                 third_octave_error_rms_db(&grid[known..], &truth[known..], &played[known..])
             };

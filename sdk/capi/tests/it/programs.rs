@@ -139,7 +139,7 @@ fn libraries_open_in_each_language() {
     let mut writer = htex::library::Writer::create(&path, "A").unwrap();
     writer.add("floor/vinyl", &fs::read(asset()).unwrap()).unwrap();
     writer.finish().unwrap();
-    let library = htex::Library::open(&path).unwrap();
+    let library = htex::library::Library::open(&path).unwrap();
     let entry = library.entry("floor/vinyl").unwrap().unwrap();
     let absent = library.get("none").unwrap_err().to_string();
     let json = serde_json::to_string(&[&entry]).unwrap();

@@ -53,8 +53,9 @@ pub(crate) fn written(
 /// The parameters and the level of a texture that is a map. They come from the model that is named,
 /// or else from the one that an app plays.
 fn own(asset: &Texture, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
-    match asset.loaded_model(model)?.id() {
-        MODEL => Ok(Some(asset.parameters(model, None)?)),
+    let representation = asset.representation(model)?;
+    match representation.model()?.id() {
+        MODEL => Ok(Some(representation.parameters(None)?)),
         _ => Ok(None),
     }
 }
@@ -66,8 +67,8 @@ fn fitted(
 ) -> Result<Printed, ExchangeError> {
     let band = asset.band();
     let frequency_hz = band.grid_hz();
-    let default = asset.default_condition(model)?;
-    let default = asset.manifest().conditions.get(default);
+    let representation = asset.representation(model)?;
+    let default = asset.manifest().conditions.get(representation.default_condition());
     let condition = FitCondition {
         speed_mm_s: motion
             .map(|motion| motion.speed_mm_s)
@@ -79,7 +80,7 @@ fn fitted(
             "the texture states no speed, and pixels lie over a way; give `speed` and `force`",
         ));
     }
-    let magnitude = asset.magnitude(model, motion, &frequency_hz)?;
+    let magnitude = representation.magnitude(motion, &frequency_hz)?;
     let failed = |error: htex_host::HostError| cannot(&error.to_string());
     let registry = Registry::builtin();
     let map = registry.find(MODEL).map_err(failed)?;

@@ -46,7 +46,7 @@ fn largest_error_db(models: &[Model], asset: &Texture) -> f64 {
     let mut worst = 0.0f64;
     for model in models {
         let motion = Some(Motion::new(model.speed, model.force));
-        let found = asset.recorded_magnitude(MODEL, motion, &grid).unwrap();
+        let found = asset.representation(MODEL).unwrap().recorded_magnitude(motion, &grid).unwrap();
         for (hz, found) in grid.iter().zip(found) {
             let expected = magnitude(model, *hz);
             if model.variance > 0.0 {
@@ -76,7 +76,7 @@ proptest! {
         };
         for _ in 0..420 {
             let motion = Motion::new(260.0 * part(), 7.0 * part());
-            let (parameters, level_rms) = asset.parameters(MODEL, Some(motion)).unwrap();
+            let (parameters, level_rms) = asset.representation(MODEL).unwrap().parameters(Some(motion)).unwrap();
             let lines = &parameters[1..=parameters[0] as usize];
             let mut coefficients = vec![0.0; lines.len()];
             prop_assert!(coefficients_of_lines(lines, &mut coefficients) && is_stable(&coefficients));

@@ -16,7 +16,8 @@ fn stated(text: &str) -> Vec<Vec<f64>> {
     let made = asset(&texture, &Imported::default()).unwrap();
     let asset = Texture::from_bytes(&made.to_bytes().unwrap()).unwrap();
     let motions = texture.nodes.iter().map(|node| Motion::new(node.speed_mm_s, node.force_n));
-    let of = |motion| asset.recorded_magnitude(Some("arma"), Some(motion), &grid).unwrap();
+    let arma = asset.representation("arma").unwrap();
+    let of = |motion| arma.recorded_magnitude(Some(motion), &grid).unwrap();
     motions.map(of).collect()
 }
 

@@ -196,7 +196,7 @@ fn stroke(asset: &Texture, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
     let mut samples = vec![0.0; 16_000];
     for (block, samples) in samples.chunks_mut(40).enumerate() {
         let time_s = block as f64 * 0.005;
-        let motion = Motion::new(dx.hypot(dy), force_n).with_place_mm(dx * time_s, dy * time_s);
+        let motion = Motion::new(dx.hypot(dy), force_n).with_place_mm([dx * time_s, dy * time_s]);
         voice.set_motion(motion).unwrap();
         voice.render(samples).unwrap();
     }
@@ -225,8 +225,8 @@ fn a_texture_without_places_goes_out_as_a_row() {
     back.physical.full_scale = Some(white);
     back.physical.speed_mm_s = Some(120.0);
     let back = import("row.png", &row.bytes, &back, &Registry::builtin()).unwrap();
-    let level = opened(&back).level_rms(None, None).unwrap();
-    let there = hum.level_rms(None, Some(motion)).unwrap();
+    let level = opened(&back).level_rms(None).unwrap();
+    let there = hum.level_rms(Some(motion)).unwrap();
     let level_db = 20.0 * (level / there).log10();
     assert!((level_db - lost.level_db).abs() < 0.05, "{level_db} dB");
 

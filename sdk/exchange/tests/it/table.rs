@@ -126,7 +126,7 @@ fn what_a_file_does_not_say_is_asked_for_and_kept() {
     assert_eq!(manifest.conditions[0].speed_mm_s, Some(80.0));
     assert_eq!(manifest.conditions[0].force_n, Some(0.4));
     // A sine at half of full scale.
-    let level = asset.level_rms(None, None).unwrap();
+    let level = asset.level_rms(None).unwrap();
     assert!((level - 0.05 / 2f64.sqrt()).abs() < 0.001, "{level}");
     let warnings = &manifest.provenance.warnings;
     assert!(warnings.iter().any(|w| w.contains("are repeated 4 times")), "{warnings:?}");

@@ -1,7 +1,8 @@
 //! A texture in a library plays exactly as it does from its own file.
 
+use htex::library::Library;
 use htex::library::Writer;
-use htex::{Error, Library, Texture, VoiceOptions};
+use htex::{Error, Texture, VoiceOptions};
 
 const VINYL: &[u8] = include_bytes!("../../../../examples/scenes/vinyl.htex");
 

@@ -25,8 +25,8 @@ fn resonance(hz: f64) -> Texture {
 }
 
 fn rms(asset: &Texture, rate_hz: f64) -> f64 {
-    let options = VoiceOptions::default().with_model("ar").with_seed(3).with_rate_hz(rate_hz);
-    let mut voice = asset.voice(&options).unwrap();
+    let options = VoiceOptions::default().with_seed(3).with_rate_hz(rate_hz);
+    let mut voice = asset.representation("ar").unwrap().voice(&options).unwrap();
     let mut samples = vec![0.0; (SECONDS * rate_hz) as usize];
     voice.render(&mut samples).unwrap();
     let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();

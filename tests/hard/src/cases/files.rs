@@ -65,9 +65,11 @@ fn opened(recording: Recording, models: usize) -> f64 {
 
 /// The largest sample of a voice.
 fn played(asset: &htex::Texture, model: &str) -> f64 {
-    let options = htex::VoiceOptions::default().with_model(model);
     let mut out = vec![0.0f32; 4_000];
-    let rendered = asset.voice(&options).and_then(|mut voice| voice.render(&mut out));
+    let rendered = asset
+        .representation(model)
+        .and_then(|representation| representation.voice(&htex::VoiceOptions::default()))
+        .and_then(|mut voice| voice.render(&mut out));
     match rendered {
         Ok(()) => out.iter().fold(0.0, |peak, x| worse(peak, f64::from(x.abs()))),
         Err(error) => {

@@ -10,8 +10,8 @@ use htex_author::simulate::{SimulationOptions, Surface as Simulated, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_play::{Registry, Texture};
-use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, Scene, Surface};
-use htex_scene::{Costs, LoadedScene, Plan, Renderer, Trace, plan};
+use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, SceneFile, Surface};
+use htex_scene::{Costs, Plan, Renderer, Scene, Trace, plan};
 
 /// An asset with one condition, 80 mm/s and 0.4 N.
 pub(crate) fn single() -> &'static Texture {
@@ -62,9 +62,9 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Texture {
 }
 
 /// A scene with one surface without a region.
-pub(crate) fn scene(asset: &Texture, motion: Motion, duration_s: f64) -> LoadedScene {
-    LoadedScene {
-        scene: Scene {
+pub(crate) fn scene(asset: &Texture, motion: Motion, duration_s: f64) -> Scene {
+    Scene {
+        file: SceneFile {
             htex_scene: "1.0".to_owned(),
             surfaces: vec![surface()],
             motion,
@@ -116,11 +116,8 @@ pub(crate) fn trace(
 }
 
 /// A scene with a trace as its motion.
-pub(crate) fn traced(asset: &Texture, trace: Trace, duration_s: f64) -> LoadedScene {
-    LoadedScene {
-        trace: Some(trace),
-        ..scene(asset, Motion::Trace("trace.csv".into()), duration_s)
-    }
+pub(crate) fn traced(asset: &Texture, trace: Trace, duration_s: f64) -> Scene {
+    Scene { trace: Some(trace), ..scene(asset, Motion::Trace("trace.csv".into()), duration_s) }
 }
 
 /// A file of 32-bit floats, newtons.
@@ -164,7 +161,7 @@ pub(crate) fn loudspeaker() -> Capabilities {
     }
 }
 
-pub(crate) fn planned(scene: &LoadedScene, device: &Capabilities) -> Plan {
+pub(crate) fn planned(scene: &Scene, device: &Capabilities) -> Plan {
     plan(scene, device, &Costs::embedded()).unwrap()
 }
 
@@ -173,7 +170,7 @@ pub(crate) fn rendered(renderer: &mut Renderer) -> Vec<f32> {
     let mut all = Vec::new();
     let mut block = [0.0f32; 64];
     loop {
-        let frames = renderer.render(&mut block);
+        let frames = renderer.render(&mut block).unwrap();
         all.extend_from_slice(&block[..frames]);
         if frames < block.len() {
             return all;

@@ -14,7 +14,7 @@ use crate::refusal::Refusal;
 
 /// How much of a difference is felt: per third-octave band, and in a few numbers.
 #[derive(Serialize)]
-struct Told {
+struct FeltSummary {
     centre_hz: Vec<f64>,
     reference_db: Vec<f64>,
     level_db: Vec<f64>,
@@ -48,8 +48,8 @@ pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     Answer::new(&told, Vec::new())
 }
 
-fn told(felt: Felt, if_sensitive: &Felt) -> Told {
-    Told {
+fn told(felt: Felt, if_sensitive: &Felt) -> FeltSummary {
+    FeltSummary {
         below_difference_threshold: felt.is_below_difference_threshold(),
         below_if_sensitive: if_sensitive.is_below_difference_threshold(),
         centre_hz: felt.centre_hz,
@@ -71,14 +71,13 @@ fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Texture, Vec<f64>), Re
     side.finish()?;
     let asset = Texture::new(Asset::from_bytes(bytes)?);
     let grid = asset.band().grid_hz();
-    let model = model.as_deref();
-    let magnitude = match (speed, force) {
-        (None, None) => asset.magnitude(model, None, &grid),
-        (speed, force) => asset
-            .motion(model, speed, force)
-            .and_then(|motion| asset.magnitude(model, Some(motion), &grid)),
+    let representation = asset.representation(model.as_deref()).map_err(ByHandError::from)?;
+    let motion = match (speed, force) {
+        (None, None) => None,
+        (speed, force) => Some(representation.motion(speed, force)),
     };
-    Ok((asset, magnitude.map_err(ByHandError::from)?))
+    let magnitude = representation.magnitude(motion, &grid).map_err(ByHandError::from)?;
+    Ok((asset, magnitude))
 }
 
 /// Returns the magnitudes at which sinusoids of given frequencies reach the detection threshold.

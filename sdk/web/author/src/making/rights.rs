@@ -9,7 +9,7 @@ use crate::document::Document;
 use crate::refusal::Refusal;
 
 #[derive(Serialize)]
-struct Stated<'a> {
+struct RightsSummary<'a> {
     license: Option<&'a str>,
     author: Option<&'a str>,
     /// Both as SPDX lines.
@@ -23,7 +23,7 @@ pub(crate) fn rights(call: Document, files: Files<'_>) -> Result<Answer, Refusal
         return Err(Refusal::argument("give one texture"));
     };
     let rights = Rights::of(&Asset::from_bytes(bytes)?.manifest);
-    let stated = Stated {
+    let stated = RightsSummary {
         license: rights.license.as_deref(),
         author: rights.author.as_deref(),
         text: rights.to_text(),

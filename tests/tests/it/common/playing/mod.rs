@@ -262,26 +262,26 @@ fn numbers(plan: &Plan, asset: &Texture) -> String {
     frequency_hz.extend(BESIDE_HZ);
     let mut cases = Vec::new();
     for representation in &asset.manifest().representations {
-        let model = Some(&representation.model[..]);
+        let playable = asset.representation(&representation.model[..]).unwrap();
         let given = plan
             .conditions
             .iter()
             .chain(plan.motions)
-            .filter(|motion| htex::exploration::slides(motion[0], motion[1]))
+            .filter(|motion| htex::play::exploration::slides(motion[0], motion[1]))
             .map(|motion| Some(htex::Motion::new(motion[0], motion[1])));
         for motion in given.chain(plan.levels.map(|_| None)) {
-            let (parameters, _) = asset.parameters(model, motion).unwrap();
-            let follows = asset.loaded_model(model).unwrap().follows_motion();
+            let (parameters, _) = playable.parameters(motion).unwrap();
+            let follows = playable.model().unwrap().follows_motion();
             let factor = match motion {
                 Some(motion) if !follows => {
-                    let motions = asset.motions(model).unwrap();
-                    let ceiling = htex::exploration::CEILING;
-                    motions.scaling(motion, ceiling).frequency
+                    let conditions = playable.conditions().unwrap();
+                    let ceiling = htex::play::exploration::CEILING;
+                    conditions.scaling(motion, ceiling).frequency
                 }
                 _ => 1.0,
             };
-            let level_rms = asset.level_rms(model, motion).unwrap();
-            let magnitude = asset.magnitude(model, motion, &frequency_hz);
+            let level_rms = playable.level_rms(motion).unwrap();
+            let magnitude = playable.magnitude(motion, &frequency_hz);
             let mut case = json!({
                 "model": representation.model,
                 "parameters": parameters,

@@ -27,7 +27,7 @@ pub(crate) struct FeltArgs {
 
 impl FeltArgs {
     pub(crate) fn apply(&self, ready: &mut Ready) -> Result<(), Failure> {
-        let scene = &mut ready.scene.scene;
+        let scene = &mut ready.scene.file;
         if let Some(model) = &self.model {
             for surface in &mut scene.surfaces {
                 surface.representation.clone_from(model);
@@ -65,7 +65,7 @@ pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
 
 /// Returns the key of this person's gain. `texture` replaces the textures' own names.
 pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey {
-    let device = &ready.scene.scene.device;
+    let device = &ready.scene.file.device;
     GainKey {
         person: person.to_owned(),
         texture: texture.map_or_else(|| texture_id(manifests(ready)), texture_name),
@@ -112,7 +112,7 @@ pub(crate) fn apply_kept(
         )));
     }
     warn_of_other_recordings(gain, ready);
-    let device = &mut ready.scene.scene.device;
+    let device = &mut ready.scene.file.device;
     device.drive_v = Some(gain.drive_v);
     if device.levels == Levels::Own && device.reference_rms.is_none() {
         let known_n = gain.reference_rms.filter(|n| n.is_finite() && *n > 0.0);

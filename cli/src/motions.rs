@@ -5,9 +5,9 @@ use std::io::BufRead;
 use std::thread;
 use std::time::Duration;
 
+use htex::Motion;
 #[cfg(feature = "lab")]
 use htex_lab::study::Touch;
-use htex_scene::Finger;
 use rtrb::{Consumer, Producer, RingBuffer};
 
 /// Maximum number of motions that may wait for the player.
@@ -18,7 +18,7 @@ const WAIT: Duration = Duration::from_millis(1);
 /// The source of motions.
 pub(crate) enum Motions {
     /// The queue that a reader fills.
-    Queue(Consumer<Finger>),
+    Queue(Consumer<Motion>),
     /// A page, and the force of a finger on it (N).
     #[cfg(feature = "lab")]
     Page(Touch, f64),
@@ -27,7 +27,7 @@ pub(crate) enum Motions {
 /// The input that arrived since the last call.
 pub(crate) enum Moved {
     /// The newest motion.
-    To(Finger),
+    To(Motion),
     /// Nothing new.
     Not,
     /// The input has ended.
@@ -50,18 +50,20 @@ impl Motions {
         match self {
             Self::Queue(queue) => newest(queue),
             #[cfg(feature = "lab")]
-            Self::Page(touch, force_n) => Moved::To(touch.now().map_or(Finger::AWAY, |touched| {
-                Finger { speed_mm_s: touched.speed_mm_s, force_n: *force_n, at_mm: None }
-            })),
+            Self::Page(touch, force_n) => Moved::To(
+                touch
+                    .now()
+                    .map_or(Motion::AWAY, |touched| Motion::new(touched.speed_mm_s, *force_n)),
+            ),
         }
     }
 }
 
 /// Returns the newest valid reading in a queue. Returns a failed one only if there is no valid one.
-fn newest(queue: &mut Consumer<Finger>) -> Moved {
+fn newest(queue: &mut Consumer<Motion>) -> Moved {
     // Checked before the queue is emptied, so that no motion before the end is missed.
     let is_ended = queue.is_abandoned();
-    let mut newest: Option<Finger> = None;
+    let mut newest: Option<Motion> = None;
     while let Ok(finger) = queue.pop() {
         if newest.is_none() || finger.is_reading() {
             newest = Some(finger);
@@ -74,7 +76,7 @@ fn newest(queue: &mut Consumer<Finger>) -> Moved {
     }
 }
 
-fn read(lines: impl BufRead, mut sender: Producer<Finger>) {
+fn read(lines: impl BufRead, mut sender: Producer<Motion>) {
     for (index, line) in lines.lines().enumerate() {
         let Ok(line) = line else { return };
         if line.trim().is_empty() {
@@ -99,15 +101,14 @@ fn read(lines: impl BufRead, mut sender: Producer<Finger>) {
     }
 }
 
-fn parse(line: &str) -> Option<Finger> {
+fn parse(line: &str) -> Option<Motion> {
     let words = line.split([' ', '\t', ',', ';']).filter(|w| !w.is_empty());
     let numbers: Vec<f64> = words.map(|w| w.parse().ok()).collect::<Option<_>>()?;
-    let (speed_mm_s, force_n, at_mm) = match numbers[..] {
-        [speed, force] => (speed, force, None),
-        [speed, force, x, y] => (speed, force, Some([x, y])),
-        _ => return None,
-    };
-    Some(Finger { speed_mm_s, force_n, at_mm })
+    match numbers[..] {
+        [speed, force] => Some(Motion::new(speed, force)),
+        [speed, force, x, y] => Some(Motion::new(speed, force).with_place_mm([x, y])),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -122,7 +123,7 @@ mod tests {
         let Moved::To(finger) = motions.look() else {
             unreachable!("two lines were good");
         };
-        let got = (finger.speed_mm_s, finger.force_n, finger.at_mm);
+        let got = (finger.speed_mm_s, finger.force_n, finger.place_mm);
         assert_eq!(got, (-60.0, 0.5, Some([1.0, 2.0])));
         assert!(matches!(motions.look(), Moved::Ended));
     }

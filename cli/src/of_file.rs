@@ -5,7 +5,7 @@ use std::path::Path;
 
 use htex_base::files::FileError;
 use htex_format::library::LibraryError;
-use htex_scene::{LoadError, SceneError};
+use htex_scene::SceneError;
 
 use crate::failure::Failure;
 use crate::shown::shown;
@@ -18,7 +18,13 @@ pub(crate) trait OfFile {
 
 impl OfFile for htex::Error {
     fn of(self, file: &Path) -> Failure {
-        Failure::Asset { file: shown(file), error: self }
+        match self {
+            Self::BakeRate { .. } => Failure::Usage(format!("--rate {self}")),
+            Self::Axis { .. } | Self::Incomplete { .. } => {
+                Failure::Usage(format!("--at, --grid: {self}"))
+            }
+            error => Failure::Asset { file: shown(file), error },
+        }
     }
 }
 
@@ -40,7 +46,7 @@ impl OfFile for LibraryError {
     }
 }
 
-impl OfFile for LoadError {
+impl OfFile for SceneError {
     fn of(self, file: &Path) -> Failure {
         match self {
             Self::Io { path, error } => FileError::reading(path, error).into(),
@@ -49,14 +55,8 @@ impl OfFile for LoadError {
                 cannot: "this scene cannot be played",
                 findings,
             },
-            other => Failure::Other(format!("{}: {other}", shown(file))),
+            error => Failure::Scene { file: shown(file), error: Box::new(error) },
         }
-    }
-}
-
-impl OfFile for SceneError {
-    fn of(self, file: &Path) -> Failure {
-        Failure::Scene { file: shown(file), error: Box::new(self) }
     }
 }
 

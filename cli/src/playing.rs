@@ -28,7 +28,7 @@ const DISPLAY_BLOCK_S: f64 = 0.02;
 /// Returns the block size in frames: the device's, or less with a live motion or on a display at a
 /// low rate.
 fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
-    let most_s = match ready.scene.scene.motion {
+    let most_s = match ready.scene.file.motion {
         Motion::Live => LIVE_BLOCK_S,
         // Zero must be reached within 0.5 s of a signal, and buffer and ramp may take 400 ms of
         // that.
@@ -117,11 +117,12 @@ impl Output {
 
     /// Renders one block and writes it. Returns false at the end.
     pub(crate) fn step(&mut self, renderer: &mut Renderer) -> Result<bool, Failure> {
-        let frames = renderer.render(&mut self.block);
-        if let Some(error) = renderer.take_failure() {
+        let left = renderer.frames_left().map_or(usize::MAX, |left| left as usize);
+        let frames = renderer.render(&mut self.block).unwrap_or_else(|error| {
             self.failed.get_or_insert_with(|| error.to_string());
             renderer.stop();
-        }
+            left.min(self.block.len())
+        });
         self.write(frames)?;
         self.frames += frames as u64;
         #[cfg(feature = "lab")]

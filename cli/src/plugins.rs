@@ -98,10 +98,10 @@ impl PlayerArgs {
         !self.no_embedded_plugins
     }
 
-    pub(crate) fn open(&self, path: &Path) -> Result<htex::Asset, Failure> {
+    pub(crate) fn open(&self, path: &Path) -> Result<htex::Texture, Failure> {
         let registry = self.plugins.registry()?;
         let data = htex_format::Asset::open(path).map_err(of_file(path))?;
-        let asset = htex::Asset::with_registry(data, registry);
+        let asset = htex::Texture::with_registry(data, registry);
         if self.no_embedded_plugins {
             return Ok(asset);
         }

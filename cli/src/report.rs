@@ -12,7 +12,7 @@ use crate::columns::Column;
 pub(crate) struct Reported<'a> {
     pub(crate) fitted: &'a FittedAsset,
     /// The asset with the models that can play it.
-    pub(crate) asset: &'a htex::Asset,
+    pub(crate) asset: &'a htex::Texture,
     pub(crate) summary: &'a AssetSummary,
     /// Total size of the recordings' files, bytes.
     pub(crate) recording_bytes: u64,
@@ -77,19 +77,20 @@ impl Reported<'_> {
         let Some(at) = representation.at(condition) else {
             return Ok(None);
         };
-        let (id, quality) = (Some(&representation.model[..]), at.quality.as_ref());
+        let quality = at.quality.as_ref();
         let known = &self.asset.manifest().conditions[condition];
         let motion = known
             .speed_mm_s
             .zip(known.force_n)
             .map(|(speed, force)| htex::Motion::new(speed, force));
         let grid = &self.fitted.spectra[condition].frequency_hz;
-        let loaded = self.asset.loaded_model(id)?;
+        let playable = self.asset.representation(&representation.model[..])?;
+        let loaded = playable.model()?;
         let name = short_name(&representation.model);
         let descriptor = loaded.descriptor();
         Ok(Some(ModelResult {
             model: descriptor.name.clone(),
-            magnitude: self.asset.magnitude(id, motion, grid)?,
+            magnitude: playable.magnitude(motion, grid)?,
             measured: tables().iter().map(|t| at.measured(t.0)).collect(),
             note: note(quality),
             band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),

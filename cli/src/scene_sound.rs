@@ -9,7 +9,7 @@ use htex_dsp::grid::Band;
 use htex_exchange::{MOST_BYTES, SceneSound};
 use htex_format::{Quantity, Rights};
 use htex_scene::file::Motion;
-use htex_scene::{DeviceOverride, Limits, LoadedScene, Renderer, read_scene};
+use htex_scene::{DeviceOverride, Limits, Renderer, read_scene};
 
 use crate::failure::Failure;
 use crate::of_file::of_file;
@@ -50,7 +50,7 @@ impl Scene {
         let told = RefCell::default();
         // The quantity is a setting of the device, so it is read before the scene is loaded.
         let ready = load(&loader, file, &numbers(quantity(file), None), &told)?;
-        if ready.scene.scene.motion == Motion::Live {
+        if ready.scene.file.motion == Motion::Live {
             let file = shown(file);
             return Err(Failure::Other(format!(
                 "{file}: its motion is live, and an export needs one; give the scene a constant motion or a trace"
@@ -95,16 +95,13 @@ impl Scene {
     fn samples(&self, rate_hz: f64) -> Result<Vec<f32>, Failure> {
         let device = numbers(Some(self.quantity), Some(rate_hz));
         let mut ready = load(&self.loader, &self.file, &device, &self.told)?;
-        ready.scene.scene.duration_s = Some(self.seconds);
+        ready.scene.file.duration_s = Some(self.seconds);
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.file))?;
         let mut samples = Vec::new();
         let mut block = [0.0; BLOCK];
         loop {
-            let rendered = renderer.render(&mut block);
-            if let Some(error) = renderer.take_failure() {
-                return Err(error).map_err(of_file(&self.file));
-            }
+            let rendered = renderer.render(&mut block).map_err(of_file(&self.file))?;
             if rendered == 0 {
                 return Ok(samples);
             }
@@ -151,5 +148,7 @@ fn load(
     device: &DeviceOverride,
     told: &RefCell<BTreeSet<String>>,
 ) -> Result<Ready, Failure> {
-    loader.load(file, &mut told.borrow_mut(), |around| LoadedScene::open(file, around, device))
+    loader.load(file, &mut told.borrow_mut(), |around| {
+        htex_scene::Scene::open_with(file, around, device)
+    })
 }

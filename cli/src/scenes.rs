@@ -7,7 +7,7 @@ use clap::Args;
 use htex_device::{Capabilities, DeviceError, Devices, KnownDevice, SettingKind, Settings};
 use htex_host::Registry;
 use htex_scene::file::{Constant, Motion};
-use htex_scene::{Costs, DeviceOverride, LoadedScene, Plan, Surroundings};
+use htex_scene::{Costs, DeviceOverride, Plan, Scene, Surroundings};
 use serde_json::Value;
 
 use crate::devices::{DeviceArgs, SettingArgs};
@@ -102,7 +102,7 @@ impl ChoiceArgs {
 /// A scene with its device.
 pub(crate) struct Ready {
     pub(crate) file: PathBuf,
-    pub(crate) scene: LoadedScene,
+    pub(crate) scene: Scene,
     pub(crate) device: KnownDevice,
     pub(crate) capabilities: Capabilities,
     pub(crate) devices: Devices,
@@ -120,7 +120,7 @@ impl SceneArgs {
                 shown(file)
             )));
         }
-        self.load(file, |around| LoadedScene::open(file, around, device))
+        self.load(file, |around| Scene::open_with(file, around, device))
     }
 
     /// Creates a scene from an asset.
@@ -131,13 +131,13 @@ impl SceneArgs {
         seconds: Option<f64>,
         device: &DeviceOverride,
     ) -> Result<Ready, Failure> {
-        self.load(file, |around| LoadedScene::of_asset(file, motion, seconds, around, device))
+        self.load(file, |around| Scene::of_asset(file, motion, seconds, around, device))
     }
 
     fn load(
         &self,
         file: &Path,
-        load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
+        load: impl FnOnce(&Surroundings<'_>) -> Result<Scene, htex_scene::SceneError>,
     ) -> Result<Ready, Failure> {
         self.loader()?.load(file, &mut BTreeSet::new(), load)
     }
@@ -156,7 +156,7 @@ impl SceneArgs {
         let around = Surroundings {
             models: &registry,
             embedded: false,
-            devices: &DeviceArgs::default().devices_quietly()?,
+            devices: Some(&DeviceArgs::default().devices_quietly()?),
         };
         htex_scene::validate(file, &around).map_err(of_file(file))
     }
@@ -191,7 +191,7 @@ impl Loader {
     }
 
     pub(crate) fn around(&self) -> Surroundings<'_> {
-        Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices }
+        Surroundings { models: &self.models, embedded: self.embedded, devices: Some(&self.devices) }
     }
 
     /// Loads a scene and prints its warnings that are not yet in `told`. Adds them to `told`.
@@ -199,13 +199,13 @@ impl Loader {
         &self,
         file: &Path,
         told: &mut BTreeSet<String>,
-        load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
+        load: impl FnOnce(&Surroundings<'_>) -> Result<Scene, htex_scene::SceneError>,
     ) -> Result<Ready, Failure> {
         let scene = load(&self.around()).map_err(of_file(file))?;
         let notes = scene.notes.iter().map(ToString::to_string);
         let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
         warn(&new);
-        let device = self.devices.find(&scene.scene.device.adapter)?.clone();
+        let device = self.devices.find(&scene.file.device.adapter)?.clone();
         let capabilities = capabilities(&device, &scene.settings, &self.devices)?;
         Ok(Ready {
             file: file.to_owned(),
@@ -268,9 +268,9 @@ pub(crate) fn is_asset(file: &Path) -> bool {
 
 /// Returns the motion of an asset's default condition.
 pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
-    let asset = htex::Asset::new(htex_format::Asset::open(file).map_err(of_file(file))?);
-    let htex::Motion { speed_mm_s, force_n, .. } =
-        asset.motion(None, None, None).map_err(of_file(file))?;
+    let asset = htex::Texture::new(htex_format::Asset::open(file).map_err(of_file(file))?);
+    let representation = asset.representation(None).map_err(of_file(file))?;
+    let htex::Motion { speed_mm_s, force_n, .. } = representation.motion(None, None);
     Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
 }
 

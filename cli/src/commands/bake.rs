@@ -2,12 +2,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex::Motion;
-use htex_play::bake::{BakeError, BakeLimits, Baked, Grid};
+use htex_play::bake::{BakeLimits, BakeResult, Grid};
 use serde_json::json;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::{OfFile, of_file};
+use crate::of_file::of_file;
 use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -86,14 +86,15 @@ impl Bake {
             return Err(Failure::Usage(sentence));
         }
         let asset = self.player.open(&self.asset)?;
+        let representation =
+            asset.representation(self.model.as_deref()).map_err(of_file(&self.asset))?;
         let grid = match given {
             Some(grid) => grid,
-            None => Grid::of_default_condition(&asset, self.model.as_deref())
-                .map_err(of_file(&self.asset))?,
+            None => Grid::for_default_condition(representation).map_err(of_file(&self.asset))?,
         };
         let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
         let limits = BakeLimits::within_db(self.within).with_longest(longest);
-        let baked = htex_play::bake::bake(&asset, self.model.as_deref(), &grid, self.rate, limits)
+        let baked = htex_play::bake::bake(representation, &grid, self.rate, limits)
             .map_err(of_file(&self.asset))?;
         let rights = match format {
             Format::Bytes => Some(&baked.rights),
@@ -142,14 +143,14 @@ impl Bake {
         if motions.is_empty() {
             Ok(None)
         } else {
-            Grid::of_conditions(&motions).map(Some).map_err(of_file(&self.asset))
+            Grid::from_conditions(&motions).map(Some).map_err(of_file(&self.asset))
         }
     }
 }
 
 /// Warns if the law moves frequencies, but the grid is narrower than the recorded speeds or has
 /// only one speed. A filter does not follow the speed beyond the grid.
-fn warn_of_frequencies(baked: &Baked) {
+fn warn_of_frequencies(baked: &BakeResult) {
     let speeds = baked.grid.speeds_mm_s();
     let (Some(beyond_db), [lowest, .., highest] | [lowest @ highest]) = (baked.beyond_db, speeds)
     else {
@@ -165,20 +166,6 @@ fn warn_of_frequencies(baked: &Baked) {
              speed to the power {}: {beyond_db:.1} dB at half or twice the speed; bake all speeds that will be played (see --grid)",
             baked.law.frequency_speed
         )]);
-    }
-}
-
-impl OfFile for BakeError {
-    fn of(self, asset: &Path) -> Failure {
-        match self {
-            Self::Asset(error) => error.of(asset),
-            Self::Model(error) => htex::Error::from(error).of(asset),
-            Self::Rate { .. } => Failure::Usage(format!("--rate {self}")),
-            Self::Axis { .. } | Self::Incomplete { .. } => {
-                Failure::Usage(format!("--at, --grid: {self}"))
-            }
-            error => Failure::Other(format!("{}: {error}", shown(asset))),
-        }
     }
 }
 
@@ -265,7 +252,7 @@ fn span(text: &str) -> Option<Vec<f64>> {
     }
 }
 
-fn report(baked: &Baked, rate_hz: f64) -> serde_json::Value {
+fn report(baked: &BakeResult, rate_hz: f64) -> serde_json::Value {
     json!({
         "model": baked.model,
         "bytes": baked.bytes.len(),
@@ -291,8 +278,8 @@ fn report(baked: &Baked, rate_hz: f64) -> serde_json::Value {
     })
 }
 
-fn text(output: &Path, baked: &Baked, rate_hz: f64) -> String {
-    let Baked { model, quantity, law, at_conditions_db, between_db, .. } = baked;
+fn text(output: &Path, baked: &BakeResult, rate_hz: f64) -> String {
+    let BakeResult { model, quantity, law, at_conditions_db, between_db, .. } = baked;
     let content = match (baked.taps, baked.filters) {
         (0, _) => format!("{} sinusoids", baked.tones),
         (taps, 1) => format!("a filter of {taps} coefficients"),

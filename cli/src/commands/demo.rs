@@ -110,7 +110,7 @@ impl Demo {
         let bytes = fitted.asset.to_bytes()?;
         Written::Inside(own, &path).write(&bytes)?;
         let path = self.dir.join(path);
-        let asset = htex::Asset::open(&path).map_err(of_file(&path))?;
+        let asset = htex::Texture::open(&path).map_err(of_file(&path))?;
         for representation in &asset.manifest().representations {
             let wav = format!("{name}-{}.wav", short_name(&representation.model));
             let wav = Written::Inside(own, wav.as_ref());
@@ -208,9 +208,10 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
         .with_tool(tool()))
 }
 
-fn play(asset: &htex::Asset, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
-    let options = VoiceOptions::default().with_model(model).with_rate_hz(f64::from(WAV_RATE_HZ));
-    let mut voice = asset.voice(&options).map_err(of_file(file))?;
+fn play(asset: &htex::Texture, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
+    let options = VoiceOptions::default().with_rate_hz(f64::from(WAV_RATE_HZ));
+    let representation = asset.representation(model).map_err(of_file(file))?;
+    let mut voice = representation.voice(&options).map_err(of_file(file))?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     let rights = Rights::of(asset.manifest());
     write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).map_err(of_file(file)))

@@ -170,12 +170,12 @@ impl Export {
         }
     }
 
-    fn path(&self, asset: &htex::Asset) -> Result<Path, Failure> {
+    fn path(&self, asset: &htex::Texture) -> Result<Path, Failure> {
         let settings = &self.given.values;
         if let Some(stroke) = &settings.stroke {
             return Ok(Path::Stroke(Stroke::open(stroke)?));
         }
-        let beyond = settings.choice.beyond(asset, htex::Effects::default());
+        let beyond = settings.choice.beyond(asset, htex::play::Effects::default());
         note(&Vec::from_iter(beyond.map_err(of_file(&self.asset))?));
         Ok(Path::Condition(settings.choice.motion(asset).map_err(of_file(&self.asset))?))
     }

@@ -130,7 +130,7 @@ impl Fit {
         summary: &AssetSummary,
         registry: Registry,
     ) -> Result<(), Failure> {
-        let asset = htex::Asset::with_registry(fitted.asset.clone(), registry);
+        let asset = htex::Texture::with_registry(fitted.asset.clone(), registry);
         let sizes = self.recordings.iter().map(std::fs::metadata);
         let reported = Reported {
             fitted,

@@ -89,7 +89,7 @@ impl Gain {
             return Err(Failure::Usage(sentence));
         }
         // The participant needs any amount of time, whatever the scene says.
-        ready.scene.scene.duration_s = None;
+        ready.scene.file.duration_s = None;
         self.felt.apply(&mut ready)?;
         let key = key(&self.person, self.texture.as_deref(), &ready);
         let (_, file) = gains()?;
@@ -138,7 +138,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
     let (mut drive_v, mut output, mut kept) = (start_v, None, None);
     let mut goes_on = true;
     while goes_on {
-        ready.scene.scene.device.drive_v = Some(drive_v);
+        ready.scene.file.device.drive_v = Some(drive_v);
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&ready.file))?;
         // The first plan opens the device, which stays open while the gain changes.

@@ -42,8 +42,8 @@ impl Info {
         let embeds = |id: &str| asset.manifest.plugins.iter().any(|p| p.model == id);
         let representations = asset.manifest.representations.iter();
         for representation in representations.filter(|r| !embeds(&r.model)) {
-            let model = htex::model_of(&models, representation).ok();
-            let order = model.map(|model| htex::field_order(representation, model));
+            let model = htex::play::model_of(&models, representation).ok();
+            let order = model.map(|model| htex::play::field_order(representation, model));
             if let Some(Err(error)) = order {
                 summary.note(error.to_string());
             }

@@ -68,7 +68,7 @@ impl Mix {
     }
 
     /// Opens a texture and computes the hash of its file.
-    fn open(&self, path: &Path) -> Result<(htex::Asset, String), Failure> {
+    fn open(&self, path: &Path) -> Result<(htex::Texture, String), Failure> {
         let asset = self.player.open(path)?;
         // An opened asset does not keep its file's bytes, and written again it may have others.
         let bytes = read_asset(path)?;

@@ -109,7 +109,7 @@ fn drawing(title: &str, plan: &Planned) -> String {
         rate_hz: stage.rate_hz,
         ns_per_sample: stage.ns_per_sample,
     };
-    let out = |out: &htex_scene::LeftOut| (name(out.name, out.surface), out.reason.clone());
+    let out = |out: &htex_scene::OmittedEffect| (name(out.name, out.surface), out.reason.clone());
     let chain = Chain {
         title: title.to_owned(),
         stages: plan.stages.iter().map(stage).collect(),

@@ -100,7 +100,7 @@ impl Play {
         let device =
             DeviceOverride { live: self.motion.is_some(), ..self.choice.to_override(None, false)? };
         let mut ready = open(&self.with, &self.file, self.motion.is_some(), device)?;
-        let scene = &mut ready.scene.scene;
+        let scene = &mut ready.scene.file;
         scene.duration_s = self.seconds.or(scene.duration_s);
         match (self.motion.is_some(), scene.motion == Motion::Live) {
             (true, false) => scene.motion = Motion::Live,

@@ -107,7 +107,7 @@ impl Render {
 
     /// Sets the requested length, and refuses a scene without end.
     fn check_length(&self, ready: &mut Ready) -> Result<(), Failure> {
-        let scene = &mut ready.scene.scene;
+        let scene = &mut ready.scene.file;
         if let Some(seconds) = self.seconds {
             if !(seconds > 0.0 && seconds <= 1e9) {
                 let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use htex::play::Effects;
 use serde_json::json;
 
 use crate::exit::Exit;
@@ -57,11 +58,15 @@ pub(crate) struct ChoiceArgs {
 impl ChoiceArgs {
     /// Returns the requested motion. Missing values come from the asset's default condition, or
     /// else from the paper's default.
-    pub(crate) fn motion(&self, asset: &htex::Asset) -> Result<Option<htex::Motion>, htex::Error> {
+    pub(crate) fn motion(
+        &self,
+        asset: &htex::Texture,
+    ) -> Result<Option<htex::Motion>, htex::Error> {
         if self.speed.is_none() && self.force.is_none() {
             return Ok(None);
         }
-        asset.motion(self.model.as_deref(), self.speed, self.force).map(Some)
+        let representation = asset.representation(self.model.as_deref())?;
+        Ok(Some(representation.motion(self.speed, self.force)))
     }
 }
 
@@ -69,14 +74,14 @@ impl ChoiceArgs {
     /// Returns a note on how a motion that was not recorded is played.
     pub(crate) fn beyond(
         &self,
-        asset: &htex::Asset,
-        effects: htex::Effects,
+        asset: &htex::Texture,
+        effects: Effects,
     ) -> Result<Option<String>, htex::Error> {
         let Some(motion) = self.motion(asset)? else {
             return Ok(None);
         };
-        let motions = asset.motions(self.model.as_deref())?;
-        let coverage = motions.coverage(motion, effects);
+        let conditions = asset.representation(self.model.as_deref())?.conditions()?;
+        let coverage = conditions.coverage(motion, effects);
         Ok((!coverage.is_inside()).then(|| coverage.to_string()))
     }
 }
@@ -84,13 +89,14 @@ impl ChoiceArgs {
 impl Spectrum {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let asset = self.player.open(&self.asset)?;
-        let grid = htex::Band::TACTILE.grid_hz();
+        let grid = htex::model::Band::TACTILE.grid_hz();
         let motion = self.choice.motion(&asset).map_err(of_file(&self.asset))?;
-        let model = self.choice.model.as_deref();
+        let representation = asset.representation(self.choice.model.as_deref());
+        let representation = representation.map_err(of_file(&self.asset))?;
         let (magnitude, effects) = if self.unscaled {
-            (asset.recorded_magnitude(model, motion, &grid), htex::Effects::NONE)
+            (representation.recorded_magnitude(motion, &grid), Effects::NONE)
         } else {
-            (asset.magnitude(model, motion, &grid), htex::Effects::default())
+            (representation.magnitude(motion, &grid), Effects::default())
         };
         let magnitude = magnitude.map_err(of_file(&self.asset))?;
         let beyond = self.choice.beyond(&asset, effects);

@@ -1,8 +1,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use htex::exploration::CEILING;
-use htex::{Effects, Synthesis, VoiceOptions};
+use htex::VoiceOptions;
+use htex::play::exploration::CEILING;
+use htex::play::{Effects, Synthesis};
 
 use crate::commands::spectrum::ChoiceArgs;
 use crate::exit::Exit;
@@ -77,17 +78,20 @@ impl Synth {
         }
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
         let asset = self.player.open(&self.asset)?;
-        let mut options = VoiceOptions::default()
+        let effects = if self.as_recorded { Effects::NONE } else { Effects::default() };
+        let options = VoiceOptions::default()
             .with_rate_hz(f64::from(self.rate))
             .with_seed(self.seed)
             .with_motion(self.choice.motion(&asset).map_err(of_file(&self.asset))?)
             .with_synthesis(self.quality)
             .with_ceiling(self.ceiling)
-            .with_effects(if self.as_recorded { Effects::NONE } else { Effects::default() });
-        options.model = self.choice.model.as_deref();
-        let beyond = self.choice.beyond(&asset, options.effects).map_err(of_file(&self.asset))?;
+            .with_effects(effects);
+        let beyond = self.choice.beyond(&asset, effects).map_err(of_file(&self.asset))?;
         warn(&Vec::from_iter(beyond));
-        let mut voice = asset.voice(&options).map_err(of_file(&self.asset))?;
+        let representation = asset.representation(self.choice.model.as_deref());
+        let mut voice = representation
+            .and_then(|representation| representation.voice(&options))
+            .map_err(of_file(&self.asset))?;
         // At least one, because a very short time is also more than 0.
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::of(asset.manifest());

@@ -167,7 +167,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
     let bytes = read_asset(path)?;
     let models = Registry::builtin();
     let known = |r: &Representation| {
-        let model = htex::model_of(&models, r).ok()?;
+        let model = htex::play::model_of(&models, r).ok()?;
         Some(model.descriptor())
     };
     let mut report = validate_with(&bytes, &limits, &known);
@@ -186,7 +186,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
 fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
     let data = htex_format::Asset::open(path).map_err(of_file(path))?;
     let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
-    let asset = htex::Asset::with_registry(data, registry).with_embedded();
+    let asset = htex::Texture::with_registry(data, registry).with_embedded();
     let mut findings = Findings::default();
     for (i, plugin) in asset.manifest().plugins.iter().enumerate() {
         if let Err(error) = asset.load_embedded(&plugin.model) {

@@ -76,9 +76,9 @@ fn textures_are_mixed() {
     assert_eq!(half["made"]["from"][1]["blake3"], hash("sandpaper.htex").to_string());
     assert_eq!(place.run(&["validate", "mixed.htex"]).code(), 0);
     let magnitude = |file: &str| {
-        let asset = htex::Asset::open(place.path(file)).unwrap();
+        let asset = htex::Texture::open(place.path(file)).unwrap();
         let hertz: Vec<f64> = (4..=200).map(|k| 5.0 * f64::from(k)).collect();
-        asset.magnitude(Some("bands"), None, &hertz).unwrap()
+        asset.representation("bands").unwrap().magnitude(None, &hertz).unwrap()
     };
     mix("0", "first.htex");
     mix("1", "second.htex");

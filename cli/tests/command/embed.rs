@@ -62,7 +62,7 @@ fn a_module_is_the_model_it_is_said_to_be() {
     fit_with_bursts(&place, &[]);
     let honest = htex_format::Asset::open(&place.path("b.htex")).unwrap();
     let true_version = honest.manifest.plugins[0].version.clone();
-    let played = htex::Asset::new(honest.clone()).with_embedded();
+    let played = htex::Texture::new(honest.clone()).with_embedded();
     assert!(played.load_embedded("org.example.bursts").is_ok());
     let absent = played.load_embedded("org.htex.sbeta").unwrap_err();
     assert!(absent.to_string().contains("embeds no model"));

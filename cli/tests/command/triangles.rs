@@ -2,22 +2,23 @@
 //! has them.
 
 use crate::common::Place;
-use htex::{Asset, Motion, Triangle};
+use htex::format::Triangle;
+use htex::{Motion, Texture};
 
 /// The asset of `spec/playing-conformance` that stores triangles.
-fn stored() -> Asset {
+fn stored() -> Texture {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/playing-conformance/triangles.htex");
-    Asset::open(folder).unwrap()
+    Texture::open(folder).unwrap()
 }
 
-fn triangles(asset: &Asset) -> Vec<Triangle> {
+fn triangles(asset: &Texture) -> Vec<Triangle> {
     asset.manifest().representations[0].triangles.clone()
 }
 
 /// Level in the middle of a rectangle's corners: on the diagonal that is used.
-fn level(asset: &Asset) -> f64 {
+fn level(asset: &Texture) -> f64 {
     let middle = Some(Motion::new(100.0, 0.8));
-    asset.level_rms(Some("bands"), middle).unwrap()
+    asset.representation("bands").unwrap().level_rms(middle).unwrap()
 }
 
 #[test]
@@ -38,13 +39,13 @@ fn stored_triangles_are_shown_and_kept_as_long_as_the_conditions_stay() {
         representation.triangles.clear();
     }
     // Without them three are mixed, one of them the condition on the lower edge.
-    let found = Asset::new(plain.clone());
+    let found = Texture::new(plain.clone());
     assert!((level(&found) - level(&asset)).abs() > 0.005, "{}", level(&found));
     plain.write(&place.path("plain.htex")).unwrap();
     plain.manifest.conditions[0].speed_mm_s = Some(20.0);
     plain.write(&place.path("other.htex")).unwrap();
 
-    let open = |name: &str| Asset::open(place.path(name)).unwrap();
+    let open = |name: &str| Texture::open(place.path(name)).unwrap();
     let edited = place.run(&["edit", "a.htex", "--author", "Ann", "-o", "edited.htex"]);
     assert_eq!(edited.code(), 0, "{}", edited.error());
     assert_eq!(triangles(&open("edited.htex")), triangles(&asset));

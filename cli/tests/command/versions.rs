@@ -6,7 +6,8 @@ use std::path::Path;
 
 use crate::common::{Place, Run};
 use crate::model::{ID, with_descriptor};
-use htex::{Asset, Registry, Search, VoiceOptions};
+use htex::model::Search;
+use htex::{Registry, Texture, VoiceOptions};
 
 const FIELDS: &str = concat!(
     r#"{"name":"centre_hz","unit":"Hz","kind":{"type":"scalar"},"min":5,"max":2000,"store":{"type":"f32"},"description":"C."},"#,
@@ -205,11 +206,11 @@ fn an_older_installed_model_does_not_break_an_asset() {
     let bytes = std::fs::read(&old).unwrap();
     registry.add_wasm_bytes("module 0", &bytes).unwrap();
     let data = htex_format::Asset::open(&place.path("embedded.htex")).unwrap();
-    let options = VoiceOptions::default().with_model(ID);
-    let asset = Asset::with_registry(data, registry);
-    let refused = asset.voice(&options).unwrap_err().to_string();
+    let asset = Texture::with_registry(data, registry);
+    let options = VoiceOptions::default();
+    let refused = asset.representation(ID).unwrap().voice(&options).unwrap_err().to_string();
     assert!(refused.contains("install version 1.1.0 or newer"), "{refused}");
-    assert!(asset.with_embedded().voice(&options).is_ok());
+    assert!(asset.with_embedded().representation(ID).unwrap().voice(&options).is_ok());
 }
 
 /// A model that is named and fails is not left out silently; one that nobody named may be.

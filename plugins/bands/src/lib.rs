@@ -313,6 +313,10 @@ impl Curve for Spectrum {
         Self::of(below, parameters.scalar(STEP), axis)
     }
 
+    fn band(&self) -> Band {
+        self.axis.band
+    }
+
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let below = parameters.list(BELOW);
         if below.len() != self.knots.len() || Self::layout(parameters) != self.axis.layout {

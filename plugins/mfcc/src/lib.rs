@@ -210,6 +210,10 @@ impl Curve for Spectrum {
         Self::of(inverse, band, parameters.list(CEPSTRUM))
     }
 
+    fn band(&self) -> Band {
+        self.band
+    }
+
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         if !self.inverse.is(parameters) {
             return Err(Error::argument("a voice cannot change its mel bank or its inverse"));

@@ -158,6 +158,10 @@ impl Curve for Shape {
         ]))
     }
 
+    fn band(&self) -> Band {
+        self.profile.band
+    }
+
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let (alpha, beta) = (parameters.scalar(ALPHA), parameters.scalar(BETA));
         self.profile = Profile::new(alpha, beta, self.profile.band);

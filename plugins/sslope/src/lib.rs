@@ -176,6 +176,10 @@ impl Curve for Shape {
         Self::of(parameters.scalar(PEAK), orders, band)
     }
 
+    fn band(&self) -> Band {
+        self.band
+    }
+
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.peak_hz = parameters.scalar(PEAK);
         self.high_pass = parameters.scalar(HIGH_PASS);

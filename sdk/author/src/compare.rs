@@ -103,7 +103,7 @@ impl Difference {
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.
 pub fn compare(
-    asset: &htex_play::Asset,
+    asset: &htex_play::Texture,
     reference: &TextureSpectrum,
     found: Exploration,
 ) -> Result<Vec<ComparedModel>, CompareError> {
@@ -116,9 +116,9 @@ pub fn compare(
         .zip(found.force_n)
         .map(|(speed, force)| htex_play::Motion::new(speed, force));
     let compared = asset.manifest().representations.iter().map(|representation| {
-        let id = Some(&representation.model[..]);
-        let (parameters, level_rms) = asset.parameters(id, motion)?;
-        let model = asset.loaded_model(id)?;
+        let playable = asset.representation(&representation.model[..])?;
+        let (parameters, level_rms) = playable.parameters(motion)?;
+        let model = playable.model()?;
         let of = reference.as_ref();
         let (magnitude, quality) = read_and_measure(&model, &parameters, level_rms, of)?;
         Ok(ComparedModel {

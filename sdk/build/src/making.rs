@@ -178,8 +178,8 @@ type Unfinished = (Asset, Record);
 /// Returns the spectrum that an asset plays at its default condition.
 fn played(asset: &Asset, registry: &Registry) -> Result<Thumbnail, htex_play::Error> {
     let frequency_hz = asset.manifest.band.grid_hz();
-    let asset = htex_play::Asset::with_registry(asset.clone(), registry.clone());
-    let magnitude = asset.magnitude(None, None, &frequency_hz)?;
+    let asset = htex_play::Texture::with_registry(asset.clone(), registry.clone());
+    let magnitude = asset.magnitude(None, &frequency_hz)?;
     Ok(of_magnitudes(&frequency_hz, &magnitude))
 }
 

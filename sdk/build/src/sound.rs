@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::Cursor;
 
 use htex_host::Registry;
-use htex_play::{Asset, VoiceOptions};
+use htex_play::{Texture, VoiceOptions};
 
 /// Sample rate of the sound, hertz: a little more than twice the band's upper edge, so that
 /// browsers play it and files are small.
@@ -20,7 +20,7 @@ const FADE: usize = 200;
 /// All textures get the same loudness.
 pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, Box<dyn Error>> {
     let data = htex_format::Asset::from_bytes(asset)?;
-    let asset = Asset::with_registry(data, registry.clone());
+    let asset = Texture::with_registry(data, registry.clone());
     let options = VoiceOptions::default().with_rate_hz(f64::from(RATE_HZ));
     let mut voice = asset.voice(&options)?;
     let mut samples = vec![0.0_f32; SAMPLES];

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use htex::Asset;
+use htex::Texture;
 
 use crate::handles::{Kind, Table};
 use crate::motion::{htex_motion, motion};
@@ -39,16 +39,16 @@ pub struct htex_band {
     pub high_hz: f64,
 }
 
-pub(crate) static ASSETS: Table<Asset> = Table::new(Kind::Asset);
+pub(crate) static ASSETS: Table<Texture> = Table::new(Kind::Asset);
 
 pub(crate) fn keep(
-    data: htex::AssetData,
+    data: htex::format::Asset,
     models: Models,
     out: *mut htex_asset,
 ) -> Result<(), Failure> {
     // SAFETY: the place is the caller's.
     let out = unsafe { place(out) }?;
-    let asset = Asset::with_registry(data, models.registry);
+    let asset = Texture::with_registry(data, models.registry);
     let asset = if models.embedded { asset.with_embedded() } else { asset };
     out.id = ASSETS.insert(asset)?;
     Ok(())
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn htex_asset_open(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (path, models) = unsafe { (needed_text(path)?, models(options)?) };
-        let data = htex::AssetData::open(path.as_ref()).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::open(path.as_ref()).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (path, models) = unsafe { (crate::pointers::wide_path(path)?, models(options)?) };
-        let data = htex::AssetData::open(&path).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::open(&path).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -96,10 +96,11 @@ pub unsafe extern "C" fn htex_asset_open_reader(
     guarded(|| {
         // The reader first: if the options are invalid, it is dropped and thereby closed.
         // SAFETY: the pointers are the caller's.
-        let (reader, models) = unsafe { (Reader::of(reader)?, models(options)?) };
-        let bytes =
-            reader.read_whole().map_err(|error| Failure::of(htex_status::HTEX_STATUS_IO, error))?;
-        let data = htex::AssetData::from_bytes(&bytes).map_err(htex::Error::from)?;
+        let (reader, models) = unsafe { (Reader::from_raw(reader)?, models(options)?) };
+        let bytes = reader
+            .read_whole()
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_IO, error))?;
+        let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -115,7 +116,7 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (bytes, models) = unsafe { (slice(bytes, len)?, models(options)?) };
-        let data = htex::AssetData::from_bytes(bytes).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::from_bytes(bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn htex_asset_manifest_json(
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
         let json = serde_json::to_string(asset.manifest())
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
         // SAFETY: the pointers are the caller's.
         unsafe { write_text(&json, out, capacity, length) }
     })
@@ -279,7 +280,7 @@ pub unsafe extern "C" fn htex_asset_magnitude(
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
         // SAFETY: as above.
         let frequency_hz = unsafe { slice(frequency_hz, len) }?;
-        let computed = asset.magnitude(model, at, frequency_hz)?;
+        let computed = asset.representation(model)?.magnitude(at, frequency_hz)?;
         // SAFETY: as above. `frequency_hz` is not used any more, and may be the same array.
         let magnitude = unsafe { slice_mut(magnitude, len) }?;
         magnitude.copy_from_slice(&computed);
@@ -300,7 +301,7 @@ pub unsafe extern "C" fn htex_asset_level_rms(
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
-        let level_rms = asset.level_rms(model, at)?;
+        let level_rms = asset.representation(model)?.level_rms(at)?;
         // SAFETY: the place is the caller's.
         *unsafe { place(out) }? = level_rms;
         Ok(())

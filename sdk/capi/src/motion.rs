@@ -30,17 +30,11 @@ pub struct htex_motion {
 
 impl From<htex_motion> for Motion {
     fn from(motion: htex_motion) -> Self {
-        let speed_and_force = Self::new(motion.speed_mm_s, motion.force_n);
-        let on_path = if motion.position_mm.is_nan() {
-            speed_and_force
-        } else {
-            speed_and_force.with_position_mm(motion.position_mm)
-        };
-        if motion.x_mm.is_nan() || motion.y_mm.is_nan() {
-            on_path
-        } else {
-            on_path.with_place_mm(motion.x_mm, motion.y_mm)
-        }
+        let htex_motion { speed_mm_s, force_n, position_mm, x_mm, y_mm, .. } = motion;
+        let is_placed = !(x_mm.is_nan() || y_mm.is_nan());
+        let motion =
+            Self::new(speed_mm_s, force_n).with_place_mm(is_placed.then_some([x_mm, y_mm]));
+        if position_mm.is_nan() { motion } else { motion.with_position_mm(position_mm) }
     }
 }
 
@@ -57,27 +51,23 @@ const UNKNOWN: htex_motion = htex_motion {
 // The upper end leaves room for later fields, and refuses a size that was never set.
 const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_mm)..=256;
 
-/// Motions from a caller, which may have been compiled against a shorter or longer struct.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Motions {
-    first: *const u8,
-    size: usize,
+/// Returns the motions of a caller, which may have been compiled against a shorter or longer struct.
+///
+/// # Safety
+/// As [`slice`], with the size that the first motion states. The motions exist as long as the
+/// iterator.
+pub(crate) unsafe fn motions(
+    pointer: *const htex_motion,
     len: usize,
-}
-
-impl Motions {
-    /// # Safety
-    /// As [`slice`], with the size that the first motion states.
-    pub(crate) unsafe fn of(pointer: *const htex_motion, len: usize) -> Result<Self, Failure> {
-        let first = pointer.cast::<u8>();
-        if len == 0 {
-            return Ok(Self { first, size: 0, len });
-        }
+) -> Result<impl Iterator<Item = Motion>, Failure> {
+    let first = pointer.cast::<u8>();
+    let mut size = 0;
+    if len > 0 {
         if pointer.is_null() || !pointer.is_aligned() {
             return Err(Failure::argument("a motion is NULL or misaligned"));
         }
         // SAFETY: a motion begins with its size.
-        let size = unsafe { pointer.cast::<u32>().read() } as usize;
+        size = unsafe { pointer.cast::<u32>().read() } as usize;
         // Another size would misalign the second motion of an array.
         if !SIZES.contains(&size) || !size.is_multiple_of(align_of::<htex_motion>()) {
             return Err(Failure::argument(
@@ -86,40 +76,35 @@ impl Motions {
         }
         // SAFETY: as many motions of this size are there.
         unsafe { slice(first, len.saturating_mul(size)) }?;
-        Ok(Self { first, size, len })
     }
-
-    pub(crate) fn iter(self) -> impl Iterator<Item = Motion> {
-        (0..self.len).map(move |index| {
-            let mut motion = UNKNOWN;
-            // SAFETY: the caller's motions are there, and both have as many bytes, which are
-            // numbers.
-            unsafe {
-                let from = self.first.add(index * self.size);
-                let to = (&raw mut motion).cast::<u8>();
-                to.copy_from_nonoverlapping(from, self.size.min(size_of::<htex_motion>()));
-            }
-            motion.into()
-        })
-    }
+    Ok((0..len).map(move |index| {
+        let mut motion = UNKNOWN;
+        // SAFETY: the caller's motions are there, and both have as many bytes, which are numbers.
+        unsafe {
+            let from = first.add(index * size);
+            let to = (&raw mut motion).cast::<u8>();
+            to.copy_from_nonoverlapping(from, size.min(size_of::<htex_motion>()));
+        }
+        motion.into()
+    }))
 }
 
 /// Returns the motion at `pointer`; `None` for NULL.
 ///
 /// # Safety
-/// As [`Motions::of`].
+/// As [`motions`].
 pub(crate) unsafe fn motion(pointer: *const htex_motion) -> Result<Option<Motion>, Failure> {
     if pointer.is_null() {
         return Ok(None);
     }
     // SAFETY: as here.
-    Ok(unsafe { Motions::of(pointer, 1) }?.iter().next())
+    Ok(unsafe { motions(pointer, 1) }?.next())
 }
 
 /// Returns the motion at `pointer`, which must not be NULL.
 ///
 /// # Safety
-/// As [`Motions::of`].
+/// As [`motions`].
 pub(crate) unsafe fn needed_motion(pointer: *const htex_motion) -> Result<Motion, Failure> {
     // SAFETY: as here.
     unsafe { motion(pointer) }?.ok_or(Failure::argument("the motion is NULL"))

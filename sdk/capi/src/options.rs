@@ -3,7 +3,9 @@
 use std::ffi::c_char;
 use std::path::PathBuf;
 
-use htex::{Effects, Registry, Search, Synthesis, VoiceOptions, WasmCache, WasmEngine, WasmLimits};
+use htex::model::{Search, WasmCache, WasmEngine, WasmLimits};
+use htex::play::{Effects, Synthesis};
+use htex::{Registry, VoiceOptions};
 
 use crate::log::{htex_log_level, log};
 use crate::motion::{htex_motion, motion};
@@ -179,7 +181,7 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         Some(folder) => WasmCache::Dir(folder.into()),
         None => WasmCache::Off,
     };
-    let engine = engine(options.engine, htex::RUNS_WASM)?;
+    let engine = engine(options.engine, htex::model::RUNS_WASM)?;
     let installed = options.installed != 0;
     let limits = WasmLimits::default().with_engine(engine).with_cache(cache);
     let search = Search::builtin()
@@ -226,7 +228,7 @@ fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
 /// As [`options`]; the text lives as long as the result.
 pub(crate) unsafe fn voice_options<'a>(
     pointer: *const htex_voice_options,
-) -> Result<(Option<&'a str>, VoiceOptions<'static>), Failure> {
+) -> Result<(Option<&'a str>, VoiceOptions), Failure> {
     const ZEROS: htex_voice_options = htex_voice_options {
         size: 0,
         model: std::ptr::null(),

@@ -67,7 +67,7 @@ unsafe impl Sync for Reader {}
 impl Reader {
     /// # Safety
     /// NULL, or a reader of the caller.
-    pub(crate) unsafe fn of(reader: *const htex_reader) -> Result<Self, Failure> {
+    pub(crate) unsafe fn from_raw(reader: *const htex_reader) -> Result<Self, Failure> {
         // SAFETY: as here.
         let reader = unsafe { slice(reader, 1) }?[0];
         Self::new(&reader)
@@ -143,7 +143,7 @@ pub(crate) struct Files {
 impl Files {
     /// # Safety
     /// NULL, or files of the caller.
-    pub(crate) unsafe fn of(files: *const htex_files) -> Result<Self, Failure> {
+    pub(crate) unsafe fn from_raw(files: *const htex_files) -> Result<Self, Failure> {
         // SAFETY: as here.
         let files = unsafe { slice(files, 1) }?[0];
         if (files.size as usize) < size_of::<htex_files>() || files.open.is_none() {

@@ -30,7 +30,7 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
         forget_log();
         // Last, because the clocks stop calls of modules that take too long.
         #[cfg(feature = "wasm")]
-        htex::host::end_wasm_clocks();
+        htex::model::end_wasm_clocks();
         Ok::<_, Failure>(())
     })
 }

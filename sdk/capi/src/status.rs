@@ -75,15 +75,8 @@ impl Failure {
         Self::plain(htex_status::HTEX_STATUS_INVALID_ARGUMENT, text)
     }
 
-    /// Makes an error for a scene; does not allocate.
-    #[cfg(feature = "scene")]
-    pub(crate) fn of_scene(status: htex_status, error: htex::scene::SceneError) -> Self {
-        let text = Text::Scene(error);
-        Self { status, text }
-    }
-
     /// Makes an error from an error of an `htex` crate.
-    pub fn of(status: htex_status, error: impl std::error::Error + 'static) -> Self {
+    pub fn new(status: htex_status, error: impl std::error::Error + 'static) -> Self {
         let text = Text::Of(Box::new(error));
         Self { status, text }
     }
@@ -98,29 +91,39 @@ impl From<htex::library::LibraryError> for Failure {
             LibraryError::Absent { .. } => htex_status::HTEX_STATUS_ABSENT,
             _ => htex_status::HTEX_STATUS_INVALID_LIBRARY,
         };
-        Self::of(status, error)
+        Self::new(status, error)
+    }
+}
+
+#[cfg(feature = "scene")]
+impl From<htex::scene::SceneError> for Failure {
+    fn from(error: htex::scene::SceneError) -> Self {
+        use htex::scene::SceneErrorKind;
+        use htex_status::*;
+        let status = match error.kind() {
+            SceneErrorKind::Io => HTEX_STATUS_IO,
+            SceneErrorKind::Motion => HTEX_STATUS_INVALID_MOTION,
+            SceneErrorKind::Model => HTEX_STATUS_MODEL,
+            SceneErrorKind::NoModel => HTEX_STATUS_NO_MODEL,
+            _ => HTEX_STATUS_INVALID_SCENE,
+        };
+        let text = Text::Scene(error);
+        Self { status, text }
     }
 }
 
 impl From<htex::Error> for Failure {
     fn from(error: htex::Error) -> Self {
-        use htex::{Error, HostError, ReadError};
+        use htex::play::ErrorKind;
         use htex_status::*;
-        let status = match &error {
-            Error::Read(ReadError::Io { .. }) => HTEX_STATUS_IO,
-            Error::Read(_) => HTEX_STATUS_INVALID_ASSET,
-            Error::NoRepresentation { .. } => HTEX_STATUS_NO_REPRESENTATION,
-            Error::Motion { .. } | Error::Position { .. } | Error::Place { .. } => {
-                HTEX_STATUS_INVALID_MOTION
-            }
-            Error::Ceiling { .. }
-            | Error::Model(HostError::Synthesis { .. } | HostError::Rates { .. }) => {
-                HTEX_STATUS_INVALID_ARGUMENT
-            }
-            Error::Model(HostError::Call { .. } | HostError::Broken { .. }) => HTEX_STATUS_MODEL,
-            Error::Rate { .. } | Error::OutOfRange { .. } | Error::Bands { .. } => {
-                HTEX_STATUS_INVALID_ARGUMENT
-            }
+        let status = match error.kind() {
+            ErrorKind::Io => HTEX_STATUS_IO,
+            ErrorKind::InvalidAsset => HTEX_STATUS_INVALID_ASSET,
+            ErrorKind::Library => HTEX_STATUS_INVALID_LIBRARY,
+            ErrorKind::NoRepresentation => HTEX_STATUS_NO_REPRESENTATION,
+            ErrorKind::Model => HTEX_STATUS_MODEL,
+            ErrorKind::Motion => HTEX_STATUS_INVALID_MOTION,
+            ErrorKind::Option => HTEX_STATUS_INVALID_ARGUMENT,
             _ => HTEX_STATUS_NO_MODEL,
         };
         let text = Text::Playing(error);

@@ -3,11 +3,11 @@
 use std::ffi::c_char;
 use std::ops::{Deref, DerefMut};
 
-use htex::{Asset, Voice, VoiceOptions};
+use htex::{Texture, Voice, VoiceOptions};
 
 use crate::asset::{ASSETS, htex_asset};
 use crate::handles::{Kind, Table};
-use crate::motion::{Motions, htex_motion, needed_motion};
+use crate::motion::{htex_motion, needed_motion};
 use crate::options::{htex_voice_options, voice_options};
 use crate::pointers::{place, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
@@ -23,24 +23,19 @@ pub struct htex_voice {
 /// A voice, and everything needed to make it again.
 pub(crate) struct Playing {
     voice: Voice,
-    asset: Asset,
+    asset: Texture,
     /// The representation, as the id of its model.
     model: String,
-    options: VoiceOptions<'static>,
+    options: VoiceOptions,
 }
 
 impl Playing {
-    fn new(
-        asset: &Asset,
-        model: Option<&str>,
-        options: VoiceOptions<'static>,
-    ) -> Result<Self, Failure> {
-        // The options would borrow the caller's text, so the name is stored separately.
-        let model = asset.representation_id(model)?.to_owned();
+    fn new(asset: &Texture, model: Option<&str>, options: VoiceOptions) -> Result<Self, Failure> {
+        let representation = asset.representation(model)?;
         Ok(Self {
-            voice: asset.voice(&options.clone().with_model(&model))?,
+            voice: representation.voice(&options)?,
             asset: asset.clone(),
-            model,
+            model: representation.id().to_owned(),
             options,
         })
     }
@@ -116,7 +111,7 @@ pub unsafe extern "C" fn htex_voice_reset(
             Some(motion) => options.with_motion(motion),
             None => options,
         };
-        voice.voice = voice.asset.voice(&options.with_model(&voice.model))?;
+        voice.voice = voice.asset.representation(&voice.model[..])?.voice(&options)?;
         Ok(())
     })
 }
@@ -280,12 +275,14 @@ pub unsafe extern "C" fn htex_voice_render_path(
             .checked_mul(frames)
             .ok_or(Failure::argument("motions_len * frames is too large"))?;
         // SAFETY: the arrays are the caller's.
-        let (motions, out) = unsafe { (Motions::of(motions, motions_len)?, slice_mut(out, len)?) };
+        let (motions, out) =
+            unsafe { (crate::motion::motions(motions, motions_len)?, slice_mut(out, len)?) };
         // `chunks_exact_mut` panics at 0. The motions are set all the same.
         if frames == 0 {
-            return motions.iter().try_for_each(|motion| Ok(voice.set_motion(motion)?));
+            let mut motions = motions;
+            return motions.try_for_each(|motion| Ok(voice.set_motion(motion)?));
         }
-        for (motion, block) in motions.iter().zip(out.chunks_exact_mut(frames)) {
+        for (motion, block) in motions.zip(out.chunks_exact_mut(frames)) {
             voice.set_motion(motion)?;
             voice.render(block)?;
         }

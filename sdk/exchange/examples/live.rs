@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use htex_exchange::hatt::{Imported, asset, read};
-use htex_play::{Asset, Motion, VoiceOptions};
+use htex_play::{Motion, Texture, VoiceOptions};
 
 const RATE_HZ: f64 = 20_000.0;
 /// Number of samples in a run.
@@ -15,7 +15,7 @@ const RUNS: usize = 15;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).ok_or("give a model file")?;
     let made = asset(&read(&std::fs::read(file)?)?, &Imported::default())?;
-    let asset = Asset::from_bytes(&made.to_bytes()?)?;
+    let asset = Texture::from_bytes(&made.to_bytes()?)?;
     for (what, samples, moves) in [
         ("at one motion, blocks of 64", 64, false),
         ("a new motion in each block of 64", 64, true),
@@ -31,10 +31,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Time of a run that renders `samples` samples at a time, seconds.
-fn run_s(asset: &Asset, samples: usize, moves: bool) -> Result<f64, Box<dyn std::error::Error>> {
-    let mut options = VoiceOptions::default();
-    options.rate_hz = RATE_HZ;
-    options.motion = Some(Motion::new(100.0, 1.0));
+fn run_s(asset: &Texture, samples: usize, moves: bool) -> Result<f64, Box<dyn std::error::Error>> {
+    let options =
+        VoiceOptions::default().with_rate_hz(RATE_HZ).with_motion(Motion::new(100.0, 1.0));
     let mut voice = asset.voice(&options)?;
     let mut block = vec![0.0f32; samples];
     let begun = Instant::now();

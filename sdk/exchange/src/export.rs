@@ -1,6 +1,6 @@
 //! Export of assets to files of other formats, with a report of what is lost.
 
-use htex_play::Asset;
+use htex_play::Texture;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
@@ -143,7 +143,7 @@ pub struct Played {
 /// # Errors
 /// When the format cannot be written or does not take a setting, a number is out of range, the
 /// actuator cannot play such files, or the asset cannot be played.
-pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeError> {
+pub fn export(asset: &Texture, export: &Export<'_>) -> Result<Exported, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;
     match format.writes {

@@ -6,7 +6,7 @@ use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;
 use htex_dsp::vibrotactile::Listener;
 use htex_format::{Manifest, Quantity, Rights};
-use htex_play::{Asset, Motion, VoiceOptions};
+use htex_play::{Motion, Texture, VoiceOptions};
 
 use crate::error::ExchangeError;
 use crate::stroke::Stroke;
@@ -42,7 +42,7 @@ pub struct SceneSound<'a> {
 /// The source of what is played.
 #[derive(Clone, Copy)]
 pub(crate) enum Source<'a> {
-    Asset { asset: &'a Asset, model: Option<&'a str>, path: &'a Path, seed: u64 },
+    Asset { asset: &'a Texture, model: Option<&'a str>, path: &'a Path, seed: u64 },
     Scene(&'a SceneSound<'a>),
 }
 
@@ -130,7 +130,7 @@ impl Source<'_> {
         match self {
             Self::Asset { path: Path::Condition(Some(motion)), .. } => Some(motion.speed_mm_s),
             Self::Asset { asset, model, path: Path::Condition(None), .. } => {
-                let default = asset.default_condition(*model).ok()?;
+                let default = asset.representation(*model).ok()?.default_condition();
                 asset.manifest().conditions.get(default)?.speed_mm_s
             }
             _ => None,
@@ -180,12 +180,11 @@ impl Playing<'_> {
                 Ok((Vec::new(), samples))
             }
             Source::Asset { asset, model, path, seed } => {
-                let mut options = VoiceOptions::default()
+                let options = VoiceOptions::default()
                     .with_rate_hz(rate_hz)
                     .with_seed(seed)
                     .with_motion(path.motion_at(0.0));
-                options.model = model;
-                let mut voice = asset.voice(&options)?;
+                let mut voice = asset.representation(model)?.voice(&options)?;
                 let mut before = vec![0.0; (BEFORE_S * rate_hz) as usize];
                 voice.render(&mut before)?;
                 let mut samples = vec![0.0; len];

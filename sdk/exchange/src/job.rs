@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use htex_play::Asset;
+use htex_play::Texture;
 
 use crate::error::{ExchangeError, Fault};
 use crate::heard::{Heard, Playing};
@@ -37,7 +37,7 @@ pub struct Job<'a> {
 pub struct AssetJob<'a> {
     /// Name of the format.
     pub(crate) format: &'static str,
-    pub(crate) asset: &'a Asset,
+    pub(crate) asset: &'a Texture,
     /// The asset's file; without it, the asset is written anew.
     pub(crate) file: Option<&'a [u8]>,
     pub(crate) extension: Option<&'a str>,

@@ -10,7 +10,7 @@
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
-//! let asset = htex_play::Asset::open("sandpaper.htex")?;
+//! let asset = htex_play::Texture::open("sandpaper.htex")?;
 //! if let Some(format) = Format::named("ahap") {
 //!     let exported = export(&asset, &Export::new(format))?;
 //!     println!("{} bytes, loses {}", exported.bytes.len(), exported.loses);

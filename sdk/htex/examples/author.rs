@@ -5,8 +5,8 @@
 use std::path::PathBuf;
 
 use htex::Registry;
+use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
-use htex::simulate::{SimulationOptions, Surface, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path: PathBuf =

@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use htex::{Asset, VoiceOptions};
+use htex::{Texture, VoiceOptions};
 
 /// Samples in one run.
 const SAMPLES: usize = 1_920_000;
@@ -18,9 +18,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let mut samples = vec![0.0f32; block.parse()?];
     let blocks = SAMPLES / samples.len().max(1);
-    let asset = Asset::open(path)?;
-    let options = VoiceOptions::default().with_model(model).with_seed(7);
-    let mut voice = asset.voice(&options)?;
+    let asset = Texture::open(path)?;
+    let options = VoiceOptions::default().with_seed(7);
+    let mut voice = asset.representation(&model[..])?.voice(&options)?;
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {
         let start = Instant::now();

@@ -1,133 +1,59 @@
-//! A model that the program itself defines: flat noise between two frequencies. The program
-//! registers it, fits it to a simulated recording, and plays the asset.
-//!
-//! `cargo run --release -p htex --features author --example own_model`
+//! A model of your own: flat noise between two frequencies. It is fitted to a simulated recording,
+//! stored, and played. `cargo run --release -p htex --features author --example own_model`
 
+use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
-use htex::simulate::{SimulationOptions, Surface, simulate};
-use htex::{Asset, Motion, Registry, VoiceOptions};
-use htex_model::shaped::{Curve, ShapedVoice};
-use htex_model::{
-    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
-};
+use htex::format::{Asset, ErrorMeasure};
+use htex::model::{Band, Curve, Error, Fit, FitInput, ShapedModel, StaticDescriptor, StaticField};
+use htex::{Registry, Texture, VoiceOptions, model::Values};
 
-/// The model: a plateau from `low_hz` to `high_hz`.
-struct Plateau;
-
-/// The plateau that the parameters describe, in a band.
-struct Edges {
-    low_hz: f64,
-    high_hz: f64,
+struct Plateau {
+    edges_hz: (f64, f64),
     band: Band,
 }
 
-impl Model for Plateau {
-    type Voice = ShapedVoice<Edges>;
-
-    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
-        "org.example.plateau",
-        "Plateau",
-        "1.0.0",
-        "Flat noise between two frequencies.",
-    )
-    .fields(&[
-        StaticField::scalar("low_hz", "Hz", (0.0, 2_000.0), "Lowest frequency."),
-        StaticField::scalar("high_hz", "Hz", (0.0, 2_000.0), "Highest frequency."),
-    ]);
-
-    /// The frequencies between which 90 % of the power lies.
-    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
-        let power = || input.magnitude.iter().map(|m| m * m);
-        let total: f64 = power().sum();
-        if total == 0.0 {
-            return Err(Error::cannot_fit("the spectrum is zero"));
-        }
-        let below = |part: f64| {
-            let mut sum = 0.0;
-            let bin = power().position(|p| {
-                sum += p;
-                sum >= part * total
-            });
-            input.frequency_hz[bin.unwrap_or(input.frequency_hz.len() - 1)]
-        };
-        Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
+impl Curve for Plateau {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        Ok(Self { edges_hz: (parameters.scalar(0), parameters.scalar(1)), band })
     }
-
-    fn magnitude(
-        parameters: &Values<'_>,
-        band: Band,
-        frequency_hz: &[f64],
-        magnitude: &mut [f64],
-    ) -> Result<(), Error> {
-        htex_model::shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
+    fn band(&self) -> Band {
+        self.band
     }
-
-    fn interpolate(
-        sets: &[Values<'_>],
-        weights: &[f64],
-        mixed: &mut Numbers<'_>,
-    ) -> Result<(), Error> {
-        mix::linear(sets, weights, mixed)
-    }
-
-    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_model::shaped::voice_rate_hz(band, wanted_hz)
-    }
-
-    fn voice(
-        parameters: &Values<'_>,
-        band: Band,
-        rate_hz: f64,
-        seed: u64,
-    ) -> Result<Self::Voice, Error> {
-        ShapedVoice::new(parameters, band, rate_hz, seed)
+    fn at(&self, frequency_hz: f64) -> f64 {
+        f64::from((self.edges_hz.0..=self.edges_hz.1).contains(&frequency_hz))
     }
 }
 
-impl Curve for Edges {
-    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-        let mut edges = Self { low_hz: 0.0, high_hz: 0.0, band };
-        edges.set(parameters)?;
-        Ok(edges)
-    }
-
-    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        (self.low_hz, self.high_hz) = (parameters.scalar(0), parameters.scalar(1));
-        if self.level() > 0.0 {
-            return Ok(());
-        }
-        Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
-    }
-
-    fn at(&self, frequency_hz: f64) -> f64 {
-        f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
-    }
-
-    fn level(&self) -> f64 {
-        htex_dsp::grid::curve_level_rms(self.band, |hz| self.at(hz))
+impl ShapedModel for Plateau {
+    type Curve = Self;
+    const DESCRIPTOR: StaticDescriptor =
+        StaticDescriptor::new("org.example.plateau", "Plateau", "1.0.0", "Flat noise.").fields(&[
+            StaticField::scalar("low_hz", "Hz", (0.0, 2_000.0), "Lowest frequency."),
+            StaticField::scalar("high_hz", "Hz", (0.0, 2_000.0), "Highest frequency."),
+        ]);
+    /// Finds the frequencies between which the spectrum exceeds a twentieth of its level.
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        let floor = input.level_rms() / 20.0;
+        let mut loud = input.frequency_hz.iter().zip(input.magnitude).filter(|(_, m)| **m > floor);
+        let (low, _) = loud.next().ok_or_else(|| Error::cannot_fit("the spectrum is zero"))?;
+        let parameters = vec![*low, loud.last().map_or(*low, |(high, _)| *high)];
+        Ok(Fit { parameters, level_rms: input.level_rms() })
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut registry = Registry::builtin();
     registry.add_model::<Plateau>()?;
-
-    let options = SimulationOptions::new(Surface::Sandpaper);
-    let take = Take {
-        given: Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) },
-        recording: simulate(&options)?.to_recording("simulated")?,
-    };
-    let model = registry.find("org.example.plateau")?.clone();
-    let request = AssetRequest::new("Sandpaper").with_models([ModelRequest::new(&model)]);
-    let fitted = fit_asset(&[take], &request)?;
-
-    let asset = Asset::with_registry(fitted.asset, registry);
-    let motion = Motion::new(80.0, 0.4);
-    println!("{:?}", asset.parameters(Some("plateau"), Some(motion))?);
-    let mut voice = asset.voice(&VoiceOptions::default().with_motion(motion))?;
-    let mut second = vec![0.0f32; 20_000];
-    voice.render(&mut second)?;
-    let power: f32 = second.iter().map(|x| x * x).sum::<f32>() / second.len() as f32;
-    println!("{:.3} mN RMS", power.sqrt() * 1e3);
+    let recording = simulate(&SimulationOptions::new(Surface::Sandpaper))?.to_recording("made")?;
+    let given = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
+    let model = ModelRequest::new(registry.find("org.example.plateau")?);
+    let request = AssetRequest::new("Sandpaper").with_models([model]);
+    let file = fit_asset(&[Take { recording, given }], &request)?.asset.to_bytes()?;
+    let texture = Texture::with_registry(Asset::from_bytes(&file)?, registry);
+    let plateau = texture.representation("plateau")?;
+    println!("{:?} dB in nine bands", plateau.data().error_db(ErrorMeasure::NineBand));
+    let mut voice = plateau.voice(&VoiceOptions::default())?;
+    let sum: f32 = voice.samples().take(20_000).map(|x| x.map(|x| x * x)).sum::<Result<_, _>>()?;
+    println!("{:.3} mN RMS", (sum / 20_000.0).sqrt() * 1e3);
     Ok(())
 }

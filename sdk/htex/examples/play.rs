@@ -1,15 +1,13 @@
-//! Plays an asset while the finger slows down, and prints the RMS of each tenth of a second.
+//! Plays a texture while the finger slows down, and prints the RMS of each tenth of a second.
 //!
 //! `cargo run --release -p htex --example play -- cloth.htex`
 
-use htex::{Asset, Motion, VoiceOptions};
+use htex::{Motion, Texture, VoiceOptions};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args().nth(1).ok_or("give an asset: play FILE.htex")?;
-    let asset = Asset::open(&path)?;
-    let options = VoiceOptions::default();
-    let mut voice = asset.voice(&options)?;
-    let mut block = vec![0.0f32; (options.rate_hz / 10.0) as usize];
+    let path = std::env::args().nth(1).ok_or("give a texture: play FILE.htex")?;
+    let mut voice = Texture::open(&path)?.voice(&VoiceOptions::default())?;
+    let mut block = vec![0.0f32; (voice.rate_hz() / 10.0) as usize];
     for tenth in 0..20 {
         let (speed_mm_s, force_n) = (160.0 - 5.0 * f64::from(tenth), 0.4);
         voice.set_motion(Motion::new(speed_mm_s, force_n))?;

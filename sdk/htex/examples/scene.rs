@@ -1,36 +1,22 @@
-//! Renders a scene file for a device that takes newtons at 20 kHz, and prints the chain and the
-//! RMS.
+//! Renders a scene file in the unit of its textures at 20 kHz, and prints the chain and the RMS of
+//! each tenth of the first second.
 //!
-//! `cargo run --release -p htex --features author,scene --example scene -- SCENE.json`
+//! `cargo run --release -p htex --features scene --example scene -- two.scene.json`
 
-use std::path::PathBuf;
-use std::sync::Arc;
+use htex::Scene;
 
-use htex::Registry;
-use htex::device::Devices;
-use htex::scene::{Costs, DeviceOverride, LoadedScene, Renderer, Surroundings, plan};
-use htex_device_builtin::file::FileAdapter;
+const RATE_HZ: f64 = 20_000.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path: PathBuf = std::env::args_os().nth(1).ok_or("give a scene: scene SCENE.json")?.into();
-    let devices = Devices::new(vec![Arc::new(FileAdapter)]);
-    let around = Surroundings { models: &Registry::builtin(), embedded: true, devices: &devices };
-    // The example only renders the samples here; it does not open the device.
-    let device = DeviceOverride {
-        adapter: Some("org.htex.file".to_owned()),
-        rehearsal: true,
-        ..DeviceOverride::default()
-    };
-    let scene = LoadedScene::open(&path, &around, &device)?;
-    let adapter = &devices.find("org.htex.file")?.adapter;
-    let plan = plan(&scene, &adapter.capabilities(&scene.settings)?, &Costs::embedded())?;
-    for stage in &plan.stages {
+    let path = std::env::args().nth(1).ok_or("give a scene: scene FILE.scene.json")?;
+    let scene = Scene::open(&path)?;
+    for stage in &scene.plan(RATE_HZ)?.stages {
         println!("{}: {}", stage.name, stage.reason);
     }
-    let mut renderer = Renderer::new(&scene, &plan)?;
-    let mut block = vec![0.0f32; (renderer.rate_hz() / 10.0) as usize];
+    let mut renderer = scene.renderer(RATE_HZ)?;
+    let mut block = vec![0.0f32; (RATE_HZ / 10.0) as usize];
     for tenth in 0..10 {
-        let frames = renderer.render(&mut block);
+        let frames = renderer.render(&mut block)?;
         let power: f32 = block[..frames].iter().map(|x| x * x).sum::<f32>() / frames.max(1) as f32;
         println!("{:.1} s  {:7.3} mN RMS", f64::from(tenth) / 10.0, power.sqrt() * 1e3);
     }

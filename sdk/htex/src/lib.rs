@@ -1,49 +1,65 @@
-//! Opens and plays texture assets.
+//! Textures of touch: opens texture files and plays them at the speed and force of a finger.
 //!
 //! ```no_run
-//! use htex::{Asset, Motion, VoiceOptions};
-//! let asset = Asset::open("sandpaper.htex")?;
-//! let mut voice = asset.voice(&VoiceOptions::default())?;
+//! use htex::{Motion, Texture, VoiceOptions};
+//! let texture = Texture::open("sandpaper.htex")?;
+//! let mut voice = texture.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
 //! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
-//! voice.render(&mut block)?; // in the asset's unit
+//! voice.render(&mut block)?; // in the texture's unit
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
 //! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
 //!
 //! # Features
-//! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the
-//!   program is smaller and can only play representations of built-in models.
-//! - `write` (default): `format::Asset::write` and `to_bytes`.
-//! - `author`: `htex::author` reads recordings and makes assets, and `htex::simulate` simulates
-//!   recordings.
-//! - `library`: `htex::Library`, a file with thousands of textures. `Asset::from_library` opens one
-//!   of them; `htex::library` has the full interface.
-//! - `storage`: `htex::storage`, which opens files by path or URI, and `Library::open_located`. The
-//!   feature `cloud` adds web servers and object stores.
-//! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices that
-//!   play them.
+//!
+//! | feature | default | adds |
+//! |---|---|---|
+//! | `wasm` | yes | runs models that are embedded in textures, in a sandbox; without it the program is smaller and plays only representations of built-in models |
+//! | `write` | yes | `format::Asset::write` and `to_bytes` |
+//! | `author` | | `author`: reads recordings and makes textures; `author::simulate` simulates recordings |
+//! | `library` | | `library`: files with thousands of textures; `Texture::from_library` opens one of them |
+//! | `storage` | | `library::storage`, which opens files by path or URI, and `Library::open_located`; includes `library` |
+//! | `cloud` | | web servers and object stores for `storage` |
+//! | `audio` | | nothing in the library; the sound card of the example `live` |
+//! | `scene` | | `Scene` and `scene`: plans and renders scenes; `device`: the devices that play them |
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "author")]
 pub use htex_author as author;
-#[cfg(feature = "author")]
-pub use htex_author::simulate;
-#[cfg(feature = "storage")]
-pub use htex_base::storage;
 #[cfg(feature = "scene")]
 pub use htex_device as device;
-/// The container: its types, reading, writing and validation.
+/// The `.htex` file: its types, reading, writing and validation.
 pub use htex_format as format;
-/// Library files, which hold thousands of textures.
-#[cfg(feature = "library")]
-pub use htex_format::library;
-#[cfg(feature = "library")]
-pub use htex_format::library::Library;
-/// The models: registry, loaders, calls.
-pub use htex_host as host;
-pub use htex_play::*;
+/// The player. Its main types are at the root of this crate.
+pub use htex_play as play;
+pub use htex_play::{Error, Motion, Registry, Representation, Texture, Voice, VoiceOptions};
 #[cfg(feature = "scene")]
 pub use htex_scene as scene;
+#[cfg(feature = "scene")]
+pub use htex_scene::Scene;
+
+/// Models: finding, loading and calling them ([`Registry`]), and the traits of a model of your own
+/// ([`ShapedModel`], [`Model`]).
+///
+/// [`ShapedModel`]: model::ShapedModel
+/// [`Model`]: model::Model
+pub mod model {
+    pub use htex_host::*;
+    pub use htex_model::shaped::{Curve, ShapedModel, ShapedVoice};
+    pub use htex_model::{
+        Error, FitInput, Model, MotionVoice, Numbers, StaticDescriptor, StaticField, StaticOption,
+        Values, Voice, mix,
+    };
+}
+
+/// Library files, which hold thousands of textures.
+#[cfg(feature = "library")]
+pub mod library {
+    #[cfg(feature = "storage")]
+    pub use htex_base::storage;
+    pub use htex_format::library::*;
+}

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use htex_dsp::Band;
+use htex_dsp::grid::level_rms;
 
 use crate::{Error, FitCondition, Numbers, StaticDescriptor, Values};
 
@@ -25,6 +26,13 @@ pub struct FitInput<'a> {
     /// Speed and force of the recording. Both are unknown if the model does not have the extension
     /// `htex.motion/1`, or if the host does not know them.
     pub condition: FitCondition,
+}
+
+impl FitInput<'_> {
+    /// Returns the RMS of the spectrum in the band, in the unit of `magnitude`.
+    pub fn level_rms(&self) -> f64 {
+        level_rms(self.magnitude)
+    }
 }
 
 /// Result of [`Model::fit`]: the parameters and the level.

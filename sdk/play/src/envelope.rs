@@ -16,6 +16,16 @@ pub const MOST_BANDS: usize = 32;
 
 /// What a voice played since the last call of [`Voice::envelope`](crate::Voice::envelope),
 /// including effects, gain and limiter.
+///
+/// ```no_run
+/// use htex::{Texture, VoiceOptions};
+/// let options = VoiceOptions::default().with_envelope_bands(1);
+/// let mut voice = Texture::open("sandpaper.htex")?.voice(&options)?;
+/// voice.render(&mut [0.0; 200])?;
+/// let envelope = voice.envelope(&mut [])?;
+/// println!("{} N at {} Hz", envelope.level_rms, envelope.centroid_hz);
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Envelope {

@@ -1,11 +1,16 @@
-//! Errors from opening and playing an asset.
+//! Errors from opening, playing and baking a texture.
 
-/// An error from opening or playing an asset.
+use htex_format::ReadError;
+use htex_host::HostError;
+
+/// An error from opening, playing or baking a texture. [`Self::kind`] says what went wrong without
+/// its details.
 ///
 /// ```
-/// use htex::{Asset, Error};
-/// let error = Asset::from_bytes(b"not an asset").unwrap_err();
-/// assert!(matches!(error, Error::Read(_)));
+/// use htex::Texture;
+/// use htex::play::ErrorKind;
+/// let error = Texture::from_bytes(b"not an asset").unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::InvalidAsset);
 /// ```
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, thiserror::Error)]
@@ -13,14 +18,14 @@
 pub enum Error {
     /// The file is not a usable asset.
     #[error(transparent)]
-    Read(#[from] htex_format::ReadError),
+    Read(#[from] ReadError),
     /// A library, or a texture in it, cannot be read.
     #[cfg(feature = "library")]
     #[error(transparent)]
     Library(#[from] htex_format::library::LibraryError),
     /// A model is missing, or returned an error.
     #[error(transparent)]
-    Model(#[from] htex_host::HostError),
+    Model(#[from] HostError),
     /// The asset has no representation for this model.
     #[error("the asset has no representation `{wanted}`; it has {there}")]
     NoRepresentation {
@@ -34,7 +39,7 @@ pub enum Error {
     )]
     NoEmbeddedModel { id: String },
     /// The only model that can play a representation is embedded in the asset, and embedded models
-    /// may not run. [`crate::Asset::with_embedded`] allows them.
+    /// may not run. [`crate::Texture::with_embedded`] allows them.
     #[error(
         "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
          install the model"
@@ -141,4 +146,135 @@ pub enum Error {
         /// Number of bands of the voice.
         there: usize,
     },
+    /// An axis of the grid of a baked block is invalid.
+    #[cfg(feature = "bake")]
+    #[error(
+        "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
+    )]
+    Axis { axis: &'static str, values: Vec<f64>, most: usize, least: f64, largest: f64 },
+    /// The conditions to bake are not all combinations of their speeds and forces.
+    #[cfg(feature = "bake")]
+    #[error(
+        "no condition at {speed_mm_s} mm/s and {force_n} N: the conditions are all combinations of their speeds and \
+         forces; add it, or give a grid"
+    )]
+    Incomplete {
+        /// The speed of the missing condition.
+        speed_mm_s: f64,
+        /// The force of the missing condition.
+        force_n: f64,
+    },
+    /// The rate of a baked block is out of range.
+    #[cfg(feature = "bake")]
+    #[error(
+        "{rate_hz} Hz: the rate is from {least_hz} to {most_hz} Hz for frequencies up to {top_hz} Hz"
+    )]
+    BakeRate {
+        rate_hz: f64,
+        least_hz: f64,
+        most_hz: f64,
+        /// The highest frequency of the texture.
+        top_hz: f64,
+    },
+    /// The model follows the motion itself, which a baked block cannot do.
+    #[cfg(feature = "bake")]
+    #[error(
+        "the model {model} follows the position of the finger itself; bake another representation"
+    )]
+    FollowsMotion { model: String },
+    /// A baked block has too many sinusoids.
+    #[cfg(feature = "bake")]
+    #[error(
+        "the conditions have {count} sinusoids together, and a block at most {most}; bake fewer conditions"
+    )]
+    Tones { count: usize, most: usize },
+    /// The representation has no energy at a condition to bake.
+    #[cfg(feature = "bake")]
+    #[error("the texture is silent at {speed_mm_s} mm/s and {force_n} N; bake other conditions")]
+    Silent { speed_mm_s: f64, force_n: f64 },
+    /// The level cannot be stored in a baked block.
+    #[cfg(feature = "bake")]
+    #[error(
+        "the level at {speed_mm_s} mm/s and {force_n} N is {level}; a block stores at most {most}"
+    )]
+    Level {
+        speed_mm_s: f64,
+        force_n: f64,
+        /// The level, in the asset's unit.
+        level: f64,
+        most: f64,
+    },
+    /// The player refuses the baked block.
+    #[cfg(feature = "bake")]
+    #[error("the player refuses the block: {0}")]
+    Refused(#[from] htex_player::OpenError),
+}
+
+/// What went wrong, without the details ([`Error::kind`]).
+///
+/// ```
+/// use htex::Texture;
+/// use htex::play::ErrorKind;
+/// let error = Texture::open("no such file.htex").unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Io);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A file cannot be read.
+    Io,
+    /// The file is not a valid asset.
+    InvalidAsset,
+    /// The library is invalid, or has no such texture.
+    Library,
+    /// The texture has no such representation.
+    NoRepresentation,
+    /// A model is missing, incompatible or not allowed to run.
+    NoModel,
+    /// A model failed.
+    Model,
+    /// A speed, force, position or place is out of range.
+    Motion,
+    /// An option or an argument is out of range.
+    Option,
+    /// The representation cannot be baked.
+    Bake,
+}
+
+impl Error {
+    /// Returns the kind of the error, for programs that react to it.
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Read(ReadError::Io { .. }) => ErrorKind::Io,
+            Self::Read(_) => ErrorKind::InvalidAsset,
+            #[cfg(feature = "library")]
+            Self::Library(_) => ErrorKind::Library,
+            Self::NoRepresentation { .. } => ErrorKind::NoRepresentation,
+            Self::Model(
+                HostError::Option { .. } | HostError::Synthesis { .. } | HostError::Rates { .. },
+            ) => ErrorKind::Option,
+            Self::Model(HostError::Call { .. } | HostError::Broken { .. }) => ErrorKind::Model,
+            Self::Model(_)
+            | Self::NoEmbeddedModel { .. }
+            | Self::EmbeddedOff { .. }
+            | Self::ModelVersion { .. }
+            | Self::ModelOlder { .. }
+            | Self::Fields { .. }
+            | Self::Triangles { .. } => ErrorKind::NoModel,
+            Self::Motion { .. } | Self::Position { .. } | Self::Place { .. } => ErrorKind::Motion,
+            Self::Ceiling { .. }
+            | Self::Rate { .. }
+            | Self::OutOfRange { .. }
+            | Self::Bands { .. } => ErrorKind::Option,
+            #[cfg(feature = "bake")]
+            Self::Axis { .. }
+            | Self::Incomplete { .. }
+            | Self::BakeRate { .. }
+            | Self::FollowsMotion { .. }
+            | Self::Tones { .. }
+            | Self::Silent { .. }
+            | Self::Level { .. }
+            | Self::Refused(_) => ErrorKind::Bake,
+        }
+    }
 }

@@ -36,7 +36,7 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
 /// effect with the same name for each.
 ///
 /// ```
-/// use htex::Effects;
+/// use htex::play::Effects;
 /// let as_recorded_but_silent_at_rest = Effects::NONE.with_contact(true);
 /// assert!(!as_recorded_but_silent_at_rest.frequency_scaling);
 /// ```
@@ -85,12 +85,12 @@ impl Default for Effects {
 /// The range of speeds, or of forces, at which a representation was fitted.
 ///
 /// ```
-/// use htex::Recorded;
-/// let speed = Recorded::Between { low: 40.0, high: 160.0 };
+/// use htex::play::Interval;
+/// let speed = Interval::Between { low: 40.0, high: 160.0 };
 /// assert_eq!(speed.to_string(), "40 to 160");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Recorded {
+pub enum Interval {
     /// The asset does not state the value, or states 0. The speed or force then has no effect.
     Unknown,
     /// One value, or several values between which the texture is interpolated.
@@ -102,7 +102,7 @@ pub enum Recorded {
     },
 }
 
-impl Recorded {
+impl Interval {
     fn new(values: impl Iterator<Item = Option<f64>>) -> Self {
         let (mut low, mut high) = (f64::INFINITY, 0.0f64);
         for value in values {
@@ -132,7 +132,7 @@ impl Recorded {
     }
 }
 
-impl fmt::Display for Recorded {
+impl fmt::Display for Interval {
     /// Such as `80` or `40 to 160`, without a unit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -145,22 +145,29 @@ impl fmt::Display for Recorded {
 
 /// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law that
 /// applies outside them.
+///
+/// ```no_run
+/// let texture = htex::Texture::open("sandpaper.htex")?;
+/// let conditions = texture.representation(None)?.conditions()?;
+/// println!("recorded at {} mm/s", conditions.range().speed);
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Explored {
+pub struct RecordedRange {
     /// Recorded speeds, mm/s.
-    pub speed: Recorded,
+    pub speed: Interval,
     /// Recorded normal forces, newtons.
-    pub force: Recorded,
+    pub force: Interval,
     /// How frequencies and level follow a motion outside these ranges.
     pub law: Law,
 }
 
-impl Explored {
+impl RecordedRange {
     /// Collects the conditions at which a representation was fitted.
     pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         let of = |value: fn(&Condition) -> Option<f64>| {
             let known = at.iter().filter_map(|at| conditions.get(at.condition));
-            Recorded::new(known.map(value))
+            Interval::new(known.map(value))
         };
         Self { speed: of(|c| c.speed_mm_s), force: of(|c| c.force_n), law }
     }
@@ -210,6 +217,15 @@ impl Explored {
 }
 
 /// The factors that scale a texture at a motion outside the recorded range. Inside, both are 1.
+///
+/// ```no_run
+/// use htex::{Motion, Texture};
+/// let texture = Texture::open("sandpaper.htex")?;
+/// let conditions = texture.representation(None)?.conditions()?;
+/// let scaling = conditions.scaling(Motion::new(160.0, 0.4), 4.0);
+/// println!("frequencies are {} times as high", scaling.frequency);
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scaling {
     /// Factor of all frequencies, 1/16 to 8.
@@ -232,7 +248,7 @@ impl Scaling {
     }
 }
 
-fn reach(recorded: Recorded, asked: f64, nearest: f64) -> Reach {
+fn reach(recorded: Interval, asked: f64, nearest: f64) -> Reach {
     match recorded.is_known() {
         false => Reach::Unknown,
         true if Condition::is_same(asked, nearest) => Reach::Inside,
@@ -241,6 +257,16 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64) -> Reach {
 }
 
 /// How a motion relates to the recorded conditions, and how a voice plays it.
+///
+/// ```no_run
+/// use htex::{Motion, Texture, VoiceOptions};
+/// let voice = Texture::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
+/// let coverage = voice.coverage(Motion::new(160.0, 0.4));
+/// if !coverage.is_inside() {
+///     println!("{coverage}");
+/// }
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
     /// Whether the voice is audible: the finger slides, or the effect `contact` is off.
@@ -258,7 +284,7 @@ pub struct Coverage {
 /// How a speed or force relates to the recorded values.
 ///
 /// ```
-/// use htex::Reach;
+/// use htex::play::Reach;
 /// let reach = Reach::Outside { asked: 160.0, recorded: 80.0 };
 /// assert_ne!(reach, Reach::Inside);
 /// ```

@@ -4,7 +4,7 @@ use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;
 
 use crate::Motion;
-use crate::exploration::{CONTACT_RAMP_S, Effects, Explored, HOLD_S, Scaling, slides};
+use crate::exploration::{CONTACT_RAMP_S, Effects, HOLD_S, RecordedRange, Scaling, slides};
 
 /// The state of a voice's effects.
 #[derive(Debug)]
@@ -32,14 +32,14 @@ impl Follow {
     /// delivers samples at `base` times the recorded speed. At `highest` times the recorded speed
     /// the highest frequency of the texture is half the sample rate.
     pub(crate) fn new(
-        explored: &Explored,
+        range: &RecordedRange,
         effects: Effects,
         base: f64,
         highest: f64,
         rate_hz: f64,
     ) -> Self {
         let ramp = (CONTACT_RAMP_S * rate_hz).ceil() as u32;
-        let scales = effects.frequency_scaling && explored.moves_frequencies();
+        let scales = effects.frequency_scaling && range.moves_frequencies();
         Self {
             effects,
             base,

@@ -2,9 +2,9 @@
 //! scenes build on this crate directly.
 //!
 //! ```no_run
-//! use htex::{Asset, Motion, VoiceOptions};
-//! let asset = Asset::open("sandpaper.htex")?;
-//! let mut voice = asset.voice(&VoiceOptions::default())?;
+//! use htex::{Motion, Texture, VoiceOptions};
+//! let texture = Texture::open("sandpaper.htex")?;
+//! let mut voice = texture.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
 //! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
 //! voice.render(&mut block)?; // in the asset's unit
@@ -19,53 +19,40 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
-mod asset;
 #[cfg(feature = "bake")]
 #[allow(missing_docs, reason = "fields and variants name what they hold")]
 // Blocks are measured against the asset when they are made, so their last digits may differ.
 #[allow(clippy::disallowed_methods)]
 pub mod bake;
-mod condition;
+mod conditions;
 pub mod envelope;
 mod error;
 pub mod exploration;
 mod follow;
-mod known;
 mod mesh;
 mod motion;
 mod options;
 mod output;
 mod parameter;
 mod playable;
+mod representation;
 mod source;
 mod spectrum;
+mod texture;
 mod travel;
 mod voice;
 
-pub use asset::Asset;
-pub use condition::default_condition;
+pub use conditions::Conditions;
 pub use envelope::Envelope;
-pub use error::Error;
-pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
-pub use htex_base::finding::{Finding, Severity};
-/// An asset's data: the argument of [`Asset::new`].
-pub use htex_format::Asset as AssetData;
-pub use htex_format::{
-    AtCondition, Condition, Contact, ErrorMeasure, Exponent, ExponentSource, Law, Limits, Manifest,
-    Quantity, ReadError, Representation, Rights, Triangle, TrianglesError, check_triangles,
-};
-pub use htex_format::{FieldOrder, SAME_CONDITION};
-pub use htex_host::{
-    Band, Descriptor, DescriptorError, HostError, LoadedModel, Note, OptionError, Origin,
-    RUNS_WASM, Registry, Search, Synthesis, WasmCache, WasmCompiler, WasmEngine, WasmLimits,
-    WasmTotal,
-};
-pub use known::Motions;
+pub use error::{Error, ErrorKind};
+pub use exploration::{Coverage, Effects, Interval, Reach, RecordedRange, Scaling};
+pub use htex_host::{Registry, Synthesis};
 pub use mesh::{Mesh, Weights};
 pub use motion::Motion;
 pub use options::VoiceOptions;
 pub use parameter::Parameter;
 pub use playable::{field_order, model_of};
+pub use representation::Representation;
 pub use source::SampleSource;
-pub use travel::Finger;
+pub use texture::Texture;
 pub use voice::Voice;

@@ -43,6 +43,12 @@ const NO_WEIGHT: f64 = 1e-12;
 
 /// The weights of up to three conditions. They sum to one and are ordered by ascending speed, then
 /// force.
+///
+/// ```
+/// use htex::play::Mesh;
+/// let weights = Mesh::new(&[[40.0, 0.4], [160.0, 0.4]]).weights(70.0, 0.4);
+/// assert_eq!(weights.iter().collect::<Vec<_>>(), [(0, 0.75), (1, 0.25)]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     pub(crate) condition: [usize; 3],
@@ -214,7 +220,8 @@ impl Mesh {
         let distance = |side: &Side| side.distance2(q);
         let nearest = self.sides.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let only = || (Weights::one(0), self.only);
-        nearest.map_or_else(only, |side| (side.weights(q), side.at(side.foot(q).clamp(0.0, 1.0))))
+        nearest
+            .map_or_else(only, |side| (side.weights(q), side.point(side.foot(q).clamp(0.0, 1.0))))
     }
 }
 
@@ -237,13 +244,13 @@ impl Side {
         ((q[0] - self.from[0]) * x + (q[1] - self.from[1]) * y) / (x * x + y * y)
     }
 
-    fn at(&self, place: f64) -> [f64; 2] {
+    fn point(&self, place: f64) -> [f64; 2] {
         [0, 1].map(|axis| self.from[axis] + place * self.along[axis])
     }
 
     /// Returns the squared distance of a point from the edge.
     fn distance2(&self, q: [f64; 2]) -> f64 {
-        let [x, y] = self.at(self.foot(q).clamp(0.0, 1.0));
+        let [x, y] = self.point(self.foot(q).clamp(0.0, 1.0));
         (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1])
     }
 

@@ -1,7 +1,7 @@
 //! The motion of a finger over a texture, at one moment.
 
 use crate::Error;
-use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S};
+use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S, slides};
 
 /// The motion of a finger over a texture, at one moment.
 ///
@@ -15,7 +15,8 @@ use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Motion {
-    /// Scanning speed, mm/s; finite and not negative.
+    /// Scanning speed, mm/s, finite. For a texture it is not negative; over a scene it is negative
+    /// on the back stroke.
     pub speed_mm_s: f64,
     /// Normal force, newtons; finite and not negative.
     pub force_n: f64,
@@ -26,6 +27,9 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// A finger without contact, at an unknown place.
+    pub const AWAY: Self = Self::new(0.0, 0.0);
+
     /// Makes a motion with a scanning speed, mm/s, and a normal force, newtons. Position and place
     /// are unknown.
     pub const fn new(speed_mm_s: f64, force_n: f64) -> Self {
@@ -38,10 +42,30 @@ impl Motion {
         Self { position_mm: Some(position_mm), ..self }
     }
 
-    /// Sets the place on the surface, mm.
+    /// Sets the place on the surface, x and y, mm; `None` if unknown.
     #[must_use]
-    pub const fn with_place_mm(self, x_mm: f64, y_mm: f64) -> Self {
-        Self { place_mm: Some([x_mm, y_mm]), ..self }
+    pub fn with_place_mm(self, place_mm: impl Into<Option<[f64; 2]>>) -> Self {
+        Self { place_mm: place_mm.into(), ..self }
+    }
+
+    /// Returns the part of the motion that a texture follows: the speed without its sign, and the
+    /// force.
+    #[must_use]
+    pub fn without_direction(self) -> Self {
+        Self::new(self.speed_mm_s.abs(), self.force_n)
+    }
+
+    /// Returns whether a finger can move like this, in either direction: all numbers are finite, the
+    /// force is not negative, the speed is at most 1000 mm/s and the force at most 20 N. Otherwise
+    /// the reading has failed.
+    pub fn is_reading(&self) -> bool {
+        let unsigned = Self { speed_mm_s: self.speed_mm_s.abs(), ..*self };
+        unsigned.checked().is_ok() && unsigned.is_plausible()
+    }
+
+    /// Returns whether the finger is in contact and moves at 0.5 mm/s or more, in either direction.
+    pub fn slides(&self) -> bool {
+        slides(self.speed_mm_s, self.force_n)
     }
 
     /// Returns the motion if its numbers are in range.

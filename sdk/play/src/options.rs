@@ -10,50 +10,28 @@ use crate::exploration::{CEILING, Effects};
 /// ```
 /// use htex::{Motion, VoiceOptions};
 /// let options = VoiceOptions::default()
-///     .with_model("bands")
 ///     .with_rate_hz(48_000.0)
-///     .with_motion(Motion::new(80.0, 0.4));
-/// assert_eq!(options.model, Some("bands"));
+///     .with_motion(Motion::new(80.0, 0.4))
+///     .with_seed(7);
 /// ```
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct VoiceOptions<'a> {
-    /// The representation to play: its model's id or short name. `None` selects the representation
-    /// with the smallest nine-band error.
-    pub model: Option<&'a str>,
-    /// Sample rate, hertz.
-    pub rate_hz: f64,
-    /// Seed of the noise; equal seeds give equal samples.
-    pub seed: u64,
-    /// The motion at the start; `None` for the default condition
-    /// ([`Asset::default_condition`](crate::Asset::default_condition)).
-    pub motion: Option<Motion>,
-    /// How the samples are made: by the model's voice, or by a method that computes less and keeps
-    /// the spectrum constant. [`Asset::source`](crate::Asset::source) is always streamed.
-    pub synthesis: Synthesis,
-    /// Effects of a motion. [`Asset::source`](crate::Asset::source) applies none.
-    pub effects: Effects,
-    /// Ceiling of the level at motions outside the recorded ones, as a multiple of the strongest
-    /// recorded level; above 0 and finite. It never reduces a level that the motion does not raise.
-    pub ceiling: f64,
-    /// Gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not
-    /// negative.
-    pub gain: f64,
-    /// Largest absolute value of a sample after the gain, in the asset's unit; above 0. The gain
-    /// drops at once when a sample would exceed the limit, and recovers within 50 ms (to 1/e).
-    /// `None` for no limit.
-    pub limit: Option<f64>,
-    /// Number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. 0 switches the
-    /// envelope off and costs no time.
-    pub envelope_bands: usize,
+#[derive(Debug, Clone, PartialEq)]
+pub struct VoiceOptions {
+    pub(crate) rate_hz: f64,
+    pub(crate) seed: u64,
+    pub(crate) motion: Option<Motion>,
+    pub(crate) synthesis: Synthesis,
+    pub(crate) effects: Effects,
+    pub(crate) ceiling: f64,
+    pub(crate) gain: f64,
+    pub(crate) limit: Option<f64>,
+    pub(crate) envelope_bands: usize,
 }
 
-impl Default for VoiceOptions<'_> {
+impl Default for VoiceOptions {
     /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, a ceiling
     /// of 4 times the strongest level, a gain of 1, no limit and no envelope.
     fn default() -> Self {
         Self {
-            model: None,
             rate_hz: 20_000.0,
             seed: 0,
             motion: None,
@@ -67,15 +45,9 @@ impl Default for VoiceOptions<'_> {
     }
 }
 
-impl<'a> VoiceOptions<'a> {
-    /// Sets the representation to play, by its model's id or short name.
-    #[must_use]
-    pub fn with_model(mut self, model: &'a str) -> Self {
-        self.model = Some(model);
-        self
-    }
-
-    /// Sets the sample rate, hertz.
+impl VoiceOptions {
+    /// Sets the sample rate, hertz: at least twice the highest frequency of the texture, at most 10
+    /// MHz.
     #[must_use]
     pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
         self.rate_hz = rate_hz;
@@ -89,50 +61,57 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the motion at the start, or `None` for the default condition.
+    /// Sets the motion at the start, or `None` for the default condition
+    /// ([`Representation::default_condition`](crate::Representation::default_condition)).
     #[must_use]
     pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
         self.motion = motion.into();
         self
     }
 
-    /// Sets how the samples are made.
+    /// Sets how the samples are made: by the model's voice, or by a method that computes less and
+    /// keeps the spectrum constant. A [`SampleSource`](crate::SampleSource) is always streamed.
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
         self.synthesis = synthesis;
         self
     }
 
-    /// Sets the ceiling of the level, as a multiple of the strongest recorded level; above 0 and
-    /// finite.
+    /// Sets the ceiling of the level at motions outside the recorded ones, as a multiple of the
+    /// strongest recorded level; above 0 and finite. It never reduces a level that the motion does
+    /// not raise.
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;
         self
     }
 
-    /// Sets the gain of the samples at the start; not negative.
+    /// Sets the gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not
+    /// negative.
     #[must_use]
     pub fn with_gain(mut self, gain: f64) -> Self {
         self.gain = gain;
         self
     }
 
-    /// Sets the largest absolute value of a sample, in the asset's unit; `None` for no limit.
+    /// Sets the largest absolute value of a sample after the gain, in the asset's unit; above 0. The
+    /// gain drops at once when a sample would exceed the limit, and recovers within 50 ms (to 1/e).
+    /// `None` for no limit.
     #[must_use]
     pub fn with_limit(mut self, limit: impl Into<Option<f64>>) -> Self {
         self.limit = limit.into();
         self
     }
 
-    /// Sets the number of bands of the envelope, 1 to 32, or 0 for none.
+    /// Sets the number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. 0 switches
+    /// the envelope off and costs no time.
     #[must_use]
     pub fn with_envelope_bands(mut self, bands: usize) -> Self {
         self.envelope_bands = bands;
         self
     }
 
-    /// Sets the effects of a motion.
+    /// Sets the effects of a motion. A [`SampleSource`](crate::SampleSource) applies none.
     #[must_use]
     pub fn with_effects(mut self, effects: Effects) -> Self {
         self.effects = effects;

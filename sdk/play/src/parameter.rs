@@ -5,7 +5,7 @@ use htex_host::{Field, Kind};
 /// The value of one field of a model.
 ///
 /// ```
-/// use htex::Parameter;
+/// use htex::play::Parameter;
 /// assert_ne!(Parameter::Number(1.0), Parameter::List(vec![1.0]));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub enum Parameter {
 }
 
 /// Splits a flat array into the fields of its model.
-pub(crate) fn named(fields: &[Field], flat: Vec<f64>) -> Vec<(String, Parameter)> {
+pub(crate) fn with_names(fields: &[Field], flat: Vec<f64>) -> Vec<(String, Parameter)> {
     let mut rest = flat.into_iter();
     let value = |field: &Field| {
         let first = rest.next().unwrap_or(f64::NAN);

@@ -12,9 +12,9 @@ use crate::Error;
 /// otherwise the first.
 ///
 /// ```no_run
-/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let asset = htex::Texture::open("sandpaper.htex")?;
 /// for representation in &asset.manifest().representations {
-///     let model = htex::model_of(asset.registry(), representation)?;
+///     let model = htex::play::model_of(asset.registry(), representation)?;
 ///     println!("{} is played by version {}", representation.model, model.descriptor().version);
 /// }
 /// # Ok::<(), htex::Error>(())
@@ -57,10 +57,10 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 /// Returns the order in which to pass a representation's fields to its model.
 ///
 /// ```no_run
-/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let asset = htex::Texture::open("sandpaper.htex")?;
 /// let representation = &asset.manifest().representations[0];
-/// let model = htex::model_of(asset.registry(), representation)?;
-/// let order = htex::field_order(representation, model)?;
+/// let model = htex::play::model_of(asset.registry(), representation)?;
+/// let order = htex::play::field_order(representation, model)?;
 /// # Ok::<(), htex::Error>(())
 /// ```
 ///

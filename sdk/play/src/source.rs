@@ -2,10 +2,10 @@
 
 use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
-use crate::known::{Known, Located, Motions};
+use crate::conditions::{Conditions, Placement, RecordedConditions};
 use crate::mesh::Weights;
 use crate::spectrum::scaled_magnitude;
-use crate::travel::{Course, Finger};
+use crate::travel::Course;
 use crate::{Error, Motion};
 
 /// Largest number of conditions that are interpolated at once.
@@ -17,15 +17,16 @@ const MIXED: usize = 3;
 /// of a motion ([`crate::Effects`]).
 ///
 /// ```no_run
-/// use htex::{Asset, VoiceOptions};
-/// let mut source = Asset::open("sandpaper.htex")?.source(&VoiceOptions::default())?;
+/// use htex::{Texture, VoiceOptions};
+/// let texture = Texture::open("sandpaper.htex")?;
+/// let mut source = texture.representation(None)?.source(&VoiceOptions::default())?;
 /// let mut block = vec![0.0f32; (source.rate_hz() / 100.0) as usize];
 /// source.render(&mut block)?; // 10 ms of unit RMS
 /// # Ok::<(), htex::Error>(())
 /// ```
 #[derive(Debug)]
 pub struct SampleSource {
-    known: Known,
+    recorded: RecordedConditions,
     model: LoadedModel,
     voice: ModelVoice,
     /// Buffers for the parameter sets to interpolate, and for the result.
@@ -47,7 +48,7 @@ pub struct SampleSource {
 
 impl SampleSource {
     pub(crate) fn new(
-        known: Known,
+        recorded: RecordedConditions,
         model: LoadedModel,
         band: Band,
         wanted_hz: f64,
@@ -55,20 +56,20 @@ impl SampleSource {
         motion: Motion,
     ) -> Result<Self, Error> {
         let motion = motion.checked()?;
-        let located = known.motions.locate(motion);
-        let parameters = known.at(&model, &located)?;
+        let placement = recorded.conditions.locate(motion);
+        let parameters = recorded.mix(&model, &placement)?;
         let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
         Ok(Self {
             voice: model.voice(&parameters, band, rate_hz, seed)?,
             // Reserved here, because `set_motion` must not allocate.
-            sets: Vec::with_capacity(MIXED * known.longest()),
+            sets: Vec::with_capacity(MIXED * recorded.longest()),
             mixed: vec![0.0; model.most_parameters()],
-            known,
+            recorded,
             rate_hz,
             own_rate: model.has_own_rate(&parameters, band, rate_hz)?,
             band,
             motion,
-            level_rms: located.level_rms,
+            level_rms: placement.level_rms,
             follows: model.follows_motion(),
             course: Course::default(),
             model,
@@ -105,7 +106,7 @@ impl SampleSource {
     }
 
     /// Returns whether the model follows the motion itself. The renderer then calls
-    /// [`Self::set_finger`] and scales neither frequencies nor level.
+    /// [`Self::follow`] and scales neither frequencies nor level.
     pub fn follows_motion(&self) -> bool {
         self.follows
     }
@@ -124,8 +125,8 @@ impl SampleSource {
         ratio: f64,
         level_rms: f64,
     ) -> Result<Vec<f64>, Error> {
-        let (model, located) = (&self.model, self.known.motions.locate(motion));
-        let parameters = self.known.at(model, &located)?;
+        let (model, placement) = (&self.model, self.recorded.conditions.locate(motion));
+        let parameters = self.recorded.mix(model, &placement)?;
         scaled_magnitude(model, &parameters, self.band, frequency_hz, ratio, level_rms)
     }
 
@@ -138,25 +139,25 @@ impl SampleSource {
     /// other models. `at_s` is the time of the motion, in seconds after this source's first sample.
     /// It may precede the samples rendered so far, because a resampler reads ahead; the position is
     /// then advanced by the time rendered ahead. The speed is negative while the position
-    /// decreases. Numbers are clamped to the ranges of the model ABI. A known place is passed on
-    /// unchanged; without one the model receives a path along x. Does not allocate, lock or do I/O
+    /// decreases; an unknown position counts as 0. Numbers are clamped to the ranges of the model
+    /// ABI. A known place is passed on unchanged; without one the model receives a path along x. Does not allocate, lock or do I/O
     /// if the model keeps to the ABI.
     ///
     /// # Errors
     /// When a number is not finite, or the model refuses the motion; the source then continues
     /// unchanged.
-    pub fn set_finger(&mut self, finger: Finger, at_s: f64) -> Result<(), Error> {
+    pub fn follow(&mut self, motion: Motion, at_s: f64) -> Result<(), Error> {
         if !self.follows {
             return Ok(());
         }
         let ahead_s = self.rendered_s() - at_s;
-        let position_mm = finger.position_mm + ahead_s * finger.speed_mm_s;
-        let way_mm = ahead_s * finger.speed_mm_s.abs();
-        let place_mm = finger.place_mm.map(|place| self.course.on(place, way_mm));
+        let position_mm = motion.position_mm.unwrap_or_default() + ahead_s * motion.speed_mm_s;
+        let way_mm = ahead_s * motion.speed_mm_s.abs();
+        let place_mm = motion.place_mm.map(|place| self.course.extrapolate(place, way_mm));
         let [x_mm, y_mm] = place_mm.unwrap_or([position_mm, 0.0]);
         let motion = ModelMotion {
-            speed_mm_s: finger.speed_mm_s,
-            force_n: finger.force_n,
+            speed_mm_s: motion.speed_mm_s,
+            force_n: motion.force_n,
             position_mm,
             x_mm,
             y_mm,
@@ -164,9 +165,9 @@ impl SampleSource {
         Ok(self.voice.set_motion(motion.clamped())?)
     }
 
-    /// Returns the motions at which the representation was recorded.
-    pub fn motions(&self) -> &Motions {
-        &self.known.motions
+    /// Returns the conditions at which the representation was recorded.
+    pub fn conditions(&self) -> &Conditions {
+        &self.recorded.conditions
     }
 
     /// Changes gradually to the spectrum of the recorded motion nearest to this one, and returns
@@ -179,26 +180,26 @@ impl SampleSource {
     /// then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<f64, Error> {
         let motion = motion.checked()?;
-        if self.motion.has_conditions_of(&motion) || self.known.parameters.len() < 2 {
+        if self.motion.has_conditions_of(&motion) || self.recorded.parameters.len() < 2 {
             return Ok(self.level_rms);
         }
-        let located = self.known.motions.locate(motion);
-        self.retune(motion, &located)
+        let placement = self.recorded.conditions.locate(motion);
+        self.retune(motion, &placement)
     }
 
-    /// Changes to the spectrum of a located motion, and returns its level.
-    pub(crate) fn retune(&mut self, motion: Motion, located: &Located) -> Result<f64, Error> {
-        if self.known.parameters.len() > 1 {
-            self.mix(&located.weights)?;
+    /// Changes to the spectrum of a motion at its placement, and returns its level.
+    pub(crate) fn retune(&mut self, motion: Motion, placement: &Placement) -> Result<f64, Error> {
+        if self.recorded.parameters.len() > 1 {
+            self.mix(&placement.weights)?;
             self.motion = motion;
-            self.level_rms = located.level_rms;
+            self.level_rms = placement.level_rms;
         }
         Ok(self.level_rms)
     }
 
     /// Changes to the spectrum of a weighted mix of conditions.
     fn mix(&mut self, weights: &Weights) -> Result<(), Error> {
-        let known = &self.known.parameters;
+        let known = &self.recorded.parameters;
         if weights.count == 1 {
             return Ok(self.voice.retune(&known[weights.condition[0]])?);
         }

@@ -1,26 +1,11 @@
 //! The position of a finger on its path, given by the host or integrated from the speed.
 //!
 //! Position and place belong to the next sample that the *voice* renders
-//! ([`crate::SampleSource::set_finger`]), not to the next sample of the source: a resampler reads
+//! ([`crate::SampleSource::follow`]), not to the next sample of the source: a resampler reads
 //! ahead by a part of a block that differs from call to call, and that jitter would be audible. For
 //! a model that does not follow the motion itself, setting a motion costs one test of a `bool`.
 
 use crate::Motion;
-
-/// The motion as a model receives it that follows the motion itself: with a signed speed and a
-/// position along the path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Finger {
-    /// Speed along the path, mm/s; negative while the position decreases.
-    pub speed_mm_s: f64,
-    /// Normal force, newtons, not negative.
-    pub force_n: f64,
-    /// Position along the path, mm, of either sign.
-    pub position_mm: f64,
-    /// Place on the surface, x and y, mm. If it is unknown, the model receives the position as x
-    /// and 0 as y.
-    pub place_mm: Option<[f64; 2]>,
-}
 
 /// The direction in which a finger moves over a surface.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +18,7 @@ pub(crate) struct Course {
 impl Course {
     /// Returns where the finger is `way_mm` after a place, in the direction in which the places
     /// moved.
-    pub(crate) fn on(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
+    pub(crate) fn extrapolate(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
         if let Some(before) = self.place_mm {
             let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);
             let length = (moved[0] * moved[0] + moved[1] * moved[1]).sqrt();
@@ -52,8 +37,9 @@ pub(crate) struct Travel {
     rate_hz: f64,
     /// Frames since the last motion.
     frames: u64,
-    /// The last motion.
-    motion: Finger,
+    /// The last motion: its speed is negative while the finger moves backward, and its position is
+    /// known.
+    motion: Motion,
     /// Whether a motion was set.
     set: bool,
     /// The last given position, mm.
@@ -66,7 +52,7 @@ impl Travel {
         Self {
             rate_hz,
             frames: 0,
-            motion: Finger { speed_mm_s, force_n: 0.0, position_mm: 0.0, place_mm: None },
+            motion: Motion::new(speed_mm_s, 0.0).with_position_mm(0.0),
             set: false,
             given_mm: None,
         }
@@ -82,8 +68,7 @@ impl Travel {
     /// The finger moves backward if the position is less than the last one given, and forward if it
     /// is greater. If the position is equal or unknown, the direction stays the same. A place
     /// changes neither position nor direction.
-    /// neither.
-    pub(crate) fn set(&mut self, motion: Motion) -> Option<Finger> {
+    pub(crate) fn set(&mut self, motion: Motion) -> Option<Motion> {
         let Motion { speed_mm_s, force_n, position_mm, place_mm } = motion;
         let before = self.motion;
         let same = speed_mm_s == before.speed_mm_s.abs() && force_n == before.force_n;
@@ -96,11 +81,11 @@ impl Travel {
             // The sign of zero counts: a resting finger that moved backward has a speed of -0.
             _ => before.speed_mm_s.is_sign_negative(),
         };
-        self.motion = Finger {
+        let reached_mm = before.position_mm.unwrap_or_default() + on_mm;
+        self.motion = Motion {
             speed_mm_s: if back { -speed_mm_s } else { speed_mm_s },
-            force_n,
-            position_mm: position_mm.unwrap_or(before.position_mm + on_mm),
-            place_mm,
+            position_mm: Some(position_mm.unwrap_or(reached_mm)),
+            ..motion
         };
         self.given_mm = position_mm.or(self.given_mm);
         (self.frames, self.set) = (0, true);
@@ -109,6 +94,7 @@ impl Travel {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed test may panic")]
 mod tests {
     use super::*;
 
@@ -116,7 +102,7 @@ mod tests {
     fn set(travel: &mut Travel, at: (f64, Option<f64>), frames: usize) -> Option<(f64, f64)> {
         let motion = travel.set(Motion { position_mm: at.1, ..Motion::new(at.0, 0.4) });
         travel.advance(frames);
-        motion.map(|m| (m.speed_mm_s, m.position_mm))
+        motion.map(|m| (m.speed_mm_s, m.position_mm.unwrap()))
     }
 
     #[test]

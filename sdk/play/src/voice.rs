@@ -24,13 +24,13 @@ const ADDED: usize = 256;
 const RAMP_S: f64 = 0.010;
 
 /// A voice: an endless stream of samples in the asset's unit
-/// ([`Asset::quantity`](crate::Asset::quantity)). It follows the finger's motion with the same
+/// ([`Texture::quantity`](crate::Texture::quantity)). It follows the finger's motion with the same
 /// [`Effects`](crate::Effects) as a scene.
 ///
 /// ```no_run
-/// use htex::{Asset, Motion, VoiceOptions};
+/// use htex::{Motion, Texture, VoiceOptions};
 /// // Recorded at 80 mm/s and 0.4 N.
-/// let mut voice = Asset::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
+/// let mut voice = Texture::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
 /// voice.set_motion(Motion::new(160.0, 0.8))?; // an octave higher, twice as strong
 /// voice.set_motion(Motion::new(0.0, 0.8))?; // silent
 /// println!("{}", voice.coverage(Motion::new(160.0, 0.8)));
@@ -67,7 +67,7 @@ impl Voice {
     pub(crate) fn new(
         source: SampleSource,
         still: Option<StillSound>,
-        options: &VoiceOptions<'_>,
+        options: &VoiceOptions,
         base: f64,
     ) -> Result<Self, Error> {
         let rate_hz = options.rate_hz;
@@ -82,10 +82,10 @@ impl Voice {
             Some(_) => Effects::NONE.with_contact(options.effects.contact),
         };
         let highest = 0.5 * rate_hz / source.top_hz();
-        let explored = source.motions().explored();
-        let mut follow = Follow::new(explored, effects, base, highest, rate_hz);
+        let range = source.conditions().range();
+        let mut follow = Follow::new(range, effects, base, highest, rate_hz);
         if let Some(motion) = options.motion {
-            let scaling = source.motions().scaling(motion, options.ceiling);
+            let scaling = source.conditions().scaling(motion, options.ceiling);
             follow.start(motion, scaling);
         }
         let level_rms = source.level_rms() * follow.gain();
@@ -120,7 +120,7 @@ impl Voice {
     /// Outside the recorded conditions, frequencies and level follow the asset's law
     /// ([`Law`](crate::Law)), starting at the nearest recorded motion. Frequencies are at least
     /// 1/16 and at most 8 times the recorded ones, and never exceed half the sample rate. The level
-    /// is at most [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger
+    /// is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded one. A finger
     /// that does not slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these effects
     /// can be switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a
     /// motion.
@@ -148,9 +148,9 @@ impl Voice {
         let is_new = !self.asked.is_some_and(|asked| asked.has_conditions_of(&motion));
         if felt && is_new {
             let source = self.stream.source_mut();
-            let located = source.motions().locate(motion);
-            let scaling = source.motions().bounded(&located, self.ceiling);
-            let level_rms = source.retune(motion, &located)?;
+            let placement = source.conditions().locate(motion);
+            let scaling = source.conditions().bounded(&placement, self.ceiling);
+            let level_rms = source.retune(motion, &placement)?;
             self.follow.scale(motion, scaling);
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
         }
@@ -170,17 +170,17 @@ impl Voice {
         let Some(travel) = &mut self.travel else {
             return Ok(());
         };
-        let Some(finger) = travel.set(motion) else {
+        let Some(motion) = travel.set(motion) else {
             return Ok(());
         };
-        self.stream.source_mut().set_finger(finger, self.played as f64 / self.rate_hz)
+        self.stream.source_mut().follow(motion, self.played as f64 / self.rate_hz)
     }
 
     /// Returns how this voice plays a motion, and whether the motion lies within the recorded
     /// conditions. Does not allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
-        let mut coverage = self.stream.source().motions().coverage(motion, effects);
+        let mut coverage = self.stream.source().conditions().coverage(motion, effects);
         if self.follows_motion() {
             for reach in [&mut coverage.speed, &mut coverage.force] {
                 let beyond = matches!(reach, Reach::Outside { .. } | Reach::Unknown);
@@ -199,7 +199,7 @@ impl Voice {
 
     /// Returns the magnitudes that a long recording of this voice would show at the current motion,
     /// at frequencies in hertz and in the asset's unit. They include its effects, its
-    /// [`ceiling`](VoiceOptions::ceiling) and its gain, and are 0 where the voice is silent. A
+    /// [`ceiling`](VoiceOptions::with_ceiling) and its gain, and are 0 where the voice is silent. A
     /// gradual change counts as finished, and the limiter is not included.
     ///
     /// # Errors
@@ -266,6 +266,36 @@ impl Voice {
         result
     }
 
+    /// Returns the sample rate, hertz.
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Returns an endless iterator over the next samples, in the asset's unit. It renders one sample
+    /// at a time and none ahead, so that the voice continues after the last sample that was taken;
+    /// [`Self::render`] is faster. Does not allocate, lock or do I/O. If the model fails, the
+    /// iterator returns the error and then ends.
+    ///
+    /// ```no_run
+    /// use htex::{Texture, VoiceOptions};
+    /// let mut voice = Texture::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
+    /// let second = voice.rate_hz() as usize;
+    /// let samples = voice.samples().take(second).collect::<Result<Vec<f32>, _>>()?;
+    /// # Ok::<(), htex::Error>(())
+    /// ```
+    pub fn samples(&mut self) -> impl Iterator<Item = Result<f32, Error>> {
+        let mut failed = false;
+        std::iter::from_fn(move || {
+            if failed {
+                return None;
+            }
+            let mut sample = [0.0];
+            let result = self.render(&mut sample).map(|()| sample[0]);
+            failed = result.is_err();
+            Some(result)
+        })
+    }
+
     /// Multiplies the next samples by `gain` and adds them to `out`, to mix several voices. Does
     /// not allocate, lock or do I/O.
     ///
@@ -294,15 +324,15 @@ impl Voice {
 
     /// Returns the envelope of what was rendered since the last call, or since the start: the
     /// level, the mean frequency, and the mean square in each of the voice's bands
-    /// ([`VoiceOptions::envelope_bands`]). The mean squares are in the squared unit and are written
+    /// ([`VoiceOptions::with_envelope_bands`]). The mean squares are in the squared unit and are written
     /// to `bands`, which may be empty. All effects, the gain and the limiter are included. The
     /// level is exact. Frequency and bands lag by some 20 ms, because they are computed from
     /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
     ///
     /// ```no_run
-    /// use htex::{Asset, VoiceOptions};
+    /// use htex::{Texture, VoiceOptions};
     /// let options = VoiceOptions::default().with_envelope_bands(4);
-    /// let mut voice = Asset::open("sandpaper.htex")?.voice(&options)?;
+    /// let mut voice = Texture::open("sandpaper.htex")?.voice(&options)?;
     /// let (mut block, mut bands) = ([0.0; 200], [0.0; 4]);
     /// voice.render(&mut block)?; // 10 ms
     /// let envelope = voice.envelope(&mut bands)?;

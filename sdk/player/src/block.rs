@@ -367,7 +367,7 @@ impl<'a> Block<'a> {
 
     /// Returns the first condition of the grid.
     pub(crate) fn first(&self) -> (f32, f32) {
-        (self.speeds.at(0), self.forces.at(0))
+        (self.speeds.get(0), self.forces.get(0))
     }
 
     /// Returns the number of filters that are mixed.
@@ -380,12 +380,12 @@ impl<'a> Block<'a> {
 
     /// Returns the weight of a filter in a condition, an integer.
     pub(crate) fn filter_weight(&self, condition: usize, filter: usize) -> f32 {
-        self.integers.at(condition * self.filters() + filter)
+        self.integers.get(condition * self.filters() + filter)
     }
 
     /// Returns the factor from products of the integer weights and coefficients to coefficients.
     pub(crate) fn filter_scale(&self, filter: usize) -> f32 {
-        self.numbers.at(filter)
+        self.numbers.get(filter)
     }
 
     /// Returns the centre of a filter, followed by one side, outwards, as integers.
@@ -411,7 +411,7 @@ impl<'a> Block<'a> {
         let weights = Weights::new(self.speeds, self.forces, nearest.0, nearest.1);
         let mut level = 0.0;
         for (condition, weight) in weights.iter() {
-            level += weight * self.levels.at(condition);
+            level += weight * self.levels.get(condition);
         }
         let factors =
             if motion == nearest { Factors::NONE } else { self.law.factors(motion, nearest) };
@@ -438,7 +438,7 @@ impl<'a> Block<'a> {
 /// Returns the value within the range of an axis that is nearest to a number.
 fn nearest_on(axis: Words<'_>, number: f32) -> f32 {
     // Not `clamp`, which can panic.
-    number.max(axis.at(0)).min(axis.last())
+    number.max(axis.get(0)).min(axis.last())
 }
 
 /// Returns the 16-bit number at a position in the header.

@@ -73,7 +73,7 @@ impl Noise {
                 core::array::from_fn(|i| (first + i).min(block.filters() - 1));
             let filters = filters.map(|filter| block.filter(filter));
             for (weight, filter) in weights.iter().zip(&filters) {
-                centre += weight * filter.at(0);
+                centre += weight * filter.get(0);
             }
             let [w, x, y, z] = weights;
             let [a, b, c, d] = filters.map(|filter| filter.part(1, half).iter());

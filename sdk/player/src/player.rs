@@ -196,7 +196,7 @@ impl<'a> Player<'a> {
             self.memory.upsampler.push(input, row.len());
         }
         self.memory.phase = if phase + 1 < self.block.up() { phase + 1 } else { 0 };
-        self.memory.upsampler.at(row)
+        self.memory.upsampler.sample(row)
     }
 
     /// Counts a sample of a motion that is held. After the last one the player becomes silent.

@@ -59,8 +59,8 @@ impl Tones {
             let (mut frequency, mut amplitude) = (0.0, 0.0);
             for (condition, weight) in target.weights.iter() {
                 let values = block.tones(condition);
-                frequency += weight * values.at(2 * i);
-                amplitude += weight * values.at(2 * i + 1);
+                frequency += weight * values.get(2 * i);
+                amplitude += weight * values.get(2 * i + 1);
             }
             power += 0.5 * amplitude * amplitude;
             // A silent sinusoid must not limit the frequencies of the others.

@@ -28,7 +28,7 @@ impl Upsampler {
     }
 
     /// Returns the sample of the phase that has these coefficients.
-    pub(crate) fn at(&self, coefficients: Words<'_>) -> f32 {
+    pub(crate) fn sample(&self, coefficients: Words<'_>) -> f32 {
         let inputs = self
             .history
             .get(self.next..self.next + coefficients.len())

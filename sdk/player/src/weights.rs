@@ -44,6 +44,6 @@ fn place(axis: Words<'_>, value: f32) -> (usize, f32) {
     if above >= axis.len() {
         return (below, 0.0);
     }
-    let (low, high) = (axis.at(below), axis.at(above));
+    let (low, high) = (axis.get(below), axis.get(above));
     (below, (value - low) / (high - low))
 }

@@ -14,13 +14,13 @@ impl<'a> Words<'a> {
     }
 
     /// Returns the number at an index, or zero beyond the end.
-    pub(crate) fn at(self, index: usize) -> f32 {
+    pub(crate) fn get(self, index: usize) -> f32 {
         self.0.get(index).map_or(0.0, |word| f32::from_le_bytes(*word))
     }
 
     /// Returns the last number, or zero if there is none.
     pub(crate) fn last(self) -> f32 {
-        self.at(self.len().saturating_sub(1))
+        self.get(self.len().saturating_sub(1))
     }
 
     /// Returns `count` numbers from an index on, or none if they extend beyond the end.
@@ -50,7 +50,7 @@ impl<'a> Integers<'a> {
     }
 
     /// Returns the number at an index, or zero beyond the end.
-    pub(crate) fn at(self, index: usize) -> f32 {
+    pub(crate) fn get(self, index: usize) -> f32 {
         self.0.get(index).map_or(0.0, |integer| f32::from(i16::from_le_bytes(*integer)))
     }
 

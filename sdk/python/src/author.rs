@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use htex::Band;
 use htex::format::{By, Keyed, Measure};
-use htex::host::{Origin, Registry};
+use htex::model::Band;
+use htex::model::{Origin, Registry};
 use htex_author::settings::{FitSettings, Metadata, SettingsError};
 use htex_author::{
     AssetRequest, Exploration, FittedAsset, SpectrumRef, TextureSpectrum, fit_asset,
@@ -110,7 +110,7 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     raise_of_python(&registry, &fitted.skipped)?;
     metadata.apply(&mut fitted.asset.manifest);
     let rest = rest(&fitted);
-    let texture = Texture::of(&fitted.asset, fit.plugins, fit.installed)?;
+    let texture = Texture::from_asset(&fitted.asset, fit.plugins, fit.installed)?;
     Ok((texture, rest))
 }
 

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use htex::Quantity;
+use htex::format::Quantity;
 use htex_author::by_hand::{self, ByHand, ByHandError, MixedAsset};
 use htex_author::settings::Metadata;
 use htex_author::{EditError, edit as edited};
@@ -22,7 +22,7 @@ use crate::texture::Texture;
 /// Arguments for making a texture from parameters: the keywords of the package's function.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Made {
+pub(crate) struct ByHandTexture {
     model: String,
     /// Values by name of the parameter.
     parameters: BTreeMap<String, Vec<f64>>,
@@ -37,7 +37,7 @@ pub(crate) struct Made {
 
 /// Makes a texture from parameters.
 #[pyfunction]
-pub(crate) fn make(py: Python<'_>, made: Made) -> PyResult<Texture> {
+pub(crate) fn make(py: Python<'_>, made: ByHandTexture) -> PyResult<Texture> {
     py.detach(|| made.texture())
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn edit(
     })
 }
 
-impl Made {
+impl ByHandTexture {
     fn texture(self) -> PyResult<Texture> {
         let metadata = checked(&self.metadata)?;
         let registry = registry(&self.plugins, self.installed)?;
@@ -104,7 +104,7 @@ impl Made {
         texture.values = self.parameters;
         let mut asset = by_hand::make(model, &texture).map_err(raised)?;
         metadata.apply(&mut asset.manifest);
-        Texture::of(&asset, self.plugins, self.installed)
+        Texture::from_asset(&asset, self.plugins, self.installed)
     }
 }
 

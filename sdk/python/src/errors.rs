@@ -4,11 +4,12 @@ use std::io;
 use std::path::Path;
 
 use htex::format::{ReadError, WriteError};
-use htex::host::HostError;
+use htex::model::HostError;
+use htex::play::ErrorKind;
 use htex_author::AuthorError;
 use htex_author::recording::{ReadError as RecordingReadError, ReadProblem};
 use htex_author::tradeoff::TradeoffError;
-use htex_scene::{LoadError, SceneError as PlayError};
+use htex_scene::SceneError as PlayError;
 use pyo3::exceptions::PyOSError;
 use pyo3::import_exception;
 use pyo3::prelude::*;
@@ -93,15 +94,12 @@ impl IntoPyErr for htex::Error {
             Self::Read(error) => error.into_py_err(),
             Self::Model(error) => error.into_py_err(),
             Self::Library(error) => error.into_py_err(),
-            Self::Motion { .. } | Self::Position { .. } | Self::Place { .. } => {
-                MotionError::new_err(self.to_string())
-            }
-            Self::Rate { .. } | Self::OutOfRange { .. } | Self::Bands { .. } => {
-                option(self.to_string())
-            }
             Self::Fields { .. } => AssetError::new_err(self.to_string()),
-            Self::Ceiling { .. } => option(self.to_string()),
-            other => ModelError::new_err(other.to_string()),
+            error => match error.kind() {
+                ErrorKind::Motion => MotionError::new_err(error.to_string()),
+                ErrorKind::Option => option(error.to_string()),
+                _ => ModelError::new_err(error.to_string()),
+            },
         }
     }
 }
@@ -130,18 +128,10 @@ impl IntoPyErr for AuthorError {
     }
 }
 
-impl IntoPyErr for LoadError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Io { path, error } => of_file(&path, &error),
-            other => SceneError::new_err(other.to_string()),
-        }
-    }
-}
-
 impl IntoPyErr for PlayError {
     fn into_py_err(self) -> PyErr {
         match self {
+            Self::Io { path, error } => of_file(&path, &error),
             Self::Motion { .. } => MotionError::new_err(self.to_string()),
             other => SceneError::new_err(other.to_string()),
         }

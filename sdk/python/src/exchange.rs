@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::Quantity;
+use htex::format::Quantity;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::read_regular;
 use htex_exchange::{
@@ -154,8 +154,8 @@ impl Exporting {
         let motion = match (self.speed_mm_s, self.force_n) {
             (None, None) => None,
             (speed, force) => {
-                let motion = texture.asset().motion(self.model.as_deref(), speed, force);
-                Some(motion.map_err(raised)?)
+                let representation = texture.asset().representation(self.model.as_deref());
+                Some(representation.map_err(raised)?.motion(speed, force))
             }
         };
         match (&self.stroke, motion) {

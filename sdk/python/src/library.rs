@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::AssetData;
+use htex::format::Asset;
+use htex::library::storage::{Location, Storage};
 use htex::library::{
     Entry, Interval, LibraryError, LibrarySource as Bytes, Located, Query, Writer,
 };
-use htex::storage::{Location, Storage};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -18,7 +18,7 @@ use crate::texture::{Source, Texture};
 /// A library: one file with thousands of textures. Each texture is read when it is requested.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Library {
-    library: htex::Library<Origin>,
+    library: htex::library::Library<Origin>,
     plugins: Vec<PathBuf>,
     embedded: bool,
     installed: bool,
@@ -71,7 +71,7 @@ impl Library {
         embedded: bool,
         installed: bool,
     ) -> PyResult<Self> {
-        let source = Source::of(source)?;
+        let source = Source::from_python(source)?;
         let opened = py.detach(|| {
             let origin = match source {
                 Source::File(path) => {
@@ -80,7 +80,7 @@ impl Library {
                 }
                 Source::Bytes(bytes) => Origin::Memory(bytes),
             };
-            htex::Library::open_source(origin)
+            htex::library::Library::open_source(origin)
         });
         Ok(Self { library: opened.map_err(raised)?, plugins, embedded, installed })
     }
@@ -139,7 +139,7 @@ impl Library {
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Texture> {
         py.detach(|| {
             let bytes = self.library.get(name).map_err(raised)?;
-            let data = AssetData::from_bytes(&bytes).map_err(raised)?;
+            let data = Asset::from_bytes(&bytes).map_err(raised)?;
             Texture::new(data, self.plugins.clone(), self.embedded, self.installed)
         })
     }
@@ -228,7 +228,7 @@ fn texture_bytes(py: Python<'_>, texture: &Bound<'_, PyAny>) -> PyResult<Vec<u8>
     if let Ok(texture) = texture.cast::<Texture>() {
         return Ok(texture.get().to_bytes(py)?.as_bytes().to_vec());
     }
-    match Source::of(texture)? {
+    match Source::from_python(texture)? {
         Source::Bytes(bytes) => Ok(bytes),
         Source::File(path) => read(&path),
     }

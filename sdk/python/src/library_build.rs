@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use htex::host::WasmLimits;
+use htex::model::WasmLimits;
 use htex_build::{BuildError, BuildOptions, Destination, Job, Workbench};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use htex::host::{Registry, Search};
+use htex::model::{Registry, Search};
 use pyo3::prelude::*;
 
 use crate::errors::raised;

@@ -60,7 +60,7 @@ pub(crate) fn located(
         None => motion,
     };
     match (x_mm, y_mm) {
-        (Some(x), Some(y)) => Ok(motion.with_place_mm(x, y)),
+        (Some(x), Some(y)) => Ok(motion.with_place_mm([x, y])),
         (None, None) => Ok(motion),
         _ => Err(option("a place is two numbers: give x_mm and y_mm, or neither")),
     }

@@ -44,8 +44,8 @@ pub(crate) fn data<'py>(
 /// Makes a `Spectrum`.
 pub(crate) fn spectrum(
     py: Python<'_>,
-    quantity: htex::Quantity,
-    band: htex::Band,
+    quantity: htex::format::Quantity,
+    band: htex::model::Band,
     frequency_hz: Vec<f64>,
     magnitude: Vec<f64>,
 ) -> PyResult<Bound<'_, PyAny>> {

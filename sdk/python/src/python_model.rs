@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use htex::host::{Descriptor, Registry, RuntimeModel, RuntimeVoice, read_descriptor};
+use htex::model::{Descriptor, Registry, RuntimeModel, RuntimeVoice, read_descriptor};
 use htex_dsp::Band;
 use htex_dsp::grid::level_rms;
 use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};

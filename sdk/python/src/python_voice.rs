@@ -1,6 +1,6 @@
 //! Voices written in Python: objects with a method `render`.
 
-use htex::host::RuntimeVoice;
+use htex::model::RuntimeVoice;
 use htex_model::{Error, Values};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use htex::host::{Registry, folders};
+use htex::model::{Registry, folders};
 use htex_device::{Capabilities, Devices};
 use htex_scene::file::Motion;
-use htex_scene::{Costs, DeviceOverride, Finger, LoadedScene, Plan, Renderer, Surroundings, plan};
+use htex_scene::{Costs, DeviceOverride, Plan, Renderer, Surroundings, plan};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -24,7 +24,7 @@ pub(crate) struct Scene {
     embedded: bool,
     devices: Devices,
     device: DeviceOverride,
-    loaded: LoadedScene,
+    loaded: htex_scene::Scene,
     able: Capabilities,
 }
 
@@ -60,9 +60,9 @@ impl Scene {
         py.detach(|| {
             let models = registry(&plugins, installed)?;
             let devices = devices(installed).map_err(raised)?;
-            let around = Surroundings { models: &models, embedded, devices: &devices };
-            let loaded = LoadedScene::open(&path, &around, &device).map_err(raised)?;
-            let known = devices.find(&loaded.scene.device.adapter).map_err(raised)?;
+            let around = Surroundings { models: &models, embedded, devices: Some(&devices) };
+            let loaded = htex_scene::Scene::open_with(&path, &around, &device).map_err(raised)?;
+            let known = devices.find(&loaded.file.device.adapter).map_err(raised)?;
             let able = known.adapter.capabilities(&loaded.settings).map_err(raised)?;
             Ok(Self { file: path, models, embedded, device, loaded, able, devices })
         })
@@ -107,9 +107,9 @@ impl Scene {
                 if !(seconds > 0.0 && seconds <= 1e9) {
                     return Err(option(format!("seconds is {seconds}; more than 0, at most 1e9")));
                 }
-                loaded.scene.duration_s = Some(seconds);
+                loaded.file.duration_s = Some(seconds);
             }
-            if loaded.scene.motion == Motion::Live {
+            if loaded.file.motion == Motion::Live {
                 let text = "the motion of the scene is live; give it to render_path";
                 return Err(SceneError::new_err(text));
             }
@@ -119,9 +119,8 @@ impl Scene {
             })?;
             let mut samples = zeros(usize::try_from(frames).unwrap_or(usize::MAX))?;
             let mut renderer = Renderer::new(&loaded, &plan).map_err(raised)?;
-            let rendered = renderer.render(&mut samples);
+            let rendered = renderer.render(&mut samples).map_err(raised)?;
             samples.truncate(rendered);
-            failed(&mut renderer)?;
             Ok(samples)
         })?;
         Ok(samples.into_pyarray(py))
@@ -150,50 +149,45 @@ impl Scene {
             let mut renderer = Renderer::new(&loaded, &plan).map_err(raised)?;
             let mut samples = zeros(samples)?;
             for (i, part) in samples.chunks_mut(block).enumerate() {
-                let at_mm = x_mm.as_ref().zip(y_mm.as_ref());
-                let finger = Finger {
-                    speed_mm_s: speed_mm_s.at(i),
-                    force_n: force_n.at(i),
-                    at_mm: at_mm.map(|(x, y)| [x.at(i), y.at(i)]),
-                };
-                let moved = renderer.set_motion(finger);
+                let place = x_mm.as_ref().zip(y_mm.as_ref()).map(|(x, y)| [x.at(i), y.at(i)]);
+                let motion = htex::Motion::new(speed_mm_s.at(i), force_n.at(i));
+                let moved = renderer.set_motion(motion.with_place_mm(place));
                 moved.map_err(|error| MotionError::new_err(format!("block {i}: {error}")))?;
-                renderer.render(part);
+                renderer.render(part).map_err(raised)?;
             }
-            failed(&mut renderer)?;
             Ok::<_, PyErr>(samples)
         })?;
         Ok(samples.into_pyarray(py))
     }
 
     fn __repr__(&self) -> String {
-        let (file, surfaces) = (self.file.display(), self.loaded.scene.surfaces.len());
-        let device = &self.loaded.scene.device.adapter;
+        let (file, surfaces) = (self.file.display(), self.loaded.file.surfaces.len());
+        let device = &self.loaded.file.device.adapter;
         format!("<htex.Scene {file}: {surfaces} surface(s), device {device} in {}>", self.unit())
     }
 }
 
 impl Scene {
-    fn planned(&self, loaded: &LoadedScene) -> PyResult<Plan> {
+    fn planned(&self, loaded: &htex_scene::Scene) -> PyResult<Plan> {
         plan(loaded, &self.able, &costs()).map_err(raised)
     }
 
     /// Loads the scene for a motion that is set while it plays.
-    fn live(&self) -> PyResult<LoadedScene> {
-        let around =
-            Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
+    fn live(&self) -> PyResult<htex_scene::Scene> {
+        let around = Surroundings {
+            models: &self.models,
+            embedded: self.embedded,
+            devices: Some(&self.devices),
+        };
         let device = DeviceOverride { live: true, ..self.device.clone() };
         // Loaded again, because some settings of devices have another default for a live motion.
-        let mut loaded = LoadedScene::open(&self.file, &around, &device).map_err(raised)?;
-        loaded.scene.motion = Motion::Live;
-        loaded.scene.duration_s = None;
+        let mut loaded =
+            htex_scene::Scene::open_with(&self.file, &around, &device).map_err(raised)?;
+        loaded.file.motion = Motion::Live;
+        loaded.file.duration_s = None;
         loaded.trace = None;
         Ok(loaded)
     }
-}
-
-fn failed(renderer: &mut Renderer) -> PyResult<()> {
-    renderer.take_failure().map_or(Ok(()), Err).map_err(raised)
 }
 
 /// Returns the costs that the command measured on this machine, or the built-in ones.

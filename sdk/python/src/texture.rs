@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::format::write_file;
-use htex::{Asset, AssetData, Effects, Motion, Parameter, Synthesis, VoiceOptions};
+use htex::format::{Asset, write_file};
+use htex::play::{Effects, Parameter, Synthesis};
+use htex::{Motion, Representation, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -18,7 +19,7 @@ use crate::voice::Voice;
 /// A texture: an opened asset, and the models that play it.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Texture {
-    asset: Asset,
+    asset: htex::Texture,
     plugins: Vec<PathBuf>,
     embedded: bool,
     installed: bool,
@@ -34,11 +35,11 @@ pub(crate) fn open(
     embedded: bool,
     installed: bool,
 ) -> PyResult<Texture> {
-    let opened = Source::of(source)?;
+    let opened = Source::from_python(source)?;
     py.detach(|| {
         let data = match &opened {
-            Source::File(path) => AssetData::open(path),
-            Source::Bytes(bytes) => AssetData::from_bytes(bytes),
+            Source::File(path) => Asset::open(path),
+            Source::Bytes(bytes) => Asset::from_bytes(bytes),
         };
         Texture::new(data.map_err(raised)?, plugins, embedded, installed)
     })
@@ -52,7 +53,7 @@ pub(crate) enum Source {
 
 impl Source {
     /// Reads an argument: a path, bytes, or an object with the method `read`, which is called.
-    pub(crate) fn of(source: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub(crate) fn from_python(source: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(bytes) = source.cast::<PyBytes>() {
             return Ok(Self::Bytes(bytes.as_bytes().to_vec()));
         }
@@ -84,12 +85,12 @@ fn is_named(value: &Bound<'_, PyAny>, names: &[&str]) -> PyResult<bool> {
 impl Texture {
     /// Makes a texture from an asset's data.
     pub(crate) fn new(
-        data: AssetData,
+        data: Asset,
         plugins: Vec<PathBuf>,
         embedded: bool,
         installed: bool,
     ) -> PyResult<Self> {
-        let asset = Asset::with_registry(data, registry(&plugins, installed)?);
+        let asset = htex::Texture::with_registry(data, registry(&plugins, installed)?);
         Ok(Self {
             asset: if embedded { asset.with_embedded() } else { asset },
             plugins,
@@ -100,8 +101,8 @@ impl Texture {
 
     /// Makes a texture from what the file of a new asset contains. Levels and errors have fewer
     /// digits there than in memory.
-    pub(crate) fn of(
-        made: &htex::format::Asset,
+    pub(crate) fn from_asset(
+        made: &Asset,
         plugins: Vec<PathBuf>,
         installed: bool,
     ) -> PyResult<Self> {
@@ -110,18 +111,22 @@ impl Texture {
 
     /// Makes a texture from an asset's file.
     pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
-        Self::new(AssetData::from_bytes(bytes).map_err(raised)?, plugins, true, installed)
+        Self::new(Asset::from_bytes(bytes).map_err(raised)?, plugins, true, installed)
     }
 
     /// Makes a texture from an asset that was made from this one and `others`. It does not run
     /// models that one of them does not run.
-    pub(crate) fn made_of(&self, made: &htex::format::Asset, others: &[&Self]) -> PyResult<Self> {
+    pub(crate) fn made_of(&self, made: &Asset, others: &[&Self]) -> PyResult<Self> {
         let embedded = self.embedded && others.iter().all(|other| other.embedded);
         Self::new(stored(made)?, self.plugins.clone(), embedded, self.installed)
     }
 
-    pub(crate) fn asset(&self) -> &Asset {
+    pub(crate) fn asset(&self) -> &htex::Texture {
         &self.asset
+    }
+
+    fn representation(&self, model: Option<&str>) -> PyResult<Representation<'_>> {
+        self.asset.representation(model).map_err(raised)
     }
 
     /// Returns the motion at a condition. A missing value comes from the default condition.
@@ -129,7 +134,7 @@ impl Texture {
         match at {
             None | Some(At { speed_mm_s: None, force_n: None }) => Ok(None),
             Some(At { speed_mm_s, force_n }) => {
-                self.asset.motion(model, speed_mm_s, force_n).map(Some).map_err(raised)
+                Ok(Some(self.representation(model)?.motion(speed_mm_s, force_n)))
             }
         }
     }
@@ -245,7 +250,8 @@ impl Texture {
     ) -> PyResult<Bound<'py, PyAny>> {
         let frequency_hz = frequency_hz.unwrap_or_else(|| self.asset.band().grid_hz());
         let motion = self.motion(model, at)?;
-        let magnitude = py.detach(|| self.asset.magnitude(model, motion, &frequency_hz));
+        let representation = self.representation(model)?;
+        let magnitude = py.detach(|| representation.magnitude(motion, &frequency_hz));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
         spectrum(py, quantity, band, frequency_hz, magnitude.map_err(raised)?)
     }
@@ -259,17 +265,17 @@ impl Texture {
         model: Option<&str>,
         condition: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let condition =
-            condition.map_or_else(|| self.asset.default_condition(model), Ok).map_err(raised)?;
+        let representation = self.representation(model)?;
+        let condition = condition.unwrap_or_else(|| representation.default_condition());
         let known = self.asset.manifest().conditions.get(condition);
         let known =
             known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
         let motion =
             known.speed_mm_s.zip(known.force_n).map(|(speed, force)| Motion::new(speed, force));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
-        let (parameters, _) = self.asset.parameters(model, motion).map_err(raised)?;
-        let level = self.asset.level_rms(model, motion).map_err(raised)?;
-        let loaded = self.asset.loaded_model(model).map_err(raised)?;
+        let (parameters, _) = representation.parameters(motion).map_err(raised)?;
+        let level = representation.level_rms(motion).map_err(raised)?;
+        let loaded = representation.model().map_err(raised)?;
         let (frequency_hz, silent) = (band.grid_hz(), vec![0.0; band.bins()]);
         let grid = SpectrumRef { band, frequency_hz: &frequency_hz, magnitude: &silent };
         let read = py.detach(|| read_spectrum(&loaded, &parameters, level, grid));
@@ -281,7 +287,8 @@ impl Texture {
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(model, at)?;
-        py.detach(|| self.asset.level_rms(model, motion)).map_err(raised)
+        let representation = self.representation(model)?;
+        py.detach(|| representation.level_rms(motion)).map_err(raised)
     }
 
     /// Returns the parameters of a representation at a condition, by name.
@@ -293,7 +300,8 @@ impl Texture {
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(model, at)?;
-        let all = py.detach(|| self.asset.named_parameters(model, motion)).map_err(raised)?;
+        let representation = self.representation(model)?;
+        let all = py.detach(|| representation.named_parameters(motion)).map_err(raised)?;
         let named = PyDict::new(py);
         for (name, parameter) in all {
             match parameter {
@@ -351,7 +359,7 @@ impl Texture {
             }
             None => None,
         };
-        let mut options = VoiceOptions::default()
+        let options = VoiceOptions::default()
             .with_rate_hz(rate_hz)
             .with_seed(seed)
             .with_motion(motion)
@@ -366,9 +374,9 @@ impl Texture {
                     .with_level_scaling(level_scaling)
                     .with_contact(contact),
             );
-        options.model = model;
-        let id = self.asset.representation_id(model).map_err(raised)?.to_owned();
-        let voice = py.detach(|| self.asset.voice(&options)).map_err(raised)?;
+        let representation = self.representation(model)?;
+        let id = representation.id().to_owned();
+        let voice = py.detach(|| representation.voice(&options)).map_err(raised)?;
         let unit = self.asset.quantity().unit();
         Ok(Voice::new(voice, id, rate_hz, seed, unit))
     }
@@ -396,8 +404,8 @@ impl Texture {
 }
 
 /// Returns what the file of a new asset contains.
-fn stored(made: &htex::format::Asset) -> PyResult<AssetData> {
-    AssetData::from_bytes(&made.to_bytes().map_err(raised)?).map_err(raised)
+fn stored(made: &Asset) -> PyResult<Asset> {
+    Asset::from_bytes(&made.to_bytes().map_err(raised)?).map_err(raised)
 }
 
 /// Returns the last part of a model's id.

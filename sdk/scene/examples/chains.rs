@@ -18,7 +18,7 @@ use common::{
 use htex_device::Capabilities;
 use htex_play::Registry;
 use htex_scene::file::{Budget, Effect, Motion, Switch};
-use htex_scene::{Costs, Finger, LoadedScene, Renderer, Response, plan};
+use htex_scene::{Costs, Renderer, Response, Scene, plan};
 
 const BLOCK: usize = 64;
 const ROUNDS: usize = 150;
@@ -42,20 +42,20 @@ fn main() {
 }
 
 /// Six typical scenes.
-fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
+fn typical() -> Vec<(&'static str, Scene, Capabilities)> {
     let swings = |t: f64| 15.0 * (std::f64::consts::TAU * t).sin();
     let presses = |t: f64| 0.45 + 0.1 * (3.0 * t).sin();
     let long = 1e4;
     let mut preview = scene(single(), constant(80.0, 0.4), long);
-    preview.scene.device.pitch = Some(2.0);
-    let moved = |asset: &htex_play::Asset| {
+    preview.file.device.pitch = Some(2.0);
+    let moved = |asset: &htex_play::Texture| {
         let mut moved = traced(asset, trace(600.0, swings, presses), 600.0);
-        moved.scene.surfaces[0].representation = "ar".to_owned();
+        moved.file.surfaces[0].representation = "ar".to_owned();
         moved
     };
     let at_rate = Capabilities { default_rate_hz: 2_000.0, ..file() };
-    let ar = |mut scene: LoadedScene| {
-        scene.scene.surfaces[0].representation = "ar".to_owned();
+    let ar = |mut scene: Scene| {
+        scene.file.surfaces[0].representation = "ar".to_owned();
         scene
     };
     let still = || ar(scene(single(), constant(80.0, 0.4), long));
@@ -77,7 +77,7 @@ fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
         for (renderer, least) in renderers.iter_mut().zip(&mut least) {
             let start = Instant::now();
             for _ in 0..STRETCH {
-                renderer.render(std::hint::black_box(&mut block));
+                renderer.render(std::hint::black_box(&mut block)).unwrap();
             }
             let ns = start.elapsed().as_nanos() as f64 / (STRETCH * BLOCK) as f64;
             *least = least.min(ns);
@@ -87,11 +87,11 @@ fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
 }
 
 /// The typical scenes as they are, with a compensated display response, and with all effects on.
-fn variants() -> Vec<(String, LoadedScene, Capabilities)> {
+fn variants() -> Vec<(String, Scene, Capabilities)> {
     let mut all = Vec::new();
     for (name, scene, device) in typical() {
         let mut full = scene.clone();
-        full.scene.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
+        full.file.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
         let mut compensated = scene.clone();
         compensated.response = Some(response());
         all.push((format!("{name}, compensated"), compensated, device.clone()));
@@ -135,7 +135,7 @@ fn over_strokes(renderer: &mut Renderer) -> f64 {
     for _ in 0..ROUNDS {
         let start = Instant::now();
         for _ in 0..blocks {
-            renderer.render(std::hint::black_box(&mut block));
+            renderer.render(std::hint::black_box(&mut block)).unwrap();
         }
         let ns = start.elapsed().as_nanos() as f64 / (blocks * BLOCK) as f64;
         least = least.min(ns);
@@ -150,7 +150,7 @@ fn saved() {
     println!("ns a sample                          stages  planned  all stages   ratio");
     for (name, scene, device) in typical() {
         let mut full = scene.clone();
-        full.scene.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
+        full.file.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
         let plans = [planned(&scene, &device), planned(&full, &device)];
         let mut renderers =
             [Renderer::new(&scene, &plans[0]).unwrap(), Renderer::new(&full, &plans[1]).unwrap()];
@@ -174,8 +174,8 @@ fn live() {
     for model in Registry::builtin_names() {
         let named = |asset, motion| {
             let mut scene = scene(asset, motion, 1e4);
-            scene.scene.duration_s = None;
-            scene.scene.surfaces[0].representation = model.to_owned();
+            scene.file.duration_s = None;
+            scene.file.surfaces[0].representation = model.to_owned();
             Renderer::new(&scene, &planned(&scene, &file())).unwrap()
         };
         let mut still = [named(single(), constant(80.0, 0.4))];
@@ -203,7 +203,7 @@ fn stretches(renderer: &mut [Renderer; 1]) -> f64 {
     for i in 0..blocks {
         let t = i as f64 / blocks as f64;
         renderer.set_motion(finger(t)).unwrap();
-        renderer.render(std::hint::black_box(&mut block));
+        renderer.render(std::hint::black_box(&mut block)).unwrap();
     }
     start.elapsed().as_nanos() as f64 / (blocks * BLOCK) as f64
 }
@@ -213,7 +213,7 @@ fn budgets() {
     println!("\nbudget, ns  chosen             planned  rendered  of the budget");
     for ns in [100.0, 20.0, 12.0, 10.0, 9.0, 8.0, 6.0, 4.0, 3.5, 3.3, 3.1, 2.9] {
         let mut scene = scene(single(), constant(80.0, 0.4), 1e4);
-        scene.scene.budget = Budget { ns_per_sample: Some(ns), ..Budget::default() };
+        scene.file.budget = Budget { ns_per_sample: Some(ns), ..Budget::default() };
         match plan(&scene, &file(), &costs) {
             Err(error) => println!("{ns:10}  {error}"),
             Ok(plan) => {
@@ -242,7 +242,7 @@ fn voices() {
         row(&format!("{model}, scene"), |seed| {
             let mut renderer = scene_voice(model, seed);
             move |block: &mut [f32]| {
-                renderer.render(block);
+                renderer.render(block).unwrap();
             }
         });
         row(&format!("{model}, app"), |seed| {
@@ -276,14 +276,14 @@ fn row<V: FnMut(&mut [f32])>(name: &str, make: impl Fn(u64) -> V) {
 
 fn scene_voice(model: &str, seed: u64) -> Renderer {
     let mut scene = scene(single(), constant(80.0, 0.4), 1e4);
-    scene.scene.surfaces[0].representation = model.to_owned();
-    scene.scene.seed = seed;
+    scene.file.surfaces[0].representation = model.to_owned();
+    scene.file.seed = seed;
     Renderer::new(&scene, &planned(&scene, &file())).unwrap()
 }
 
 fn app_voice(model: &str, seed: u64) -> htex_play::Voice {
-    let options = htex_play::VoiceOptions::default().with_model(model).with_seed(seed);
-    single().voice(&options).unwrap()
+    let options = htex_play::VoiceOptions::default().with_seed(seed);
+    single().representation(model).unwrap().voice(&options).unwrap()
 }
 
 /// Blocks in 0.36 s of sound. In this time each voice computes one frame.
@@ -327,23 +327,19 @@ fn fingers() {
 
 fn live_voice(model: &str, seed: u64) -> impl FnMut(&mut [f32]) {
     let mut scene = scene(nine(), Motion::Live, 1e4);
-    scene.scene.duration_s = None;
-    scene.scene.seed = seed;
-    scene.scene.surfaces[0].representation = model.to_owned();
+    scene.file.duration_s = None;
+    scene.file.seed = seed;
+    scene.file.surfaces[0].representation = model.to_owned();
     let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
     let mut block = seed as f64;
     move |out| {
         renderer.set_motion(finger(block / 320.0)).unwrap();
-        renderer.render(out);
+        renderer.render(out).unwrap();
         block += 1.0;
     }
 }
 
 /// A finger at time `t` of its path over the nine conditions.
-fn finger(t: f64) -> Finger {
-    Finger {
-        speed_mm_s: 90.0 + 35.0 * (17.0 * t).sin(),
-        force_n: 0.45 + 0.2 * (11.0 * t).cos(),
-        at_mm: None,
-    }
+fn finger(t: f64) -> htex_play::Motion {
+    htex_play::Motion::new(90.0 + 35.0 * (17.0 * t).sin(), 0.45 + 0.2 * (11.0 * t).cos())
 }

@@ -32,7 +32,7 @@ impl Ahead {
     }
 
     /// Copies buffered samples to the start of `out` and returns their number.
-    pub(crate) fn take(&mut self, out: &mut [f32]) -> usize {
+    pub(crate) fn read(&mut self, out: &mut [f32]) -> usize {
         let ready = &self.samples[self.taken..];
         let frames = out.len().min(ready.len());
         out[..frames].copy_from_slice(&ready[..frames]);

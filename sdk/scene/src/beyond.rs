@@ -2,10 +2,10 @@
 //! recorded.
 
 use htex_base::finding::Findings;
-use htex_play::{Asset, Coverage, Effects, Motions};
+use htex_play::{Conditions, Coverage, Effects, Motion, Texture};
 
-use crate::file::{Effect, Motion, Scene, Surface, Switch};
-use crate::motion::{Finger, topmost};
+use crate::file::{self, Effect, SceneFile, Surface, Switch};
+use crate::motion::topmost;
 use crate::rules as rule;
 use crate::trace::Trace;
 
@@ -19,22 +19,22 @@ const MOST_ROWS: usize = 20_000;
 /// Warns about surfaces whose motion lies outside the recorded range and is played as a different
 /// motion.
 pub(crate) fn check(
-    scene: &Scene,
-    assets: &[Asset],
+    scene: &SceneFile,
+    assets: &[Texture],
     trace: Option<&Trace>,
     findings: &mut Findings,
 ) {
     let fingers = fingers(scene, trace);
     for (i, asset) in assets.iter().enumerate() {
         // An asset that cannot be used already has a finding.
-        let Ok(motions) = motions(asset, &scene.surfaces[i]) else {
+        let Ok(conditions) = conditions(asset, &scene.surfaces[i]) else {
             continue;
         };
-        let here = |finger: &&Finger| match trace {
+        let here = |finger: &&Motion| match trace {
             Some(_) => topmost(&scene.surfaces, finger) == Some(i),
             None => true,
         };
-        let (share, farthest) = beyond(fingers.iter().filter(here), &motions, effects(scene));
+        let (share, farthest) = beyond(fingers.iter().filter(here), &conditions, effects(scene));
         if let (true, Some(farthest)) = (share > MOST, farthest) {
             let percent = 100.0 * share;
             let message =
@@ -44,12 +44,12 @@ pub(crate) fn check(
     }
 }
 
-fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex_play::Error> {
+fn conditions(asset: &Texture, surface: &Surface) -> Result<Conditions, htex_play::Error> {
     let name = surface.representation.as_str();
-    asset.motions((name != "auto").then_some(name))
+    asset.representation((name != "auto").then_some(name))?.conditions()
 }
 
-fn effects(scene: &Scene) -> Effects {
+fn effects(scene: &SceneFile) -> Effects {
     let is_on = |effect| scene.effects.get(&effect) != Some(&Switch::Off);
     Effects::default()
         .with_frequency_scaling(is_on(Effect::FrequencyScaling))
@@ -57,21 +57,19 @@ fn effects(scene: &Scene) -> Effects {
 }
 
 /// The finger at the rows of a trace, or in constant motion; empty if the motion is live.
-fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
+fn fingers(scene: &SceneFile, trace: Option<&Trace>) -> Vec<Motion> {
     match (&scene.motion, trace) {
-        (Motion::Constant(motion), _) => vec![Finger {
-            speed_mm_s: motion.speed_mm_s,
-            force_n: motion.force_n,
-            at_mm: motion.from_mm,
-        }],
-        (Motion::Trace(_), Some(trace)) => {
+        (file::Motion::Constant(constant), _) => {
+            let motion = Motion::new(constant.speed_mm_s, constant.force_n);
+            vec![motion.with_place_mm(constant.from_mm)]
+        }
+        (file::Motion::Trace(_), Some(trace)) => {
             // `step_by` panics at 0, which an empty trace would give.
             let every = trace.t_s.len().div_ceil(MOST_ROWS).max(1);
-            let points = trace.t_s.iter().step_by(every).map(|t| trace.at(*t));
-            let finger = |point: crate::trace::TracePoint| Finger {
-                speed_mm_s: point.speed_mm_s,
-                force_n: point.force_n,
-                at_mm: Some([point.x_mm, point.y_mm]),
+            let points = trace.t_s.iter().step_by(every).map(|t| trace.point_at(*t));
+            let finger = |point: crate::trace::TracePoint| {
+                let motion = Motion::new(point.speed_mm_s, point.force_n);
+                motion.with_place_mm([point.x_mm, point.y_mm])
             };
             points.map(finger).collect()
         }
@@ -82,13 +80,13 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
 /// Returns the fraction of the sliding fingers that are played as a different motion, and the
 /// coverage of the one that is farthest from the recorded range.
 fn beyond<'a>(
-    fingers: impl Iterator<Item = &'a Finger>,
-    motions: &Motions,
+    fingers: impl Iterator<Item = &'a Motion>,
+    conditions: &Conditions,
     effects: Effects,
 ) -> (f64, Option<Coverage>) {
     let (mut all, mut beyond, mut farthest) = (0.0, 0.0, None::<Coverage>);
     for finger in fingers.filter(|finger| finger.slides()) {
-        let coverage = motions.coverage(finger.motion(), effects);
+        let coverage = conditions.coverage(finger.without_direction(), effects);
         all += 1.0;
         if coverage.excess() > 0.0 {
             beyond += 1.0;

@@ -2,12 +2,12 @@
 
 use htex_base::finding::{Findings, Rule};
 
-use crate::file::{Budget, Constant, DeviceChoice, FAR_MM, Motion, Region, Scene, Surface};
+use crate::file::{Budget, Constant, DeviceChoice, FAR_MM, Motion, Region, SceneFile, Surface};
 use crate::limits::Limits;
 use crate::rules as rule;
 
 /// Checks a scene without reading its files or opening its device.
-pub(crate) fn check(scene: &Scene, limits: &Limits, findings: &mut Findings) {
+pub(crate) fn check(scene: &SceneFile, limits: &Limits, findings: &mut Findings) {
     check_surfaces(&scene.surfaces, limits, findings);
     match &scene.motion {
         Motion::Constant(constant) => check_constant(constant, &scene.surfaces, findings),

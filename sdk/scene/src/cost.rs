@@ -45,7 +45,7 @@ pub struct FilterCost {
 impl FilterCost {
     /// Time of filters that produce `samples` samples with `macs` multiply-accumulates,
     /// nanoseconds.
-    pub(crate) fn of(self, samples: f64, macs: f64) -> f64 {
+    pub(crate) fn time_ns(self, samples: f64, macs: f64) -> f64 {
         samples * self.sample_ns + macs * self.mac_ns
     }
 }
@@ -90,7 +90,8 @@ impl Costs {
     /// Cost of a rate conversion, per sample of its output.
     pub(crate) fn resampling(&self, work: Work) -> f64 {
         let Work { whole, rational } = work;
-        self.whole.of(whole.samples, whole.macs) + self.rational.of(rational.samples, rational.macs)
+        self.whole.time_ns(whole.samples, whole.macs)
+            + self.rational.time_ns(rational.samples, rational.macs)
     }
 
     pub(crate) fn neutral(&self, name: &str) -> f64 {

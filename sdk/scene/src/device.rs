@@ -15,7 +15,7 @@ use htex_format::Quantity as Held;
 use serde_json::Value;
 
 use crate::file::{DeviceChoice, Levels};
-use crate::output::named;
+use crate::output::file_name;
 pub(crate) use crate::output::stem;
 use crate::rules as rule;
 
@@ -51,7 +51,7 @@ pub struct DeviceOverride {
 impl DeviceOverride {
     /// The default output file, in a format if one is set.
     fn output(&self, stem: &str, format: Option<&String>) -> String {
-        let usual = || named(stem, format.map_or("auto", String::as_str));
+        let usual = || file_name(stem, format.map_or("auto", String::as_str));
         self.output.clone().unwrap_or_else(usual)
     }
 
@@ -269,6 +269,17 @@ fn check_quantity(
     let Some(held) = held else { return };
     if let Some(sentence) = quantity_misfit(held, able.quantity, choice.quantity_gain) {
         findings.add(rule::DEVICE_QUANTITY, "/device/quantity_gain", sentence);
+    }
+}
+
+/// Returns the quantity of a device that takes a texture's samples unchanged.
+pub(crate) fn device_quantity(held: Held) -> Quantity {
+    match held {
+        Held::LateralForce => Quantity::LateralForce,
+        Held::NormalForce => Quantity::NormalForce,
+        Held::Acceleration => Quantity::Acceleration,
+        Held::Velocity => Quantity::Velocity,
+        Held::Displacement => Quantity::Displacement,
     }
 }
 

@@ -1,13 +1,31 @@
-//! Errors from planning and playing a scene.
+//! Errors from opening, planning and playing a scene.
 
+use std::io;
 use std::path::PathBuf;
 
-use crate::load::LoadedScene;
+use htex_base::finding::Finding;
+use htex_format::parse_json;
 
-/// An error from planning or playing a scene.
+use crate::load::Scene;
+
+/// An error from opening, planning or playing a scene. [`Self::kind`] says what went wrong without
+/// its details.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {error}", .path.display())]
+    Io {
+        path: PathBuf,
+        #[source]
+        error: io::Error,
+    },
+    /// The scene, or a file that it names, is invalid.
+    #[error("invalid scene: {}", htex_base::finding::summary(.findings))]
+    Invalid {
+        /// All findings, including those that are not errors.
+        findings: Vec<Finding>,
+    },
     /// A surface's asset, or its model, cannot be used.
     #[error("surface {surface} ({}): {source}", .asset.display())]
     Surface {
@@ -126,15 +144,64 @@ fn nearest_of(nearest: &Option<(String, f64)>) -> String {
     }
 }
 
+/// What went wrong, without the details ([`SceneError::kind`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SceneErrorKind {
+    /// A file cannot be read.
+    Io,
+    /// The scene is invalid, or cannot be planned for its device, rate or budget.
+    InvalidScene,
+    /// No model of a surface's representations is available.
+    NoModel,
+    /// A texture or its model failed.
+    Model,
+    /// The motion is invalid.
+    Motion,
+}
+
 impl SceneError {
+    /// Returns the kind of the error, for programs that react to it.
+    pub fn kind(&self) -> SceneErrorKind {
+        match self {
+            Self::Io { .. } => SceneErrorKind::Io,
+            Self::Surface { .. } => SceneErrorKind::Model,
+            Self::NoModel { .. } => SceneErrorKind::NoModel,
+            Self::Motion { .. } => SceneErrorKind::Motion,
+            Self::Invalid { .. }
+            | Self::NotNearEnough { .. }
+            | Self::TooSlow { .. }
+            | Self::Budgets { .. }
+            | Self::Rate { .. }
+            | Self::Clamped { .. }
+            | Self::Quantity { .. }
+            | Self::Needed { .. }
+            | Self::Rates(_) => SceneErrorKind::InvalidScene,
+        }
+    }
+
+    /// Shortens pointers to keys that the file leaves out, so that each pointer refers to an
+    /// existing value.
+    pub(crate) fn pointing_into(mut self, bytes: &[u8]) -> Self {
+        if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
+            for Finding { pointer, .. } in findings {
+                // The empty pointer means the whole document, so this ends.
+                while document.pointer(pointer).is_none() {
+                    pointer.truncate(pointer.rfind('/').unwrap_or_default());
+                }
+            }
+        }
+        self
+    }
+
     /// Adds the surface to an error from its asset or its model.
-    pub(crate) fn of_surface<E: Into<htex_play::Error>>(
+    pub(crate) fn for_surface<E: Into<htex_play::Error>>(
         surface: usize,
-        scene: &LoadedScene,
+        scene: &Scene,
     ) -> impl FnOnce(E) -> Self {
         move |source| Self::Surface {
             surface,
-            asset: scene.scene.surfaces[surface].asset.clone(),
+            asset: scene.file.surfaces[surface].asset.clone(),
             source: source.into(),
         }
     }

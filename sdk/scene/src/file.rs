@@ -17,7 +17,7 @@ pub(crate) const FAR_MM: f64 = 1e6;
 /// A scene: surfaces, the motion of the finger over them, and the output device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
-pub struct Scene {
+pub struct SceneFile {
     /// Version of the format, `MAJOR.MINOR`.
     #[schemars(extend("const" = VERSION))]
     pub htex_scene: String,

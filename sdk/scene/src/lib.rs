@@ -45,18 +45,17 @@ mod validate;
 
 pub use cost::{Costs, FilterCost};
 pub use device::DeviceOverride;
-pub use error::SceneError;
-pub use file::Scene;
+pub use error::{SceneError, SceneErrorKind};
+pub use file::SceneFile;
 pub use gains::{
     Gain, GainKey, Gains, START_DB, factor_of_db, gains_schema, recordings_of, texture_id,
     texture_name,
 };
 pub use limits::Limits;
-pub use load::{LoadError, LoadedScene, SceneFiles, Surroundings, validate};
-pub use motion::Finger;
+pub use load::{FileSource, Scene, Surroundings, validate};
 pub use output::output_name;
 pub use page::{findings_page, scene_schema};
-pub use plan::{Chosen, LeftOut, Plan, PlannedStage, plan};
+pub use plan::{ModelChoice, OmittedEffect, Plan, PlannedStage, plan};
 pub use render::Renderer;
 pub use response::Response;
 pub use rules::RULES;

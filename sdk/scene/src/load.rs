@@ -6,31 +6,34 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use htex_base::finding::{Finding, Findings, Report, Rule};
-use htex_device::{Devices, Settings};
-use htex_format::{Quantity, parse_json};
-use htex_play::{Asset, Registry, VoiceOptions};
+use htex_device::{Capabilities, Devices, Rates, Settings};
+use htex_format::Quantity;
+use htex_play::{Registry, Texture, VoiceOptions};
 use htex_recording::{ReadError, ReadProblem};
 
 use crate::check::check;
-use crate::device::{DeviceOverride, check_device, stem};
-use crate::file::{DeviceChoice, Motion, Scene, Surface, VERSION};
+use crate::device::{DeviceOverride, check_device, device_quantity, stem};
+use crate::file::{DeviceChoice, Motion, SceneFile, Surface, VERSION};
 use crate::limits::Limits;
+use crate::plan::{Plan, plan};
 use crate::response::{self, Inverse, Response};
 use crate::rules as rule;
 use crate::trace::Trace;
 use crate::validate::read_scene;
+use crate::{Costs, Renderer, SceneError};
 
-/// The models and devices that are available to a scene.
+/// The models that may play a scene, and the devices to which it may play.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
     pub models: &'a Registry,
     /// Whether models embedded in assets may run (in their sandbox).
     pub embedded: bool,
-    pub devices: &'a Devices,
+    /// `None` if the program itself takes the samples: the scene's device is then ignored.
+    pub devices: Option<&'a Devices>,
 }
 
 /// Gives a scene its files, for programs that do not keep them in a folder.
-pub trait SceneFiles {
+pub trait FileSource {
     /// Reads a file by its path, exactly as the scene states it.
     ///
     /// # Errors
@@ -41,7 +44,7 @@ pub trait SceneFiles {
 /// Where the files of a scene are.
 enum Place<'a> {
     Folder(PathBuf),
-    Given(&'a dyn SceneFiles),
+    Given(&'a dyn FileSource),
 }
 
 impl Place<'_> {
@@ -55,14 +58,21 @@ impl Place<'_> {
 }
 
 /// A scene with its files.
+///
+/// ```no_run
+/// let scene = htex::Scene::open("two.scene.json")?;
+/// let mut block = [0.0; 64];
+/// let frames = scene.renderer(20_000.0)?.render(&mut block)?; // in the textures' unit
+/// # Ok::<(), htex::scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone)]
-pub struct LoadedScene {
+pub struct Scene {
     /// The contents of the file, with overrides applied to its device.
-    pub scene: Scene,
+    pub file: SceneFile,
     /// Folder where relative paths start.
     pub folder: PathBuf,
-    /// The assets, one for each surface.
-    pub assets: Vec<Asset>,
+    /// The textures, one for each surface.
+    pub assets: Vec<Texture>,
     /// The motion, if it is a trace.
     pub trace: Option<Trace>,
     /// The response to compensate.
@@ -73,69 +83,34 @@ pub struct LoadedScene {
     pub notes: Vec<Finding>,
 }
 
-/// The reason why a scene cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LoadError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {error}", .path.display())]
-    Io {
-        path: PathBuf,
-        #[source]
-        error: io::Error,
-    },
-    /// The scene is invalid.
-    #[error("invalid scene: {}", htex_base::finding::summary(.findings))]
-    Invalid {
-        /// All findings, including those that are not errors.
-        findings: Vec<Finding>,
-    },
-}
+/// Default sample rate of a program that takes the samples itself, hertz: the paper's.
+const USUAL_RATE_HZ: f64 = 20_000.0;
+/// The sample rates at which a program may take the samples itself, hertz.
+const RATES_HZ: Rates = Rates::Range { min_hz: 100.0, max_hz: 1e6 };
 
-impl LoadError {
-    /// Shortens pointers to keys that the file leaves out, so that each pointer refers to an
-    /// existing value.
-    fn pointing_into(mut self, bytes: &[u8]) -> Self {
-        if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
-            for Finding { pointer, .. } in findings {
-                // The empty pointer means the whole document, so this ends.
-                while document.pointer(pointer).is_none() {
-                    pointer.truncate(pointer.rfind('/').unwrap_or_default());
-                }
-            }
-        }
-        self
-    }
-}
-
-impl LoadedScene {
-    /// Returns the files from which the scene was read, except the scene file.
-    pub fn inputs(&self) -> Vec<PathBuf> {
-        let assets = self.scene.surfaces.iter().map(|surface| &surface.asset);
-        let trace = match &self.scene.motion {
-            Motion::Trace(path) => Some(path),
-            _ => None,
-        };
-        let all = assets.chain(trace).chain(&self.scene.device.response);
-        all.map(|path| self.folder.join(path)).collect()
-    }
-
-    /// Returns the quantity of the assets, which is the same for all of them.
-    pub fn quantity(&self) -> Quantity {
-        let first = self.assets.first();
-        first.map_or(Quantity::default(), Asset::quantity)
-    }
-
-    /// Opens a scene file and the files it names.
+impl Scene {
+    /// Opens a scene file and the files it names, for a program that takes the samples itself. The
+    /// built-in and the embedded models play its textures; its device is ignored. Files are read up
+    /// to the limits of [`Limits`].
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] with all findings if at least one is an error; [`LoadError::Io`] if
+    /// [`SceneError::Invalid`] with all findings if at least one is an error; [`SceneError::Io`] if
     /// the file cannot be read.
-    pub fn open(
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let models = &Registry::builtin();
+        let around = Surroundings { models, embedded: true, devices: None };
+        Self::open_with(path.as_ref(), &around, &DeviceOverride::default())
+    }
+
+    /// Opens a scene file and the files it names, for a device or with other models.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_with(
         path: &Path,
         around: &Surroundings<'_>,
         device: &DeviceOverride,
-    ) -> Result<Self, LoadError> {
+    ) -> Result<Self, SceneError> {
         Self::from_bytes(path, &read_file(path)?, around, device)
     }
 
@@ -149,9 +124,9 @@ impl LoadedScene {
         bytes: &[u8],
         around: &Surroundings<'_>,
         device: &DeviceOverride,
-    ) -> Result<Self, LoadError> {
+    ) -> Result<Self, SceneError> {
         let device = (device, &stem(path)[..]);
-        Self::placed(bytes, &Place::Folder(folder(path)), around, device)
+        Self::read(bytes, &Place::Folder(folder(path)), around, device)
     }
 
     /// Opens a scene in memory whose files the program supplies. Its `folder` is empty.
@@ -160,26 +135,26 @@ impl LoadedScene {
     /// As [`Self::open`].
     pub fn from_files(
         bytes: &[u8],
-        files: &dyn SceneFiles,
+        files: &dyn FileSource,
         around: &Surroundings<'_>,
         device: &DeviceOverride,
-    ) -> Result<Self, LoadError> {
-        Self::placed(bytes, &Place::Given(files), around, (device, "scene"))
+    ) -> Result<Self, SceneError> {
+        Self::read(bytes, &Place::Given(files), around, (device, "scene"))
     }
 
-    fn placed(
+    fn read(
         bytes: &[u8],
         place: &Place<'_>,
         around: &Surroundings<'_>,
         device: (&DeviceOverride, &str),
-    ) -> Result<Self, LoadError> {
+    ) -> Result<Self, SceneError> {
         let mut findings = Findings::default();
-        let scene = read_scene(bytes, &Limits::default(), &mut findings);
-        let loaded = scene.and_then(|scene| load(scene, place, around, device, &mut findings));
-        finish(loaded, findings).map_err(|error| error.pointing_into(bytes))
+        let file = read_scene(bytes, &Limits::default(), &mut findings);
+        let scene = file.and_then(|file| load(file, place, around, device, &mut findings));
+        finish(scene, findings).map_err(|error| error.pointing_into(bytes))
     }
 
-    /// Makes a scene with one surface that covers everything, without a file.
+    /// Makes a scene with one surface that covers everything, without a scene file.
     ///
     /// # Errors
     /// As [`Self::open`]; pointers refer to the equivalent scene file.
@@ -189,8 +164,8 @@ impl LoadedScene {
         duration_s: Option<f64>,
         around: &Surroundings<'_>,
         device: &DeviceOverride,
-    ) -> Result<Self, LoadError> {
-        let scene = Scene {
+    ) -> Result<Self, SceneError> {
+        let file = SceneFile {
             htex_scene: VERSION.to_owned(),
             surfaces: vec![Surface::everywhere(asset)],
             motion,
@@ -201,11 +176,60 @@ impl LoadedScene {
             effects: Default::default(),
         };
         let mut findings = Findings::default();
-        check(&scene, &Limits::default(), &mut findings);
+        check(&file, &Limits::default(), &mut findings);
         let device = (device, &stem(asset)[..]);
         let place = Place::Folder(PathBuf::new());
-        let loaded = load(scene, &place, around, device, &mut findings);
-        finish(loaded, findings)
+        let scene = load(file, &place, around, device, &mut findings);
+        finish(scene, findings)
+    }
+
+    /// Plans the scene for a program that takes samples at `rate_hz`, 100 Hz to 1 MHz, itself, in the
+    /// textures' unit. Neither the scene's device nor costs measured on this machine influence the
+    /// plan.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn plan(&self, rate_hz: f64) -> Result<Plan, SceneError> {
+        let mut scene = self.clone();
+        scene.file.device = DeviceChoice { rate_hz: Some(rate_hz), ..DeviceChoice::default() };
+        scene.response = None;
+        let program = Capabilities {
+            quantity: device_quantity(self.quantity()),
+            rates: RATES_HZ,
+            default_rate_hz: USUAL_RATE_HZ,
+            limit: None,
+            step: None,
+            carrier_hz: None,
+            paced: false,
+            block_frames: 4096,
+        };
+        plan(&scene, &program, &Costs::embedded())
+    }
+
+    /// Makes a renderer for a program that takes samples at `rate_hz` itself, in the textures' unit
+    /// ([`Self::plan`]). For a device, use [`crate::plan`] and [`Renderer::new`].
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn renderer(&self, rate_hz: f64) -> Result<Renderer, SceneError> {
+        Renderer::new(self, &self.plan(rate_hz)?)
+    }
+
+    /// Returns the files from which the scene was read, except the scene file.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let assets = self.file.surfaces.iter().map(|surface| &surface.asset);
+        let trace = match &self.file.motion {
+            Motion::Trace(path) => Some(path),
+            _ => None,
+        };
+        let all = assets.chain(trace).chain(&self.file.device.response);
+        all.map(|path| self.folder.join(path)).collect()
+    }
+
+    /// Returns the quantity of the textures, which is the same for all of them.
+    pub fn quantity(&self) -> Quantity {
+        let first = self.assets.first();
+        first.map_or(Quantity::default(), Texture::quantity)
     }
 }
 
@@ -213,38 +237,34 @@ impl LoadedScene {
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, LoadError> {
+pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, SceneError> {
     let rehearsal = DeviceOverride { rehearsal: true, ..DeviceOverride::default() };
-    let findings = match LoadedScene::open(path, around, &rehearsal) {
-        Ok(loaded) => return Ok(report(true, loaded.notes)),
-        Err(LoadError::Invalid { findings }) => findings,
+    let findings = match Scene::open_with(path, around, &rehearsal) {
+        Ok(scene) => return Ok(Report { valid: true, findings: scene.notes }),
+        Err(SceneError::Invalid { findings }) => findings,
         Err(error) => return Err(error),
     };
-    Ok(report(false, findings))
+    Ok(Report { valid: false, findings })
 }
 
-fn report(valid: bool, findings: Vec<Finding>) -> Report {
-    Report { valid, findings }
-}
-
-fn finish(loaded: Option<LoadedScene>, findings: Findings) -> Result<LoadedScene, LoadError> {
+fn finish(scene: Option<Scene>, findings: Findings) -> Result<Scene, SceneError> {
     let has_errors = findings.has_errors();
     let findings = findings.into_list();
-    match loaded {
-        Some(loaded) if !has_errors => Ok(LoadedScene { notes: findings, ..loaded }),
-        _ => Err(LoadError::Invalid { findings }),
+    match scene {
+        Some(scene) if !has_errors => Ok(Scene { notes: findings, ..scene }),
+        _ => Err(SceneError::Invalid { findings }),
     }
 }
 
 /// Reads a file up to one byte above the size limit.
-fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
+fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     // One byte more than allowed shows that the file is too long.
     let most = Limits::default().file_bytes + 1;
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes));
     match read {
         Ok(_) => Ok(bytes),
-        Err(error) => Err(LoadError::Io { path: path.to_owned(), error }),
+        Err(error) => Err(SceneError::Io { path: path.to_owned(), error }),
     }
 }
 
@@ -254,35 +274,41 @@ fn folder(path: &Path) -> PathBuf {
 
 /// Opens the files of a scene; `None` if one is missing, with findings for each.
 fn load(
-    mut scene: Scene,
+    mut file: SceneFile,
     place: &Place<'_>,
     around: &Surroundings<'_>,
     device: (&DeviceOverride, &str),
     findings: &mut Findings,
-) -> Option<LoadedScene> {
-    let assets = open_assets(&scene, place, around, findings);
-    let trace = open_trace(&scene, place, findings);
+) -> Option<Scene> {
+    let assets = open_assets(&file, place, around, findings);
+    let trace = open_trace(&file, place, findings);
     // Before the response is opened, because another adapter drops the scene's response.
-    device.0.apply(&mut scene.device);
-    let response = open_response(&scene, place, findings);
-    let held = assets.as_ref().and_then(|all| all.first()).map(Asset::quantity);
-    let settings = check_device(&scene.device, device, around.devices, held, findings);
+    match around.devices {
+        Some(_) => device.0.apply(&mut file.device),
+        None => file.device = DeviceChoice::default(),
+    }
+    let response = open_response(&file, place, findings);
+    let held = assets.as_ref().and_then(|all| all.first()).map(Texture::quantity);
+    let settings = match around.devices {
+        Some(devices) => check_device(&file.device, device, devices, held, findings),
+        None => Some(Settings::default()),
+    };
     // Only now, so that a missing asset does not hide the findings of the device.
     let assets = assets?;
     check_quantities(&assets, findings);
     // An invalid motion already has a finding.
     if !findings.has_errors() {
-        crate::beyond::check(&scene, &assets, trace.as_ref(), findings);
+        crate::beyond::check(&file, &assets, trace.as_ref(), findings);
     }
     if let Some(response) = &response {
-        check_response(response, &assets, &scene.device, findings);
+        check_response(response, &assets, &file.device, findings);
     }
-    Some(LoadedScene {
+    Some(Scene {
         assets,
         trace,
         response,
         settings: settings?,
-        scene,
+        file,
         folder: place.folder(),
         notes: Vec::new(),
     })
@@ -290,14 +316,14 @@ fn load(
 
 /// Opens the assets of all surfaces. Each file is opened only once.
 fn open_assets(
-    scene: &Scene,
+    scene: &SceneFile,
     place: &Place<'_>,
     around: &Surroundings<'_>,
     findings: &mut Findings,
-) -> Option<Vec<Asset>> {
-    type Opened = Result<Asset, (&'static Rule, String)>;
+) -> Option<Vec<Texture>> {
+    type OpenResult = Result<Texture, (&'static Rule, String)>;
     // Nothing depends on the order of this map.
-    let mut opened: HashMap<&Path, Opened> = HashMap::new();
+    let mut opened: HashMap<&Path, OpenResult> = HashMap::new();
     let mut assets = Vec::new();
     for (i, surface) in scene.surfaces.iter().enumerate() {
         let open = || open_asset(&surface.asset, place, around);
@@ -318,7 +344,7 @@ fn open_asset(
     asset: &Path,
     place: &Place<'_>,
     around: &Surroundings<'_>,
-) -> Result<Asset, (&'static Rule, String)> {
+) -> Result<Texture, (&'static Rule, String)> {
     let data = match place {
         Place::Folder(folder) => {
             let path = folder.join(asset);
@@ -334,7 +360,7 @@ fn open_asset(
     };
     let opened = data
         .map_err(htex_play::Error::from)
-        .map(|data| Asset::with_registry(data, around.models.clone()))
+        .map(|data| Texture::with_registry(data, around.models.clone()))
         .map(|asset| if around.embedded { asset.with_embedded() } else { asset });
     opened.map_err(|error| match &error {
         htex_play::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
@@ -345,8 +371,8 @@ fn open_asset(
 }
 
 /// Reports assets whose quantity differs from the first asset's.
-fn check_quantities(assets: &[Asset], findings: &mut Findings) {
-    let Some(first) = assets.first().map(Asset::quantity) else {
+fn check_quantities(assets: &[Texture], findings: &mut Findings) {
+    let Some(first) = assets.first().map(Texture::quantity) else {
         return;
     };
     for (i, asset) in assets.iter().enumerate() {
@@ -385,10 +411,10 @@ fn missing(path: &Path) -> String {
     format!("there is no file {}; correct the path, or put it there", path.display())
 }
 
-fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &mut Findings) {
+fn check_representation(asset: &Texture, surface: &Surface, i: usize, findings: &mut Findings) {
     let source = |model: &str| {
-        let options = VoiceOptions::default().with_model(model);
-        asset.source(&options).map(|_| ())
+        let representation = asset.representation(model)?;
+        representation.source(&VoiceOptions::default()).map(|_| ())
     };
     let playable = match surface.representation.as_str() {
         "auto" => {
@@ -411,12 +437,12 @@ fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &m
     }
 }
 
-fn open_trace(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> Option<Trace> {
+fn open_trace(scene: &SceneFile, place: &Place<'_>, findings: &mut Findings) -> Option<Trace> {
     let Motion::Trace(path) = &scene.motion else {
         return None;
     };
     let rules = [rule::TRACE_MISSING, rule::TRACE_INVALID];
-    let open: (Open<Trace>, FromBytes<Trace>) = (Trace::open, Trace::from_bytes);
+    let open: (OpenFile<Trace>, FromBytes<Trace>) = (Trace::open, Trace::from_bytes);
     let trace = opened(open, place, path, rules, "/motion/trace", findings)?;
     for warning in &trace.warnings {
         findings.add(rule::TRACE_ASSUMED, "/motion/trace", warning.clone());
@@ -428,10 +454,14 @@ fn open_trace(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> Opti
     Some(trace)
 }
 
-fn open_response(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> Option<Response> {
+fn open_response(
+    scene: &SceneFile,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) -> Option<Response> {
     let path = scene.device.response.as_ref()?;
     let rules = [rule::RESPONSE_MISSING, rule::RESPONSE_INVALID];
-    let open: (Open<Response>, FromBytes<Response>) = (response::open, response::from_bytes);
+    let open: (OpenFile<Response>, FromBytes<Response>) = (response::open, response::from_bytes);
     opened(open, place, path, rules, "/device/response", findings)
 }
 
@@ -439,7 +469,7 @@ fn open_response(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> O
 /// amplifies.
 fn check_response(
     response: &Response,
-    assets: &[Asset],
+    assets: &[Texture],
     choice: &DeviceChoice,
     findings: &mut Findings,
 ) {
@@ -466,12 +496,12 @@ fn check_response(
     }
 }
 
-type Open<T> = fn(&Path) -> Result<T, ReadError>;
+type OpenFile<T> = fn(&Path) -> Result<T, ReadError>;
 type FromBytes<T> = fn(&str, &[u8]) -> Result<T, ReadError>;
 
 /// Opens a file. If it is missing or invalid, adds a finding instead.
 fn opened<T>(
-    (open, from_bytes): (Open<T>, FromBytes<T>),
+    (open, from_bytes): (OpenFile<T>, FromBytes<T>),
     place: &Place<'_>,
     path: &Path,
     [gone, invalid]: [&Rule; 2],

@@ -8,11 +8,11 @@ use std::time::Instant;
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::{Part, Resampler, UnusableRates};
+use htex_format::{AtCondition, Condition, Contact, Law};
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
-use htex_play::{AtCondition, Condition, Contact, Law, Motions};
+use htex_play::{Conditions, Motion};
 
 use crate::cost::{Costs, FilterCost};
-use crate::motion::Finger;
 use crate::played::PlayedSurface;
 use crate::render::Renderer;
 use crate::requirements::{Requirements, Span};
@@ -49,7 +49,8 @@ impl Costs {
         costs.renderer_ns = [true, false].map(|constant| {
             let mut renderer = Renderer::silent(&example_required(), constant);
             least(|block| {
-                renderer.render(block);
+                // It has no model that could fail.
+                let _ = renderer.render(block);
             })
         });
         costs.compensation = compensation();
@@ -204,11 +205,7 @@ fn signal() -> impl FnMut(&mut [f32]) {
 fn measure_stage(stage: &mut dyn Stage, pulled: usize, moves: bool) -> f64 {
     let mut source = signal();
     let context = |turn: bool| Context {
-        finger: Finger {
-            speed_mm_s: if turn { 100.0 } else { 110.0 },
-            force_n: if turn { 0.5 } else { 0.55 },
-            at_mm: None,
-        },
+        finger: if turn { Motion::new(100.0, 0.5) } else { Motion::new(110.0, 0.55) },
         level_rms: 0.1,
         ends_in: None,
     };
@@ -261,12 +258,12 @@ fn example_required() -> Requirements {
 }
 
 /// One condition, with a finger's law.
-fn example_motions() -> Motions {
+fn example_conditions() -> Conditions {
     let condition =
         Condition { speed_mm_s: Some(80.0), force_n: Some(0.4), ..Condition::default() };
     let at = AtCondition { condition: 0, level_rms: 0.1, quality: None, left_out: None };
     let law = Law::assumed(htex_format::Quantity::LateralForce, Contact::Finger);
-    Motions::new(&[at], &[condition], law)
+    Conditions::new(&[at], &[condition], law)
 }
 
 fn example_surface() -> PlayedSurface {
@@ -277,7 +274,7 @@ fn example_surface() -> PlayedSurface {
         largest_error_db: None,
         known: 1,
         follows_motion: false,
-        motions: Arc::new(example_motions()),
+        conditions: Arc::new(example_conditions()),
         frequency: Span::ANY,
         level: Span::ANY,
         speed_mm_s: Span::ANY,

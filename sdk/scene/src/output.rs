@@ -15,7 +15,7 @@ const LONGEST_ENDING: usize = 8;
 /// assert_eq!(output_name("..".as_ref(), "../x"), "scene.wav");
 /// ```
 pub fn output_name(scene: &Path, format: &str) -> String {
-    named(&stem(scene), format)
+    file_name(&stem(scene), format)
 }
 
 /// Returns the file name of the scene or asset in `path` without its extension. The result is never
@@ -32,7 +32,7 @@ pub(crate) fn stem(path: &Path) -> String {
 }
 
 /// Adds the extension of a format to a stem.
-pub(crate) fn named(stem: &str, format: &str) -> String {
+pub(crate) fn file_name(stem: &str, format: &str) -> String {
     let is_word = |text: &str| text.bytes().all(|byte| byte.is_ascii_alphanumeric());
     let ending = match format {
         "" | "auto" => "wav",

@@ -3,7 +3,7 @@
 use htex_base::finding::rules_page;
 use serde_json::Value;
 
-use crate::{RULES, Scene};
+use crate::{RULES, SceneFile};
 
 const HEAD: &str = "\
 # Findings in scenes
@@ -46,5 +46,5 @@ pub fn findings_page() -> String {
 
 /// Returns the JSON Schema of version 1.0 scenes: `spec/schemas/scene-1.json`.
 pub fn scene_schema() -> Value {
-    htex_base::schema::document::<Scene>("scene-1.json", "Scene of htex 1")
+    htex_base::schema::document::<SceneFile>("scene-1.json", "Scene of htex 1")
 }

@@ -5,7 +5,9 @@
 //! For a trace it is the integral of the smoothed velocity, because the positions that trackers
 //! record change in steps.
 
-use crate::motion::{Course, Finger};
+use htex_play::Motion;
+
+use crate::motion::Course;
 use crate::trace::Trace;
 
 /// Position of the finger along its path over time.
@@ -26,7 +28,7 @@ pub(crate) struct PathPoint {
 }
 
 impl Path {
-    pub(crate) fn of(course: &Course) -> Self {
+    pub(crate) fn new(course: &Course) -> Self {
         match course {
             Course::Constant(constant) => Self::Steady(constant.speed_mm_s),
             Course::Trace(trace, way) => Self::Trace(TracePath::new(trace, *way)),
@@ -35,18 +37,18 @@ impl Path {
     }
 
     /// Returns speed and position at a time in seconds. Does not allocate.
-    pub(crate) fn at(&self, t_s: f64) -> PathPoint {
+    pub(crate) fn point_at(&self, t_s: f64) -> PathPoint {
         match self {
             Self::Steady(speed_mm_s) => {
                 PathPoint { speed_mm_s: *speed_mm_s, position_mm: speed_mm_s * t_s }
             }
-            Self::Trace(path) => path.at(t_s),
-            Self::Live(path) => path.at(t_s),
+            Self::Trace(path) => path.point_at(t_s),
+            Self::Live(path) => path.point_at(t_s),
         }
     }
 
     /// Updates the path of a live scene: the finger is here at a time in seconds.
-    pub(crate) fn moved(&mut self, finger: &Finger, t_s: f64) {
+    pub(crate) fn moved(&mut self, finger: &Motion, t_s: f64) {
         if let Self::Live(path) = self {
             path.moved(finger, t_s);
         }
@@ -81,7 +83,7 @@ impl TracePath {
 
     /// Returns the speed, interpolated linearly between rows, and its integral. Before the first
     /// row and after the last one the finger is at rest.
-    fn at(&self, t_s: f64) -> PathPoint {
+    fn point_at(&self, t_s: f64) -> PathPoint {
         let above = self.t_s.partition_point(|t| *t <= t_s);
         let row = above.saturating_sub(1);
         let resting = |row: usize| PathPoint {
@@ -109,20 +111,20 @@ pub(crate) struct LivePath {
     t_s: f64,
     speed_mm_s: f64,
     position_mm: f64,
-    at_mm: Option<[f64; 2]>,
+    place_mm: Option<[f64; 2]>,
 }
 
 impl LivePath {
-    fn at(&self, t_s: f64) -> PathPoint {
+    fn point_at(&self, t_s: f64) -> PathPoint {
         PathPoint {
             speed_mm_s: self.speed_mm_s,
             position_mm: self.position_mm + self.speed_mm_s * (t_s - self.t_s),
         }
     }
 
-    fn moved(&mut self, finger: &Finger, t_s: f64) {
-        let integrated = self.at(t_s).position_mm;
-        self.position_mm = match self.at_mm.zip(finger.at_mm) {
+    fn moved(&mut self, finger: &Motion, t_s: f64) {
+        let integrated = self.point_at(t_s).position_mm;
+        self.position_mm = match self.place_mm.zip(finger.place_mm) {
             Some(([x0, y0], [x1, y1])) => {
                 // The places do not tell a forward stroke from a back stroke.
                 let way = libm::hypot(x1 - x0, y1 - y0).copysign(finger.speed_mm_s);
@@ -132,7 +134,7 @@ impl LivePath {
             }
             None => integrated,
         };
-        (self.t_s, self.speed_mm_s, self.at_mm) = (t_s, finger.speed_mm_s, finger.at_mm);
+        (self.t_s, self.speed_mm_s, self.place_mm) = (t_s, finger.speed_mm_s, finger.place_mm);
     }
 }
 
@@ -161,28 +163,29 @@ mod tests {
             t_s,
         });
         let path = Path::Trace(TracePath::new(&trace, there));
-        near(path.at(0.25), 160.0, 40.0);
-        near(path.at(0.75), -160.0, 40.0);
-        near(path.at(0.9999), -160.0, 0.0);
+        near(path.point_at(0.25), 160.0, 40.0);
+        near(path.point_at(0.75), -160.0, 40.0);
+        near(path.point_at(0.9999), -160.0, 0.0);
         for t in [0.1, 0.2, 0.3, 0.4, 0.45] {
-            let (out, back) = (path.at(t), path.at(1.0 - t));
+            let (out, back) = (path.point_at(t), path.point_at(1.0 - t));
             assert!((out.position_mm - back.position_mm).abs() < 1e-9);
             assert!((out.speed_mm_s + back.speed_mm_s).abs() < 1e-9);
         }
-        assert_eq!(path.at(2.0).speed_mm_s, 0.0);
+        assert_eq!(path.point_at(2.0).speed_mm_s, 0.0);
     }
 
     #[test]
     fn a_live_finger_goes_by_its_place_where_it_is_known() {
         let mut path = Path::Live(LivePath::default());
-        let finger = |speed_mm_s, at_mm| Finger { speed_mm_s, force_n: 0.4, at_mm };
+        let finger =
+            |speed_mm_s, place: Option<[f64; 2]>| Motion::new(speed_mm_s, 0.4).with_place_mm(place);
         path.moved(&finger(100.0, None), 1.0);
-        near(path.at(1.5), 100.0, 50.0);
+        near(path.point_at(1.5), 100.0, 50.0);
         path.moved(&finger(100.0, Some([7.0, 0.0])), 1.5);
-        near(path.at(1.6), 100.0, 60.0);
+        near(path.point_at(1.6), 100.0, 60.0);
         path.moved(&finger(100.0, Some([16.0, 0.0])), 1.6);
-        near(path.at(1.6), 100.0, 59.0);
+        near(path.point_at(1.6), 100.0, 59.0);
         path.moved(&finger(-50.0, Some([13.0, 4.0])), 1.7);
-        near(path.at(1.8), -50.0, 49.0);
+        near(path.point_at(1.8), -50.0, 49.0);
     }
 }

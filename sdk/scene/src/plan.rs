@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::SceneError;
 use crate::cost::Costs;
 use crate::file::{Effect, Levels, Switch};
-use crate::load::LoadedScene;
+use crate::load::Scene;
 use crate::played::PlayedSurface;
 use crate::representation::{self, Choice};
 use crate::requirements::Requirements;
@@ -20,9 +20,9 @@ pub struct Plan {
     /// The stages in processing order.
     pub stages: Vec<PlannedStage>,
     /// The effects that are left out.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<OmittedEffect>,
     /// The representation of each surface that the finger touches.
-    pub representation: Vec<Chosen>,
+    pub representation: Vec<ModelChoice>,
     /// Time that the renderer takes apart from the stages, nanoseconds per sample.
     pub renderer_ns: f64,
     /// Total cost of the stages and the renderer, nanoseconds per sample.
@@ -69,7 +69,7 @@ pub struct PlannedStage {
 
 /// An effect that is left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LeftOut {
+pub struct OmittedEffect {
     /// Name of the effect.
     pub name: &'static str,
     /// The effect's surface; `None`: all surfaces.
@@ -81,7 +81,7 @@ pub struct LeftOut {
 
 /// The representation that plays a surface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Chosen {
+pub struct ModelChoice {
     /// Index of the surface.
     pub surface: usize,
     pub model: String,
@@ -108,7 +108,7 @@ pub(crate) struct Mix {
 ///
 /// # Errors
 /// See [`SceneError`].
-pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result<Plan, SceneError> {
+pub fn plan(scene: &Scene, device: &Capabilities, costs: &Costs) -> Result<Plan, SceneError> {
     let mut required = Requirements::gather(scene, device)?;
     // No cost depends on the reference level, which is known only after this choice.
     let choices = {
@@ -120,7 +120,7 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         representation::choose(scene, &required, &cost)?
     };
     let loudest_rms = choices.iter().map(|c| c.played.level_rms).fold(0.0, f64::max);
-    required.level_rms = match scene.scene.device.levels {
+    required.level_rms = match scene.file.device.levels {
         Levels::Normalised => loudest_rms,
         Levels::Own => representation::reference_rms(scene, &required),
     };
@@ -176,8 +176,8 @@ fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneErr
     }
 }
 
-fn chosen(choice: &Choice) -> Chosen {
-    Chosen {
+fn chosen(choice: &Choice) -> ModelChoice {
+    ModelChoice {
         surface: choice.played.surface,
         model: choice.played.model.clone(),
         why: choice.why.clone(),
@@ -235,18 +235,18 @@ struct Ns {
 
 /// A plan under construction.
 struct Draft<'a> {
-    scene: &'a LoadedScene,
+    scene: &'a Scene,
     required: &'a Requirements,
     costs: &'a Costs,
     stages: Vec<PlannedStage>,
-    left_out: Vec<LeftOut>,
+    left_out: Vec<OmittedEffect>,
     surfaces: Vec<PlannedSurface>,
     mixes: Vec<Mix>,
     device: Vec<(&'static Entry, bool)>,
 }
 
 impl<'a> Draft<'a> {
-    fn new(scene: &'a LoadedScene, required: &'a Requirements, costs: &'a Costs) -> Self {
+    fn new(scene: &'a Scene, required: &'a Requirements, costs: &'a Costs) -> Self {
         Self {
             scene,
             required,
@@ -342,7 +342,7 @@ impl<'a> Draft<'a> {
         let touched = |i: &usize| surfaces.iter().any(|p| p.surface == *i);
         let all = 0..self.required.touches.len();
         let out = all.filter(|i| self.required.touches[*i].share == 0.0 && !touched(i));
-        self.left_out.extend(out.map(|surface| LeftOut {
+        self.left_out.extend(out.map(|surface| OmittedEffect {
             name: "synthesis",
             surface: Some(surface),
             reason: "the finger never slides over this surface".to_owned(),
@@ -383,7 +383,7 @@ impl<'a> Draft<'a> {
                 let taps = crate::stages::compensation_taps(played) as f64;
                 let per_frame = played.mix_rate_hz * played.fixed_ratio / self.required.rate_hz;
                 let ns = Ns {
-                    needed: costs.compensation.of(1.0, taps) * per_frame,
+                    needed: costs.compensation.time_ns(1.0, taps) * per_frame,
                     neutral: neutral * per_frame,
                 };
                 (played.mix_rate_hz, ns)
@@ -400,7 +400,7 @@ impl<'a> Draft<'a> {
         rate_hz: f64,
         ns: Ns,
     ) -> Result<Option<bool>, SceneError> {
-        let switch = self.scene.scene.effects.get(&entry.effect);
+        let switch = self.scene.file.effects.get(&entry.effect);
         match (switch.copied().unwrap_or_default(), need) {
             (Switch::Off, Need::In(reason)) if self.is_needed(entry) => {
                 Err(SceneError::Needed { effect: entry.name.to_owned(), reason })
@@ -454,7 +454,7 @@ impl<'a> Draft<'a> {
     }
 
     fn leave_out(&mut self, entry: &Entry, surface: Option<usize>, reason: String) {
-        self.left_out.push(LeftOut { name: entry.name, surface, reason });
+        self.left_out.push(OmittedEffect { name: entry.name, surface, reason });
     }
 }
 

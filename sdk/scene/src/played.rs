@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use htex_play::exploration::CEILING;
-use htex_play::{Motions, Representation, SampleSource, Scaling, VoiceOptions};
+use htex_play::{Conditions, Representation, SampleSource, Scaling, VoiceOptions};
 
 use crate::SceneError;
 use crate::file::{Effect, Switch};
-use crate::load::LoadedScene;
+use crate::load::Scene;
 use crate::requirements::{Requirements, Span, Touch};
 
 /// Largest frequency ratio for which a live scene is prepared.
@@ -30,7 +30,7 @@ pub(crate) struct PlayedSurface {
     /// Number of known conditions.
     pub(crate) known: usize,
     /// Known speeds and forces, and the law that applies outside them.
-    pub(crate) motions: Arc<Motions>,
+    pub(crate) conditions: Arc<Conditions>,
     /// The frequency and level factors that occur.
     pub(crate) frequency: Span,
     pub(crate) level: Span,
@@ -66,24 +66,26 @@ pub(crate) struct PlayedSurface {
 impl PlayedSurface {
     /// Makes a surface that the representation of `model` plays.
     pub(crate) fn new(
-        scene: &LoadedScene,
+        scene: &Scene,
         required: &Requirements,
         surface: usize,
         model: &str,
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &required.touches[surface]);
-        let measure = scene.scene.budget.error;
-        let stored = representation(asset, model);
-        let motions = asset.motions(Some(model)).map_err(SceneError::of_surface(surface, scene))?;
-        let loaded =
-            asset.loaded_model(Some(model)).map_err(SceneError::of_surface(surface, scene))?;
+        let measure = scene.file.budget.error;
+        let representation =
+            asset.representation(model).map_err(SceneError::for_surface(surface, scene))?;
+        let stored = representation.data();
+        let conditions =
+            representation.conditions().map_err(SceneError::for_surface(surface, scene))?;
+        let loaded = representation.model().map_err(SceneError::for_surface(surface, scene))?;
         let mut played = Self {
             surface,
             model: model.to_owned(),
-            error_db: stored.and_then(|r| r.error_db(measure)),
-            largest_error_db: stored.and_then(|r| r.largest_error_db(measure)),
-            known: stored.map_or(0, |r| r.at.len()),
-            motions: Arc::new(motions),
+            error_db: stored.error_db(measure),
+            largest_error_db: stored.largest_error_db(measure),
+            known: stored.at.len(),
+            conditions: Arc::new(conditions),
             frequency: Span::NONE,
             level: Span::NONE,
             follows_motion: loaded.follows_motion(),
@@ -91,7 +93,7 @@ impl PlayedSurface {
             force_n: touch.force_n,
             always_touched: touch.always,
             share: touch.share,
-            start: touch.first.map(|finger| finger.motion()),
+            start: touch.first.map(|finger| finger.without_direction()),
             rate_hz: 0.0,
             own_rate: false,
             oversampling: 1.0,
@@ -100,7 +102,7 @@ impl PlayedSurface {
             top_hz: asset.band().high_hz,
             fixed_ratio: required.pitch,
             fixed_gain: 1.0,
-            gain: scene.scene.surfaces[surface].gain,
+            gain: scene.file.surfaces[surface].gain,
             level_rms: 0.0,
         };
         // The order matters: the rate of the source depends on the frequency factors, and its level
@@ -109,15 +111,17 @@ impl PlayedSurface {
         played.scale_frequencies();
         let most_gain = played.scale_level();
         let source =
-            played.source(scene, required).map_err(SceneError::of_surface(surface, scene))?;
+            played.source(scene, required).map_err(SceneError::for_surface(surface, scene))?;
         played.rate_hz = source.rate_hz();
         played.divide_rate(required.rate_hz);
         played.own_rate = source.has_own_rate() && played.oversampling == 1.0;
         played.mix_rate_hz = played.rate_hz * played.oversampling;
-        let shape =
-            played.compensated(required, asset).map_err(SceneError::of_surface(surface, scene))?;
-        played.level_rms =
-            loudest(asset, model, source.level_rms()) * played.gain * most_gain * shape;
+        let shape = played
+            .compensated(required, representation)
+            .map_err(SceneError::for_surface(surface, scene))?;
+        let levels = stored.at.iter().map(|at| at.level_rms);
+        let loudest = levels.fold(source.level_rms(), f64::max);
+        played.level_rms = loudest * played.gain * most_gain * shape;
         Ok(played)
     }
 
@@ -126,16 +130,15 @@ impl PlayedSurface {
     /// short.
     pub(crate) fn source(
         &self,
-        scene: &LoadedScene,
+        scene: &Scene,
         required: &Requirements,
     ) -> Result<SampleSource, htex_play::Error> {
         let mut wanted_hz = required.rate_hz / (self.fixed_ratio * self.oversampling);
         if required.compensation.is_some() {
             wanted_hz = wanted_hz.min(FILTERED_OVERSAMPLING * self.top_hz);
         }
-        scene.assets[self.surface].source(
+        scene.assets[self.surface].representation(&self.model[..])?.source(
             &VoiceOptions::default()
-                .with_model(&self.model)
                 .with_rate_hz(wanted_hz)
                 // Surfaces of one asset must not play the same noise: cross-fades assume that they
                 // are uncorrelated.
@@ -145,13 +148,13 @@ impl PlayedSurface {
     }
 
     /// Finds the factors of all motions on the surface, for the effects that are on.
-    fn find_factors(&mut self, scene: &LoadedScene, touch: &Touch) {
-        let is_on = |effect| scene.scene.effects.get(&effect) != Some(&Switch::Off);
-        let explored = self.motions.explored();
+    fn find_factors(&mut self, scene: &Scene, touch: &Touch) {
+        let is_on = |effect| scene.file.effects.get(&effect) != Some(&Switch::Off);
+        let range = self.conditions.range();
         let follows = self.follows_motion;
         let moves_frequencies =
-            is_on(Effect::FrequencyScaling) && !follows && explored.moves_frequencies();
-        let moves_level = is_on(Effect::LevelScaling) && !follows && explored.moves_level();
+            is_on(Effect::FrequencyScaling) && !follows && range.moves_frequencies();
+        let moves_level = is_on(Effect::LevelScaling) && !follows && range.moves_level();
         // A live scene has no list of motions.
         if touch.speed_mm_s == Span::ANY {
             self.frequency = if moves_frequencies { Span::ANY } else { Span::ONE };
@@ -159,9 +162,9 @@ impl PlayedSurface {
             return;
         }
         for motion in &touch.motions {
-            let Scaling { frequency, level } = self.motions.scaling(*motion, CEILING);
-            self.frequency.take(if moves_frequencies { frequency } else { 1.0 });
-            self.level.take(if moves_level { level } else { 1.0 });
+            let Scaling { frequency, level } = self.conditions.scaling(*motion, CEILING);
+            self.frequency.include(if moves_frequencies { frequency } else { 1.0 });
+            self.level.include(if moves_level { level } else { 1.0 });
         }
     }
 
@@ -203,33 +206,20 @@ impl PlayedSurface {
     fn compensated(
         &self,
         required: &Requirements,
-        asset: &htex_play::Asset,
+        representation: Representation<'_>,
     ) -> Result<f64, htex_play::Error> {
         let Some(inverse) = &required.compensation else {
             return Ok(1.0);
         };
-        let band = asset.band();
+        let band = representation.texture().band();
         let grid = band.grid_hz();
-        let magnitude = asset.recorded_magnitude(Some(&self.model), self.start, &grid)?;
+        let magnitude = representation.recorded_magnitude(self.start, &grid)?;
         let sum = |gain: &dyn Fn(f64) -> f64| {
             let one = |(m, f): (&f64, &f64)| (m * gain(*f)).powi(2);
             magnitude.iter().zip(&grid).map(one).sum::<f64>()
         };
         let before = sum(&|_| 1.0);
-        let behind = sum(&|hz| inverse.at(hz * self.fixed_ratio));
+        let behind = sum(&|hz| inverse.gain_at(hz * self.fixed_ratio));
         Ok(if before > 0.0 { (behind / before).sqrt() } else { 1.0 })
     }
-}
-
-/// Returns the representation of a model.
-fn representation<'a>(asset: &'a htex_play::Asset, model: &str) -> Option<&'a Representation> {
-    let all = &asset.manifest().representations;
-    all.iter().find(|r| r.model == model)
-}
-
-/// Returns the largest level of a representation, in the asset's unit.
-fn loudest(asset: &htex_play::Asset, model: &str, level_rms: f64) -> f64 {
-    let found = representation(asset, model).into_iter();
-    let levels = found.flat_map(|r| &r.at).map(|at| at.level_rms);
-    levels.fold(level_rms, f64::max)
 }

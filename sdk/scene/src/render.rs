@@ -1,10 +1,12 @@
 //! The renderer: runs the chain of a plan.
 
+use htex_play::Motion;
+
 use crate::SceneError;
 use crate::ahead::Ahead;
 use crate::file::{Effect, Surface};
-use crate::load::LoadedScene;
-use crate::motion::{Course, Finger, Readings, topmost};
+use crate::load::Scene;
+use crate::motion::{Course, Readings, topmost};
 use crate::path::Path;
 use crate::plan::{Mix, Plan, PlannedSurface};
 use crate::requirements::Requirements;
@@ -15,6 +17,7 @@ use crate::track::{FingerOnPath, Track};
 const PIECE: usize = 256;
 
 /// Plays a scene. [`Renderer::render`] is real-time safe: it does not allocate, lock or wait.
+/// [`Scene::renderer`] makes one for a program that takes the samples itself.
 pub struct Renderer {
     surfaces: Vec<Surface>,
     course: Course,
@@ -24,7 +27,7 @@ pub struct Renderer {
     mixes: Vec<MixChain>,
     device: Chain,
     sum: Vec<f32>,
-    live: Finger,
+    live: Motion,
     frame: u64,
     /// Frames until the next control block.
     left: usize,
@@ -45,7 +48,7 @@ struct Timing {
 }
 
 impl Timing {
-    fn of(required: &Requirements) -> Self {
+    fn new(required: &Requirements) -> Self {
         Self {
             rate_hz: required.rate_hz,
             control: required.control,
@@ -67,7 +70,7 @@ impl Renderer {
     ///
     /// # Errors
     /// If a model cannot make a voice.
-    pub fn new(scene: &LoadedScene, plan: &Plan) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene, plan: &Plan) -> Result<Self, SceneError> {
         let required = &plan.required;
         let mixes = plan
             .mixes
@@ -83,21 +86,21 @@ impl Renderer {
         }
         // The contact stage fades at the end, so it needs updates even if nothing else changes.
         let ends = plan.device.iter().any(|(entry, _)| entry.effect == Effect::Contact);
-        let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
+        let course = Course::new(&scene.file.motion, scene.trace.as_ref());
         Ok(Self {
-            surfaces: scene.scene.surfaces.clone(),
-            path: Path::of(&course),
+            surfaces: scene.file.surfaces.clone(),
+            path: Path::new(&course),
             readings: Readings::new(required.control_s()),
             course,
-            timing: Timing::of(required),
+            timing: Timing::new(required),
             mixes,
             device,
             sum: vec![0.0; PIECE],
-            live: Finger::AWAY,
+            live: Motion::AWAY,
             frame: 0,
             left: 0,
             follows: !plan.constant || ends,
-            ahead: Ahead::new(plan.constant && !ends, scene.scene.seed),
+            ahead: Ahead::new(plan.constant && !ends, scene.file.seed),
             timed: false,
             peak: 0.0,
         })
@@ -109,14 +112,14 @@ impl Renderer {
         let course = Course::Live;
         Self {
             surfaces: Vec::new(),
-            path: Path::of(&course),
+            path: Path::new(&course),
             readings: Readings::new(required.control_s()),
             course,
-            timing: Timing::of(required),
+            timing: Timing::new(required),
             mixes: Vec::new(),
             device: Chain::default(),
             sum: Vec::new(),
-            live: Finger::AWAY,
+            live: Motion::AWAY,
             frame: 0,
             left: 0,
             follows: !constant,
@@ -137,25 +140,26 @@ impl Renderer {
         self.timing.rate_hz
     }
 
-    /// Sets the position and motion of the finger in a live scene. Numbers that are impossible for
-    /// a finger ([`Finger::is_reading`]) count as a failed reading: the last good motion is held
-    /// for at most 100 ms, then there is no contact until the next good one.
+    /// Sets the motion of the finger in a live scene; its speed is negative on the back stroke.
+    /// Without a place, the finger is on every surface without a region. A speed above 1000 mm/s, a
+    /// force above 20 N or a number out of range counts as a failed reading: the last good motion
+    /// is held for at most 100 ms, then there is no contact until the next good one.
     ///
     /// # Errors
     /// [`SceneError::Motion`] if a number is not finite or the force is negative. This also counts
     /// as a failed reading.
-    pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
+    pub fn set_motion(&mut self, motion: Motion) -> Result<(), SceneError> {
         // A bad reading is stored too, so that `Readings` sees that it failed.
-        self.live = finger;
-        if finger.is_reading() {
-            self.path.moved(&finger, self.seconds());
+        self.live = motion;
+        if motion.is_reading() {
+            self.path.moved(&motion, self.seconds());
         }
-        let place = finger.at_mm.unwrap_or_default();
-        let finite = finger.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
-        if finite && finger.force_n.is_finite() && finger.force_n >= 0.0 {
+        let place = motion.place_mm.unwrap_or_default();
+        let finite = motion.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
+        if finite && motion.force_n.is_finite() && motion.force_n >= 0.0 {
             Ok(())
         } else {
-            Err(SceneError::Motion { speed_mm_s: finger.speed_mm_s, force_n: finger.force_n })
+            Err(SceneError::Motion { speed_mm_s: motion.speed_mm_s, force_n: motion.force_n })
         }
     }
 
@@ -176,10 +180,15 @@ impl Renderer {
     }
 
     /// Fills `out` with the next samples, in the unit of the device, and returns their number,
-    /// which is smaller at the end of the scene. The samples do not depend on the length of `out`.
-    /// If a model fails, its surface is silent and the others continue; see [`Self::take_failure`].
-    pub fn render(&mut self, out: &mut [f32]) -> usize {
-        if self.follows { self.render_blocks(out) } else { self.render_ahead(out) }
+    /// which is smaller at the end of the scene; the rest is zero. The samples do not depend on the
+    /// length of `out`.
+    ///
+    /// # Errors
+    /// The first failure of a model since the last call. `out` is filled nevertheless: the surface
+    /// of that model is silent and the others continue, and so may the caller.
+    pub fn render(&mut self, out: &mut [f32]) -> Result<usize, SceneError> {
+        let frames = if self.follows { self.render_blocks(out) } else { self.render_ahead(out) };
+        self.failure().map_or(Ok(frames), Err)
     }
 
     /// Renders many samples at once even if few are requested. When several renderers run in turn,
@@ -196,7 +205,7 @@ impl Renderer {
             if self.ahead.is_empty() {
                 self.fill_ahead(left);
             }
-            let taken = self.ahead.take(&mut out[done..done + wanted]);
+            let taken = self.ahead.read(&mut out[done..done + wanted]);
             self.frame += taken as u64;
             done += taken;
         }
@@ -250,19 +259,20 @@ impl Renderer {
 
     /// Returns the finger at the current frame, after failed readings were replaced, and its
     /// position along the path.
-    fn finger(&mut self) -> (Finger, FingerOnPath) {
+    fn finger(&mut self) -> (Motion, FingerOnPath) {
         let t_s = self.seconds();
         let reading = match self.course {
             Course::Live => self.live,
-            ref course => course.at(t_s),
+            ref course => course.motion(t_s),
         };
-        let finger = self.readings.take(reading, 1);
-        let mut point = self.path.at(t_s);
+        let finger = self.readings.filter(reading, 1);
+        let mut point = self.path.point_at(t_s);
         // When the hold is over, the path would otherwise continue at its last speed.
         if !self.readings.is_good() && !finger.slides() {
             point.speed_mm_s = 0.0;
         }
-        let on_path = FingerOnPath { t_s, force_n: finger.force_n, point, place_mm: finger.at_mm };
+        let on_path =
+            FingerOnPath { t_s, force_n: finger.force_n, point, place_mm: finger.place_mm };
         (finger, on_path)
     }
 
@@ -317,7 +327,7 @@ impl Renderer {
     }
 
     /// Returns and clears the first failure of a model.
-    pub fn take_failure(&mut self) -> Option<SceneError> {
+    fn failure(&mut self) -> Option<SceneError> {
         let mut tracks = self.mixes.iter_mut().flat_map(|mix| &mut mix.tracks);
         tracks.find_map(|track| {
             let source = track.synthesis.take_failure()?;
@@ -345,7 +355,7 @@ fn mix(mixes: &mut [MixChain], sum: &mut [f32], timed: bool, out: &mut [f32]) {
 
 impl MixChain {
     fn new(
-        scene: &LoadedScene,
+        scene: &Scene,
         required: &Requirements,
         surfaces: &[PlannedSurface],
         mix: &Mix,

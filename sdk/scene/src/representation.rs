@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::SceneError;
 use crate::file::Budget;
-use crate::load::LoadedScene;
+use crate::load::Scene;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
@@ -35,14 +35,14 @@ struct Candidates {
 
 /// Chooses a representation for each surface that the finger touches.
 pub(crate) fn choose(
-    scene: &LoadedScene,
+    scene: &Scene,
     required: &Requirements,
     cost: Cost<'_>,
 ) -> Result<Vec<Choice>, SceneError> {
     let touched = (0..scene.assets.len()).filter(|&i| required.touches[i].share > 0.0);
     let all: Vec<Candidates> =
         touched.map(|surface| candidates(scene, required, surface)).collect::<Result<_, _>>()?;
-    let budget = scene.scene.budget;
+    let budget = scene.file.budget;
     let options = within(&all, &budget, cost)?;
     let why = |(played, from): (PlayedSurface, &Candidates)| Choice {
         why: reason(&played, from, &budget),
@@ -54,8 +54,8 @@ pub(crate) fn choose(
 /// Returns the reference level for levels that are not normalised, in the assets' unit. It is the
 /// scene's own if set; otherwise it is the level of the strongest representation among the touched
 /// surfaces, whichever representation plays them.
-pub(crate) fn reference_rms(scene: &LoadedScene, required: &Requirements) -> f64 {
-    if let Some(given_n) = scene.scene.device.reference_rms {
+pub(crate) fn reference_rms(scene: &Scene, required: &Requirements) -> f64 {
+    if let Some(given_n) = scene.file.device.reference_rms {
         return given_n;
     }
     let mut strongest_rms = 0.0f64;
@@ -72,16 +72,15 @@ pub(crate) fn reference_rms(scene: &LoadedScene, required: &Requirements) -> f64
 }
 
 fn candidates(
-    scene: &LoadedScene,
+    scene: &Scene,
     required: &Requirements,
     surface: usize,
 ) -> Result<Candidates, SceneError> {
-    let (asset, wanted) = (&scene.assets[surface], &scene.scene.surfaces[surface].representation);
+    let (asset, wanted) = (&scene.assets[surface], &scene.file.surfaces[surface].representation);
     let all = &asset.manifest().representations;
     if wanted != "auto" {
-        let id = asset
-            .representation_id(Some(wanted))
-            .map_err(SceneError::of_surface(surface, scene))?;
+        let named = asset.representation(&wanted[..]);
+        let id = named.map_err(SceneError::for_surface(surface, scene))?.id();
         return Ok(Candidates {
             surface,
             options: vec![PlayedSurface::new(scene, required, surface, id)?],
@@ -89,10 +88,10 @@ fn candidates(
         });
     }
     // All programs choose in this order.
-    let ranked = asset.ranked(scene.scene.budget.error).into_iter();
-    let known = ranked.map(|i| &all[i].model[..]).filter(|id| asset.knows_model(id));
-    let options = known
-        .map(|id| PlayedSurface::new(scene, required, surface, id))
+    let ranked = asset.ranked(scene.file.budget.error).into_iter();
+    let options = ranked
+        .filter(|representation| representation.is_runnable())
+        .map(|representation| PlayedSurface::new(scene, required, surface, representation.id()))
         .collect::<Result<Vec<_>, _>>()?;
     if options.is_empty() {
         let there: Vec<&str> = all.iter().map(|r| &r.model[..]).collect();

@@ -8,8 +8,8 @@ use htex_play::exploration::CONTACT_RAMP_S;
 use crate::SceneError;
 use crate::device::quantity_misfit;
 use crate::file::Surface;
-use crate::load::LoadedScene;
-use crate::motion::{Course, Finger, Readings, topmost};
+use crate::load::Scene;
+use crate::motion::{Course, Readings, topmost};
 use crate::response::Inverse;
 
 /// Relative difference of speeds and forces that counts as rounding.
@@ -35,7 +35,7 @@ impl Span {
     pub(crate) const ONE: Self = Self { low: 1.0, high: 1.0 };
     pub(crate) const ANY: Self = Self { low: 0.0, high: f64::INFINITY };
 
-    pub(crate) fn take(&mut self, x: f64) {
+    pub(crate) fn include(&mut self, x: f64) {
         self.low = self.low.min(x);
         self.high = self.high.max(x);
     }
@@ -103,15 +103,15 @@ pub(crate) struct Touch {
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
     /// The finger at the first contact.
-    pub(crate) first: Option<Finger>,
+    pub(crate) first: Option<Motion>,
     /// The motions in contact, each different from the previous one.
     pub(crate) motions: Vec<Motion>,
 }
 
 impl Requirements {
     /// Gathers the requirements that do not depend on the choice of representations.
-    pub(crate) fn gather(scene: &LoadedScene, device: &Capabilities) -> Result<Self, SceneError> {
-        let (file, choice) = (&scene.scene, &scene.scene.device);
+    pub(crate) fn gather(scene: &Scene, device: &Capabilities) -> Result<Self, SceneError> {
+        let (file, choice) = (&scene.file, &scene.file.device);
         let rate_hz = choice.rate_hz.unwrap_or(device.default_rate_hz);
         if !device.has_rate(rate_hz) {
             return Err(SceneError::Rate { rate_hz, rates: device.rates_text() });
@@ -121,7 +121,7 @@ impl Requirements {
         if let Some(sentence) = misfit {
             return Err(SceneError::Quantity { sentence });
         }
-        let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
+        let course = Course::new(&scene.file.motion, scene.trace.as_ref());
         let duration_s = file.duration_s.or(scene.trace.as_ref().map(|t| t.duration_s()));
         let limit = device.limit.unwrap_or(f64::INFINITY);
         let pitch = match device.quantity {
@@ -184,7 +184,7 @@ impl Requirements {
         let mut readings = Readings::new(self.control_s());
         for look in 0..looks {
             let frame = (look * stride) as f64 * self.control as f64;
-            let finger = readings.take(course.at(frame / self.rate_hz), stride);
+            let finger = readings.filter(course.motion(frame / self.rate_hz), stride);
             self.look(finger, surfaces);
         }
         for touch in &mut self.touches {
@@ -192,7 +192,7 @@ impl Requirements {
         }
     }
 
-    fn look(&mut self, finger: Finger, surfaces: &[Surface]) {
+    fn look(&mut self, finger: Motion, surfaces: &[Surface]) {
         let touched = topmost(surfaces, &finger);
         self.breaks_contact |= !finger.slides();
         self.turns_round |= finger.slides() && finger.speed_mm_s < 0.0;
@@ -201,11 +201,11 @@ impl Requirements {
                 touch.always = false;
             } else if finger.slides() {
                 touch.share += 1.0;
-                touch.speed_mm_s.take(finger.speed_mm_s.abs());
-                touch.force_n.take(finger.force_n);
+                touch.speed_mm_s.include(finger.speed_mm_s.abs());
+                touch.force_n.include(finger.force_n);
                 touch.first.get_or_insert(finger);
-                if touch.motions.last() != Some(&finger.motion()) {
-                    touch.motions.push(finger.motion());
+                if touch.motions.last() != Some(&finger.without_direction()) {
+                    touch.motions.push(finger.without_direction());
                 }
             }
         }

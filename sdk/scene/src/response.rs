@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use htex_dsp::grid::Band;
-use htex_play::Asset;
+use htex_play::Texture;
 use htex_recording::{Raised, raised, read_response, response_from_bytes};
 use htex_recording::{ReadError, ReadProblem};
 
@@ -51,7 +51,7 @@ pub(crate) struct Inverse {
 
 impl Inverse {
     /// `pitch` is the factor that multiplies the frequencies of all textures.
-    pub(crate) fn new(response: &Response, assets: &[Asset], pitch: f64, depth_db: f64) -> Self {
+    pub(crate) fn new(response: &Response, assets: &[Texture], pitch: f64, depth_db: f64) -> Self {
         let band = played_band(assets, pitch);
         Self {
             largest: response.largest_in(band),
@@ -64,7 +64,7 @@ impl Inverse {
     /// Returns the gain at a frequency: |H| / (|H|² + floor²), where H is relative to its largest
     /// magnitude in the band. It is near 1/|H| and at most 1/(2 floor), and 0 where the response is
     /// 0.
-    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+    pub(crate) fn gain_at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;
         let gain = part / (part * part + self.floor * self.floor);
@@ -80,7 +80,7 @@ impl Inverse {
     /// Returns which part of the band is amplified, and by how much.
     pub(crate) fn raised(&self) -> Option<Raised> {
         let grid = self.band.grid_hz();
-        raised(&grid, grid.iter().map(|&hz| self.at(hz)))
+        raised(&grid, grid.iter().map(|&hz| self.gain_at(hz)))
     }
 
     pub(crate) fn band(&self) -> Band {
@@ -89,8 +89,8 @@ impl Inverse {
 }
 
 /// Returns the band from the lowest to the highest frequency of the textures.
-fn played_band(assets: &[Asset], pitch: f64) -> Band {
-    let bands = || assets.iter().map(Asset::band);
+fn played_band(assets: &[Texture], pitch: f64) -> Band {
+    let bands = || assets.iter().map(Texture::band);
     Band {
         low_hz: pitch * bands().map(|b| b.low_hz).fold(f64::INFINITY, f64::min),
         high_hz: pitch * bands().map(|b| b.high_hz).fold(0.0, f64::max),

@@ -106,7 +106,7 @@ impl Trace {
     /// Returns the motion at `t_s` seconds, interpolated linearly between rows. Before the first
     /// row and after the last one the finger rests there without contact: speed and force are 0.
     /// Does not allocate.
-    pub fn at(&self, t_s: f64) -> TracePoint {
+    pub fn point_at(&self, t_s: f64) -> TracePoint {
         let last = self.t_s.len().saturating_sub(1);
         let above = self.t_s.partition_point(|t| *t <= t_s);
         if above == 0 || t_s > self.duration_s() || t_s.is_nan() {
@@ -191,7 +191,7 @@ mod tests {
         {
             let trace = trace(rate_hz, 2.0, 0.1, x_mm);
             for step in 0..200 {
-                let speed = trace.at(f64::from(step) / 100.0).speed_mm_s;
+                let speed = trace.point_at(f64::from(step) / 100.0).speed_mm_s;
                 assert!((speed - 80.0).abs() < 2.5, "{rate_hz} Hz: {speed} mm/s");
             }
         }
@@ -204,15 +204,15 @@ mod tests {
         for step in 10..290 {
             let t = f64::from(step) / 100.0;
             let expected = amplitude * omega * (omega * t).cos();
-            let point = trace.at(t);
+            let point = trace.point_at(t);
             let error = (point.vx_mm_s - expected).abs() / (amplitude * omega);
             assert!(error < 0.01, "{t} s: {} mm/s", point.vx_mm_s);
             assert!((point.speed_mm_s - point.vx_mm_s.abs()).abs() < 6.0);
         }
         assert_eq!(trace.duration_s(), 3.0);
-        assert_eq!(trace.at(3.0).force_n, 0.4);
+        assert_eq!(trace.point_at(3.0).force_n, 0.4);
         for t in [-0.001, 3.001, f64::INFINITY, f64::NAN] {
-            let point = trace.at(t);
+            let point = trace.point_at(t);
             assert_eq!((point.speed_mm_s, point.force_n, point.y_mm), (0.0, 0.0, 1.0));
         }
     }
@@ -241,13 +241,17 @@ mod tests {
                 let held = made(bad, speed_mm_s, force_n);
                 for step in 0..4_000 {
                     let t_s = f64::from(step) / 2_000.0;
-                    assert_eq!(held.at(t_s), plain.at(t_s), "{speed_mm_s} {force_n} at {t_s}");
+                    assert_eq!(
+                        held.point_at(t_s),
+                        plain.point_at(t_s),
+                        "{speed_mm_s} {force_n} at {t_s}"
+                    );
                 }
             }
             let lost = made(100..200, speed_mm_s, force_n);
-            assert_eq!(lost.at(0.59).force_n, 0.4);
-            assert_eq!((lost.at(0.61).force_n, lost.at(0.9).speed_mm_s), (0.0, 0.0));
-            assert_eq!(lost.at(1.1), plain.at(1.1));
+            assert_eq!(lost.point_at(0.59).force_n, 0.4);
+            assert_eq!((lost.point_at(0.61).force_n, lost.point_at(0.9).speed_mm_s), (0.0, 0.0));
+            assert_eq!(lost.point_at(1.1), plain.point_at(1.1));
         }
     }
 
@@ -271,7 +275,7 @@ mod tests {
                 t_s,
             });
             for row in 0..rows {
-                let point = trace.at(trace.t_s[row]);
+                let point = trace.point_at(trace.t_s[row]);
                 prop_assert!((point.vx_mm_s - v).abs() < 1e-6 * (1.0 + v.abs()), "{}", point.vx_mm_s);
                 prop_assert!((point.vy_mm_s + 0.5 * v).abs() < 1e-6 * (1.0 + v.abs()));
                 prop_assert_eq!((point.speed_mm_s, point.force_n), (3.0, 0.0));

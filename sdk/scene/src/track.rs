@@ -1,8 +1,10 @@
 //! One surface of a running scene: its voice, and the stages before surfaces are mixed.
 
+use htex_play::Motion;
+
 use crate::SceneError;
 use crate::file::Effect;
-use crate::load::LoadedScene;
+use crate::load::Scene;
 use crate::path::PathPoint;
 use crate::plan::PlannedSurface;
 use crate::requirements::Requirements;
@@ -54,14 +56,14 @@ struct Count {
 
 impl Track {
     pub(crate) fn new(
-        scene: &LoadedScene,
+        scene: &Scene,
         required: &Requirements,
         planned: &PlannedSurface,
     ) -> Result<Self, SceneError> {
         let played = &planned.played;
         let source = played
             .source(scene, required)
-            .map_err(SceneError::of_surface(played.surface, scene))?;
+            .map_err(SceneError::for_surface(played.surface, scene))?;
         let synthesis = Synthesis::new(source);
         let mut chain = Chain::default();
         for entry in EFFECTS {
@@ -86,7 +88,7 @@ impl Track {
         });
         Ok(Self {
             surface: played.surface,
-            asset: scene.scene.surfaces[played.surface].asset.clone(),
+            asset: scene.file.surfaces[played.surface].asset.clone(),
             synthesis,
             synthesis_run: Count::default(),
             interpolation: planned
@@ -116,7 +118,7 @@ impl Track {
             let moves = !*neutral && context.finger.slides();
             count.run(timed, || {
                 if moves {
-                    self.synthesis.set_motion(context.finger.motion());
+                    self.synthesis.set_motion(context.finger.without_direction());
                 }
             });
         }
@@ -133,14 +135,11 @@ impl Track {
         };
         // The voice stood still while the surface was silent, so its time is behind the scene's.
         let skipped_s = follower.skipped as f64 / follower.rate_hz;
-        let motion = htex_play::Finger {
-            speed_mm_s: finger.point.speed_mm_s,
-            force_n: finger.force_n,
-            position_mm: finger.point.position_mm * follower.pitch,
-            place_mm: finger.place_mm,
-        };
+        let motion = Motion::new(finger.point.speed_mm_s, finger.force_n)
+            .with_position_mm(finger.point.position_mm * follower.pitch)
+            .with_place_mm(finger.place_mm);
         let at_s = finger.t_s * follower.pitch - skipped_s;
-        self.synthesis.set_finger(motion, at_s);
+        self.synthesis.follow_finger(motion, at_s);
     }
 
     /// Counts frames during which the surface is silent and not rendered.

@@ -5,7 +5,7 @@ use htex_format::{Document, DocumentRules};
 use serde_json::Value;
 
 use crate::check::check;
-use crate::file::{Effect, Scene};
+use crate::file::{Effect, SceneFile};
 use crate::limits::Limits;
 use crate::rules as rule;
 
@@ -29,7 +29,7 @@ const DOCUMENT: Document = Document {
 
 /// Reads a scene and checks everything that needs neither its files nor its device. Returns `None`,
 /// with a finding that states the reason, if the scene cannot be used. Never panics.
-pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Scene> {
+pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<SceneFile> {
     if bytes.len() as u64 > limits.file_bytes {
         let message = format!("the scene has more than {} bytes", limits.file_bytes);
         findings.add(rule::SCENE_FILE_TOO_LARGE, "", message);
@@ -41,7 +41,7 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
     } else {
         check_effect_names(&opened.value, findings)?;
     }
-    let (scene, unknown) = DOCUMENT.typed::<Scene>(&opened, findings)?;
+    let (scene, unknown) = DOCUMENT.typed::<SceneFile>(&opened, findings)?;
     if !opened.newer {
         for pointer in unknown {
             let message = "version 1.0 has no such key; correct it or remove it".to_owned();

@@ -43,7 +43,7 @@ samples = voice.render(20_000)  # one second`,
     },
     {
       language: "Rust",
-      text: `let asset = htex::Asset::open("${file}")?;
+      text: `let asset = htex::Texture::open("${file}")?;
 let mut voice = asset.voice(&htex::VoiceOptions::default())?;
 let mut block = [0.0f32; 256];
 voice.set_motion(htex::Motion::new(${decimal(mmS)}, ${decimal(newtons)}))?; // mm/s, N

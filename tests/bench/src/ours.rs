@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use htex::{Asset, VoiceOptions};
+use htex::{Texture, VoiceOptions};
 use htex_author::recording::{ReadOptions, read_recording};
 use htex_author::{SpectrumOptions, TextureSpectrum, segment_spectra};
 use htex_host::{LoadedModel, ModelVoice, Stream, render_together};
@@ -128,7 +128,7 @@ fn process(case: &Case) -> Result<f64, Failure> {
 /// Measures from an asset's bytes to the first sample.
 fn open(case: &Case) -> Result<f64, Failure> {
     let begun = Instant::now();
-    let asset = Asset::from_bytes(&case.asset)?;
+    let asset = Texture::from_bytes(&case.asset)?;
     let mut voice = asset.voice(&VoiceOptions::default())?;
     voice.render(black_box(&mut [0.0f32]))?;
     Ok(begun.elapsed().as_secs_f64())

@@ -31,7 +31,7 @@ pub(crate) fn open(bytes: &[u8]) -> bool {
         Ok(asset) => {
             assert!(report.valid, "opens, and is not valid: {report:?}");
             promise::round_trip(&asset);
-            promise::play(&htex::Asset::new(asset));
+            promise::play(&htex::Texture::new(asset));
             true
         }
         Err(error) => {

@@ -25,11 +25,12 @@ pub fn hatt(input: &[u8]) -> bool {
         Ok(bytes) => bytes,
         Err(error) => return refused(&error),
     };
-    let asset = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let asset = htex::Texture::from_bytes(&bytes).expect("what was written opens");
+    let representation = asset.representation(None).expect("it has one");
     let grid = asset.band().grid_hz();
     for node in &texture.nodes {
         let motion = htex::Motion::new(node.speed_mm_s, node.force_n);
-        let magnitude = asset.recorded_magnitude(None, Some(motion), &grid);
+        let magnitude = representation.recorded_magnitude(Some(motion), &grid);
         if let Ok(magnitude) = magnitude {
             assert!(magnitude.iter().all(|m| m.is_finite() && *m >= 0.0));
         }
@@ -98,7 +99,7 @@ pub fn gltf(input: &[u8]) -> bool {
     let format = Format::named("gltf").expect("it is in the table");
     let mut how = Export::new(format);
     how.file = Some(&bytes);
-    let asset = htex::Asset::with_registry(imported.asset, registry);
+    let asset = htex::Texture::with_registry(imported.asset, registry);
     let again = match export(&asset, &how) {
         Ok(exported) => exported.bytes,
         Err(error) => return refused(&error),
@@ -134,7 +135,7 @@ pub fn png(input: &[u8]) -> bool {
         Err(error) => return refused(&error),
     };
     let bytes = imported.to_bytes().expect("an asset is written");
-    let asset = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let asset = htex::Texture::from_bytes(&bytes).expect("what was written opens");
     let format = Format::named("png").expect("it is in the table");
     let again = export(&asset, &Export::new(format)).expect("a map is exported");
     let again = htex_exchange::map::read(&again.bytes).expect("what was written is read");
@@ -143,7 +144,7 @@ pub fn png(input: &[u8]) -> bool {
     let mut samples = [0.0; 500];
     for step in 0..4 {
         let motion =
-            htex::Motion::new(80.0, 0.4).with_place_mm(f64::from(step), 0.7 * f64::from(step));
+            htex::Motion::new(80.0, 0.4).with_place_mm([f64::from(step), 0.7 * f64::from(step)]);
         voice.set_motion(motion).expect("a motion in range");
         voice.render(&mut samples).expect("a map is rendered");
         // The cubic interpolation and the filters at the band's edges overshoot.

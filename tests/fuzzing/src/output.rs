@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use htex_scene::{DeviceOverride, LoadedScene};
+use htex_scene::{DeviceOverride, Scene};
 use serde_json::json;
 
 use crate::scene::{around, folder};
@@ -26,7 +26,7 @@ pub fn output_name(input: &[u8]) -> bool {
         "device": { "settings": { "format": format } },
     });
     let place = folder().join(scene.file_name().unwrap_or("x".as_ref()));
-    match LoadedScene::from_bytes(&place, json.to_string().as_bytes(), &around(), &device) {
+    match Scene::from_bytes(&place, json.to_string().as_bytes(), &around(), &device) {
         Ok(loaded) => is_here(loaded.settings.text("path"), &format),
         Err(error) => crate::promise::sentence(&error),
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use htex::Asset;
+use htex::Texture;
 use htex_base::finding::{Finding, Rule};
 use htex_host::{HostError, Status};
 
@@ -58,18 +58,17 @@ pub(crate) fn finite(what: &str, numbers: impl IntoIterator<Item = f64>) {
 
 /// Plays each representation of an asset with the built-in models, moves the finger, and computes
 /// magnitudes.
-pub(crate) fn play(asset: &Asset) {
+pub(crate) fn play(asset: &Texture) {
     let band = asset.band();
     let edges = [band.low_hz, 0.5 * (band.low_hz + band.high_hz), band.high_hz];
     for representation in &asset.manifest().representations {
-        let model = Some(representation.model.as_str());
-        match asset.magnitude(model, None, &edges) {
+        let representation =
+            asset.representation(representation.model.as_str()).expect("it is listed");
+        match representation.magnitude(None, &edges) {
             Ok(magnitude) => finite("magnitude", magnitude),
             Err(error) => refusal(&error),
         }
-        let mut options = htex::VoiceOptions::default().with_rate_hz(8000.0);
-        options.model = model;
-        match asset.voice(&options) {
+        match representation.voice(&htex::VoiceOptions::default().with_rate_hz(8000.0)) {
             Ok(mut voice) => listen(&mut voice),
             Err(error) => refusal(&error),
         }

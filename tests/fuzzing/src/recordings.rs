@@ -129,7 +129,7 @@ fn follow(trace: &Trace) {
     trace.warnings.iter().for_each(sentence);
     let duration_s = trace.duration_s();
     for step in -1..=17 {
-        let point = trace.at(duration_s * f64::from(step) / 16.0);
+        let point = trace.point_at(duration_s * f64::from(step) / 16.0);
         finite("place", [point.x_mm, point.y_mm]);
         finite("speed", [point.speed_mm_s, point.vx_mm_s, point.vy_mm_s]);
         finite("force", [point.force_n]);

@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use htex::Registry;
+use htex::{Motion, Registry};
 use htex_base::finding::Findings;
 use htex_device::{Capabilities, Devices, Quantity, Rates};
 use htex_device_builtin::file::FileAdapter;
 use htex_scene::{
-    Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Renderer, SceneError,
-    Surroundings, plan, read_scene,
+    Costs, DeviceOverride, Limits, Renderer, Scene, SceneError, Surroundings, plan, read_scene,
 };
 
 use crate::promise::{findings, finite, refusal, sentence};
@@ -22,13 +21,13 @@ const BLOCKS: usize = 4;
 pub fn scene(input: &[u8]) -> bool {
     read_twice(input);
     let place = folder().join("fuzzed.scene.json");
-    match LoadedScene::from_bytes(&place, input, &around(), &DeviceOverride::default()) {
+    match Scene::from_bytes(&place, input, &around(), &DeviceOverride::default()) {
         Ok(scene) => {
             findings(&scene.notes);
             devices_of(&scene).iter().for_each(|device| play(&scene, device));
             true
         }
-        Err(LoadError::Invalid { findings: found }) => {
+        Err(SceneError::Invalid { findings: found }) => {
             findings(&found);
             false
         }
@@ -41,7 +40,7 @@ pub(crate) fn around() -> Surroundings<'static> {
     static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
     let (models, devices) =
         AROUND.get_or_init(|| (Registry::builtin(), Devices::new(vec![Arc::new(FileAdapter)])));
-    Surroundings { models, embedded: false, devices }
+    Surroundings { models, embedded: false, devices: Some(devices) }
 }
 
 /// The folder of the assets that the scenes name.
@@ -62,7 +61,7 @@ fn read_twice(input: &[u8]) {
 }
 
 /// One device for each quantity.
-fn devices_of(scene: &LoadedScene) -> [Capabilities; 3] {
+fn devices_of(scene: &Scene) -> [Capabilities; 3] {
     let file = Capabilities {
         quantity: Quantity::LateralForce,
         rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
@@ -77,14 +76,14 @@ fn devices_of(scene: &LoadedScene) -> [Capabilities; 3] {
         quantity: Quantity::DisplayVoltage,
         limit: Some(150.0),
         step: Some(0.01),
-        carrier_hz: scene.scene.seed.is_multiple_of(2).then_some(3000.0),
+        carrier_hz: scene.file.seed.is_multiple_of(2).then_some(3000.0),
         ..file.clone()
     };
     let loudspeaker = Capabilities { quantity: Quantity::Sound, limit: Some(1.0), ..file.clone() };
     [file, display, loudspeaker]
 }
 
-fn play(scene: &LoadedScene, device: &Capabilities) {
+fn play(scene: &Scene, device: &Capabilities) {
     let made = plan(scene, device, &Costs::embedded())
         .and_then(|plan| Ok((Renderer::new(scene, &plan)?, plan)));
     let mut renderer = match made {
@@ -93,21 +92,18 @@ fn play(scene: &LoadedScene, device: &Capabilities) {
     };
     let mut block = [f32::NAN; 64];
     for i in 0..BLOCKS {
-        let finger = Finger {
-            speed_mm_s: 40.0 * i as f64,
-            force_n: 0.4,
-            at_mm: Some([10.0 * i as f64, 5.0]),
-        };
-        if let Err(error) = renderer.set_motion(finger) {
+        let motion = Motion::new(40.0 * i as f64, 0.4).with_place_mm([10.0 * i as f64, 5.0]);
+        if let Err(error) = renderer.set_motion(motion) {
             refused(&error);
         }
-        let frames = renderer.render(&mut block);
+        let left = renderer.frames_left().map_or(block.len(), |left| left as usize);
+        let frames = renderer.render(&mut block).unwrap_or_else(|error| {
+            refused(&error);
+            left.min(block.len())
+        });
         finite("sample", block[..frames].iter().map(|x| f64::from(*x)));
         let most = device.limit.unwrap_or(f64::MAX) * (1.0 + 1e-6);
         assert!(block[..frames].iter().all(|x| f64::from(x.abs()) <= most), "above the limit");
-        if let Some(error) = renderer.take_failure() {
-            refused(&error);
-        }
     }
 }
 

@@ -145,7 +145,7 @@ fn signals_of_others() -> Vec<Seed> {
 fn meshes(registry: &Registry) -> Vec<Seed> {
     let model = registry.models().first().expect("a built-in model");
     let bytes = asset(model).to_bytes().expect("a sound asset");
-    let opened = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let opened = htex::Texture::from_bytes(&bytes).expect("what was written opens");
     let format = htex_exchange::Format::named("gltf").expect("it is in the table");
     let mesh = |extension| {
         let mut how = htex_exchange::Export::new(format);
@@ -161,7 +161,7 @@ fn meshes(registry: &Registry) -> Vec<Seed> {
 fn images(registry: &Registry) -> Vec<Seed> {
     let model = registry.find("sslope").expect("a built-in model");
     let bytes = asset(model).to_bytes().expect("a sound asset");
-    let opened = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let opened = htex::Texture::from_bytes(&bytes).expect("what was written opens");
     let format = htex_exchange::Format::named("png").expect("it is in the table");
     let mut how = htex_exchange::Export::new(format);
     how.path = htex_exchange::Path::Condition(Some(htex::Motion::new(80.0, 0.4)));
@@ -290,10 +290,11 @@ fn leaf(asset: &[u8]) -> Vec<u8> {
 /// Baked blocks of noise and of sinusoids, each after two motions of the grid.
 fn blocks() -> Vec<Seed> {
     let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
-    let asset = htex::Asset::from_bytes(vinyl).expect("an example");
+    let asset = htex::Texture::from_bytes(vinyl).expect("an example");
     let grid = htex_play::bake::Grid::new(vec![60.0, 80.0], vec![0.4]).expect("a sound grid");
     let seed = |model: &str| {
-        let baked = htex_play::bake::bake(&asset, Some(model), &grid, 8_000.0, 1.0);
+        let representation = asset.representation(model).expect("an example");
+        let baked = htex_play::bake::bake(representation, &grid, 8_000.0, 1.0);
         let block = baked.expect("a texture that can be baked").bytes;
         let motions = [70.0f32, 0.4, 0.0, 0.0].map(f32::to_le_bytes).concat();
         let all = [&[1], &motions[..], &block].concat();

@@ -1,6 +1,7 @@
 //! Signed and unsigned models embedded in assets.
 
-use htex::{Asset, Registry, Search};
+use htex::model::Search;
+use htex::{Registry, Texture};
 use htex_format::{Manifest, Plugin, Signature};
 
 use crate::block;
@@ -125,7 +126,7 @@ fn manifest(plugin: Plugin) -> Manifest {
 fn load(data: htex_format::Asset) {
     let search = Search::builtin().with_limits(limits()).with_builtin(false);
     let registry = Registry::search(&search).expect("nothing is searched");
-    let asset = Asset::with_registry(data, registry).with_embedded();
+    let asset = Texture::with_registry(data, registry).with_embedded();
     let mut block = [f32::NAN; 64];
     match asset.voice(&Default::default()) {
         Ok(mut voice) => {

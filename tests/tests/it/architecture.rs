@@ -19,7 +19,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-device", &["htex-base"]),
     ("htex-device-builtin", &["htex-base", "htex-dsp", "htex-device"]),
     ("htex-recording", &["htex-base", "htex-dsp", "htex-format"]),
-    ("htex-play", &["htex-base", "htex-dsp", "htex-player", "htex-host", "htex-format"]),
+    ("htex-play", &["htex-dsp", "htex-player", "htex-host", "htex-format"]),
     (
         "htex-author",
         &["htex-base", "htex-dsp", "htex-host", "htex-format", "htex-recording", "htex-play"],
@@ -61,6 +61,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "htex",
         &[
             "htex-base",
+            "htex-model",
             "htex-host",
             "htex-format",
             "htex-device",

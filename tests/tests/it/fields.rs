@@ -1,28 +1,29 @@
 //! Stored fields are matched by name.
 
-use htex::{Asset, Band, Error, Registry, VoiceOptions};
+use htex::model::Band;
+use htex::{Error, Registry, Texture, VoiceOptions};
 use htex_format::{FieldMismatch, StoredAs, StoredField, match_fields};
 use htex_model::{Descriptor, StaticDescriptor, StaticField};
 use htex_tests::workspace;
 
-fn conformance(name: &str) -> Asset {
-    Asset::open(workspace().join("spec/conformance").join(name)).unwrap()
+fn conformance(name: &str) -> Texture {
+    Texture::open(workspace().join("spec/conformance").join(name)).unwrap()
 }
 
 #[test]
 fn fields_in_another_order_play_by_their_names() {
     // The block holds beta = 1.5 and then alpha = 2.5.
     let asset = conformance("valid_field_order.htex");
-    let (parameters, level_rms) = asset.parameters(None, None).unwrap();
+    let (parameters, level_rms) = asset.representation(None).unwrap().parameters(None).unwrap();
     assert_eq!(parameters, [2.5, 1.5]);
 
-    let options = VoiceOptions::default();
+    let rate_hz = 20_000.0;
+    let options = VoiceOptions::default().with_rate_hz(rate_hz);
     let mut played = [0.0f32; 512];
     asset.voice(&options).unwrap().render(&mut played).unwrap();
     let models = Registry::builtin();
     let sbeta = models.find("sbeta").unwrap();
-    let mut stream =
-        htex_host::Stream::new(sbeta, &[2.5, 1.5], Band::TACTILE, options.rate_hz, 0).unwrap();
+    let mut stream = htex_host::Stream::new(sbeta, &[2.5, 1.5], Band::TACTILE, rate_hz, 0).unwrap();
     let mut expected = [0.0f32; 512];
     stream.render(&mut expected).unwrap();
     for (played, expected) in played.iter().zip(expected) {
@@ -54,7 +55,7 @@ fn fields_that_are_not_the_models_are_refused_with_their_names() {
         for word in words {
             assert!(error.to_string().contains(word), "{file}: {error}");
         }
-        let magnitude = asset.magnitude(None, None, &[100.0]);
+        let magnitude = asset.magnitude(None, &[100.0]);
         assert_eq!(magnitude.unwrap_err().to_string(), error.to_string());
     }
 }

@@ -7,13 +7,15 @@ use crate::common::builds;
 use std::path::{Path, PathBuf};
 
 use builds::*;
-use htex::{Asset, Reach, Registry, Search, Voice, VoiceOptions};
+use htex::model::Search;
+use htex::play::Reach;
+use htex::{Registry, Texture, Voice, VoiceOptions};
 use htex_author::recording::TraceColumns;
 use htex_author::{AssetRequest, Exploration, ModelRequest, Recording, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_host::{Band, Stream};
-use htex_scene::file::{Budget, DeviceChoice, Motion, Scene, Surface};
-use htex_scene::{Costs, Finger, LoadedScene, Plan, Renderer, Trace, plan};
+use htex_scene::file::{Budget, DeviceChoice, Motion, SceneFile, Surface};
+use htex_scene::{Costs, Plan, Renderer, Scene, Trace, plan};
 
 const RATE_HZ: f64 = 20_000.0;
 /// Speed and force stated for the recordings.
@@ -40,7 +42,7 @@ fn bursts_come_with_the_way_of_the_finger() {
 /// A recording with ten bursts per second at 50 mm/s has a burst every 5 mm, at any speed.
 fn bursts_follow(file: &Path) {
     let asset = fitted(file, &ten_bursts_a_second(file));
-    let (parameters, _) = asset.parameters(None, None).unwrap();
+    let (parameters, _) = asset.representation(None).unwrap().parameters(None).unwrap();
     assert!((parameters[2] - 0.2).abs() < 0.005, "{parameters:?} a mm");
     assert_eq!(&parameters[5..], [SPEED_MM_S, FORCE_N]);
     for speed_mm_s in [25.0, 50.0, 100.0] {
@@ -76,9 +78,9 @@ fn bursts_follow(file: &Path) {
 }
 
 /// In a live scene, a reading with an impossible force or speed does not reach the model.
-fn one_bad_reading_is_not_felt(asset: &Asset) {
+fn one_bad_reading_is_not_felt(asset: &Texture) {
     let mut scene = traced(asset, trace(1.0, |t| 50.0 * t));
-    (scene.scene.motion, scene.trace) = (Motion::Live, None);
+    (scene.file.motion, scene.trace) = (Motion::Live, None);
     let plan = planned(&scene);
     let felt = |bad: Option<(f64, f64)>| {
         let mut renderer = Renderer::new(&scene, &plan).unwrap();
@@ -86,10 +88,9 @@ fn one_bad_reading_is_not_felt(asset: &Asset) {
         for (i, block) in out.chunks_mut(CONTROL).enumerate() {
             let reading = if i == 100 { bad } else { Some((SPEED_MM_S, FORCE_N)) };
             if let Some((speed_mm_s, force_n)) = reading {
-                let finger = Finger { speed_mm_s, force_n, at_mm: None };
-                let _ = renderer.set_motion(finger);
+                let _ = renderer.set_motion(htex::Motion::new(speed_mm_s, force_n));
             }
-            renderer.render(block);
+            renderer.render(block).unwrap();
         }
         out
     };
@@ -138,7 +139,7 @@ fn the_same_place_feels_the_same_on_the_way_back() {
 
 fn place_is_kept(file: &Path) {
     let asset = fitted(file, &comb());
-    let (parameters, _) = asset.parameters(None, None).unwrap();
+    let (parameters, _) = asset.representation(None).unwrap().parameters(None).unwrap();
     assert_eq!(&parameters[1..3], [SPEED_MM_S, FORCE_N]);
     assert!((parameters[0] - SPEED_MM_S / 65.0).abs() < 0.005, "{parameters:?}");
     let there_and_back = |t: f64| 20.0 * (1.0 - (std::f64::consts::TAU * t / WAY_S).cos());
@@ -205,7 +206,7 @@ fn comb() -> Vec<f64> {
 // ---- ways and means ----
 
 /// An asset of a recording at 50 mm/s and 0.5 N, fitted by a model from a file.
-fn fitted(file: &Path, recording: &[f64]) -> Asset {
+fn fitted(file: &Path, recording: &[f64]) -> Texture {
     let search = Search::builtin().with_files(vec![file.to_owned()]);
     let registry = Registry::search(&search).unwrap();
     let model = registry.models()[0].clone();
@@ -216,14 +217,14 @@ fn fitted(file: &Path, recording: &[f64]) -> Asset {
         given: Exploration { speed_mm_s: Some(SPEED_MM_S), force_n: Some(FORCE_N) },
     };
     let fitted = fit_asset(&[take], &request).unwrap();
-    Asset::with_registry(fitted.asset, registry)
+    Texture::with_registry(fitted.asset, registry)
 }
 
-fn options() -> VoiceOptions<'static> {
+fn options() -> VoiceOptions {
     VoiceOptions::default().with_rate_hz(RATE_HZ).with_seed(3)
 }
 
-fn voice(asset: &Asset) -> Voice {
+fn voice(asset: &Texture) -> Voice {
     let voice = asset.voice(&options()).unwrap();
     assert!(voice.follows_motion());
     voice
@@ -259,9 +260,9 @@ fn trace(seconds: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
 }
 
 /// A scene with one surface that covers everything, and a finger that follows a trace.
-fn traced(asset: &Asset, trace: Trace) -> LoadedScene {
-    LoadedScene {
-        scene: Scene {
+fn traced(asset: &Texture, trace: Trace) -> Scene {
+    Scene {
+        file: SceneFile {
             htex_scene: "1.0".to_owned(),
             surfaces: vec![Surface {
                 asset: PathBuf::from("followed.htex"),
@@ -286,7 +287,7 @@ fn traced(asset: &Asset, trace: Trace) -> LoadedScene {
     }
 }
 
-fn planned(scene: &LoadedScene) -> Plan {
+fn planned(scene: &Scene) -> Plan {
     let file = Capabilities {
         quantity: Quantity::LateralForce,
         rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
@@ -309,11 +310,10 @@ fn the_plan_leaves_the_motion_to_the_model(plan: &Plan) {
     }
 }
 
-fn rendered(scene: &LoadedScene, plan: &Plan) -> Vec<f32> {
+fn rendered(scene: &Scene, plan: &Plan) -> Vec<f32> {
     let mut renderer = Renderer::new(scene, plan).unwrap();
     let mut out = vec![0.0; renderer.frames_left().unwrap() as usize];
-    assert_eq!(renderer.render(&mut out), out.len());
-    assert!(renderer.take_failure().is_none());
+    assert_eq!(renderer.render(&mut out).unwrap(), out.len());
     out
 }
 

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use htex::Asset;
+use htex::Texture;
 use htex_base::schema::Schema;
 use htex_exchange::gltf::EXTENSION;
 use htex_exchange::{Export, Format, export};
@@ -36,7 +36,7 @@ fn written(extension: &str) -> Vec<u8> {
     let mut how = Export::new(Format::named("gltf").unwrap());
     how.extension = Some(extension);
     how.file = Some(&file);
-    export(&Asset::from_bytes(&file).unwrap(), &how).unwrap().bytes
+    export(&Texture::from_bytes(&file).unwrap(), &how).unwrap().bytes
 }
 
 /// The files have the same text except for the place of the buffer.

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use htex::{Asset, Registry, VoiceOptions};
+use htex::{Registry, Texture, VoiceOptions};
 use htex_author::by_hand::{ByHand, make};
 use htex_author::recording::TraceColumns;
 use htex_device::{Capabilities, Quantity, Rates, Settings};
@@ -13,8 +13,8 @@ use htex_model::{
     Error, Fit, FitInput, Model, Motion, MotionVoice, Numbers, StaticDescriptor, StaticField,
     Values, Voice, mix,
 };
-use htex_scene::file::{Budget, DeviceChoice, Motion as SceneMotion, Scene, Surface};
-use htex_scene::{Costs, LoadedScene, Renderer, Trace, plan};
+use htex_scene::file::{Budget, DeviceChoice, Motion as SceneMotion, SceneFile, Surface};
+use htex_scene::{Costs, Renderer, Scene, Trace, plan};
 
 const RATE_HZ: f64 = 20_000.0;
 const HUM_HZ: f64 = 200.0;
@@ -104,12 +104,12 @@ impl MotionVoice for StripesVoice {
 }
 
 /// Stripes 4 mm wide with 0.1 N.
-fn stripes() -> Asset {
+fn stripes() -> Texture {
     let mut registry = Registry::builtin();
     registry.add_motion_model::<Stripes>().unwrap();
     let texture = ByHand::new("Stripes", 0.1, "test").with("width_mm", [4.0]);
     let model = registry.find("stripes").unwrap().clone();
-    Asset::with_registry(make(&model, &texture).unwrap(), registry)
+    Texture::with_registry(make(&model, &texture).unwrap(), registry)
 }
 
 /// A second of a voice whose finger moves along x at a distance across, if its place is known.
@@ -120,7 +120,7 @@ fn played(y_mm: Option<f64>) -> Vec<f32> {
     for (i, block) in out.chunks_mut(CONTROL).enumerate() {
         let x_mm = SPEED_MM_S * (i * CONTROL) as f64 / RATE_HZ;
         let motion = htex::Motion::new(SPEED_MM_S, FORCE_N).with_position_mm(x_mm);
-        let motion = y_mm.map_or(motion, |y_mm| motion.with_place_mm(x_mm, y_mm));
+        let motion = y_mm.map_or(motion, |y_mm| motion.with_place_mm([x_mm, y_mm]));
         voice.set_motion(motion).unwrap();
         voice.render(block).unwrap();
     }
@@ -137,8 +137,8 @@ fn rendered(y_mm: f64) -> Vec<f32> {
         warnings: Vec::new(),
         t_s,
     });
-    let scene = LoadedScene {
-        scene: Scene {
+    let scene = Scene {
+        file: SceneFile {
             htex_scene: "1.0".to_owned(),
             surfaces: vec![Surface {
                 asset: PathBuf::from("stripes.htex"),
@@ -174,8 +174,7 @@ fn rendered(y_mm: f64) -> Vec<f32> {
     let plan = plan(&scene, &file, &Costs::embedded()).unwrap();
     let mut renderer = Renderer::new(&scene, &plan).unwrap();
     let mut out = vec![0.0; renderer.frames_left().unwrap() as usize];
-    renderer.render(&mut out);
-    assert!(renderer.take_failure().is_none());
+    renderer.render(&mut out).unwrap();
     out
 }
 

@@ -119,11 +119,11 @@ fn valid_conformance_files_are_played() {
         if !sound || !name.ends_with(".htex") || NOT_PLAYED.contains(&&name[..]) {
             continue;
         }
-        let asset = htex::Asset::open(&path).unwrap();
+        let asset = htex::Texture::open(&path).unwrap();
         for representation in &asset.manifest().representations {
-            let options = htex::VoiceOptions::default().with_model(&representation.model);
             let mut out = [0.0f32; 2_000];
-            let voice = asset.voice(&options);
+            let playable = asset.representation(&representation.model[..]).unwrap();
+            let voice = playable.voice(&htex::VoiceOptions::default());
             let rendered = voice.and_then(|mut voice| voice.render(&mut out));
             rendered.unwrap_or_else(|error| panic!("{name}: {error}"));
             assert!(out.iter().any(|&x| x != 0.0), "{name} is silent");

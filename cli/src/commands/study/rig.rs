@@ -13,7 +13,7 @@ use htex_lab::study::{
     scene_of, set_gain,
 };
 use htex_scene::file::Motion;
-use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
+use htex_scene::{DeviceOverride, Renderer, Scene, output_name};
 
 use crate::failure::Failure;
 use crate::motions::{Motions, Moved};
@@ -66,9 +66,8 @@ impl StudyRig<'_> {
             DeviceOverride { output: Some(path.display().to_string()), ..self.device.clone() };
         let scene = scene_of(self.study, &listed.asset, model);
         let told = &mut self.told.borrow_mut();
-        self.loader.load(&self.path, told, |around| {
-            LoadedScene::from_bytes(&self.path, &scene, around, &device)
-        })
+        self.loader
+            .load(&self.path, told, |around| Scene::from_bytes(&self.path, &scene, around, &device))
     }
 
     /// Describes the device that will be used.
@@ -91,7 +90,7 @@ impl StudyRig<'_> {
             profile: self.device.profile.clone().unwrap_or_default(),
             settings: settings.map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
             limit: ready.capabilities.limit,
-            quantity_gain: ready.scene.scene.device.quantity_gain,
+            quantity_gain: ready.scene.file.device.quantity_gain,
         })
     }
 
@@ -117,7 +116,7 @@ impl StudyRig<'_> {
     fn begin(&self, stimulus: &Stimulus) -> Result<(Ready, Option<f64>), Failure> {
         self.check_file(stimulus)?;
         let mut ready = self.load(&stimulus.texture, &stimulus.model, &stimulus.file)?;
-        let scene = &mut ready.scene.scene;
+        let scene = &mut ready.scene.file;
         scene.duration_s = stimulus.seconds;
         scene.seed = stimulus.seed;
         let able = &ready.capabilities;
@@ -188,9 +187,8 @@ impl Rig for StudyRig<'_> {
         }
         let error_db = self.load(texture, model, "error").ok().and_then(|ready| {
             let asset = ready.scene.assets.first()?;
-            let id = asset.representation_id(Some(model)).ok()?;
-            let mut all = asset.manifest().representations.iter();
-            all.find(|r| r.model == id)?.error_db(ErrorMeasure::NineBand)
+            let representation = asset.representation(model).ok()?;
+            representation.data().error_db(ErrorMeasure::NineBand)
         });
         self.errors_db.borrow_mut().insert(key, error_db);
         error_db
@@ -212,9 +210,9 @@ impl StudyRig<'_> {
         let (ready, drive_v) = self.begin(stimulus)?;
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.path))?;
-        if ready.scene.scene.motion == Motion::Live {
+        if ready.scene.file.motion == Motion::Live {
             // Without a reading yet, there is no contact.
-            renderer.set_motion(Finger::AWAY).map_err(of_file(&self.path))?;
+            renderer.set_motion(htex::Motion::AWAY).map_err(of_file(&self.path))?;
         }
         let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
         if let Some((felt, name)) = recorded {

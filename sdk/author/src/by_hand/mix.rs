@@ -14,7 +14,7 @@ use crate::stored::stored_fields;
 #[derive(Debug, Clone, Copy)]
 pub struct MixedAsset<'a> {
     /// The texture, with the models that play it.
-    pub asset: &'a htex_play::Asset,
+    pub asset: &'a htex_play::Texture,
     /// BLAKE3 of its file, hexadecimal.
     pub blake3: &'a str,
 }
@@ -64,7 +64,7 @@ pub fn mix(
         .into_iter()
         .filter(|id| theirs.contains(id))
         .map(|id| {
-            let model = a.asset.loaded_model(Some(&id))?;
+            let model = a.asset.representation(&id[..])?.model()?;
             mixed(&model, (a, b), weight, &conditions)
         })
         .collect::<Result<Vec<_>, ByHandError>>()?;
@@ -197,8 +197,9 @@ fn mixed(
     for (condition, place) in conditions.iter().enumerate() {
         let motion =
             Motion::new(place.speed_mm_s.unwrap_or_default(), place.force_n.unwrap_or_default());
-        let (first, first_level) = a.asset.parameters(Some(model.id()), Some(motion))?;
-        let (second, second_level) = b.asset.parameters(Some(model.id()), Some(motion))?;
+        let (first, first_level) = a.asset.representation(model.id())?.parameters(Some(motion))?;
+        let (second, second_level) =
+            b.asset.representation(model.id())?.parameters(Some(motion))?;
         // At the ends no model is asked: interpolation could change the last digit, or fail for a
         // model that cannot interpolate.
         let flat = match weight {

@@ -5,7 +5,7 @@ use htex_dsp::bands::rms;
 use htex_format::{AtCondition, LeftOut, Measure, Measures};
 use htex_host::LoadedModel;
 use htex_play::exploration::CEILING;
-use htex_play::{Mesh, Motion, Motions};
+use htex_play::{Conditions, Mesh, Motion};
 
 use super::held_out::{Held, LeftOutBlock};
 use super::played::motion;
@@ -53,7 +53,7 @@ pub(crate) fn left_out(
 struct Played<'a> {
     model: &'a LoadedModel,
     mesh: Mesh,
-    motions: Motions,
+    conditions: Conditions,
     fits: Vec<(Vec<f64>, f64)>,
 }
 
@@ -74,7 +74,7 @@ impl<'a> Played<'a> {
         (!points.is_empty()).then(|| Self {
             model,
             mesh: Mesh::new(&points),
-            motions: Motions::new(&at, &block.conditions, block.law),
+            conditions: Conditions::new(&at, &block.conditions, block.law),
             fits,
         })
     }
@@ -90,7 +90,7 @@ impl<'a> Played<'a> {
     }
 
     /// Returns the magnitudes at a motion, as a recording of the voice would read them. Where
-    /// frequencies are scaled, it returns the same magnitudes as [`htex_play::Asset::magnitude`].
+    /// frequencies are scaled, it returns the same magnitudes as [`htex_play::Representation::magnitude`].
     fn magnitude(
         &self,
         [speed, force]: [f64; 2],
@@ -104,7 +104,7 @@ impl<'a> Played<'a> {
             [only] => only.to_vec(),
             _ => self.model.interpolate(&sets, &parts)?,
         };
-        let scaling = self.motions.scaling(Motion::new(speed, force), CEILING);
+        let scaling = self.conditions.scaling(Motion::new(speed, force), CEILING);
         let ratio = scaling.frequency;
         if ratio == 1.0 {
             return read_spectrum(self.model, &mixed, level * scaling.level, reference);

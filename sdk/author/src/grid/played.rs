@@ -2,7 +2,7 @@
 
 use htex_format::{AtCondition, Condition, Contact};
 use htex_play::exploration::CEILING;
-use htex_play::{Mesh, Motion, Motions};
+use htex_play::{Conditions, Mesh, Motion};
 
 use super::slopes::third_octaves;
 use crate::TextureSpectrum;
@@ -11,7 +11,7 @@ use crate::law::law;
 /// Conditions with their spectra, interpolated and scaled as a player does it.
 pub(super) struct PlayedSpectra {
     mesh: Mesh,
-    motions: Motions,
+    conditions: Conditions,
     spectra: Vec<TextureSpectrum>,
     level_rms: Vec<f64>,
 }
@@ -35,7 +35,7 @@ impl PlayedSpectra {
         let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
         (!points.is_empty()).then(|| Self {
             mesh: Mesh::new(&points),
-            motions: Motions::new(&at, conditions, law(conditions, &spectra, contact)),
+            conditions: Conditions::new(&at, conditions, law(conditions, &spectra, contact)),
             spectra,
             level_rms,
         })
@@ -43,7 +43,7 @@ impl PlayedSpectra {
 
     /// Returns the energies in third octaves at a motion, decibels.
     pub(super) fn third_octaves_db(&self, [speed, force]: [f64; 2]) -> Vec<f64> {
-        let scaling = self.motions.scaling(Motion::new(speed, force), CEILING);
+        let scaling = self.conditions.scaling(Motion::new(speed, force), CEILING);
         let weights: Vec<(usize, f64)> = self.mesh.weights(speed, force).iter().collect();
         let level: f64 = weights.iter().map(|(i, w)| w * self.level_rms[*i]).sum();
         let gain = level * scaling.level;

@@ -10,7 +10,7 @@ use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_dsp::normal::Normal;
 use htex_format::{AtCondition, Measure};
 use htex_host::Registry;
-use htex_play::{Asset, Mesh, Motion};
+use htex_play::{Mesh, Motion, Texture};
 
 fn free(surface: Surface, seconds: f64) -> SimulationOptions {
     SimulationOptions::new(surface)
@@ -47,7 +47,7 @@ fn fit_with(takes: &[Take], models: &[&str], grid: Grid, spectrum: SpectrumOptio
 }
 
 /// Third-octave errors of what a player interpolates at random motions inside the mesh.
-fn errors_db(asset: &Asset, model: &str, options: &SimulationOptions, count: usize) -> Vec<f64> {
+fn errors_db(asset: &Texture, model: &str, options: &SimulationOptions, count: usize) -> Vec<f64> {
     let truth = options.truth().unwrap();
     let rig = options.setup_response().unwrap();
     let conditions = &asset.manifest().conditions;
@@ -71,7 +71,7 @@ fn errors_db(asset: &Asset, model: &str, options: &SimulationOptions, count: usi
             magnitude / re.hypot(im)
         });
         let truth_at: Vec<f64> = at_finger.collect();
-        let played = asset.magnitude(Some(model), Some(motion), &grid).unwrap();
+        let played = asset.representation(model).unwrap().magnitude(Some(motion), &grid).unwrap();
         errors.push(third_octave_error_rms_db(&grid, &truth_at, &played).unwrap());
     }
     errors.sort_by(f64::total_cmp);
@@ -79,7 +79,7 @@ fn errors_db(asset: &Asset, model: &str, options: &SimulationOptions, count: usi
 }
 
 fn thirds(options: &SimulationOptions, fitted: FittedAsset) -> Vec<f64> {
-    errors_db(&Asset::new(fitted.asset), "bands", options, 200)
+    errors_db(&Texture::new(fitted.asset), "bands", options, 200)
 }
 
 /// Inside the mesh a player is within 1 dB of the truth in third octaves (RMS over the bands).
@@ -266,7 +266,7 @@ fn errors_inside_the_mesh_stay_small() {
         let report = fitted.grid.unwrap();
         let [speeds, forces] = [&report.speed_mm_s, &report.force_n].map(Vec::len);
         println!("{surface}: {speeds} x {forces} lines");
-        let asset = Asset::new(fitted.asset);
+        let asset = Texture::new(fitted.asset);
         for representation in &asset.manifest().representations {
             let model = representation.model.as_str();
             let left_out_db = root_mean_square(representation.at.iter().filter_map(left_out_db));

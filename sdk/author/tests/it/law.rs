@@ -6,7 +6,7 @@ use htex_author::{AssetRequest, Exploration, ModelRequest, SpectrumOptions, Take
 use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_format::{Contact, Law};
 use htex_host::Registry;
-use htex_play::{Asset, Motion};
+use htex_play::{Motion, Texture};
 
 /// A free motion at one speed and force, whose true spectrum is known.
 fn steady(surface: Surface, departures: Departures, motion: Motion) -> SimulationOptions {
@@ -25,7 +25,7 @@ fn recorded(
     departures: Departures,
     contact: Contact,
     motions: &[Motion],
-) -> Asset {
+) -> Texture {
     let take = |motion: &Motion| {
         let simulation = simulate(&steady(surface, departures, *motion)).unwrap();
         let mut recording = simulation.to_recording("steady.csv").unwrap();
@@ -45,10 +45,10 @@ fn recorded(
     let conditions = fitted.asset.manifest.conditions.iter();
     let is_recorded = conditions.map(|condition| condition.segments != Some(0));
     assert!(is_recorded.eq(fitted.felt[0].iter().map(Option::is_some)));
-    Asset::new(fitted.asset)
+    Texture::new(fitted.asset)
 }
 
-fn law(asset: &Asset) -> Law {
+fn law(asset: &Texture) -> Law {
     asset.manifest().law()
 }
 
@@ -102,7 +102,7 @@ fn true_spectrum(surface: Surface, departures: Departures, motion: Motion) -> (V
 }
 
 /// The asset without the conditions that were computed between recorded ones.
-fn without_computed(asset: &Asset) -> Asset {
+fn without_computed(asset: &Texture) -> Texture {
     // Computed conditions come after the recorded ones, so cutting off the end removes them.
     let mut data = asset.data().clone();
     let recorded = |c: &&htex_format::Condition| c.segments != Some(0);
@@ -114,7 +114,7 @@ fn without_computed(asset: &Asset) -> Asset {
     for parameters in &mut data.parameters {
         parameters.truncate(count);
     }
-    Asset::new(data)
+    Texture::new(data)
 }
 
 /// Between recorded speeds, the lines of a relief move instead of fading into each other. Where
@@ -126,12 +126,12 @@ fn lines_move_between_recorded_speeds() {
         for (kind, departures, [a, ..], contact) in kinds() {
             let asset = recorded(surface, departures, contact, &recorded_at);
             let plain = without_computed(&asset);
-            let count = |asset: &Asset| asset.manifest().conditions.len();
+            let count = |asset: &Texture| asset.manifest().conditions.len();
             assert_eq!([count(&plain), count(&asset)], [3, if a == 1.0 { 9 } else { 3 }]);
             for between in motions([(57.0, 0.4), (113.0, 0.4)]) {
                 let (grid, truth) = true_spectrum(surface, departures, between);
-                let error_db = |asset: &Asset| {
-                    let played = asset.magnitude(None, Some(between), &grid).unwrap();
+                let error_db = |asset: &Texture| {
+                    let played = asset.magnitude(Some(between), &grid).unwrap();
                     third_octave_error_rms_db(&grid, &truth, &played).unwrap()
                 };
                 let (moved, mixed) = (error_db(&asset), error_db(&plain));
@@ -157,7 +157,7 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
             // The recording at 80 mm/s shows nothing below 20 Hz, which would be below 40 Hz here.
             let known = grid.partition_point(|hz| *hz < 40.0);
             let asset = recorded(surface, departures, contact, &recorded_at);
-            let of = |motion| asset.magnitude(None, Some(motion), &grid).unwrap();
+            let of = |motion| asset.magnitude(Some(motion), &grid).unwrap();
             let error_db = |played: Vec<f64>| {
                 third_octave_error_rms_db(&grid[known..], &truth[known..], &played[known..])
             };

@@ -160,7 +160,7 @@ fn files_of_other_formats_become_textures() {
 fn signals_of_one_name_are_conditions_of_a_texture() {
     let place = Place::new();
     place.build(SIGNAL).unwrap();
-    let hum = htex_play::Asset::open(place.0.path().join("out/textures/hum.htex")).unwrap();
+    let hum = htex_play::Texture::open(place.0.path().join("out/textures/hum.htex")).unwrap();
     for name in ["ahap", "hjif"] {
         let format = Format::named(name).unwrap();
         let exported = export(&hum, &Export::new(format)).unwrap();

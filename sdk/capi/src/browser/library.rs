@@ -218,8 +218,8 @@ pub unsafe extern "C" fn htex_index_find_json(
         let state = INDEXES.shared(index)?;
         // SAFETY: the pointers are the caller's.
         let query = unsafe { needed_text(query) }?;
-        let asked: Asked = serde_json::from_str(query)
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INVALID_ARGUMENT, error))?;
+        let asked: QueryDocument = serde_json::from_str(query)
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INVALID_ARGUMENT, error))?;
         let query = Query::from(asked);
         let entries = state.entries().iter();
         let found: Vec<&Entry> = entries.filter(|entry| query.matches(entry)).collect();
@@ -231,7 +231,7 @@ pub unsafe extern "C" fn htex_index_find_json(
 /// A query in the form that JavaScript writes.
 #[derive(Deserialize, Default)]
 #[serde(default, deny_unknown_fields)]
-struct Asked {
+struct QueryDocument {
     words: Vec<String>,
     tags: Vec<String>,
     speed: Option<f64>,
@@ -239,8 +239,8 @@ struct Asked {
     model: Option<String>,
 }
 
-impl From<Asked> for Query {
-    fn from(asked: Asked) -> Self {
+impl From<QueryDocument> for Query {
+    fn from(asked: QueryDocument) -> Self {
         Self {
             words: asked.words,
             tags: asked.tags,
@@ -262,7 +262,7 @@ unsafe fn write_entries(
     length: *mut usize,
 ) -> Result<(), Failure> {
     let json = serde_json::to_string(entries)
-        .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+        .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
     // SAFETY: the caller says so.
     unsafe { write_text(&json, out, capacity, length) }
 }

@@ -3,7 +3,8 @@
 
 use std::ffi::c_char;
 
-use htex::{Asset, Coverage, Motion, Parameter, Reach};
+use htex::play::{Coverage, Parameter, Reach};
+use htex::{Motion, Texture};
 use serde_json::{Map, Value, json};
 
 use crate::asset::{ASSETS, htex_asset};
@@ -25,7 +26,7 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
-        let id = asset.representation_id(unsafe { text(model) }?)?;
+        let id = asset.representation(unsafe { text(model) }?)?.id();
         // SAFETY: as above.
         unsafe { write_text(id, out, capacity, length) }
     })
@@ -42,7 +43,7 @@ pub unsafe extern "C" fn htex_asset_default_condition(
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the text is the caller's.
-        let condition = asset.default_condition(unsafe { text(model) }?)?;
+        let condition = asset.representation(unsafe { text(model) }?)?.default_condition();
         // SAFETY: the place is the caller's.
         *unsafe { place(out) }? = u32::try_from(condition).unwrap_or(u32::MAX);
         Ok(())
@@ -60,7 +61,7 @@ pub unsafe extern "C" fn htex_asset_law_json(
     guarded(|| {
         let law = ASSETS.shared(asset.id)?.manifest().law();
         let law = serde_json::to_string(&law)
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
         // SAFETY: the pointers are the caller's.
         unsafe { write_text(&law, out, capacity, length) }
     })
@@ -81,7 +82,8 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
-        let parameters = asset.named_parameters(model, at)?.into_iter().map(|(name, parameter)| {
+        let named = asset.representation(model)?.named_parameters(at)?;
+        let parameters = named.into_iter().map(|(name, parameter)| {
             let value = match parameter {
                 Parameter::Number(number) => json!(number),
                 Parameter::List(list) => json!(list),
@@ -119,7 +121,7 @@ pub unsafe extern "C" fn htex_asset_read_magnitude(
 }
 
 fn read_magnitude(
-    asset: &Asset,
+    asset: &Texture,
     model: Option<&str>,
     condition: usize,
 ) -> Result<Vec<f64>, Failure> {
@@ -128,14 +130,15 @@ fn read_magnitude(
         condition.ok_or(Failure::argument("the texture has no condition of this number"))?;
     let motion =
         condition.speed_mm_s.zip(condition.force_n).map(|(speed, force)| Motion::new(speed, force));
-    let loaded = asset.loaded_model(model)?;
+    let representation = asset.representation(model)?;
+    let loaded = representation.model()?;
     if loaded.has_lines() {
         return Err(Failure::plain(
             htex_status::HTEX_STATUS_UNSUPPORTED,
             "what is read of lines, only its samples tell: render its voice and measure them",
         ));
     }
-    let (parameters, level_rms) = asset.parameters(model, motion)?;
+    let (parameters, level_rms) = representation.parameters(motion)?;
     let shape = loaded.read_magnitude(&parameters, asset.band()).map_err(htex::Error::from)?;
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }

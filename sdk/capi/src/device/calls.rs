@@ -12,12 +12,12 @@ use crate::pointers::{needed_text, place, slice, text, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
 /// An open device, and its sample rate.
-struct Open {
+struct OpenDevice {
     device: Box<dyn Device>,
     rate_hz: f64,
 }
 
-static DEVICES: Table<Open> = Table::new(Kind::Device);
+static DEVICES: Table<OpenDevice> = Table::new(Kind::Device);
 
 impl From<DeviceError> for Failure {
     fn from(error: DeviceError) -> Self {
@@ -28,7 +28,7 @@ impl From<DeviceError> for Failure {
             DeviceError::File { .. } => htex_status::HTEX_STATUS_IO,
             _ => htex_status::HTEX_STATUS_DEVICE,
         };
-        Self::of(status, error)
+        Self::new(status, error)
     }
 }
 
@@ -79,7 +79,7 @@ pub(super) unsafe fn list_json(
 ///
 /// # Safety
 /// Texts of the caller's.
-unsafe fn named(
+unsafe fn device_and_settings(
     devices: &Devices,
     name: *const c_char,
     settings: *const c_char,
@@ -101,7 +101,7 @@ pub(super) unsafe fn info_json(
     guarded(|| {
         let devices = devices();
         // SAFETY: the texts are the caller's.
-        let (known, settings) = unsafe { named(&devices, name, settings) }?;
+        let (known, settings) = unsafe { device_and_settings(&devices, name, settings) }?;
         let (can, problem) = match known.adapter.capabilities(&settings) {
             Ok(can) => (Some(can), None),
             Err(problem) => (None, Some(problem.to_string())),
@@ -126,7 +126,8 @@ pub(super) unsafe fn open(
     guarded(|| {
         let devices = devices();
         // SAFETY: the pointers are the caller's.
-        let ((known, settings), out) = unsafe { (named(&devices, name, settings)?, place(out)?) };
+        let ((known, settings), out) =
+            unsafe { (device_and_settings(&devices, name, settings)?, place(out)?) };
         let can = known.adapter.capabilities(&settings)?;
         // A file with the quantity of a display is allowed, because it drives no voltage.
         if can.quantity == Quantity::DisplayVoltage && can.paced {
@@ -135,7 +136,7 @@ pub(super) unsafe fn open(
         let rate_hz = if rate_hz == 0.0 { can.default_rate_hz } else { rate_hz };
         let format = StreamFormat { rate_hz, block_frames: can.block_frames };
         let device = known.adapter.open(&settings, &format)?;
-        out.id = DEVICES.insert(Open { device, rate_hz })?;
+        out.id = DEVICES.insert(OpenDevice { device, rate_hz })?;
         Ok(())
     })
 }

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::io;
 use std::path::Path;
 
-use htex::Library;
+use htex::library::Library;
 use htex::library::{LibraryError, LibrarySource, LocalFile};
 
 use super::htex_library;
@@ -93,7 +93,7 @@ pub(super) unsafe fn open_reader(
     out: *mut htex_library,
 ) -> htex_status {
     // SAFETY: the pointers are the caller's.
-    let source = || Ok(Source::Reader(unsafe { Reader::of(reader) }?));
+    let source = || Ok(Source::Reader(unsafe { Reader::from_raw(reader) }?));
     // SAFETY: as above.
     unsafe { keep_library(source, out) }
 }
@@ -192,12 +192,12 @@ pub(super) unsafe fn asset(
         // SAFETY: the pointers are the caller's.
         let (name, models) = unsafe { (needed_text(name)?, models(options)?) };
         let bytes = library.get(name)?;
-        let data = htex::AssetData::from_bytes(&bytes).map_err(htex::Error::from)?;
+        let data = htex::format::Asset::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string(value)
-        .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))
+        .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))
 }

@@ -1,16 +1,11 @@
 //! Implementation of the scene calls.
 
-use std::collections::BTreeMap;
 use std::ffi::c_char;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use htex::device::Devices;
-use htex::scene::{
-    Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Plan, Renderer, SceneError,
-    SceneFiles, Surroundings, plan, read_scene,
-};
-use htex::{AssetData, Quantity};
+use htex::Motion;
+use htex::scene::{DeviceOverride, FileSource, Renderer, Scene, SceneError, Surroundings};
 
 use super::{htex_finger, htex_scene, htex_scene_options};
 use crate::handles::{Kind, Table};
@@ -28,30 +23,8 @@ struct Playing {
 
 static SCENES: Table<Playing> = Table::new(Kind::Scene);
 
-/// The device through which a program receives the samples: numbers in the assets' unit.
-const ADAPTER: &str = "org.htex.file";
-
-impl From<LoadError> for Failure {
-    fn from(error: LoadError) -> Self {
-        let status = match &error {
-            LoadError::Io { .. } => htex_status::HTEX_STATUS_IO,
-            _ => htex_status::HTEX_STATUS_INVALID_SCENE,
-        };
-        Self::of(status, error)
-    }
-}
-
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Self {
-        let status = match error {
-            SceneError::Motion { .. } => htex_status::HTEX_STATUS_INVALID_MOTION,
-            SceneError::Surface { .. } => htex_status::HTEX_STATUS_MODEL,
-            SceneError::NoModel { .. } => htex_status::HTEX_STATUS_NO_MODEL,
-            _ => htex_status::HTEX_STATUS_INVALID_SCENE,
-        };
-        Self::of_scene(status, error)
-    }
-}
+/// Default sample rate, Hz.
+const USUAL_RATE_HZ: f64 = 20_000.0;
 
 /// Frees all scenes.
 ///
@@ -69,46 +42,16 @@ pub(super) enum Source<'a> {
 }
 
 impl Source<'_> {
-    fn load(
-        &self,
-        around: &Surroundings<'_>,
-        device: &DeviceOverride,
-    ) -> Result<LoadedScene, LoadError> {
+    fn open(&self, around: &Surroundings<'_>) -> Result<Scene, SceneError> {
+        let device = DeviceOverride::default();
         match self {
-            Self::Path(path) => LoadedScene::open(path, around, device),
-            Self::Memory(bytes, files) => LoadedScene::from_files(bytes, files, around, device),
+            Self::Path(path) => Scene::open_with(path, around, &device),
+            Self::Memory(bytes, files) => Scene::from_files(bytes, files, around, &device),
         }
     }
-
-    /// Returns the quantity of the first surface's asset. A scene or an asset that cannot be read
-    /// is reported later, when the scene is loaded.
-    fn quantity(&self) -> Option<Quantity> {
-        let first = |bytes: &[u8]| {
-            let scene = read_scene(bytes, &Limits::default(), &mut Default::default())?;
-            Some(scene.surfaces.first()?.asset.clone())
-        };
-        let data = match self {
-            Self::Path(path) => {
-                let asset = first(&bounded(path).ok()?)?;
-                AssetData::open(&path.parent()?.join(asset)).ok()?
-            }
-            Self::Memory(bytes, files) => {
-                AssetData::from_bytes(&files.read(&first(bytes)?).ok()?).ok()?
-            }
-        };
-        Some(data.manifest.quantity)
-    }
 }
 
-/// Reads as much of a scene file as a valid one may have.
-fn bounded(path: &Path) -> io::Result<Vec<u8>> {
-    use std::io::Read;
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(Limits::default().file_bytes).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
-impl SceneFiles for Files {
+impl FileSource for Files {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.read_whole(&path.to_string_lossy())
     }
@@ -148,7 +91,7 @@ pub(super) unsafe fn from_bytes(
     out: *mut htex_scene,
 ) -> htex_status {
     // SAFETY: the pointers are the caller's.
-    let source = || unsafe { Ok(Source::Memory(slice(bytes, len)?, Files::of(files)?)) };
+    let source = || unsafe { Ok(Source::Memory(slice(bytes, len)?, Files::from_raw(files)?)) };
     // SAFETY: as above.
     unsafe { open(source, open_options, scene_options, out) }
 }
@@ -165,45 +108,24 @@ unsafe fn open(
         // SAFETY: the pointers are the caller's.
         let (models, asked, out) =
             unsafe { (models(open)?, options(scene_options, zeros)?, place(out)?) };
-        let devices = Devices::new(htex_device_builtin::devices());
+        // The program takes the samples itself.
         let around =
-            Surroundings { models: &models.registry, embedded: models.embedded, devices: &devices };
-        let device = DeviceOverride {
-            adapter: Some(ADAPTER.to_owned()),
-            // The quantity is a setting of the device, so it is read before the scene is loaded.
-            settings: settings(source.quantity()),
-            rate_hz: (asked.rate_hz != 0.0).then_some(asked.rate_hz),
-            rehearsal: true,
-            ..DeviceOverride::default()
-        };
-        let scene = source.load(&around, &device)?;
+            Surroundings { models: &models.registry, embedded: models.embedded, devices: None };
+        let scene = source.open(&around)?;
         for note in &scene.notes {
             log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
         }
-        let (renderer, plan) = start(&scene, &devices)?;
+        let rate_hz = if asked.rate_hz == 0.0 { USUAL_RATE_HZ } else { asked.rate_hz };
+        let plan = scene.plan(rate_hz)?;
         for note in &plan.notes {
             log(htex_log_level::HTEX_LOG_INFO, note);
         }
         let plan_json = serde_json::to_string(&plan)
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
+        let renderer = Renderer::new(&scene, &plan)?;
         out.id = SCENES.insert(Playing { renderer, plan_json })?;
         Ok(())
     })
-}
-
-/// The setting that gives the device the quantity of the samples.
-fn settings(quantity: Option<Quantity>) -> BTreeMap<String, String> {
-    let quantity = quantity.map(|quantity| ("quantity".to_owned(), quantity.name().to_owned()));
-    quantity.into_iter().collect()
-}
-
-fn start(scene: &LoadedScene, devices: &Devices) -> Result<(Renderer, Plan), Failure> {
-    let device = |error| Failure::of(htex_status::HTEX_STATUS_INVALID_SCENE, error);
-    let adapter = &devices.find(ADAPTER).map_err(device)?.adapter;
-    let capabilities = adapter.capabilities(&scene.settings).map_err(device)?;
-    // Not the costs measured on this machine, so that the plan depends on no file of the user.
-    let plan = plan(scene, &capabilities, &Costs::embedded())?;
-    Ok((Renderer::new(scene, &plan)?, plan))
 }
 
 pub(super) fn free(scene: htex_scene) -> htex_status {
@@ -244,11 +166,9 @@ pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -
         }
         // A single NaN is a failed reading, not an unknown position.
         let unknown = finger.x_mm.is_nan() && finger.y_mm.is_nan();
-        Ok(scene.renderer.set_motion(Finger {
-            speed_mm_s: finger.speed_mm_s,
-            force_n: finger.force_n,
-            at_mm: (!unknown).then_some([finger.x_mm, finger.y_mm]),
-        })?)
+        let place_mm = (!unknown).then_some([finger.x_mm, finger.y_mm]);
+        let motion = Motion::new(finger.speed_mm_s, finger.force_n).with_place_mm(place_mm);
+        Ok(scene.renderer.set_motion(motion)?)
     })
 }
 
@@ -262,8 +182,11 @@ pub(super) unsafe fn render(
         let mut scene = SCENES.exclusive(scene.id)?;
         // SAFETY: the pointers are the caller's.
         let (out, rendered) = unsafe { (slice_mut(out, frames)?, place(rendered)?) };
-        *rendered = scene.renderer.render(out);
-        scene.renderer.take_failure().map_or(Ok(()), |error| Err(error.into()))
+        // Also after an error, all frames until the end of the scene are rendered.
+        let left = scene.renderer.frames_left().unwrap_or(u64::MAX);
+        *rendered = usize::try_from(left).map_or(out.len(), |left| left.min(out.len()));
+        *rendered = scene.renderer.render(out)?;
+        Ok(())
     })
 }
 

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use htex::{Asset, Motion, Registry, VoiceOptions};
+use htex::{Motion, Registry, Texture, VoiceOptions};
 use programs::{Language, Project, asset};
 use xtask::needs;
 
@@ -100,7 +100,7 @@ impl Built {
 
 /// The samples of the strokes as the library plays them, 20 dB above the asset's unit.
 fn expected() -> Vec<u8> {
-    let asset = Asset::open(asset()).unwrap();
+    let asset = Texture::open(asset()).unwrap();
     let options = VoiceOptions::default()
         .with_rate_hz(RATE_HZ)
         .with_seed(SEED)
@@ -159,7 +159,7 @@ fn the_plugin_keeps_to_its_description() {
     assert_eq!(models, Registry::builtin_names());
     assert!(readme.contains(&format!("then {} |", models.join(", "))));
     let bytes = fs::read(asset()).unwrap();
-    let damaged = Asset::from_bytes(&bytes[..bytes.len() / 2]).unwrap_err();
+    let damaged = Texture::from_bytes(&bytes[..bytes.len() / 2]).unwrap_err();
     let messages = lines("message ");
     assert_eq!(messages[0], format!("the asset cannot be opened: {damaged}"));
     let expected = [

@@ -11,9 +11,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, embed_plugins, fit_asset};
-use htex::simulate::{SimulationOptions, Surface, simulate};
-use htex::{Asset, Motion, Registry, Search, VoiceOptions};
+use htex::model::Search;
+use htex::{Motion, Registry, Texture, VoiceOptions};
 use programs::{Language, Project, asset};
 use xtask::needs;
 
@@ -89,7 +90,7 @@ fn voices_are_small_and_the_end_gives_everything_back() {
 }
 
 /// A texture recorded at two speeds, with these models.
-fn fitted(registry: &Registry, models: &[&str]) -> htex::AssetData {
+fn fitted(registry: &Registry, models: &[&str]) -> htex::format::Asset {
     let take = |speed_mm_s| {
         let options =
             SimulationOptions::new(Surface::Vinyl).with_speed_mm_s(speed_mm_s).with_duration_s(3.0);
@@ -170,7 +171,7 @@ fn calls_of_each_language_tell_the_same() {
     writer.finish().unwrap();
     let scene = asset().with_file_name("constant.scene.json");
 
-    let opened = Asset::open(asset()).unwrap();
+    let opened = Texture::open(asset()).unwrap();
     let options =
         VoiceOptions::default().with_seed(7).with_gain(0.5).with_limit(0.01).with_envelope_bands(3);
     let mut voice = opened.voice(&options).unwrap();
@@ -179,7 +180,7 @@ fn calls_of_each_language_tell_the_same() {
     let envelope = voice.envelope(&mut bands).unwrap();
     let expected = [
         ("library", vec![1.0]),
-        ("level", vec![opened.level_rms(None, None).unwrap()]),
+        ("level", vec![opened.level_rms(None).unwrap()]),
         ("band", vec![20.0, 1_000.0]),
         ("edges", voice.envelope_edges_hz()[1..3].to_vec()),
         ("envelope", [&[envelope.level_rms, envelope.centroid_hz], &bands[..]].concat()),
@@ -223,7 +224,7 @@ fn calls_of_each_language_tell_the_same() {
             assert_eq!(numbers(lines[name]).len(), values.len());
         }
         assert_eq!(lines["name"], opened.manifest().name);
-        assert_eq!(lines["model"], opened.representation_id(None).unwrap());
+        assert_eq!(lines["model"], opened.representation(None).unwrap().id());
         assert_eq!(lines["status"], "another thread uses the object");
         played.push(fs::read(channels).unwrap());
     }

@@ -6,13 +6,13 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use htex::{Asset, Motion, VoiceOptions};
+use htex::{Motion, Texture, VoiceOptions};
 use programs::{Language, Project, asset};
 use xtask::needs;
 
 /// The samples of the examples' stroke.
 fn stroke(asset: &Path) -> Vec<u8> {
-    let asset = Asset::open(asset).unwrap();
+    let asset = Texture::open(asset).unwrap();
     let mut voice = asset.voice(&VoiceOptions::default().with_seed(7)).unwrap();
     let mut bytes = Vec::new();
     for block in 0..625 {
@@ -52,7 +52,7 @@ fn examples_play_the_same_samples() {
 #[test]
 fn examples_of_the_readme_run() {
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let mut voice = Asset::open(asset()).unwrap().voice(&VoiceOptions::default()).unwrap();
+    let mut voice = Texture::open(asset()).unwrap().voice(&VoiceOptions::default()).unwrap();
     let mut block = [0.0f32; 64];
     voice.set_motion(Motion::new(80.0, 0.4)).unwrap();
     voice.render(&mut block).unwrap();
@@ -139,7 +139,7 @@ fn libraries_open_in_each_language() {
     let mut writer = htex::library::Writer::create(&path, "A").unwrap();
     writer.add("floor/vinyl", &fs::read(asset()).unwrap()).unwrap();
     writer.finish().unwrap();
-    let library = htex::Library::open(&path).unwrap();
+    let library = htex::library::Library::open(&path).unwrap();
     let entry = library.entry("floor/vinyl").unwrap().unwrap();
     let absent = library.get("none").unwrap_err().to_string();
     let json = serde_json::to_string(&[&entry]).unwrap();

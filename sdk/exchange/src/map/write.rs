@@ -4,7 +4,7 @@ use htex_author::{AuthorError, Difference, TextureSpectrum};
 use htex_dsp::grid::level_rms;
 use htex_format::Rights;
 use htex_host::{FitCondition, FitRequest, Registry};
-use htex_play::{Asset, Motion};
+use htex_play::{Motion, Texture};
 
 use super::MODEL;
 use super::image::{Image, read, to_bytes};
@@ -33,7 +33,7 @@ pub(crate) struct Printed {
 /// # Errors
 /// When the texture is silent, the speed is unknown, or 255 pixels cannot hold any of it.
 pub(crate) fn written(
-    asset: &Asset,
+    asset: &Texture,
     model: Option<&str>,
     motion: Option<Motion>,
 ) -> Result<Printed, ExchangeError> {
@@ -52,22 +52,23 @@ pub(crate) fn written(
 
 /// The parameters and the level of a texture that is a map. They come from the model that is named,
 /// or else from the one that an app plays.
-fn own(asset: &Asset, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
-    match asset.loaded_model(model)?.id() {
-        MODEL => Ok(Some(asset.parameters(model, None)?)),
+fn own(asset: &Texture, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
+    let representation = asset.representation(model)?;
+    match representation.model()?.id() {
+        MODEL => Ok(Some(representation.parameters(None)?)),
         _ => Ok(None),
     }
 }
 
 fn fitted(
-    asset: &Asset,
+    asset: &Texture,
     model: Option<&str>,
     motion: Option<Motion>,
 ) -> Result<Printed, ExchangeError> {
     let band = asset.band();
     let frequency_hz = band.grid_hz();
-    let default = asset.default_condition(model)?;
-    let default = asset.manifest().conditions.get(default);
+    let representation = asset.representation(model)?;
+    let default = asset.manifest().conditions.get(representation.default_condition());
     let condition = FitCondition {
         speed_mm_s: motion
             .map(|motion| motion.speed_mm_s)
@@ -79,7 +80,7 @@ fn fitted(
             "the texture states no speed, and pixels lie over a way; give `speed` and `force`",
         ));
     }
-    let magnitude = asset.magnitude(model, motion, &frequency_hz)?;
+    let magnitude = representation.magnitude(motion, &frequency_hz)?;
     let failed = |error: htex_host::HostError| cannot(&error.to_string());
     let registry = Registry::builtin();
     let map = registry.find(MODEL).map_err(failed)?;
@@ -153,7 +154,7 @@ fn image(
 }
 
 /// Describes what the image does not state.
-fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
+fn said(parameters: &[f64], white: f64, asset: &Texture) -> String {
     // As 32-bit floats, as assets store them, so that no meaningless digits are shown.
     let at = |index: usize| parameters.get(index).copied().unwrap_or_default() as f32;
     let white = white as f32;

@@ -8,7 +8,7 @@ use htex_exchange::{
     Coding, ExchangeError, Export, Exported, FORMATS, Format, PROFILES, Path, Profile, Stroke,
     Writes, export,
 };
-use htex_play::{Asset, Motion};
+use htex_play::{Motion, Texture};
 use serde_json::Value;
 use textures::texture;
 
@@ -181,7 +181,7 @@ fn kotlin_has_the_points_of_the_envelope() {
 
 #[test]
 fn an_asset_that_cannot_be_played_says_why() {
-    let asset: Asset = texture(Surface::Vinyl);
+    let asset: Texture = texture(Surface::Vinyl);
     let error = export(&asset, &of("haptic").with_model("ar")).unwrap_err();
     assert!(error.to_string().contains("ar"), "{error}");
 }

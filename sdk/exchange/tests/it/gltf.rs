@@ -8,12 +8,12 @@ use htex_author::simulate::Surface;
 use htex_base::schema::Schema;
 use htex_exchange::gltf::{Material, material_schema, read};
 use htex_exchange::{Export, Format, Import, MOST_BYTES, export, import};
-use htex_play::{Asset, Registry};
+use htex_play::{Registry, Texture};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use textures::texture;
 
-static ASSET: LazyLock<Asset> = LazyLock::new(|| texture(Surface::Vinyl));
+static ASSET: LazyLock<Texture> = LazyLock::new(|| texture(Surface::Vinyl));
 /// The asset's file.
 static FILE: LazyLock<Vec<u8>> = LazyLock::new(|| ASSET.data().to_bytes().unwrap());
 
@@ -88,7 +88,7 @@ fn the_asset_comes_back_bit_for_bit() {
 fn a_file_that_would_be_written_differently_comes_back_too() {
     let seed = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/open_asset/bands-stored");
     let file = std::fs::read(seed).unwrap();
-    let asset = Asset::from_bytes(&file).unwrap();
+    let asset = Texture::from_bytes(&file).unwrap();
     assert_ne!(asset.data().to_bytes().unwrap(), file);
     for extension in ["glb", "gltf"] {
         let mut how = Export::new(Format::named("gltf").unwrap());
@@ -112,7 +112,7 @@ fn metadata_is_applied() {
     let same = of(&ASSET.manifest().name);
     assert_eq!(same.to_bytes().unwrap(), *FILE);
     let named = of("other").to_bytes().unwrap();
-    assert_eq!(Asset::from_bytes(&named).unwrap().manifest().name, "other");
+    assert_eq!(Texture::from_bytes(&named).unwrap().manifest().name, "other");
 }
 
 #[test]

@@ -11,16 +11,16 @@ use common::{Model, draw, file};
 use htex_dsp::line_spectrum::coefficients_of_lines;
 use htex_dsp::linear_prediction::is_stable;
 use htex_exchange::hatt::{EXTENSION, Imported, MOST_BYTES, asset, extension_schema, read};
-use htex_play::{Asset, Motion};
+use htex_play::{Motion, Texture};
 use proptest::prelude::*;
 
 const MODEL: Option<&str> = Some("arma");
 
-fn imported(text: &str) -> Asset {
+fn imported(text: &str) -> Texture {
     let texture = read(text.as_bytes()).unwrap();
     assert_eq!(texture.notes, [""; 0]);
     let made = asset(&texture, &Imported::default()).unwrap();
-    Asset::from_bytes(&made.to_bytes().unwrap()).unwrap()
+    Texture::from_bytes(&made.to_bytes().unwrap()).unwrap()
 }
 
 /// The magnitude of a model at its rate of 1 kHz, by definition: the amplitude that a Hann window
@@ -41,12 +41,12 @@ fn magnitude(model: &Model, hz: f64) -> f64 {
 
 /// The largest difference from 20 to 490 Hz over all audible models, decibels. Silent models must
 /// be silent.
-fn largest_error_db(models: &[Model], asset: &Asset) -> f64 {
+fn largest_error_db(models: &[Model], asset: &Texture) -> f64 {
     let grid: Vec<f64> = (4..=98).map(|bin| 5.0 * f64::from(bin)).collect();
     let mut worst = 0.0f64;
     for model in models {
         let motion = Some(Motion::new(model.speed, model.force));
-        let found = asset.recorded_magnitude(MODEL, motion, &grid).unwrap();
+        let found = asset.representation(MODEL).unwrap().recorded_magnitude(motion, &grid).unwrap();
         for (hz, found) in grid.iter().zip(found) {
             let expected = magnitude(model, *hz);
             if model.variance > 0.0 {
@@ -76,7 +76,7 @@ proptest! {
         };
         for _ in 0..420 {
             let motion = Motion::new(260.0 * part(), 7.0 * part());
-            let (parameters, level_rms) = asset.parameters(MODEL, Some(motion)).unwrap();
+            let (parameters, level_rms) = asset.representation(MODEL).unwrap().parameters(Some(motion)).unwrap();
             let lines = &parameters[1..=parameters[0] as usize];
             let mut coefficients = vec![0.0; lines.len()];
             prop_assert!(coefficients_of_lines(lines, &mut coefficients) && is_stable(&coefficients));

@@ -7,16 +7,17 @@ use std::process::Command;
 
 use common::{draw, file};
 use htex_exchange::hatt::{Imported, asset, read};
-use htex_play::{Asset, Motion};
+use htex_play::{Motion, Texture};
 
 /// Magnitudes at each node from 20 to 490 Hz, as stated by the asset that is imported from a file.
 fn stated(text: &str) -> Vec<Vec<f64>> {
     let grid: Vec<f64> = (4..=98).map(|bin| 5.0 * f64::from(bin)).collect();
     let texture = read(text.as_bytes()).unwrap();
     let made = asset(&texture, &Imported::default()).unwrap();
-    let asset = Asset::from_bytes(&made.to_bytes().unwrap()).unwrap();
+    let asset = Texture::from_bytes(&made.to_bytes().unwrap()).unwrap();
     let motions = texture.nodes.iter().map(|node| Motion::new(node.speed_mm_s, node.force_n));
-    let of = |motion| asset.recorded_magnitude(Some("arma"), Some(motion), &grid).unwrap();
+    let arma = asset.representation("arma").unwrap();
+    let of = |motion| arma.recorded_magnitude(Some(motion), &grid).unwrap();
     motions.map(of).collect()
 }
 

@@ -6,7 +6,7 @@ use htex_exchange::map::{Image, read};
 use htex_exchange::{
     Export, Exported, Format, Import, Imported, Path, Physical, export, import, missing,
 };
-use htex_play::{Asset, Motion, Registry, VoiceOptions};
+use htex_play::{Motion, Registry, Texture, VoiceOptions};
 use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -57,11 +57,11 @@ fn refusal(bytes: &[u8], pitch_mm: Option<f64>) -> String {
 }
 
 /// Opens the asset as an app does.
-fn opened(imported: &Imported) -> Asset {
-    Asset::from_bytes(&imported.to_bytes().unwrap()).unwrap()
+fn opened(imported: &Imported) -> Texture {
+    Texture::from_bytes(&imported.to_bytes().unwrap()).unwrap()
 }
 
-fn exported(asset: &Asset) -> Exported {
+fn exported(asset: &Texture) -> Exported {
     export(asset, &Export::new(Format::named("png").unwrap())).unwrap()
 }
 
@@ -191,12 +191,12 @@ fn what_is_felt_follows_the_place() {
 }
 
 /// Two seconds of a straight stroke at 8 kHz.
-fn stroke(asset: &Asset, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
+fn stroke(asset: &Texture, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
     let mut voice = asset.voice(&VoiceOptions::default().with_rate_hz(8_000.0)).unwrap();
     let mut samples = vec![0.0; 16_000];
     for (block, samples) in samples.chunks_mut(40).enumerate() {
         let time_s = block as f64 * 0.005;
-        let motion = Motion::new(dx.hypot(dy), force_n).with_place_mm(dx * time_s, dy * time_s);
+        let motion = Motion::new(dx.hypot(dy), force_n).with_place_mm([dx * time_s, dy * time_s]);
         voice.set_motion(motion).unwrap();
         voice.render(samples).unwrap();
     }
@@ -225,8 +225,8 @@ fn a_texture_without_places_goes_out_as_a_row() {
     back.physical.full_scale = Some(white);
     back.physical.speed_mm_s = Some(120.0);
     let back = import("row.png", &row.bytes, &back, &Registry::builtin()).unwrap();
-    let level = opened(&back).level_rms(None, None).unwrap();
-    let there = hum.level_rms(None, Some(motion)).unwrap();
+    let level = opened(&back).level_rms(None).unwrap();
+    let there = hum.level_rms(Some(motion)).unwrap();
     let level_db = 20.0 * (level / there).log10();
     assert!((level_db - lost.level_db).abs() < 0.05, "{level_db} dB");
 

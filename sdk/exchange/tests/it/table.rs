@@ -89,7 +89,7 @@ fn a_setting_that_means_nothing_is_refused() {
     assert!(error.contains("it is not written; there are haptic, ahap"), "{error}");
 }
 
-fn made() -> htex_play::Asset {
+fn made() -> htex_play::Texture {
     let registry = Registry::builtin();
     let how = Import {
         name: "hum",
@@ -108,7 +108,7 @@ fn made() -> htex_play::Asset {
     let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
         "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
     let imported = import("hum.haptic", file, &how, &registry).unwrap();
-    htex_play::Asset::with_registry(imported.asset, registry)
+    htex_play::Texture::with_registry(imported.asset, registry)
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn what_a_file_does_not_say_is_asked_for_and_kept() {
     assert_eq!(manifest.conditions[0].speed_mm_s, Some(80.0));
     assert_eq!(manifest.conditions[0].force_n, Some(0.4));
     // A sine at half of full scale.
-    let level = asset.level_rms(None, None).unwrap();
+    let level = asset.level_rms(None).unwrap();
     assert!((level - 0.05 / 2f64.sqrt()).abs() < 0.001, "{level}");
     let warnings = &manifest.provenance.warnings;
     assert!(warnings.iter().any(|w| w.contains("are repeated 4 times")), "{warnings:?}");

@@ -3,5 +3,6 @@
 
 #[cfg(all(feature = "library", feature = "write"))]
 mod library;
+mod live;
 #[cfg(all(feature = "author", not(feature = "wasm")))]
 mod small_player;

@@ -1,17 +1,17 @@
 //! A player without the sandbox can play an asset with an embedded module: it plays the
 //! representations of built-in models.
 
+use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
-use htex::format::{Measure, Plugin};
-use htex::simulate::{SimulationOptions, Surface, simulate};
-use htex::{Asset, Error, Registry, VoiceOptions};
+use htex::format::{Asset, Measure, Plugin};
+use htex::{Error, Registry, Texture, VoiceOptions};
 
 /// An id that no built-in model has.
 const ELSEWHERE: &str = "org.example.elsewhere";
 
 /// An asset with an AR and an sBeta representation. The named one gets another id, the smallest
 /// error, and an embedded module.
-fn asset() -> htex::AssetData {
+fn asset() -> Asset {
     let options = SimulationOptions::new(Surface::Sandpaper).with_duration_s(3.0);
     let take = Take {
         recording: simulate(&options).unwrap().to_recording("simulated").unwrap(),
@@ -39,15 +39,15 @@ fn asset() -> htex::AssetData {
 
 #[test]
 fn other_representations_play() {
-    let asset = Asset::new(asset()).with_embedded();
-    assert_eq!(asset.representation_id(None).unwrap(), "org.htex.sbeta");
+    let asset = Texture::new(asset()).with_embedded();
+    assert_eq!(asset.representation(None).unwrap().id(), "org.htex.sbeta");
     let mut voice = asset.voice(&VoiceOptions::default()).unwrap();
     let mut block = [0.0f32; 256];
     voice.render(&mut block).unwrap();
     assert!(block.iter().any(|x| *x != 0.0));
 
-    let options = VoiceOptions::default().with_model(ELSEWHERE);
-    let Err(Error::Model(error)) = asset.voice(&options) else {
+    let elsewhere = asset.representation(ELSEWHERE).unwrap();
+    let Err(Error::Model(error)) = elsewhere.voice(&VoiceOptions::default()) else {
         panic!("a module ran without a sandbox");
     };
     assert!(error.to_string().contains("wasm"), "{error}");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use htex_base::finding::{Finding, Findings};
 use htex_format::{Document, DocumentRules};
 use htex_scene::file::Motion;
-use htex_scene::{DeviceOverride, LoadError, LoadedScene, Surroundings};
+use htex_scene::{DeviceOverride, Scene, SceneError, Surroundings};
 use serde_json::Value;
 
 use crate::study::check::check;
@@ -102,9 +102,9 @@ pub fn check_files(
     for (texture, asset) in study.textures.iter().enumerate() {
         for (pointer, model) in models(study) {
             let scene = scene_of(study, &asset.asset, model);
-            let found = match LoadedScene::from_bytes(path, &scene, around, device) {
+            let found = match Scene::from_bytes(path, &scene, around, device) {
                 Ok(loaded) => loaded.notes,
-                Err(LoadError::Invalid { findings }) => findings,
+                Err(SceneError::Invalid { findings }) => findings,
                 // This is a scene in memory, so no file can fail to be read.
                 Err(_) => Vec::new(),
             };

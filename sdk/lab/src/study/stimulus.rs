@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use htex_device::{Capabilities, Quantity};
-use htex_scene::Scene;
-use htex_scene::file::{DeviceChoice, Levels, Surface};
+use htex_scene::file::{DeviceChoice, Levels, SceneFile, Surface};
 
 use crate::study::file::Study;
 
@@ -36,7 +35,7 @@ pub struct Stimulus {
 /// Returns the scene of a texture in a model, as the bytes of a scene file next to the study.
 pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     let surface = Surface { representation: model.to_owned(), ..Surface::everywhere(asset) };
-    let scene = Scene {
+    let scene = SceneFile {
         htex_scene: htex_scene::file::VERSION.to_owned(),
         surfaces: vec![surface],
         motion: study.motion.clone(),

@@ -1,80 +1,53 @@
-//! Shared code of models that describe a spectrum by a curve and play it as noise.
+//! Models that describe a spectrum by a curve and play it as noise.
 //!
-//! A model implements [`Curve`]. This module then provides the rest of a model: the magnitude at
-//! unit RMS ([`magnitude`]), the rate of a voice ([`voice_rate_hz`]) and the voice itself
-//! ([`ShapedVoice`]).
+//! A model implements [`Curve`] and [`ShapedModel`], and is then a [`Model`]: its magnitude at unit
+//! RMS, its interpolation, its rate and its voice ([`ShapedVoice`]) follow from the curve.
 mod places;
 
-use crate::{Error, Values, Voice};
-use htex_dsp::grid::Band;
+use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Values, Voice, mix};
+use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::shaped_noise::{ComponentsKey, ShapedNoise, economical_rate_hz};
 
 pub use places::Places;
 
-/// A magnitude curve that a model's parameters define.
-///
-/// Implement this trait for a model that plays random-phase noise with the spectrum of the curve.
-/// Use [`ShapedVoice`] as the model's voice, and call [`magnitude`] and [`voice_rate_hz`] for the
-/// methods of the same names.
-///
-/// # How it is used
-///
-/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`at`](Self::at) by
-///   [`level`](Self::level).
-/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `at`. It then calls
-///   [`prepare`](Self::prepare) once, with the frequencies of the noise. Both may allocate.
-/// * Every retune of the voice calls [`set`](Self::set). [`fill`](Self::fill) follows at once, or
-///   at the end of the cross-fade of 10 ms that is in progress. Both run on the render thread and
-///   do not allocate.
-///
-/// The scale of `at` and `fill` does not matter, and they may have different scales: the voice
-/// always normalises to unit RMS in the band.
+const NO_SPECTRUM: &str =
+    "these parameters describe no spectrum: nothing in the band, or nothing finite";
+
+/// A model that plays random-phase noise with the spectrum of a [`Curve`]. Every such model is a
+/// [`Model`].
 ///
 /// # Example
 ///
 /// Flat noise between two frequencies:
 ///
 /// ```
-/// use htex_dsp::grid::curve_level_rms;
+/// use htex_model::shaped::{Curve, ShapedModel};
 /// use htex_model::{
-///     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
+///     Band, Error, Fit, FitInput, Model, StaticDescriptor, StaticField, Values,
 /// };
-/// use htex_model::shaped::{Curve, ShapedVoice};
 ///
-/// struct Plateau;
-///
-/// struct Edges {
+/// struct Plateau {
 ///     low_hz: f64,
 ///     high_hz: f64,
 ///     band: Band,
 /// }
 ///
-/// impl Curve for Edges {
+/// impl Curve for Plateau {
 ///     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-///         let mut edges = Self { low_hz: 0.0, high_hz: 0.0, band };
-///         edges.set(parameters)?;
-///         Ok(edges)
+///         Ok(Self { low_hz: parameters.scalar(0), high_hz: parameters.scalar(1), band })
 ///     }
 ///
-///     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-///         (self.low_hz, self.high_hz) = (parameters.scalar(0), parameters.scalar(1));
-///         if self.level() > 0.0 {
-///             return Ok(());
-///         }
-///         Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
+///     fn band(&self) -> Band {
+///         self.band
 ///     }
 ///
 ///     fn at(&self, frequency_hz: f64) -> f64 {
 ///         f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
 ///     }
-///
-///     fn level(&self) -> f64 {
-///         curve_level_rms(self.band, |hz| self.at(hz))
-///     }
 /// }
 ///
-/// impl Model for Plateau {
-///     type Voice = ShapedVoice<Edges>;
+/// impl ShapedModel for Plateau {
+///     type Curve = Self;
 ///
 ///     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
 ///         "org.example.plateau",
@@ -91,57 +64,118 @@ pub use places::Places;
 ///     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
 ///         let power = || input.magnitude.iter().map(|m| m * m);
 ///         let total: f64 = power().sum();
-///         if total == 0.0 {
-///             return Err(Error::cannot_fit("the spectrum is zero"));
-///         }
 ///         let below = |part: f64| {
 ///             let mut sum = 0.0;
 ///             let bin = power().position(|p| {
 ///                 sum += p;
-///                 sum >= part * total
+///                 sum > part * total
 ///             });
-///             input.frequency_hz[bin.unwrap_or(input.frequency_hz.len() - 1)]
+///             bin.map(|bin| input.frequency_hz[bin])
+///                 .ok_or(Error::cannot_fit("the spectrum is zero"))
 ///         };
-///         Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
-///     }
-///
-///     fn magnitude(
-///         parameters: &Values<'_>,
-///         band: Band,
-///         frequency_hz: &[f64],
-///         magnitude: &mut [f64],
-///     ) -> Result<(), Error> {
-///         htex_model::shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
-///     }
-///
-///     fn interpolate(
-///         sets: &[Values<'_>],
-///         weights: &[f64],
-///         mixed: &mut Numbers<'_>,
-///     ) -> Result<(), Error> {
-///         mix::linear(sets, weights, mixed)
-///     }
-///
-///     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-///         htex_model::shaped::voice_rate_hz(band, wanted_hz)
-///     }
-///
-///     fn voice(
-///         parameters: &Values<'_>,
-///         band: Band,
-///         rate_hz: f64,
-///         seed: u64,
-///     ) -> Result<Self::Voice, Error> {
-///         ShapedVoice::new(parameters, band, rate_hz, seed)
+///         let parameters = vec![below(0.05)?, below(0.95)?];
+///         Ok(Fit { parameters, level_rms: input.level_rms() })
 ///     }
 /// }
 ///
-/// let values = Values::read(&Plateau::DESCRIPTOR, &[80.0, 250.0])?;
+/// let values = Values::read(&<Plateau as Model>::DESCRIPTOR, &[80.0, 250.0])?;
 /// let mut magnitude = [0.0; 2];
 /// Plateau::magnitude(&values, Band::TACTILE, &[100.0, 500.0], &mut magnitude)?;
 /// assert!(magnitude[0] > 0.0 && magnitude[1] == 0.0);
 /// # Ok::<(), Error>(())
 /// ```
+pub trait ShapedModel: 'static {
+    /// The curve that the parameters define.
+    type Curve: Curve;
+
+    /// As [`Model::DESCRIPTOR`].
+    const DESCRIPTOR: StaticDescriptor;
+
+    /// As [`Model::fit`].
+    ///
+    /// # Errors
+    /// As [`Model::fit`].
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
+
+    /// As [`Model::interpolate`]. By default every number is interpolated linearly.
+    ///
+    /// # Errors
+    /// As [`Model::interpolate`].
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, out)
+    }
+}
+
+impl<M: ShapedModel> Model for M {
+    type Voice = ShapedVoice<M::Curve>;
+
+    const DESCRIPTOR: StaticDescriptor = <M as ShapedModel>::DESCRIPTOR;
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        <M as ShapedModel>::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        check::<M::Curve>(parameters, band)?;
+        magnitude::<M::Curve>(parameters, band, frequency_hz, out)
+    }
+
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        <M as ShapedModel>::interpolate(sets, weights, out)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+        voice_rate_hz(band, wanted_hz)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        check::<M::Curve>(parameters, band)?;
+        ShapedVoice::new(parameters, band, rate_hz, seed)
+    }
+}
+
+/// Refuses a curve that is zero or not finite everywhere in the band.
+fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
+    let level = C::new(parameters, band)?.level();
+    if level > 0.0 && level.is_finite() { Ok(()) } else { Err(Error::parameters(NO_SPECTRUM)) }
+}
+
+/// A magnitude curve that a model's parameters define.
+///
+/// Implement this trait and [`ShapedModel`] for a model that plays random-phase noise with the
+/// spectrum of the curve. A [`Model`] that does more with the noise uses [`ShapedVoice`] in its
+/// voice, and calls [`magnitude`] and [`voice_rate_hz`] for the methods of the same names.
+///
+/// # How it is used
+///
+/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`at`](Self::at) by
+///   [`level`](Self::level).
+/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `at`. It then calls
+///   [`prepare`](Self::prepare) once, with the frequencies of the noise. Both may allocate.
+/// * Every retune of the voice calls [`set`](Self::set). [`fill`](Self::fill) follows at once, or
+///   at the end of the cross-fade of 10 ms that is in progress. Both run on the render thread and
+///   do not allocate.
+///
+/// The scale of `at` and `fill` does not matter, and they may have different scales: the voice
+/// always normalises to unit RMS in the band.
 ///
 /// # Known doubt
 ///
@@ -150,25 +184,35 @@ pub use places::Places;
 /// the old spectrum continues without an error. Detect invalid parameters in [`set`](Self::set) if
 /// that is cheap.
 pub trait Curve: Sized + Send + 'static {
-    /// Makes the curve of these parameters in a band. May allocate.
+    /// Makes the curve of these parameters in a band. May allocate, unless [`Self::set`] is the
+    /// default.
     ///
     /// # Errors
     /// If the parameters describe no spectrum, i.e. the curve is zero or not finite everywhere in
-    /// the band.
+    /// the band. The curve of a [`ShapedModel`] need not check this.
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error>;
 
-    /// Changes the parameters. `[render thread, no allocation]`
+    /// Returns the band for which the curve was made.
+    fn band(&self) -> Band;
+
+    /// Changes the parameters. By default it makes a new curve. `[render thread, no allocation]`
     ///
     /// # Errors
     /// As [`Self::new`]. After an error the curve may be unusable.
-    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        *self = Self::new(parameters, self.band())?;
+        Ok(())
+    }
 
     /// Returns the curve at a frequency in the band, in any scale. The value is finite and not
     /// negative.
     fn at(&self, frequency_hz: f64) -> f64;
 
-    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::at`]; above 0.
-    fn level(&self) -> f64;
+    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::at`]. The default
+    /// computes it; override it to return a stored value.
+    fn level(&self) -> f64 {
+        curve_level_rms(self.band(), |hz| self.at(hz))
+    }
 
     /// Prepares [`Self::fill`] for these frequencies, hertz, e.g. by computing tables. Curves with
     /// the same `key` have the same frequencies and can share the tables.
@@ -249,9 +293,7 @@ impl<C: Curve> Voice for ShapedVoice<C> {
         if noise.retune_with(|hz, magnitude| curve.fill(hz, magnitude)) {
             Ok(())
         } else {
-            Err(Error::parameters(
-                "these parameters describe no spectrum: nothing in the band, or nothing finite",
-            ))
+            Err(Error::parameters(NO_SPECTRUM))
         }
     }
 }

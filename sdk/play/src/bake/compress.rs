@@ -28,7 +28,7 @@ pub(crate) struct Factors {
 
 /// Filters as a block stores them.
 #[derive(Clone)]
-pub(crate) struct Stored {
+pub(crate) struct StoredFilters {
     pub(crate) scales: Vec<f32>,
     /// The weights: for each condition, one for each filter.
     pub(crate) weights: Vec<i16>,
@@ -75,7 +75,7 @@ impl Factors {
     }
 
     /// Returns the first `count` filters and their weights as integers.
-    pub(crate) fn stored(&self, count: usize) -> Stored {
+    pub(crate) fn stored(&self, count: usize) -> StoredFilters {
         let (weights, filters) = (&self.weights[..count], &self.filters[..count]);
         // The small start avoids a division by zero if all numbers are zero.
         let largest = |all: &[f64]| all.iter().fold(1e-30, |most: f64, x| most.max(x.abs()));
@@ -88,7 +88,7 @@ impl Factors {
         };
         let conditions = weights.first().map_or(0, Vec::len);
         let row = |f: &Vec<f64>| f.iter().map(|c| integer(*c, largest(f))).collect();
-        Stored {
+        StoredFilters {
             scales: weights.iter().zip(filters).map(scale).collect(),
             weights: (0..conditions).flat_map(weights_of).collect(),
             filters: filters.iter().map(row).collect(),
@@ -96,7 +96,7 @@ impl Factors {
     }
 }
 
-impl Stored {
+impl StoredFilters {
     /// Returns the filter of each condition.
     pub(crate) fn conditions(&self) -> Vec<Vec<f64>> {
         let mixed = |weights: &[i16]| {

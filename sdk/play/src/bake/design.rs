@@ -2,20 +2,22 @@
 
 use std::rc::Rc;
 
-use crate::{Asset, Motion, Quantity, Rights};
+use htex_format::{Quantity, Rights};
+
+use crate::{Error, Motion, Representation};
 use htex_dsp::grid::GRID_HZ;
 use htex_player::layout::{CHECKSUM, HEADER, MOST_FILTERS, MOST_HALF, MOST_LEVEL};
 use htex_player::{Block, Law};
 
-use crate::bake::compress::{Factors, Stored};
-use crate::bake::encode::{Content, Encoded, encode};
+use crate::bake::Grid;
+use crate::bake::compress::{Factors, StoredFilters};
+use crate::bake::encode::{BlockSpectra, Content, encode};
 use crate::bake::filter::Design;
 use crate::bake::interpolator::Interpolator;
+use crate::bake::moments::{Moment, Moments};
 use crate::bake::noise::Designer;
 use crate::bake::shape::{Shape, Spectra};
-use crate::bake::texture::{Moment, Texture};
 use crate::bake::tones::{self, Tone};
-use crate::bake::{BakeError, Grid};
 
 /// Largest error of the nine bands at a condition, dB. The shortest filter with at most this error
 /// is used.
@@ -25,7 +27,7 @@ const TOLERANCE_DB: f64 = 0.1;
 const LEFT_OUT_DB: f64 = 0.01;
 /// As [`LEFT_OUT_DB`], for a block that would otherwise take more than [`WANTED_BYTES`].
 const MORE_LEFT_OUT_DB: f64 = 0.1;
-/// Wanted size of a block, bytes. To reach it, accuracy is reduced if it is not within the
+/// Target size of a block, bytes. To reach it, accuracy is reduced if it is not within the
 /// tolerance anyway.
 const WANTED_BYTES: usize = 16 * 1024;
 /// Largest number of conditions after conditions were inserted between the wanted ones.
@@ -38,7 +40,7 @@ const CREST: f64 = 5.0;
 
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Baked {
+pub struct BakeResult {
     pub bytes: Vec<u8>,
     /// Number of 32-bit values that the player in C needs for the block, in addition to the struct
     /// `htex_player`.
@@ -124,26 +126,24 @@ impl From<f64> for BakeLimits {
 
 /// Bakes a representation at the conditions of a grid, to a block that plays at `rate_hz`.
 ///
-/// `model` is the id or the short name of the representation's model; `None` selects the best
-/// representation. `limits` may be a number of decibels. Conditions are inserted midway between
-/// neighbours until the error there is within the limits, or until the block has 64 conditions.
+/// `limits` may be a number of decibels. Conditions are inserted midway between neighbours until
+/// the error there is within the limits, or until the block has 64 conditions.
 ///
 /// # Errors
 /// If the asset cannot be played, or if a condition or the rate is out of range.
 pub fn bake(
-    asset: &Asset,
-    model: Option<&str>,
+    representation: Representation<'_>,
     grid: &Grid,
     rate_hz: f64,
     limits: impl Into<BakeLimits>,
-) -> Result<Baked, BakeError> {
+) -> Result<BakeResult, Error> {
     let limits = limits.into();
     let within_db = limits.within_db;
-    let texture = Texture::new(asset, model)?;
+    let texture = Moments::new(representation)?;
     let mut designs = Designs::new(limits.lengths());
     let mut grid = grid.clone();
     loop {
-        let designed = Designed::new(&texture, &grid, rate_hz, &mut designs)?;
+        let designed = GridDesign::new(&texture, &grid, rate_hz, &mut designs)?;
         let between_db = designed.between_db();
         // More conditions do not help if the filters themselves are less accurate.
         let reachable_db = within_db.max(1.1 * designed.shape.at_conditions_db);
@@ -151,9 +151,7 @@ pub fn bake(
         // An axis that is full stays as it is, so a refinement may change nothing.
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
         if between_db <= within_db || is_last {
-            let baked = designed.baked(&texture, grid, within_db)?;
-            let rights = Rights::of(asset.manifest());
-            return Ok(Baked { rights, ..baked });
+            return designed.baked(&texture, grid, within_db);
         }
         grid = refined;
     }
@@ -176,7 +174,7 @@ impl Designs {
     }
 
     /// Returns the designer for a design; makes a new one if the design has changed.
-    fn designer(&mut self, design: Design, texture: &Texture<'_>) -> Rc<Designer> {
+    fn designer(&mut self, design: Design, texture: &Moments<'_>) -> Rc<Designer> {
         match &self.designer {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),
             _ => {
@@ -194,9 +192,9 @@ impl Designs {
     fn shape(
         &mut self,
         designer: &Rc<Designer>,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         moments: &[Rc<Moment>],
-    ) -> Result<Shape, BakeError> {
+    ) -> Result<Shape, Error> {
         let with = |length: usize, within_db: f64| {
             let filter = |m: &Rc<Moment>| designer.filter(texture, m, HALVES[length]);
             let mut filters = Vec::new();
@@ -206,7 +204,7 @@ impl Designs {
                 let spectra = Spectra::Noise(Rc::clone(designer), vec![Rc::clone(&filters[i])]);
                 let alone = std::slice::from_ref(moment);
                 if Shape::within(spectra, texture, alone, within_db)?.is_none() {
-                    return Ok::<_, BakeError>(None);
+                    return Ok::<_, Error>(None);
                 }
             }
             let spectra = Spectra::Noise(Rc::clone(designer), filters);
@@ -232,7 +230,7 @@ impl Designs {
         }
         // The first length has no limit.
         let Some((length, shape)) = best else {
-            return Err(BakeError::Refused(htex_player::OpenError::Values));
+            return Err(Error::Refused(htex_player::OpenError::Values));
         };
         self.is_best = shape.at_conditions_db > TOLERANCE_DB;
         self.length = length;
@@ -241,21 +239,21 @@ impl Designs {
 }
 
 /// The spectra of a grid before compression.
-struct Designed {
+struct GridDesign {
     moments: Vec<Rc<Moment>>,
     interpolator: Interpolator,
     shape: Shape,
     between: Vec<(Motion, f64)>,
 }
 
-impl Designed {
+impl GridDesign {
     fn new(
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: &Grid,
         rate_hz: f64,
         designs: &mut Designs,
-    ) -> Result<Self, BakeError> {
-        let moments = grid.motions().map(|motion| texture.at(motion));
+    ) -> Result<Self, Error> {
+        let moments = grid.motions().map(|motion| texture.moment(motion));
         let moments: Vec<Rc<Moment>> = moments.collect::<Result<_, _>>()?;
         for moment in &moments {
             check_level(moment)?;
@@ -263,7 +261,7 @@ impl Designed {
         let [slowest, fastest] = ratios(&moments);
         let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
         let shape = if texture.model().is_sum_of_sines() {
-            let (tones, random) = tones::of_moments(&moments, texture.band())?;
+            let (tones, random) = tones::tones_of(&moments, texture.band())?;
             let spectra = Spectra::Tones(tones, random);
             Shape::within(spectra, texture, &moments, f64::INFINITY)?
         } else {
@@ -275,7 +273,7 @@ impl Designed {
         };
         // Nothing exceeds an infinite limit.
         let Some(shape) = shape else {
-            return Err(BakeError::Refused(htex_player::OpenError::Values));
+            return Err(Error::Refused(htex_player::OpenError::Values));
         };
         Ok(Self {
             between: shape.between(texture, grid, f64::INFINITY)?,
@@ -292,21 +290,21 @@ impl Designed {
     /// Encodes the block, with as few filters as the accuracy allows.
     fn baked(
         mut self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: Grid,
         within_db: f64,
-    ) -> Result<Baked, BakeError> {
+    ) -> Result<BakeResult, Error> {
         let spectra = match self.shape.spectra.clone() {
             Spectra::Noise(designer, filters) => {
                 let sides: Vec<&[f64]> = filters.iter().map(|f| f.as_slice()).collect();
                 let [slowest, fastest] = ratios(&self.moments);
                 let factors = designer.factors(&sides, slowest, fastest, MOST_FILTERS);
-                Encoded::Noise(self.compress(texture, &grid, within_db, &designer, &factors)?)
+                BlockSpectra::Noise(self.compress(texture, &grid, within_db, &designer, &factors)?)
             }
             Spectra::Tones(tones, random_phase) => {
                 let internal_hz = self.interpolator.internal_hz;
                 let numbers = |&(hz, amplitude): &Tone| [hz / internal_hz, amplitude];
-                Encoded::Tones {
+                BlockSpectra::Tones {
                     count: tones.first().map_or(0, Vec::len),
                     random_phase,
                     numbers: tones.iter().flatten().flat_map(numbers).collect(),
@@ -326,19 +324,20 @@ impl Designed {
         let numbers = Block::open(&bytes)?.numbers();
         // A stored filter is its centre and one side.
         let (taps, filters, tones) = match &content.spectra {
-            Encoded::Noise(stored) => (2 * stored.filters[0].len() - 1, stored.filters.len(), 0),
-            Encoded::Tones { count, .. } => (0, 0, *count),
+            BlockSpectra::Noise(stored) => {
+                (2 * stored.filters[0].len() - 1, stored.filters.len(), 0)
+            }
+            BlockSpectra::Tones { count, .. } => (0, 0, *count),
         };
         let cannot_follow = law.frequency_speed != 0.0 && tones == 0;
         let beyond_db =
             if cannot_follow { Some(self.shape.beyond_db(texture, &grid)?) } else { None };
-        Ok(Baked {
+        Ok(BakeResult {
             bytes,
             numbers,
             grid,
             model: texture.id().to_owned(),
-            // `bake` knows the asset and fills in its rights.
-            rights: Rights::default(),
+            rights: texture.rights(),
             quantity: content.quantity,
             law,
             ceiling: content.ceiling,
@@ -359,12 +358,12 @@ impl Designed {
     /// and the errors by theirs.
     fn compress(
         &mut self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: &Grid,
         within_db: f64,
         designer: &Rc<Designer>,
         factors: &Factors,
-    ) -> Result<Stored, BakeError> {
+    ) -> Result<StoredFilters, Error> {
         let exact_db = [self.shape.at_conditions_db, self.between_db()];
         // An error that is within a limit has to stay within it.
         let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| {
@@ -397,11 +396,11 @@ impl Designed {
             }
         }
         // The last number of filters has no limit, and a filter is never zero.
-        Err(BakeError::Refused(htex_player::OpenError::Values))
+        Err(Error::Refused(htex_player::OpenError::Values))
     }
 
     /// Returns the length of a block with `count` filters that are as long as the stored ones.
-    fn bytes(&self, grid: &Grid, stored: &Stored, count: usize) -> usize {
+    fn bytes(&self, grid: &Grid, stored: &StoredFilters, count: usize) -> usize {
         let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
         let conditions = self.moments.len();
         let words = axes + self.interpolator.rows.len() + conditions + count;
@@ -412,7 +411,7 @@ impl Designed {
 
     /// Returns the largest level to which the law may raise a level of the grid, in the scale of
     /// the stored levels.
-    fn ceiling(&self, texture: &Texture<'_>) -> f64 {
+    fn ceiling(&self, texture: &Moments<'_>) -> f64 {
         let stated = self.moments.iter().map(|m| m.level_rms);
         let pairs = self.shape.levels.iter().zip(stated);
         let loudest = pairs.max_by(|a, b| a.0.total_cmp(b.0));
@@ -450,12 +449,12 @@ fn largest(errors: &[(Motion, f64)]) -> f64 {
     errors.iter().map(|(_, error)| *error).fold(0.0, f64::max)
 }
 
-fn check_level(moment: &Moment) -> Result<(), BakeError> {
+fn check_level(moment: &Moment) -> Result<(), Error> {
     let Motion { speed_mm_s, force_n, .. } = moment.motion;
     let most = 0.1 * f64::from(MOST_LEVEL);
     match moment.level_rms {
-        level if level > most => Err(BakeError::Level { speed_mm_s, force_n, level, most }),
+        level if level > most => Err(Error::Level { speed_mm_s, force_n, level, most }),
         level if level > 0.0 => Ok(()),
-        _ => Err(BakeError::Silent { speed_mm_s, force_n }),
+        _ => Err(Error::Silent { speed_mm_s, force_n }),
     }
 }

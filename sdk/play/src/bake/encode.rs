@@ -1,11 +1,11 @@
 //! Writes the bytes of a block.
 
-use crate::Quantity;
+use htex_format::Quantity;
 use htex_player::layout::{CHECKSUM, HEADER, KIND_NOISE, KIND_TONES, MAGIC, RANDOM_PHASE, VERSION};
 use htex_player::{Law, crc32};
 
 use crate::bake::Grid;
-use crate::bake::compress::Stored;
+use crate::bake::compress::StoredFilters;
 use crate::bake::interpolator::Interpolator;
 
 /// Duration of a change of motion, seconds.
@@ -18,12 +18,12 @@ pub(crate) struct Content {
     pub(crate) ceiling: f64,
     pub(crate) full_scale: f64,
     pub(crate) levels: Vec<f64>,
-    pub(crate) spectra: Encoded,
+    pub(crate) spectra: BlockSpectra,
 }
 
 /// What a block stores for its conditions.
-pub(crate) enum Encoded {
-    Noise(Stored),
+pub(crate) enum BlockSpectra {
+    Noise(StoredFilters),
     /// For each condition and each sinusoid: a frequency, in cycles per sample of the internal
     /// rate, and an amplitude.
     Tones {
@@ -36,11 +36,11 @@ pub(crate) enum Encoded {
 pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content) -> Vec<u8> {
     let glide = (GLIDE_S * interpolator.internal_hz).round().max(1.0) as u16;
     let (kind, flags, size, filters) = match &content.spectra {
-        Encoded::Noise(stored) => {
+        BlockSpectra::Noise(stored) => {
             let half = stored.filters.first().map_or(0, |f| f.len() - 1);
             (KIND_NOISE, 0, half, stored.filters.len())
         }
-        Encoded::Tones { count, random_phase, .. } => {
+        BlockSpectra::Tones { count, random_phase, .. } => {
             let flags = if *random_phase { RANDOM_PHASE } else { 0 };
             (KIND_TONES, flags, *count, 0)
         }
@@ -73,12 +73,12 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
     put(&interpolator.rows);
     put(&content.levels);
     match &content.spectra {
-        Encoded::Noise(stored) => {
+        BlockSpectra::Noise(stored) => {
             bytes.extend(stored.scales.iter().flat_map(|scale| scale.to_le_bytes()));
             let integers = stored.weights.iter().chain(stored.filters.iter().flatten());
             bytes.extend(integers.flat_map(|x| x.to_le_bytes()));
         }
-        Encoded::Tones { numbers, .. } => put(numbers),
+        BlockSpectra::Tones { numbers, .. } => put(numbers),
     }
     // The 16-bit integers may end between two words.
     bytes.resize(bytes.len().next_multiple_of(4), 0);

@@ -53,7 +53,7 @@ impl Design {
     /// the filter is measured at the bins, as a recording would be, and compared with the `stated`
     /// spectrum. Then the magnitude is corrected and the filter is designed again. The filter with
     /// the smallest error of the nine bands is returned.
-    pub(crate) fn filter(&mut self, wanted: &Wanted, bins: &Bins, half: usize) -> Vec<f64> {
+    pub(crate) fn filter(&mut self, wanted: &Target, bins: &Bins, half: usize) -> Vec<f64> {
         let window = window(half);
         let mut magnitude = wanted.magnitude.clone();
         let mut side = self.sampled(&magnitude, &window);
@@ -134,7 +134,7 @@ pub(crate) fn energy(side: &[f64]) -> f64 {
 }
 
 /// What a filter has to achieve.
-pub(crate) struct Wanted<'a> {
+pub(crate) struct Target<'a> {
     /// Magnitude at the frequencies of the design.
     pub(crate) magnitude: Vec<f64>,
     /// Magnitude at unit RMS at the bins.

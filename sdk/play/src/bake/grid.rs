@@ -1,11 +1,9 @@
 //! The grid of baked conditions.
 
-use crate::{Asset, Motion};
+use crate::{Error, Motion, Representation};
 use htex_player::layout::{
     LEAST_FORCE_N, MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_ON_AXIS, MOST_SPEED_MM_S,
 };
-
-use crate::bake::BakeError;
 
 /// The baked conditions: speeds and forces. A block has a condition for each combination.
 ///
@@ -14,7 +12,7 @@ use crate::bake::BakeError;
 /// let grid = Grid::new(vec![160.0, 40.0], vec![0.4])?;
 /// assert_eq!(grid.speeds_mm_s(), [40.0, 160.0]);
 /// assert!(Grid::new(vec![0.0], vec![0.4]).is_err());
-/// # Ok::<(), htex_play::bake::BakeError>(())
+/// # Ok::<(), htex_play::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
@@ -29,7 +27,7 @@ impl Grid {
     /// # Errors
     /// If an axis is empty or has more than 32 different values, or if a value is outside the range
     /// of a sliding finger: 0.5 to 1000 mm/s, 1e-6 to 20 N.
-    pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, BakeError> {
+    pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, Error> {
         Ok(Self {
             speeds_mm_s: axis("the speeds", [MIN_SLIDING_MM_S, MOST_SPEED_MM_S], speeds_mm_s)?,
             forces_n: axis("the forces", [LEAST_FORCE_N, MOST_FORCE_N], forces_n)?,
@@ -40,7 +38,7 @@ impl Grid {
     ///
     /// # Errors
     /// As [`Self::new`], and if a combination of the speeds and forces is missing.
-    pub fn of_conditions(at: &[Motion]) -> Result<Self, BakeError> {
+    pub fn from_conditions(at: &[Motion]) -> Result<Self, Error> {
         let grid = Self::new(
             at.iter().map(|m| m.speed_mm_s).collect(),
             at.iter().map(|m| m.force_n).collect(),
@@ -55,21 +53,20 @@ impl Grid {
         let absent = grid.motions().find(|wanted| !is_there(wanted));
         match absent {
             Some(Motion { speed_mm_s, force_n, .. }) => {
-                Err(BakeError::Incomplete { speed_mm_s, force_n })
+                Err(Error::Incomplete { speed_mm_s, force_n })
             }
             None => Ok(grid),
         }
     }
 
     /// Makes the grid of one condition, the default condition of a representation
-    /// ([`Asset::default_condition`]). `model` is the id or the short name of the representation's
-    /// model; `None` selects the best representation. If the condition does not state a speed or a
-    /// force, it is 80 mm/s or 0.4 N.
+    /// ([`Representation::default_condition`]). If the condition does not state a speed or a force,
+    /// it is 80 mm/s or 0.4 N.
     ///
     /// # Errors
-    /// As [`Self::new`], and if there is no such representation.
-    pub fn of_default_condition(asset: &Asset, model: Option<&str>) -> Result<Self, BakeError> {
-        Self::of_conditions(&[asset.motion(model, None, None)?])
+    /// As [`Self::new`].
+    pub fn for_default_condition(representation: Representation<'_>) -> Result<Self, Error> {
+        Self::from_conditions(&[representation.motion(None, None)])
     }
 
     /// Returns the speeds, mm/s, ascending.
@@ -150,7 +147,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64>, BakeError> {
+fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64>, Error> {
     // A block stores single precision, so the range is checked after rounding.
     let mut rounded: Vec<f64> = values.iter().map(|x| f64::from(*x as f32)).collect();
     let [least, largest] = range.map(f64::from);
@@ -160,7 +157,7 @@ fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64
     if in_range && (1..=MOST_ON_AXIS).contains(&rounded.len()) {
         Ok(rounded)
     } else {
-        Err(BakeError::Axis { axis, values, most: MOST_ON_AXIS, least, largest })
+        Err(Error::Axis { axis, values, most: MOST_ON_AXIS, least, largest })
     }
 }
 
@@ -181,8 +178,8 @@ mod tests {
     #[test]
     fn listed_conditions_are_all_combinations() {
         let [a, b, c] = [(40.0, 0.2), (80.0, 0.2), (40.0, 0.5)].map(|(s, f)| Motion::new(s, f));
-        assert!(Grid::of_conditions(&[a, b]).is_ok());
-        let absent = Grid::of_conditions(&[a, b, c]).unwrap_err();
-        assert!(matches!(absent, BakeError::Incomplete { speed_mm_s: 80.0, .. }), "{absent}");
+        assert!(Grid::from_conditions(&[a, b]).is_ok());
+        let absent = Grid::from_conditions(&[a, b, c]).unwrap_err();
+        assert!(matches!(absent, Error::Incomplete { speed_mm_s: 80.0, .. }), "{absent}");
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use htex_player::layout::{MOST_ROW, MOST_UP, RATE_HZ};
 
-use crate::bake::BakeError;
+use crate::Error;
 use crate::bake::filter::bessel;
 
 /// Smallest ratio between the internal rate and the texture's highest frequency, if the sample rate
@@ -30,12 +30,12 @@ pub(crate) struct Interpolator {
 impl Interpolator {
     /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`. Chooses the lowest
     /// internal rate that is sufficient.
-    pub(crate) fn new(rate_hz: f64, top_hz: f64) -> Result<Self, BakeError> {
+    pub(crate) fn new(rate_hz: f64, top_hz: f64) -> Result<Self, Error> {
         // The block stores the rate in single precision, so everything is computed for that rate.
         let rate_hz = f64::from(rate_hz as f32);
         let (least_hz, most_hz) = ((LEAST * top_hz).max(RATE_HZ.0.into()), RATE_HZ.1.into());
         if !(least_hz..=most_hz).contains(&rate_hz) {
-            return Err(BakeError::Rate { rate_hz, least_hz, most_hz, top_hz });
+            return Err(Error::BakeRate { rate_hz, least_hz, most_hz, top_hz });
         }
         // Rounded down, so that the internal rate is not below the preferred one.
         let up = ((rate_hz / (PREFERRED * top_hz)) as usize).clamp(1, MOST_UP);

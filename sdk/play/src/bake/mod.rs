@@ -2,10 +2,11 @@
 //!
 //! ```no_run
 //! use htex_play::bake::{Grid, bake};
-//! let asset = htex_play::Asset::open("sandpaper.htex")?;
-//! let baked = bake(&asset, None, &Grid::new(vec![40.0, 160.0], vec![0.4])?, 8_000.0, 0.3)?;
+//! let texture = htex_play::Texture::open("sandpaper.htex")?;
+//! let grid = Grid::new(vec![40.0, 160.0], vec![0.4])?;
+//! let baked = bake(texture.representation("bands")?, &grid, 8_000.0, 0.3)?;
 //! println!("{} bytes, within {:.2} dB", baked.bytes.len(), baked.between_db);
-//! # Ok::<(), htex_play::bake::BakeError>(())
+//! # Ok::<(), htex_play::Error>(())
 //! ```
 //!
 //! A block for noise contains filters and not models. White noise through a symmetrical filter at a
@@ -24,18 +25,16 @@
 mod compress;
 mod design;
 mod encode;
-mod error;
 mod filter;
 mod grid;
 mod interpolator;
+mod moments;
 mod noise;
 mod reading;
 mod shape;
 mod source;
-mod texture;
 mod tones;
 
-pub use design::{BakeLimits, Baked, bake};
-pub use error::BakeError;
+pub use design::{BakeLimits, BakeResult, bake};
 pub use grid::Grid;
 pub use source::{c_header, c_name, is_c_name, is_rust_name, rust_name, rust_source};

@@ -6,10 +6,10 @@ use std::rc::Rc;
 
 use htex_host::Band;
 
-use crate::bake::BakeError;
+use crate::Error;
 use crate::bake::compress::Factors;
-use crate::bake::filter::{Bins, Design, Wanted};
-use crate::bake::texture::{Moment, Texture};
+use crate::bake::filter::{Bins, Design, Target};
+use crate::bake::moments::{Moment, Moments};
 
 /// The centre and one side of a filter with unit energy.
 pub(crate) type Filter = Rc<Vec<f64>>;
@@ -49,10 +49,10 @@ impl Designer {
     /// Returns the filter for a moment, with `half` coefficients on each side.
     pub(crate) fn filter(
         &self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         moment: &Moment,
         half: usize,
-    ) -> Result<Filter, BakeError> {
+    ) -> Result<Filter, Error> {
         let key = (half, moment.shape());
         if let Some(known) = self.filters.borrow().get(&key) {
             return Ok(Rc::clone(known));
@@ -63,7 +63,7 @@ impl Designer {
         let mut design = self.design.borrow_mut();
         let played = design.frequencies_hz().into_iter();
         let recorded: Vec<f64> = played.map(|hz| hz / moment.ratio).collect();
-        let wanted = Wanted {
+        let wanted = Target {
             magnitude: texture.magnitude(moment, &recorded)?,
             stated: &moment.stated,
             bands: texture.bands(),

@@ -2,14 +2,14 @@
 
 use std::rc::Rc;
 
-use crate::Motion;
+use crate::{Error, Motion};
 use htex_player::layout::{MAX_RATIO, MIN_RATIO};
 
+use crate::bake::Grid;
 use crate::bake::filter::energy;
+use crate::bake::moments::{Moment, Moments};
 use crate::bake::noise::{Designer, Filter};
-use crate::bake::texture::{Moment, Texture};
 use crate::bake::tones::{self, Tone};
-use crate::bake::{BakeError, Grid};
 
 /// Factor by which speeds are lower and higher than the grid, for the error beyond it.
 const BEYOND: f64 = 2.0;
@@ -34,7 +34,7 @@ pub(crate) enum Spectra {
 impl Spectra {
     /// Returns the magnitude on the band's grid, at unit power, of conditions that are mixed in
     /// equal parts, as the player mixes them.
-    fn read(&self, mixed: &[usize], texture: &Texture<'_>, ratio: f64) -> Vec<f64> {
+    fn read(&self, mixed: &[usize], texture: &Moments<'_>, ratio: f64) -> Vec<f64> {
         let part = 1.0 / mixed.len() as f64;
         match self {
             Self::Noise(designer, filters) => {
@@ -69,16 +69,16 @@ impl Shape {
     /// exceeds `within_db`.
     pub(crate) fn within(
         spectra: Spectra,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         moments: &[Rc<Moment>],
         within_db: f64,
-    ) -> Result<Option<Self>, BakeError> {
+    ) -> Result<Option<Self>, Error> {
         let mut shape = Self { spectra, levels: Vec::new(), at_conditions_db: 0.0 };
         for (i, moment) in moments.iter().enumerate() {
             let mut read = shape.spectra.read(&[i], texture, moment.ratio);
             let rms = htex_dsp::grid::level_rms(&read);
             if !(rms > 0.0 && rms.is_finite()) {
-                return Err(BakeError::Silent {
+                return Err(Error::Silent {
                     speed_mm_s: moment.motion.speed_mm_s,
                     force_n: moment.motion.force_n,
                 });
@@ -98,10 +98,10 @@ impl Shape {
     /// ends with the first error that exceeds `within_db`.
     pub(crate) fn between(
         &self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         grid: &Grid,
         within_db: f64,
-    ) -> Result<Vec<(Motion, f64)>, BakeError> {
+    ) -> Result<Vec<(Motion, f64)>, Error> {
         let mut errors = Vec::new();
         for (motion, mixed) in grid.midpoints() {
             let level = mixed.iter().map(|i| self.levels[*i]).sum::<f64>() / mixed.len() as f64;
@@ -117,7 +117,7 @@ impl Shape {
     /// Returns the largest error of the nine bands, dB, at half the lowest speed of the grid and at
     /// twice the highest one. There the level follows the law of the texture, but the player keeps
     /// the spectrum of the nearest condition.
-    pub(crate) fn beyond_db(&self, texture: &Texture<'_>, grid: &Grid) -> Result<f64, BakeError> {
+    pub(crate) fn beyond_db(&self, texture: &Moments<'_>, grid: &Grid) -> Result<f64, Error> {
         let law = texture.law();
         let last = grid.speeds_mm_s().len() - 1;
         let mut largest = 0.0f64;
@@ -136,12 +136,12 @@ impl Shape {
     /// parts.
     fn error_db(
         &self,
-        texture: &Texture<'_>,
+        texture: &Moments<'_>,
         motion: Motion,
         mixed: &[usize],
         level: f64,
-    ) -> Result<f64, BakeError> {
-        let moment = texture.at(motion)?;
+    ) -> Result<f64, Error> {
+        let moment = texture.moment(motion)?;
         let mut read = self.spectra.read(mixed, texture, moment.ratio);
         read.iter_mut().for_each(|m| *m *= level);
         let model = moment.stated.iter().map(|m| m * moment.level_rms);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::bake::Baked;
+use crate::bake::BakeResult;
 
 /// Number of bytes per line.
 const IN_LINE: usize = 16;
@@ -131,7 +131,7 @@ pub fn is_rust_name(name: &str) -> bool {
 /// Returns a C header that defines a block as an array of bytes with this name. The macro
 /// `NAME_NUMBERS`, with the name in capitals, is the number of values that its player needs.
 /// Comments state the author and the licence.
-pub fn c_header(name: &str, baked: &Baked) -> String {
+pub fn c_header(name: &str, baked: &BakeResult) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();
     let lines = lines(bytes);
@@ -146,7 +146,7 @@ pub fn c_header(name: &str, baked: &Baked) -> String {
 }
 
 /// Returns Rust source code that defines a block as an array of bytes with this name.
-pub fn rust_source(name: &str, baked: &Baked) -> String {
+pub fn rust_source(name: &str, baked: &BakeResult) -> String {
     let bytes = &baked.bytes;
     let lines = lines(bytes);
     let rights = baked.rights.commented("// ");

@@ -7,8 +7,8 @@ use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
 use htex_player::layout::MOST_TONES;
 
-use crate::bake::BakeError;
-use crate::bake::texture::Moment;
+use crate::Error;
+use crate::bake::moments::Moment;
 
 /// Frequencies that differ by less than this, hertz, count as one sinusoid.
 const SAME_HZ: f64 = 0.01;
@@ -19,10 +19,10 @@ pub(crate) type Tone = (f64, f64);
 /// Returns the sinusoids of all conditions, the same number for each, and whether their phases are
 /// random. If conditions have the same number of sinusoids, these are matched by index, as in the
 /// model. Otherwise they are matched by frequency, and a missing sinusoid gets zero amplitude.
-pub(crate) fn of_moments(
+pub(crate) fn tones_of(
     moments: &[Rc<Moment>],
     band: Band,
-) -> Result<(Vec<Vec<Tone>>, bool), BakeError> {
+) -> Result<(Vec<Vec<Tone>>, bool), Error> {
     let read: Option<Vec<(Vec<Tone>, bool)>> = moments.iter().map(|m| read(m, band)).collect();
     // The model has already accepted these parameters.
     let read = read.unwrap_or_default();
@@ -34,7 +34,7 @@ pub(crate) fn of_moments(
     if count <= MOST_TONES {
         Ok((all, random))
     } else {
-        Err(BakeError::Tones { count, most: MOST_TONES })
+        Err(Error::Tones { count, most: MOST_TONES })
     }
 }
 

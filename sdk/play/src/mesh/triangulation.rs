@@ -34,7 +34,7 @@ pub(super) fn meshed(conditions: &[[f64; 2]], axes: [Axis; 2], places: &[[f64; 2
             None => (vec![], vec![line]),
         },
     };
-    let edges = Edges::of(&faces);
+    let edges = Edges::new(&faces);
     for (i, side) in sides.iter_mut().enumerate() {
         take_slivers(i, side, &mut faces, &edges, &places);
     }
@@ -188,7 +188,7 @@ fn take_slivers(
     while let (Some(from), Some(to)) = (behind.last(), ahead.last()) {
         let sliver = edges.beside([from.0, to.0], faces).filter(|(_, condition)| {
             let foot = side.foot(places[*condition]);
-            from.1 < foot && foot < to.1 && is_same(places[*condition], side.at(foot))
+            from.1 < foot && foot < to.1 && is_same(places[*condition], side.point(foot))
         });
         match sliver {
             Some((face, condition)) => {
@@ -205,7 +205,7 @@ fn take_slivers(
 struct Edges(Vec<([usize; 2], usize)>);
 
 impl Edges {
-    fn of(faces: &[Face]) -> Self {
+    fn new(faces: &[Face]) -> Self {
         let edges = |(i, face): (usize, &Face)| {
             let [a, b, c] = face.corners;
             [[a, b], [b, c], [c, a]].map(|ends| (ascending(ends), i))

@@ -50,7 +50,8 @@ fn baked() -> &'static [(&'static str, Vec<u8>)] {
     BAKED.get_or_init(|| {
         let asset = asset();
         let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
-        let block = |model| bake(&asset, Some(model), &grid, 8_000.0, 0.3).unwrap().bytes;
+        let block =
+            |model| bake(asset.representation(model).unwrap(), &grid, 8_000.0, 0.3).unwrap().bytes;
         let models = Registry::placeless_names().into_iter();
         models.map(|model| (model, block(model))).collect()
     })

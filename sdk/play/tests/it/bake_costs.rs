@@ -11,7 +11,7 @@ use common::asset_of;
 use compilers::{CORTEX_M4F, has};
 use htex_author::simulate::Surface;
 use htex_play::Registry;
-use htex_play::bake::{Baked, Grid, bake};
+use htex_play::bake::{BakeResult, Grid, bake};
 use xtask::generated::{is_written, section_with};
 use xtask::needs::{ARM_GCC, QEMU_ARM};
 
@@ -52,7 +52,7 @@ impl Cost {
     }
 }
 
-type Row = (&'static str, Baked, Cost);
+type Row = (&'static str, BakeResult, Cost);
 
 /// Costs of the blocks of all models of a surface, on the grid of the page.
 fn costs(surface: Surface) -> Vec<Row> {
@@ -62,7 +62,7 @@ fn costs(surface: Surface) -> Vec<Row> {
     let asset = asset_of(surface);
     let grid = Grid::new(vec![40.0, 100.0, 160.0], vec![0.2, 0.4, 0.6]).unwrap();
     let row = |model| {
-        let baked = bake(&asset, Some(model), &grid, RATE_HZ, 0.3).unwrap();
+        let baked = bake(asset.representation(model).unwrap(), &grid, RATE_HZ, 0.3).unwrap();
         let cost = Cost::of(&program, &baked.bytes);
         (model, baked, cost)
     };

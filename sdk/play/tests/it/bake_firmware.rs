@@ -11,17 +11,17 @@ use std::sync::OnceLock;
 
 use common::asset;
 use compilers::{CORTEX_M4F, folder, has, run, written};
-use htex_play::bake::{Baked, Grid, bake, c_header};
+use htex_play::bake::{BakeResult, Grid, bake, c_header};
 use htex_player::{Block, Player};
 use xtask::firmware::firmware;
 use xtask::needs::{ARM_GCC, CC, CMAKE, CXX, QEMU_ARM};
 
 /// The block of the examples.
-fn cloth() -> &'static Baked {
-    static CLOTH: OnceLock<Baked> = OnceLock::new();
+fn cloth() -> &'static BakeResult {
+    static CLOTH: OnceLock<BakeResult> = OnceLock::new();
     CLOTH.get_or_init(|| {
         let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
-        bake(&asset(), Some("sslope"), &grid, 8_000.0, 0.3).unwrap()
+        bake(asset().representation("sslope").unwrap(), &grid, 8_000.0, 0.3).unwrap()
     })
 }
 

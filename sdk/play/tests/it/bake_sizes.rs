@@ -3,7 +3,7 @@
 use crate::bake_common as common;
 
 use common::asset;
-use htex_play::bake::{BakeLimits, Baked, Grid, bake};
+use htex_play::bake::{BakeLimits, BakeResult, Grid, bake};
 use htex_play::{Motion, Registry};
 use htex_player::{Block, Player};
 
@@ -23,16 +23,16 @@ fn limits(model: &str) -> (usize, [f64; 2]) {
     }
 }
 
-fn documented(model: &str) -> Baked {
+fn documented(model: &str) -> BakeResult {
     let grid = Grid::new(vec![40.0, 100.0, 160.0], vec![0.2, 0.4, 0.6]).unwrap();
-    bake(&asset(), Some(model), &grid, 8_000.0, WITHIN_DB).unwrap()
+    bake(asset().representation(model).unwrap(), &grid, 8_000.0, WITHIN_DB).unwrap()
 }
 
 #[test]
 fn a_grid_takes_what_is_documented() {
     for model in Registry::placeless_names() {
         let baked = documented(model);
-        let Baked { at_conditions_db, between_db, taps, filters, grid, .. } = baked;
+        let BakeResult { at_conditions_db, between_db, taps, filters, grid, .. } = baked;
         let conditions = grid.motions().count();
         let bytes = baked.bytes.len();
         println!(
@@ -48,7 +48,9 @@ fn a_grid_takes_what_is_documented() {
 #[test]
 fn a_limit_of_the_filter_is_kept_and_its_error_told() {
     let grid = Grid::new(vec![40.0, 160.0], vec![0.4]).unwrap();
-    let with = |limits: BakeLimits| bake(&asset(), Some("sbeta"), &grid, 8_000.0, limits).unwrap();
+    let asset = asset();
+    let sbeta = asset.representation("sbeta").unwrap();
+    let with = |limits: BakeLimits| bake(sbeta, &grid, 8_000.0, limits).unwrap();
     let free = with(BakeLimits::within_db(WITHIN_DB));
     assert!(free.taps > 257, "{}", free.taps);
     for (longest, most) in [(300, 257), (65, 65), (3, 65)] {
@@ -65,10 +67,11 @@ fn a_block_states_quantity_and_law_and_follows_it() {
     let block = Block::open(&baked.bytes).unwrap();
     assert_eq!(block.quantity().name(), asset.quantity().name());
     assert_eq!(block.quantity().unit(), asset.quantity().unit());
-    let law = asset.motions(Some("sslope")).unwrap().explored().law;
+    let sslope = asset.representation("sslope").unwrap();
+    let law = sslope.conditions().unwrap().range().law;
     assert_eq!(block.law().level_force, law.level_force.exponent as f32);
     // Beyond the grid, levels have the same ratio as the host's.
-    let host = |motion| asset.level_rms(Some("sslope"), Some(motion)).unwrap();
+    let host = |motion| sslope.level_rms(Some(motion)).unwrap();
     let player = |motion: Motion| {
         let mut player = Player::new(block, 3);
         player.set_motion(motion.speed_mm_s as f32, motion.force_n as f32);

@@ -10,8 +10,9 @@ use htex_author::{
     Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, segment_spectra,
 };
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
+use htex_host::Band;
 use htex_play::bake::{Grid, bake};
-use htex_play::{Asset, Band, Motion, Registry, VoiceOptions};
+use htex_play::{Motion, Registry, Texture, VoiceOptions};
 use htex_player::{Block, Player};
 
 const RATE_HZ: f64 = 8_000.0;
@@ -33,12 +34,11 @@ fn energies(samples: Vec<f32>) -> Vec<f64> {
     bank.energies(&spectrum.magnitude)
 }
 
-fn of_host(asset: &Asset, model: &str, motion: Motion) -> Vec<f64> {
-    let mut options =
+fn of_host(asset: &Texture, model: &str, motion: Motion) -> Vec<f64> {
+    let options =
         VoiceOptions::default().with_rate_hz(RATE_HZ).with_motion(Some(motion)).with_seed(3);
-    options.model = Some(model);
     let mut samples = vec![0.0; (SECONDS * RATE_HZ) as usize];
-    asset.voice(&options).unwrap().render(&mut samples).unwrap();
+    asset.representation(model).unwrap().voice(&options).unwrap().render(&mut samples).unwrap();
     energies(samples)
 }
 
@@ -64,7 +64,7 @@ fn a_player_has_the_spectrum_of_the_host() {
     let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
     let failed = Mutex::new(Vec::new());
     let model_by_model = |model: &str| {
-        let baked = bake(&asset, Some(model), &grid, RATE_HZ, 0.2).unwrap();
+        let baked = bake(asset.representation(model).unwrap(), &grid, RATE_HZ, 0.2).unwrap();
         // A motion between all recorded conditions, and one of them.
         let motions = [(87.0, 0.43), (120.0, 0.3)];
         let tried = if xtask::prove::whole() { 2 } else { 1 };
@@ -98,9 +98,9 @@ fn one_recorded_speed_scales_frequencies_and_level() {
     for parameters in &mut data.parameters {
         parameters.truncate(1);
     }
-    let asset = Asset::new(data);
+    let asset = Texture::new(data);
     let grid = Grid::new(vec![45.0, 60.0], vec![0.2, 0.3]).unwrap();
-    let baked = bake(&asset, Some("sslope"), &grid, RATE_HZ, 0.2).unwrap();
+    let baked = bake(asset.representation("sslope").unwrap(), &grid, RATE_HZ, 0.2).unwrap();
     let motion = Motion::new(45.0, 0.2);
     let (host, player) = (of_host(&asset, "sslope", motion), of_player(&baked.bytes, motion));
     let error = largest_db(&host, &player);

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use htex_play::envelope::MOST_BANDS;
-use htex_play::{Asset, Error, Motion, Voice, VoiceOptions};
+use htex_play::{Error, Motion, Texture, Voice, VoiceOptions};
 
-fn asset() -> Asset {
+fn asset() -> Texture {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
-    Asset::open(path).unwrap()
+    Texture::open(path).unwrap()
 }
 
 /// Renders blocks of different lengths and returns all samples. Before some blocks the finger
@@ -52,7 +52,7 @@ fn random_lengths() -> impl Iterator<Item = usize> {
     .map(|x| 1 + (x >> 16) as usize % 999)
 }
 
-fn options() -> VoiceOptions<'static> {
+fn options() -> VoiceOptions {
     VoiceOptions::default().with_gain(1.5).with_limit(0.02)
 }
 
@@ -122,7 +122,7 @@ fn adding_multiplies_and_adds() {
 
 #[test]
 fn options_out_of_range_are_errors() {
-    let refused = |options: VoiceOptions<'_>| asset().voice(&options).unwrap_err();
+    let refused = |options: VoiceOptions| asset().voice(&options).unwrap_err();
     let plain = VoiceOptions::default;
     for rate_hz in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1_999.0, 1e8] {
         assert!(matches!(refused(plain().with_rate_hz(rate_hz)), Error::Rate { .. }));
@@ -230,17 +230,18 @@ fn the_envelope_is_that_of_the_samples() {
 fn the_bands_of_a_long_block_are_those_of_the_asset() {
     let asset = asset();
     for model in ["ar", "mfcc", "sbeta"] {
-        let options = VoiceOptions::default().with_model(model).with_envelope_bands(3);
-        let mut voice = asset.voice(&options).unwrap();
+        let options = VoiceOptions::default().with_envelope_bands(3);
+        let representation = asset.representation(model).unwrap();
+        let mut voice = representation.voice(&options).unwrap();
         voice.render(&mut vec![0.0; 600_000]).unwrap(); // 30 s
         let mut bands = [0.0; 3];
         let envelope = voice.envelope(&mut bands).unwrap();
-        let level_rms = asset.level_rms(Some(model), None).unwrap();
+        let level_rms = representation.level_rms(None).unwrap();
         let db = 10.0 * (bands.iter().sum::<f64>() / level_rms.powi(2)).log10();
         println!("{model}: {db:.3} dB, {:.1} Hz, {bands:?}", envelope.centroid_hz);
         assert!(db.abs() < 0.2, "{model}: {db} dB");
         let grid: Vec<f64> = (4..=200).map(|k| 5.0 * f64::from(k)).collect();
-        let magnitude = asset.magnitude(Some(model), None, &grid).unwrap();
+        let magnitude = representation.magnitude(None, &grid).unwrap();
         let total: f64 = magnitude.iter().map(|m| m * m).sum();
         let moment: f64 = magnitude.iter().zip(&grid).map(|(m, hz)| m * m * hz).sum();
         let centroid_hz = moment / total;

@@ -1,6 +1,6 @@
 //! A voice has the same level at all sample rates.
 
-use htex_play::{Asset, VoiceOptions};
+use htex_play::{Texture, VoiceOptions};
 
 /// Sample rates at which no image from the filter's own rate lies next to its original frequency.
 const RATES_HZ: [f64; 8] =
@@ -8,9 +8,9 @@ const RATES_HZ: [f64; 8] =
 const SECONDS: f64 = 20.0;
 
 /// An AR texture with a resonance at a frequency, two bins wide.
-fn resonance(hz: f64) -> Asset {
+fn resonance(hz: f64) -> Texture {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
-    let mut data = Asset::open(file).unwrap().data().clone();
+    let mut data = Texture::open(file).unwrap().data().clone();
     let all = &mut data.manifest.representations;
     let ar = all.iter().position(|r| r.model == "org.htex.ar").unwrap();
     let radius = (-std::f64::consts::PI * 10.0 / 2_000.0).exp();
@@ -21,12 +21,12 @@ fn resonance(hz: f64) -> Asset {
         set[1] = 2.0 * radius * turn.cos();
         set[2] = -radius * radius;
     }
-    Asset::new(data)
+    Texture::new(data)
 }
 
-fn rms(asset: &Asset, model: &str, rate_hz: f64) -> f64 {
-    let options = VoiceOptions::default().with_model(model).with_seed(3).with_rate_hz(rate_hz);
-    let mut voice = asset.voice(&options).unwrap();
+fn rms(asset: &Texture, model: &str, rate_hz: f64) -> f64 {
+    let options = VoiceOptions::default().with_seed(3).with_rate_hz(rate_hz);
+    let mut voice = asset.representation(model).unwrap().voice(&options).unwrap();
     let mut samples = vec![0.0; (SECONDS * rate_hz) as usize];
     voice.render(&mut samples).unwrap();
     let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
@@ -52,7 +52,7 @@ fn a_filter_has_one_level_at_all_rates() {
 #[test]
 fn steep_noise_has_one_level_at_all_rates() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
-    let asset = Asset::open(file).unwrap();
+    let asset = Texture::open(file).unwrap();
     for (model, most_db) in [("sslope", 0.05), ("sbeta", 0.05), ("mfcc", 0.1)] {
         let high = rms(&asset, model, 48_000.0);
         for rate_hz in RATES_HZ.into_iter().chain([2_001.0, 2_100.0, 2_300.0, 2_399.0, 22_050.0]) {

@@ -45,7 +45,7 @@ fn build(
         Some(inverse) if !neutral => {
             // The filter runs before the resampler, which reads `fixed_ratio` times as fast.
             let rate_hz = played.mix_rate_hz * played.fixed_ratio;
-            Fir::with_magnitude(taps(played), rate_hz, |hz| inverse.at(hz))
+            Fir::with_magnitude(taps(played), rate_hz, |hz| inverse.gain_at(hz))
         }
         _ => Fir::through(),
     };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use htex_dsp::warp::Warp;
-use htex_play::Motions;
+use htex_play::Conditions;
 use htex_play::exploration::CEILING;
 
 use super::{Context, Entry, FOLLOWS, Need, Stage, StagePlace};
@@ -18,12 +18,12 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(_: &Requirements, played: &PlayedSurface) -> Need {
-    let explored = played.motions.explored();
-    let (known, law) = (explored.speed, explored.law.frequency_speed);
+    let range = played.conditions.range();
+    let (known, law) = (range.speed, range.law.frequency_speed);
     match played.frequency {
         _ if played.follows_motion => Need::no(FOLLOWS),
         _ if !known.is_known() => Need::no("the asset does not state the speed of its recording"),
-        _ if !explored.moves_frequencies() => Need::no(format!(
+        _ if !range.moves_frequencies() => Need::no(format!(
             "frequencies of the texture do not change with the speed (its law, {})",
             law.source.name()
         )),
@@ -42,9 +42,9 @@ fn need(_: &Requirements, played: &PlayedSurface) -> Need {
 }
 
 fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Stage> {
-    let scales = played.motions.explored().moves_frequencies() && !neutral;
+    let scales = played.conditions.range().moves_frequencies() && !neutral;
     Box::new(FrequencyScaling {
-        motions: Arc::clone(&played.motions),
+        conditions: Arc::clone(&played.conditions),
         warp: if scales {
             Warp::new(played.voice_top_hz / played.rate_hz)
         } else {
@@ -57,7 +57,7 @@ fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Sta
 }
 
 struct FrequencyScaling {
-    motions: Arc<Motions>,
+    conditions: Arc<Conditions>,
     scales: bool,
     warp: Warp,
     ratio: f64,
@@ -70,7 +70,8 @@ impl Stage for FrequencyScaling {
     fn follow(&mut self, context: &Context) {
         // A resting finger has no speed that could set the ratio, so the last one stays.
         if self.scales && context.finger.slides() {
-            self.ratio = self.motions.scaling(context.finger.motion(), CEILING).frequency;
+            self.ratio =
+                self.conditions.scaling(context.finger.without_direction(), CEILING).frequency;
         }
     }
 

@@ -29,7 +29,7 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
-    pub(crate) fn of(required: &Requirements) -> Self {
+    pub(crate) fn new(required: &Requirements) -> Self {
         let half = required.drive_v * required.drive_v / 2.0;
         Self { gain: brings_level_to(half / HEADROOM, required), shift: half }
     }
@@ -70,7 +70,7 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let gain = match required.device.quantity {
         _ if neutral => 1.0,
         Quantity::Sound => brings_level_to(db(required.level_dbfs), required),
-        Quantity::DisplayVoltage => Drive::of(required).gain,
+        Quantity::DisplayVoltage => Drive::new(required).gain,
         _ => required.quantity_gain * db(required.gain_db),
     };
     Box::new(Gain(gain as f32))

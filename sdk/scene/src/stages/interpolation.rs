@@ -1,7 +1,7 @@
 //! Interpolation of parameters and level between exploration conditions as speed and force change.
 //! It retunes the voice; no samples pass through this stage.
 
-use htex_play::Recorded;
+use htex_play::Interval;
 
 use super::{Entry, Need, StagePlace};
 use crate::file::Effect;
@@ -19,11 +19,11 @@ fn need(_: &Requirements, played: &PlayedSurface) -> Need {
     if known < 2 {
         return Need::no("the asset has one exploration condition");
     }
-    let varies = |span: &Span, recorded: Recorded| {
+    let varies = |span: &Span, recorded: Interval| {
         !span.is_point() && recorded.is_known() && !recorded.is_one()
     };
-    let explored = played.motions.explored();
-    if varies(&played.speed_mm_s, explored.speed) || varies(&played.force_n, explored.force) {
+    let range = played.conditions.range();
+    if varies(&played.speed_mm_s, range.speed) || varies(&played.force_n, range.force) {
         return Need::yes(format!(
             "speed ({}) and force ({}) change between {known} conditions",
             played.speed_mm_s.text("mm/s"),

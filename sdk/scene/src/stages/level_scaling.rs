@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use htex_dsp::glide::Glide;
-use htex_play::Motions;
+use htex_play::Conditions;
 use htex_play::exploration::CEILING;
 
 use super::{Context, Entry, FOLLOWS, Need, Stage, StagePlace};
@@ -21,14 +21,14 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(_: &Requirements, played: &PlayedSurface) -> Need {
-    let explored = played.motions.explored();
-    let known = format!("{} mm/s and {} N", explored.speed, explored.force);
+    let range = played.conditions.range();
+    let known = format!("{} mm/s and {} N", range.speed, range.force);
     match played.level {
         _ if played.follows_motion => Need::no(FOLLOWS),
-        _ if !(explored.speed.is_known() || explored.force.is_known()) => {
+        _ if !(range.speed.is_known() || range.force.is_known()) => {
             Need::no("the asset does not state the motion of its recording")
         }
-        _ if !explored.moves_level() => {
+        _ if !range.moves_level() => {
             Need::no("the level of the texture does not change with the motion (its law)")
         }
         span if !span.is_point() => Need::yes(format!(
@@ -47,22 +47,22 @@ fn need(_: &Requirements, played: &PlayedSurface) -> Need {
 fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Stage> {
     let ramp = (RAMP_S * played.rate_hz).ceil() as u32;
     Box::new(LevelScaling {
-        motions: Some(Arc::clone(&played.motions)).filter(|_| !neutral),
+        conditions: Some(Arc::clone(&played.conditions)).filter(|_| !neutral),
         gain: Glide::new(1.0, ramp),
     })
 }
 
 struct LevelScaling {
-    motions: Option<Arc<Motions>>,
+    conditions: Option<Arc<Conditions>>,
     gain: Glide,
 }
 
 impl Stage for LevelScaling {
     fn follow(&mut self, context: &Context) {
-        let Some(motions) = self.motions.as_ref().filter(|_| context.finger.slides()) else {
+        let Some(conditions) = self.conditions.as_ref().filter(|_| context.finger.slides()) else {
             return;
         };
-        let scaling = motions.scaling(context.finger.motion(), CEILING);
+        let scaling = conditions.scaling(context.finger.without_direction(), CEILING);
         self.gain.set(scaling.level as f32);
     }
 

@@ -35,9 +35,9 @@ pub(crate) use resampling::work as resampling_work;
 pub(crate) use synthesis::Synthesis;
 
 use htex_dsp::resample::UnusableRates;
+use htex_play::Motion;
 
 use crate::file::Effect;
-use crate::motion::Finger;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
@@ -56,7 +56,7 @@ pub(crate) trait Stage: Send {
 /// State of a control block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context {
-    pub(crate) finger: Finger,
+    pub(crate) finger: Motion,
     /// RMS of the current surface, newtons.
     pub(crate) level_rms: f64,
     /// Frames until the end of the scene; `None` if endless.

@@ -30,16 +30,16 @@ fn need(required: &Requirements) -> Need {
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     if neutral {
-        Box::new(Unchanged)
+        Box::new(PassThrough)
     } else {
-        Box::new(SquareRoot { shift: Drive::of(required).shift as f32, held: 0 })
+        Box::new(SquareRoot { shift: Drive::new(required).shift as f32, held: 0 })
     }
 }
 
 /// A signal power of 1 and a shift of 0.
-struct Unchanged;
+struct PassThrough;
 
-impl Stage for Unchanged {
+impl Stage for PassThrough {
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         source(out);
     }

@@ -1,6 +1,6 @@
 //! Synthesis: a voice of the surface's model, with unit RMS.
 
-use htex_play::{Finger, Motion, SampleSource};
+use htex_play::{Motion, SampleSource};
 
 use super::Stage;
 
@@ -30,8 +30,8 @@ impl Synthesis {
     /// Tells a model that follows the motion itself where the finger is, `at_s` seconds after the
     /// first sample. If the model refuses the motion, it plays on as before and the failure is
     /// stored.
-    pub(crate) fn set_finger(&mut self, finger: Finger, at_s: f64) {
-        if let Err(error) = self.source.set_finger(finger, at_s) {
+    pub(crate) fn follow_finger(&mut self, motion: Motion, at_s: f64) {
+        if let Err(error) = self.source.follow(motion, at_s) {
             self.failed.get_or_insert(error);
         }
     }

@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{constant, file, grid, nine, planned, scene, single, three_speeds};
 use htex_format::ErrorMeasure;
-use htex_play::Asset;
+use htex_play::Texture;
 use htex_scene::file::Budget;
 use htex_scene::{Costs, Plan, SceneError, plan};
 
@@ -17,7 +17,7 @@ fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
     let manifest = single().manifest();
     let one = |r: &htex_format::Representation| {
         let mut scene = scene(single(), constant(80.0, 0.4), 1.0);
-        scene.scene.surfaces[0].representation = r.model.clone();
+        scene.file.surfaces[0].representation = r.model.clone();
         let error_db = measure.of(r.at[0].quality.as_ref().unwrap()).unwrap();
         let ns = RESERVE * planned(&scene, &file()).ns_per_sample_total;
         (r.model.clone(), error_db, ns)
@@ -27,7 +27,7 @@ fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
 
 fn within(budget: Budget) -> Result<Plan, SceneError> {
     let mut scene = scene(single(), constant(80.0, 0.4), 1.0);
-    scene.scene.budget = budget;
+    scene.file.budget = budget;
     plan(&scene, &file(), &Costs::embedded())
 }
 
@@ -99,7 +99,7 @@ fn a_larger_error_budget_never_takes_more_time() {
 /// computed or none was measured.
 #[test]
 fn a_scene_chooses_as_a_voice_does() {
-    let computed = |asset: &Asset| {
+    let computed = |asset: &Texture| {
         let all = asset.manifest().representations.iter();
         all.flat_map(|r| &r.at).any(|at| at.quality.is_none())
     };
@@ -111,26 +111,26 @@ fn a_scene_chooses_as_a_voice_does() {
     for representation in &mut later.manifest.representations {
         representation.at[0].quality = None;
     }
-    let (unmeasured, later) = (Asset::new(unmeasured), Asset::new(later));
+    let (unmeasured, later) = (Texture::new(unmeasured), Texture::new(later));
     for asset in [single(), grid(), nine(), three_speeds(), &unmeasured, &later] {
         let chosen = planned(&scene(asset, constant(80.0, 0.4), 1.0), &file());
-        let voice = asset.representation_id(None).unwrap();
+        let voice = asset.representation(None).unwrap().id();
         assert_eq!(chosen.representation[0].model, voice);
         assert!(!chosen.representation[0].why.contains("inf"));
     }
     // Bands has the smallest error for sandpaper. Comparing by infinity would choose the first in
     // the file.
     let first = &later.manifest().representations[0].model;
-    assert_ne!(later.representation_id(None).unwrap(), first);
-    assert_eq!(unmeasured.representation_id(None).unwrap(), first);
+    assert_ne!(later.representation(None).unwrap().id(), first);
+    assert_eq!(unmeasured.representation(None).unwrap().id(), first);
 }
 
 /// The budget limits the largest error over the measured conditions.
 #[test]
 fn computed_conditions_do_not_break_a_budget() {
-    let with = |asset: &Asset, most_db: f64| {
+    let with = |asset: &Texture, most_db: f64| {
         let mut scene = scene(asset, constant(80.0, 0.4), 1.0);
-        scene.scene.budget.max_error_db = Some(most_db);
+        scene.file.budget.max_error_db = Some(most_db);
         plan(&scene, &file(), &Costs::embedded())
     };
     let asset = three_speeds();
@@ -143,6 +143,6 @@ fn computed_conditions_do_not_break_a_budget() {
     let mut unmeasured = asset.data().clone();
     let all = unmeasured.manifest.representations.iter_mut();
     all.flat_map(|r| &mut r.at).for_each(|at| at.quality = None);
-    let refused = with(&Asset::new(unmeasured), 100.0).unwrap_err().to_string();
+    let refused = with(&Texture::new(unmeasured), 100.0).unwrap_err().to_string();
     assert!(refused.contains("states no such error"), "{refused}");
 }

@@ -19,7 +19,7 @@ fn response(frequency_hz: &[f64], magnitude: &[f64]) -> Response {
 /// The output of a newton device over 20 s, and the plan's reason for the compensation.
 fn played(response: Option<Response>) -> (Vec<f32>, Option<String>) {
     let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
-    scene.scene.surfaces[0].representation = "sbeta".to_owned();
+    scene.file.surfaces[0].representation = "sbeta".to_owned();
     scene.response = response;
     let plan = planned(&scene, &file());
     let mut stages = plan.stages.iter();

@@ -11,7 +11,7 @@ use htex_dsp::bands::{energy_matching_gain, rms};
 use htex_dsp::grid::level_rms;
 use htex_play::Registry;
 use htex_scene::file::Levels;
-use htex_scene::{LoadedScene, Renderer, Response};
+use htex_scene::{Renderer, Response, Scene};
 
 const RATE_HZ: f64 = 50_000.0;
 const DRIVE_V: f64 = 100.0;
@@ -23,8 +23,8 @@ fn rig() -> Capabilities {
     Capabilities { default_rate_hz: RATE_HZ, step: None, ..display() }
 }
 
-fn driven(scene: &mut LoadedScene) -> (Vec<f32>, Renderer) {
-    scene.scene.device.drive_v = Some(DRIVE_V);
+fn driven(scene: &mut Scene) -> (Vec<f32>, Renderer) {
+    scene.file.device.drive_v = Some(DRIVE_V);
     let mut renderer = Renderer::new(scene, &planned(scene, &rig())).unwrap();
     (rendered(&mut renderer), renderer)
 }
@@ -56,7 +56,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
     for model in ["ar", "mfcc", "sbeta", "sslope", "bands"] {
         for response in [None, Some(response.clone())] {
             let mut scene = scene(single(), constant(80.0, 0.4), 60.0);
-            scene.scene.surfaces[0].representation = model.to_owned();
+            scene.file.surfaces[0].representation = model.to_owned();
             scene.response = response.clone();
             let (drive, renderer) = driven(&mut scene);
             // Leaves out the ramps at both ends.
@@ -68,7 +68,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
             };
             let found: Vec<f64> =
                 magnitudes(steady.clone()).iter().zip(&grid).map(|(m, f)| m / droop(*f)).collect();
-            let texture = single().magnitude(Some(model), None, &grid).unwrap();
+            let texture = single().representation(model).unwrap().magnitude(None, &grid).unwrap();
             let inverse = |f: f64| response.as_ref().map_or(1.0, |r| 1.0 / r.at(f).0);
             let wanted: Vec<f64> =
                 texture.iter().zip(&grid).map(|(m, f)| m * inverse(*f)).collect();
@@ -104,16 +104,16 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
 fn levels_under_one_gain_are_normalised_or_the_representations_own() {
     let model = |name: &str, levels: Levels, reference_rms: Option<f64>| {
         let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
-        scene.scene.surfaces[0].representation = name.to_owned();
-        scene.scene.device.levels = levels;
-        scene.scene.device.reference_rms = reference_rms;
+        scene.file.surfaces[0].representation = name.to_owned();
+        scene.file.device.levels = levels;
+        scene.file.device.reference_rms = reference_rms;
         let (drive, _) = driven(&mut scene);
         let steady = demodulated(&drive[RATE_HZ as usize..drive.len() - RATE_HZ as usize]);
         let mean = steady.iter().sum::<f64>() / steady.len() as f64;
         let moved: Vec<f64> = steady.iter().map(|v2| v2 - mean).collect();
         20.0 * rms(&moved).log10()
     };
-    let level_rms = |name: &str| single().parameters(Some(name), None).unwrap().1;
+    let level_rms = |name: &str| single().representation(name).unwrap().parameters(None).unwrap().1;
     let all = single().manifest().representations.iter();
     let strongest_rms = all.map(|r| level_rms(&r.model)).fold(0.0, f64::max);
     let alike = model("ar", Levels::Normalised, None);
@@ -139,7 +139,7 @@ fn it_never_exceeds_the_limit_and_starts_and_ends_at_zero() {
     let motion = trace(2.0, |t| 10.0 * (12.0 * t).sin(), lifted);
     let mut scene = traced(single(), motion, 2.0);
     // The largest drive voltage.
-    scene.scene.device.drive_v = Some(150.0);
+    scene.file.device.drive_v = Some(150.0);
     let rig = Capabilities { default_rate_hz: RATE_HZ, ..display() };
     let mut renderer = Renderer::new(&scene, &planned(&scene, &rig)).unwrap();
     let drive = rendered(&mut renderer);

@@ -8,9 +8,9 @@ use common::{
     trace, traced,
 };
 use htex_device::Capabilities;
-use htex_play::Registry;
-use htex_scene::file::{Effect, Motion, Region, Switch};
-use htex_scene::{Finger, LoadedScene, Plan, Renderer, Response};
+use htex_play::{Motion, Registry};
+use htex_scene::file::{Effect, Motion as SceneMotion, Region, Switch};
+use htex_scene::{Plan, Renderer, Response, Scene};
 use proptest::prelude::*;
 
 #[derive(Debug, Clone)]
@@ -80,22 +80,22 @@ fn count() -> u32 {
 }
 
 impl Case {
-    fn scene(&self) -> LoadedScene {
+    fn scene(&self) -> Scene {
         let asset = if self.grid { grid() } else { single() };
         let mut scene = match self.motion {
             0 => scene(asset, constant(self.speed_mm_s, self.force_n), SECONDS),
             1 => traced(asset, self.trace(), SECONDS),
-            _ => scene(asset, Motion::Live, SECONDS),
+            _ => scene(asset, SceneMotion::Live, SECONDS),
         };
         // A constant motion has no position here, so it needs a surface that covers everything.
         if self.surfaces > 1 && self.motion != 0 {
             self.tile(&mut scene);
         }
-        for surface in &mut scene.scene.surfaces {
+        for surface in &mut scene.file.surfaces {
             let models = Registry::builtin_names();
             surface.representation = models[self.model].to_owned();
         }
-        scene.scene.seed = self.seed;
+        scene.file.seed = self.seed;
         if self.response {
             scene.response = Some(Response {
                 frequency_hz: vec![0.0, 100.0, 400.0, 1_000.0],
@@ -104,9 +104,9 @@ impl Case {
             });
         }
         match self.device {
-            2 => scene.scene.device.drive_v = Some(90.0),
-            3 => scene.scene.device.pitch = Some(1.5),
-            _ => scene.scene.device.gain_db = Some(self.gain_db),
+            2 => scene.file.device.drive_v = Some(90.0),
+            3 => scene.file.device.pitch = Some(1.5),
+            _ => scene.file.device.gain_db = Some(self.gain_db),
         }
         scene
     }
@@ -125,7 +125,7 @@ impl Case {
     }
 
     /// Places surfaces of 3 mm width side by side, with an empty region to their right.
-    fn tile(&self, scene: &mut LoadedScene) {
+    fn tile(&self, scene: &mut Scene) {
         let asset = scene.assets[0].clone();
         scene.assets = vec![asset; self.surfaces];
         let tile = |i: usize| {
@@ -133,7 +133,7 @@ impl Case {
             let region = Region { x_mm: [left, left + 3.0], y_mm: [-1.0, 1.0] };
             htex_scene::file::Surface { region: Some(region), gain: 1.0 + i as f64, ..surface() }
         };
-        scene.scene.surfaces = (0..self.surfaces).map(tile).collect();
+        scene.file.surfaces = (0..self.surfaces).map(tile).collect();
     }
 
     fn device(&self) -> Capabilities {
@@ -165,23 +165,18 @@ impl Case {
                 renderer.set_motion(self.live(part)).unwrap();
             }
             let size = (*sizes.next().unwrap()).min(end - done).min(frames - done);
-            let rendered = renderer.render(&mut samples[done..done + size]);
+            let rendered = renderer.render(&mut samples[done..done + size]).unwrap();
             assert_eq!(rendered, size);
             done += size;
         }
-        assert_eq!(renderer.render(&mut [0.0; 8]), 0, "no samples after the end");
-        let failure = renderer.take_failure();
-        assert!(failure.is_none(), "{failure:?}");
+        assert_eq!(renderer.render(&mut [0.0; 8]).unwrap(), 0, "no samples after the end");
         samples
     }
 
-    fn live(&self, part: usize) -> Finger {
+    fn live(&self, part: usize) -> Motion {
         let phase = part as f64 * self.turns_hz;
-        Finger {
-            speed_mm_s: self.speed_mm_s * phase.cos(),
-            force_n: if self.lifts && part == 2 { 0.0 } else { self.force_n },
-            at_mm: Some([4.0 * phase.sin(), 0.0]),
-        }
+        let force_n = if self.lifts && part == 2 { 0.0 } else { self.force_n };
+        Motion::new(self.speed_mm_s * phase.cos(), force_n).with_place_mm([4.0 * phase.sin(), 0.0])
     }
 }
 
@@ -196,7 +191,7 @@ proptest! {
     fn the_planned_chain_gives_the_samples_of_the_full_one(case in cases()) {
         let (scene, device) = (case.scene(), case.device());
         let mut full = scene.clone();
-        full.scene.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
+        full.file.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
         let (short_plan, full_plan) = (planned(&scene, &device), planned(&full, &device));
 
         let mut short = Renderer::new(&scene, &short_plan).unwrap();

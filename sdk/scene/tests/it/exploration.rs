@@ -4,12 +4,10 @@ use crate::common;
 
 use common::{constant, display, file, grid, planned, rendered, scene, single};
 use htex_device::Capabilities;
-use htex_format::{AtCondition, Condition};
-use htex_play::{
-    Contact, Effects, Law, Motions, Quantity, Reach, Registry, Scaling, Voice, VoiceOptions,
-};
-use htex_scene::file::Motion;
-use htex_scene::{Finger, Renderer};
+use htex_format::{AtCondition, Condition, Contact, Law, Quantity};
+use htex_play::{Conditions, Effects, Motion, Reach, Registry, Scaling, Voice, VoiceOptions};
+use htex_scene::Renderer;
+use htex_scene::file::Motion as SceneMotion;
 
 const RATE_HZ: f64 = 20_000.0;
 const RECORDED: (f64, f64) = (80.0, 0.4);
@@ -19,11 +17,10 @@ const CONTROL: usize = 64;
 /// A voice with the same seed as the first surface of a scene.
 fn voice(model: &str, motion: Option<(f64, f64)>, effects: Effects) -> Voice {
     let options = VoiceOptions::default()
-        .with_model(model)
         .with_seed(1)
-        .with_motion(motion.map(|(speed, force)| htex_play::Motion::new(speed, force)))
+        .with_motion(motion.map(|(speed, force)| Motion::new(speed, force)))
         .with_effects(effects);
-    single().voice(&options).unwrap()
+    single().representation(model).unwrap().voice(&options).unwrap()
 }
 
 fn samples(voice: &mut Voice, frames: usize) -> Vec<f32> {
@@ -76,7 +73,7 @@ fn plays_as_in_a_scene(model: &str) {
     for motion in [RECORDED, (160.0, 0.8), (30.0, 0.2), (0.0, 0.4), (80.0, 0.0)] {
         // Over eight seconds, the power in the octave from 20 Hz has an uncertainty of 0.35 dB.
         let mut scene = scene(single(), constant(motion.0, motion.1), 8.0);
-        scene.scene.surfaces[0].representation = model.to_owned();
+        scene.file.surfaces[0].representation = model.to_owned();
         let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
         let played = rendered(&mut renderer);
         let made = samples(&mut voice(model, Some(motion), Effects::default()), played.len());
@@ -85,7 +82,7 @@ fn plays_as_in_a_scene(model: &str) {
         assert!(played.iter().zip(&made).all(same), "{model} at {motion:?}");
 
         let mut moved = voice(model, None, Effects::default());
-        moved.set_motion(htex_play::Motion::new(motion.0, motion.1)).unwrap();
+        moved.set_motion(Motion::new(motion.0, motion.1)).unwrap();
         // Waits until the ramps of level and contact end.
         samples(&mut moved, 1_000);
         let moved = samples(&mut moved, played.len());
@@ -120,19 +117,18 @@ fn stroke(block: usize, blocks: usize) -> (f64, f64) {
 fn a_live_motion_plays_as_in_a_scene() {
     let blocks = 4 * RATE_HZ as usize / CONTROL;
     for model in Registry::builtin_names() {
-        let mut scene = scene(single(), Motion::Live, 5.0);
-        scene.scene.surfaces[0].representation = model.to_owned();
+        let mut scene = scene(single(), SceneMotion::Live, 5.0);
+        scene.file.surfaces[0].representation = model.to_owned();
         let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
         let mut voice = voice(model, Some(stroke(0, blocks)), Effects::default());
         let (mut played, mut followed) = (Vec::new(), Vec::new());
         for block in 0..blocks {
             let (speed_mm_s, force_n) = stroke(block, blocks);
-            let finger = Finger { speed_mm_s, force_n, at_mm: None };
-            renderer.set_motion(finger).unwrap();
+            renderer.set_motion(Motion::new(speed_mm_s, force_n)).unwrap();
             let mut out = [0.0f32; CONTROL];
-            renderer.render(&mut out);
+            renderer.render(&mut out).unwrap();
             played.extend(out);
-            voice.set_motion(htex_play::Motion::new(speed_mm_s, force_n)).unwrap();
+            voice.set_motion(Motion::new(speed_mm_s, force_n)).unwrap();
             followed.extend(samples(&mut voice, CONTROL));
         }
         // Windows of half a second during the stroke, then silence at its end.
@@ -156,7 +152,7 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
             let mut voice = voice(model, None, Effects::default());
             let mut all = Vec::new();
             for (speed, force) in motions {
-                voice.set_motion(htex_play::Motion::new(speed, force)).unwrap();
+                voice.set_motion(Motion::new(speed, force)).unwrap();
                 let mut out = [0.0f32; 900];
                 out.chunks_mut(size).for_each(|block| voice.render(block).unwrap());
                 all.extend(out);
@@ -168,7 +164,7 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
         let (mut plain, mut followed) =
             (voice(model, None, Effects::NONE), voice(model, None, Effects::default()));
         for _ in 0..20 {
-            followed.set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1)).unwrap();
+            followed.set_motion(Motion::new(RECORDED.0, RECORDED.1)).unwrap();
             assert_eq!(samples(&mut followed, 333), samples(&mut plain, 333), "{model}");
         }
     }
@@ -177,15 +173,15 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
 #[test]
 fn a_voice_reports_its_coverage_of_a_motion() {
     let all = voice("ar", None, Effects::default());
-    assert!(all.coverage(htex_play::Motion::new(80.0, 0.4)).is_inside());
-    let beyond = all.coverage(htex_play::Motion::new(160.0, 0.2));
+    assert!(all.coverage(Motion::new(80.0, 0.4)).is_inside());
+    let beyond = all.coverage(Motion::new(160.0, 0.2));
     assert_eq!(
         beyond.to_string(),
         "160 mm/s, where 80 mm/s was recorded; 0.2 N, where 0.4 N was recorded: \
          frequencies are 2.000 times as high, and the level is 0.500 times as high"
     );
-    assert!(!beyond.is_inside() && !all.coverage(htex_play::Motion::new(0.0, 0.4)).slides);
-    let none = voice("ar", None, Effects::NONE).coverage(htex_play::Motion::new(160.0, 0.0));
+    assert!(!beyond.is_inside() && !all.coverage(Motion::new(0.0, 0.4)).slides);
+    let none = voice("ar", None, Effects::NONE).coverage(Motion::new(160.0, 0.0));
     let outside = Reach::Outside { asked: 160.0, recorded: 80.0 };
     assert!(none.slides && none.speed == outside);
     assert_eq!((none.scaling, none.excess()), (Scaling::NONE, 1.0));
@@ -194,8 +190,8 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     let options = VoiceOptions::default().with_rate_hz(4_000.0);
     let low = |speed: f64| {
         let mut voice = single().voice(&options).unwrap();
-        voice.set_motion(htex_play::Motion::new(speed, 0.4)).unwrap();
-        (samples(&mut voice, 4_000), voice.coverage(htex_play::Motion::new(speed, 0.4)))
+        voice.set_motion(Motion::new(speed, 0.4)).unwrap();
+        (samples(&mut voice, 4_000), voice.coverage(Motion::new(speed, 0.4)))
     };
     let ((faster, coverage), (twice, _)) = (low(320.0), low(160.0));
     assert!(faster == twice && faster != low(120.0).0);
@@ -204,9 +200,11 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
     let of = |motion: (f64, f64)| {
         grid()
-            .motions(None)
+            .representation(None)
             .unwrap()
-            .coverage(htex_play::Motion::new(motion.0, motion.1), Effects::default())
+            .conditions()
+            .unwrap()
+            .coverage(Motion::new(motion.0, motion.1), Effects::default())
     };
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
     let fast = of((240.0, 0.4));
@@ -234,12 +232,12 @@ fn forces_within_tolerance_count_as_one() {
         left_out: None,
     });
     let law = Law::assumed(Quantity::LateralForce, Contact::Finger);
-    let motions = Motions::new(&at, &conditions, law);
-    let explored = motions.explored();
-    assert!(!explored.speed.is_one() && explored.force.is_one());
+    let recorded = Conditions::new(&at, &conditions, law);
+    let range = recorded.range();
+    assert!(!range.speed.is_one() && range.force.is_one());
     let level = |speed: f64, force: f64| {
-        let motion = htex_play::Motion::new(speed, force);
-        motions.scaling(motion, 4.0).level
+        let motion = Motion::new(speed, force);
+        recorded.scaling(motion, 4.0).level
     };
     for condition in &conditions {
         let [speed, force] = [condition.speed_mm_s, condition.force_n].map(Option::unwrap);
@@ -258,21 +256,20 @@ fn a_failed_reading_is_held_and_then_silent() {
     let failed = (80.0, 12_050.0);
     let mut held = voice("bands", Some(RECORDED), Effects::default());
     let mut plain = voice("bands", Some(RECORDED), Effects::default());
-    held.set_motion(htex_play::Motion::new(failed.0, failed.1)).unwrap();
+    held.set_motion(Motion::new(failed.0, failed.1)).unwrap();
     let hold = (htex_play::exploration::HOLD_S * RATE_HZ) as usize;
     assert_eq!(samples(&mut held, hold), samples(&mut plain, hold));
     samples(&mut held, 400);
     assert!(samples(&mut held, 1_000).iter().all(|x| *x == 0.0));
-    held.set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1)).unwrap();
+    held.set_motion(Motion::new(RECORDED.0, RECORDED.1)).unwrap();
     assert!(samples(&mut held, 1_000).iter().any(|x| *x != 0.0));
 
-    let scene = scene(single(), Motion::Live, 5.0);
+    let scene = scene(single(), SceneMotion::Live, 5.0);
     let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
     let mut play = |(speed_mm_s, force_n): (f64, f64), frames: usize| {
-        let finger = Finger { speed_mm_s, force_n, at_mm: None };
-        renderer.set_motion(finger).unwrap();
+        renderer.set_motion(Motion::new(speed_mm_s, force_n)).unwrap();
         let mut out = vec![0.0f32; frames];
-        renderer.render(&mut out);
+        renderer.render(&mut out).unwrap();
         out
     };
     let good = rms_db(&play(RECORDED, 20_000));
@@ -284,24 +281,21 @@ fn a_failed_reading_is_held_and_then_silent() {
 
 /// Samples of a live scene, with one bad reading if given.
 fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) -> Vec<f32> {
-    let scene = scene(grid(), Motion::Live, 1.0);
+    let scene = scene(grid(), SceneMotion::Live, 1.0);
     let mut renderer = Renderer::new(&scene, &planned(&scene, device)).unwrap();
     let mut out = vec![0.0f32; 20_000];
     for (i, block) in out.chunks_mut(CONTROL).enumerate() {
-        let good = Finger {
-            speed_mm_s: 60.0 + 20.0 * (0.05 * i as f64).sin(),
-            force_n: 0.4,
-            at_mm: Some([0.2 * i as f64, 0.0]),
-        };
+        let good = Motion::new(60.0 + 20.0 * (0.05 * i as f64).sin(), 0.4)
+            .with_place_mm([0.2 * i as f64, 0.0]);
         match bad.filter(|_| i == 150) {
             None if i == 150 => {}
             None => renderer.set_motion(good).unwrap(),
-            Some((speed_mm_s, force_n, at_mm)) => {
-                let bad = Finger { speed_mm_s, force_n, at_mm };
+            Some((speed_mm_s, force_n, place)) => {
+                let bad = Motion::new(speed_mm_s, force_n).with_place_mm(place);
                 let _ = renderer.set_motion(bad);
             }
         }
-        renderer.render(block);
+        renderer.render(block).unwrap();
     }
     out
 }
@@ -339,7 +333,7 @@ fn a_reading_that_is_no_number_is_held_and_then_silent() {
     {
         let mut held = voice("bands", Some(RECORDED), Effects::default());
         let mut plain = voice("bands", Some(RECORDED), Effects::default());
-        held.set_motion(htex_play::Motion::new(speed_mm_s, force_n)).unwrap_err();
+        held.set_motion(Motion::new(speed_mm_s, force_n)).unwrap_err();
         assert_eq!(samples(&mut held, hold), samples(&mut plain, hold));
         samples(&mut held, 400);
         assert!(samples(&mut held, 1_000).iter().all(|x| *x == 0.0));
@@ -351,11 +345,12 @@ fn a_reading_that_is_no_number_is_held_and_then_silent() {
 #[test]
 fn no_voice_is_louder_than_its_ceiling() {
     let strong = |ceiling: f64| {
-        let options = VoiceOptions::default()
-            .with_model("bands")
-            .with_motion(htex_play::Motion::new(80.0, 20.0))
-            .with_ceiling(ceiling);
-        rms_db(&samples(&mut single().voice(&options).unwrap(), 80_000))
+        let options =
+            VoiceOptions::default().with_motion(Motion::new(80.0, 20.0)).with_ceiling(ceiling);
+        rms_db(&samples(
+            &mut single().representation("bands").unwrap().voice(&options).unwrap(),
+            80_000,
+        ))
     };
     let recorded =
         rms_db(&samples(&mut voice("bands", Some(RECORDED), Effects::default()), 80_000));

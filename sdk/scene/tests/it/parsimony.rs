@@ -9,39 +9,39 @@ use common::{
 };
 use htex_device::Capabilities;
 use htex_scene::file::{Effect, Motion, Region, Surface, Switch};
-use htex_scene::{LoadedScene, Renderer, Response};
+use htex_scene::{Renderer, Response, Scene};
 
-type Scene = (LoadedScene, Capabilities);
+type SceneOnDevice = (Scene, Capabilities);
 
 /// A stroke at an average speed of 80 mm/s, which varies by the fraction `swing`.
-fn strokes(asset: &htex_play::Asset, swing: f64) -> LoadedScene {
+fn strokes(asset: &htex_play::Texture, swing: f64) -> Scene {
     let x = move |t: f64| 80.0 * t + 80.0 * swing * (4.0 * t).sin() / 4.0;
     traced(asset, trace(0.5, x, |_| 0.4), 0.5)
 }
 
 /// Two surfaces of 30 mm side by side, and a stroke from x = 0 at `reach_mm` per second.
-fn two(reach_mm: f64) -> LoadedScene {
+fn two(reach_mm: f64) -> Scene {
     let mut scene = traced(single(), trace(0.5, move |t| reach_mm * t, |_| 0.4), 0.5);
     let at = |from: f64| Surface {
         region: Some(Region { x_mm: [from, from + 30.0], y_mm: [-1.0, 1.0] }),
         ..surface()
     };
-    scene.scene.surfaces = vec![at(0.0), at(30.0)];
+    scene.file.surfaces = vec![at(0.0), at(30.0)];
     scene.assets = vec![single().clone(); 2];
     scene
 }
 
-fn plain() -> LoadedScene {
+fn plain() -> Scene {
     scene(single(), constant(80.0, 0.4), 0.5)
 }
 
 /// A scene that does not need the effect, and one that does.
-fn pair(effect: Effect) -> (Scene, Scene) {
+fn pair(effect: Effect) -> (SceneOnDevice, SceneOnDevice) {
     let forces = |change: f64| {
         let force = move |t: f64| 0.4 + change * (5.0 * t).sin();
         traced(single(), trace(0.5, |t| 80.0 * t, force), 0.5)
     };
-    let with = |change: &dyn Fn(&mut LoadedScene)| {
+    let with = |change: &dyn Fn(&mut Scene)| {
         let mut scene = plain();
         change(&mut scene);
         scene
@@ -54,7 +54,7 @@ fn pair(effect: Effect) -> (Scene, Scene) {
         phase_rad: vec![0.0; 2],
     };
     let model_rate = Capabilities { default_rate_hz: 2_000.0, ..file() };
-    let ar = with(&|s| s.scene.surfaces[0].representation = "ar".to_owned());
+    let ar = with(&|s| s.file.surfaces[0].representation = "ar".to_owned());
     match effect {
         Effect::Interpolation => {
             ((scene(grid(), constant(90.0, 0.5), 0.5), file()), (strokes(grid(), 0.2), file()))
@@ -69,13 +69,11 @@ fn pair(effect: Effect) -> (Scene, Scene) {
         }
         // sBeta renders at the requested rate; AR renders at its own.
         Effect::Resampling => {
-            let sbeta = with(&|s| s.scene.surfaces[0].representation = "sbeta".to_owned());
+            let sbeta = with(&|s| s.file.surfaces[0].representation = "sbeta".to_owned());
             ((sbeta, model_rate), (ar, file()))
         }
         Effect::Direction => ((strokes(single(), 0.2), file()), (turning, file())),
-        Effect::Gain => {
-            ((plain(), file()), (with(&|s| s.scene.device.gain_db = Some(6.0)), file()))
-        }
+        Effect::Gain => ((plain(), file()), (with(&|s| s.file.device.gain_db = Some(6.0)), file())),
         Effect::SquareRoot => ((plain(), loudspeaker()), (plain(), display())),
         Effect::Contact => ((strokes(single(), 0.2), file()), (resting, file())),
         Effect::Carrier => {
@@ -132,7 +130,7 @@ fn only_required_effects_cannot_be_switched_off() {
     let costs = htex_scene::Costs::embedded();
     for effect in Effect::ALL {
         let (_, (mut scene, device)) = pair(effect);
-        scene.scene.effects = [(effect, Switch::Off)].into();
+        scene.file.effects = [(effect, Switch::Off)].into();
         let result = htex_scene::plan(&scene, &device, &costs);
         let needed = matches!(effect, Effect::Resampling | Effect::SquareRoot | Effect::Carrier);
         match result {

@@ -19,22 +19,22 @@ impl Document {
     /// Reads the document of a call.
     pub(crate) fn of_call(json: &[u8]) -> Result<Self, Refusal> {
         let value = serde_json::from_slice::<Value>(json).map_err(Refusal::argument)?;
-        Self::of(value)
+        Self::from_value(value)
     }
 
     /// Makes a document from an object. `null` entries count as absent.
-    pub(crate) fn of(value: Value) -> Result<Self, Refusal> {
+    pub(crate) fn from_value(value: Value) -> Result<Self, Refusal> {
         match value {
             Value::Object(mut left) => {
                 left.retain(|_, value| !value.is_null());
                 Ok(Self { left, known: Vec::new() })
             }
-            Value::Null => Self::of(Value::Object(Map::new())),
+            Value::Null => Self::from_value(Value::Object(Map::new())),
             other => Err(Refusal::argument(format!("{other} is not an object"))),
         }
     }
 
-    fn take(&mut self, name: &'static str) -> Option<Value> {
+    fn remove(&mut self, name: &'static str) -> Option<Value> {
         // For the message of `finish`, which lists what could have been given.
         self.known.push(name);
         self.left.remove(name)
@@ -48,7 +48,7 @@ impl Document {
     ) -> Result<T, Refusal> {
         let mut own = Map::new();
         for name in names {
-            if let Some(value) = self.take(name) {
+            if let Some(value) = self.remove(name) {
                 own.insert((*name).to_owned(), value);
             }
         }
@@ -56,12 +56,12 @@ impl Document {
     }
 
     pub(crate) fn object(&mut self, name: &'static str) -> Result<Self, Refusal> {
-        Self::of(self.take(name).unwrap_or_default())
+        Self::from_value(self.remove(name).unwrap_or_default())
     }
 
     /// Takes a list. If it is absent, the list is empty.
     pub(crate) fn list(&mut self, name: &'static str) -> Result<Vec<Value>, Refusal> {
-        match self.take(name) {
+        match self.remove(name) {
             None => Ok(Vec::new()),
             Some(Value::Array(all)) => Ok(all),
             Some(_) => Err(wrong(name, "a list")),
@@ -77,7 +77,7 @@ impl Document {
     }
 
     pub(crate) fn text(&mut self, name: &'static str) -> Result<Option<String>, Refusal> {
-        match self.take(name) {
+        match self.remove(name) {
             None => Ok(None),
             Some(Value::String(text)) => Ok(Some(text)),
             Some(_) => Err(wrong(name, "a text")),
@@ -85,14 +85,14 @@ impl Document {
     }
 
     pub(crate) fn number(&mut self, name: &'static str) -> Result<Option<f64>, Refusal> {
-        match self.take(name) {
+        match self.remove(name) {
             None => Ok(None),
             Some(value) => number(&value).map(Some).ok_or_else(|| wrong(name, "a number")),
         }
     }
 
     pub(crate) fn flag(&mut self, name: &'static str) -> Result<bool, Refusal> {
-        match self.take(name) {
+        match self.remove(name) {
             None => Ok(false),
             Some(Value::Bool(is)) => Ok(is),
             Some(_) => Err(wrong(name, "true or false")),

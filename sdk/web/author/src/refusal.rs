@@ -1,6 +1,6 @@
 //! Errors of calls: libhtex's status, a more specific code, and the text.
 
-use htex::host::HostError;
+use htex::model::HostError;
 use htex_c::calls::Failure;
 use htex_c::htex_status::{self, *};
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub(crate) struct Refusal {
 
 /// The document of an error.
 #[derive(Serialize)]
-struct Told<'a> {
+struct ErrorDocument<'a> {
     code: &'a str,
     message: &'a str,
 }
@@ -24,7 +24,7 @@ struct Told<'a> {
 impl Refusal {
     pub(crate) fn new(status: htex_status, code: &str, error: impl ToString) -> Self {
         let message = error.to_string();
-        let told = Told { code, message: &message };
+        let told = ErrorDocument { code, message: &message };
         Self { status, json: serde_json::to_vec(&told).unwrap_or_default(), message }
     }
 
@@ -60,7 +60,7 @@ impl std::error::Error for Text {}
 
 impl From<Refusal> for Failure {
     fn from(refusal: Refusal) -> Self {
-        Self::of(refusal.status, Text(refusal.message))
+        Self::new(refusal.status, Text(refusal.message))
     }
 }
 

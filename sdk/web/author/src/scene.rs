@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
+use htex::Motion;
 use htex::device::{Capabilities, Devices};
-use htex::host::{Registry, Search, WasmEngine, WasmLimits};
-use htex::scene::file::Motion;
+use htex::model::{Registry, Search, WasmEngine, WasmLimits};
 use htex::scene::{
-    Costs, DeviceOverride, Finger, LoadError, LoadedScene, Plan, Renderer, SceneError, SceneFiles,
-    Surroundings, plan,
+    Costs, DeviceOverride, FileSource, Plan, Renderer, Scene, SceneError, SceneErrorKind,
+    Surroundings, file, plan,
 };
 use htex_c::htex_status::*;
 use serde::Serialize;
@@ -33,23 +33,23 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
 const MOST_S: f64 = 1e9;
 
 /// An open scene.
-struct Open {
+struct OpenScene {
     bytes: Vec<u8>,
-    files: Named,
+    files: FilesByPath,
     models: Registry,
     embedded: bool,
     devices: Devices,
     device: DeviceOverride,
-    loaded: LoadedScene,
+    loaded: Scene,
     able: Capabilities,
     /// Renders the next samples, once they have been requested.
     playing: Option<Renderer>,
 }
 
 /// The files of a scene, by their paths in the scene.
-struct Named(BTreeMap<String, Vec<u8>>);
+struct FilesByPath(BTreeMap<String, Vec<u8>>);
 
-impl SceneFiles for Named {
+impl FileSource for FilesByPath {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let found = self.0.get(path.to_string_lossy().as_ref()).cloned();
         found.ok_or_else(|| io::ErrorKind::NotFound.into())
@@ -58,7 +58,7 @@ impl SceneFiles for Named {
 
 #[derive(Default)]
 struct Scenes {
-    open: BTreeMap<u64, Open>,
+    open: BTreeMap<u64, OpenScene>,
     last: u64,
 }
 
@@ -67,7 +67,7 @@ thread_local! {
 }
 
 #[derive(Serialize)]
-struct Opened<'a> {
+struct SceneSummary<'a> {
     id: u64,
     unit: &'static str,
     rate: f64,
@@ -90,14 +90,14 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let named = names.into_iter().zip(others.iter().map(|file| file.to_vec()));
     let models = models(embedded)?;
     let devices = Devices::new(htex_device_builtin::devices());
-    let files = Named(named.collect());
-    let around = Surroundings { models: &models, embedded, devices: &devices };
-    let loaded = LoadedScene::from_files(scene, &files, &around, &device)?;
-    let known = devices.find(&loaded.scene.device.adapter);
+    let files = FilesByPath(named.collect());
+    let around = Surroundings { models: &models, embedded, devices: Some(&devices) };
+    let loaded = Scene::from_files(scene, &files, &around, &device)?;
+    let known = devices.find(&loaded.file.device.adapter);
     let able = known
         .and_then(|known| known.adapter.capabilities(&loaded.settings))
         .map_err(Refusal::scene)?;
-    let open = Open {
+    let open = OpenScene {
         bytes: scene.to_vec(),
         files,
         models,
@@ -117,7 +117,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         scenes.open.insert(scenes.last, open);
         scenes.last
     });
-    let opened = Opened { id, unit, rate: plan.rate_hz, plan: &plan, notes };
+    let opened = SceneSummary { id, unit, rate: plan.rate_hz, plan: &plan, notes };
     Answer::new(&opened, Vec::new())
 }
 
@@ -168,16 +168,16 @@ pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal
                 let sentence = format!("{seconds} seconds; give more than 0, at most {MOST_S}");
                 return Err(Refusal::argument(sentence));
             }
-            loaded.scene.duration_s = Some(seconds);
+            loaded.file.duration_s = Some(seconds);
         }
         let (mut renderer, plan) = open.renderer(&loaded)?;
         let frames = plan.frames.ok_or_else(|| {
             Refusal::argument("the scene has no end; give seconds, or add duration_s to it")
         })?;
         let mut samples = zeros(usize::try_from(frames).unwrap_or(usize::MAX))?;
-        let rendered = renderer.render(&mut samples);
+        let rendered = renderer.render(&mut samples)?;
         samples.truncate(rendered);
-        answer(&mut renderer, &samples)
+        answer(&samples)
     })
 }
 
@@ -194,10 +194,9 @@ pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
         };
         let mut samples = zeros(frames)?;
         let rendered = renderer.render(&mut samples);
-        samples.truncate(rendered);
-        let answer = answer(&mut renderer, &samples);
         open.playing = Some(renderer);
-        answer
+        samples.truncate(rendered?);
+        answer(&samples)
     })
 }
 
@@ -225,15 +224,13 @@ pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
             let [speed_mm_s, force_n, x_mm, y_mm] = *motion;
             // A single NaN is a failed reading, not an unknown place.
             let unknown = x_mm.is_nan() && y_mm.is_nan();
-            let moved = renderer.set_motion(Finger {
-                speed_mm_s,
-                force_n,
-                at_mm: (!unknown).then_some([x_mm, y_mm]),
-            });
+            let motion =
+                Motion::new(speed_mm_s, force_n).with_place_mm((!unknown).then_some([x_mm, y_mm]));
+            let moved = renderer.set_motion(motion);
             moved.map_err(|error| Refusal::motion(format!("block {i}: {error}")))?;
-            renderer.render(part);
+            renderer.render(part)?;
         }
-        answer(&mut renderer, &samples)
+        answer(&samples)
     })
 }
 
@@ -262,7 +259,7 @@ fn count(call: &mut Document, name: &'static str) -> Result<usize, Refusal> {
 
 fn of_scene(
     id: u64,
-    call: impl FnOnce(&mut Open) -> Result<Answer, Refusal>,
+    call: impl FnOnce(&mut OpenScene) -> Result<Answer, Refusal>,
 ) -> Result<Answer, Refusal> {
     SCENES.with_borrow_mut(|scenes| match scenes.open.get_mut(&id) {
         Some(open) => call(open),
@@ -280,22 +277,19 @@ fn zeros(frames: usize) -> Result<Vec<f32>, Refusal> {
     Ok(samples)
 }
 
-fn answer(renderer: &mut Renderer, samples: &[f32]) -> Result<Answer, Refusal> {
-    if let Some(error) = renderer.take_failure() {
-        return Err(error.into());
-    }
+fn answer(samples: &[f32]) -> Result<Answer, Refusal> {
     let bytes = samples.iter();
     Answer::new(&(), bytes.flat_map(|x| x.to_le_bytes()).collect())
 }
 
-impl Open {
-    fn planned(&self, loaded: &LoadedScene) -> Result<Plan, Refusal> {
+impl OpenScene {
+    fn planned(&self, loaded: &Scene) -> Result<Plan, Refusal> {
         Ok(plan(loaded, &self.able, &Costs::embedded())?)
     }
 
     /// Makes a renderer that plays the scene at its own motion.
-    fn renderer(&self, loaded: &LoadedScene) -> Result<(Renderer, Plan), Refusal> {
-        if loaded.scene.motion == Motion::Live {
+    fn renderer(&self, loaded: &Scene) -> Result<(Renderer, Plan), Refusal> {
+        if loaded.file.motion == file::Motion::Live {
             let sentence = "the motion of the scene is live; give it to renderPath";
             return Err(Refusal::argument(sentence));
         }
@@ -304,14 +298,17 @@ impl Open {
     }
 
     /// Loads the scene for a motion that is set while it plays.
-    fn live(&self) -> Result<LoadedScene, Refusal> {
-        let around =
-            Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
+    fn live(&self) -> Result<Scene, Refusal> {
+        let around = Surroundings {
+            models: &self.models,
+            embedded: self.embedded,
+            devices: Some(&self.devices),
+        };
         let device = DeviceOverride { live: true, ..self.device.clone() };
         // Loaded again, because some settings of devices have another default for a live motion.
-        let mut loaded = LoadedScene::from_files(&self.bytes, &self.files, &around, &device)?;
-        loaded.scene.motion = Motion::Live;
-        loaded.scene.duration_s = None;
+        let mut loaded = Scene::from_files(&self.bytes, &self.files, &around, &device)?;
+        loaded.file.motion = file::Motion::Live;
+        loaded.file.duration_s = None;
         loaded.trace = None;
         Ok(loaded)
     }
@@ -328,18 +325,12 @@ impl Refusal {
     }
 }
 
-impl From<LoadError> for Refusal {
-    fn from(error: LoadError) -> Self {
-        Self::scene(error)
-    }
-}
-
 impl From<SceneError> for Refusal {
     fn from(error: SceneError) -> Self {
-        match error {
-            SceneError::Motion { .. } => Self::motion(error),
-            SceneError::Surface { .. } => Self::model(error),
-            SceneError::NoModel { .. } => Self::new(HTEX_STATUS_NO_MODEL, "no-model", error),
+        match error.kind() {
+            SceneErrorKind::Motion => Self::motion(error),
+            SceneErrorKind::Model => Self::model(error),
+            SceneErrorKind::NoModel => Self::new(HTEX_STATUS_NO_MODEL, "no-model", error),
             _ => Self::scene(error),
         }
     }

@@ -55,7 +55,7 @@ fn opened(recording: Recording, models: usize) -> f64 {
         println!("skipped {:?}", fitted.skipped);
         return f64::NAN;
     }
-    let asset = htex::Asset::from_bytes(&bytes).unwrap();
+    let asset = htex::Texture::from_bytes(&bytes).unwrap();
     let peaks = back.manifest.representations.iter().map(|r| {
         let level = r.at[0].level_rms;
         played(&asset, &r.model) / if level > 1e-30 { level } else { 1e-30 }
@@ -64,10 +64,12 @@ fn opened(recording: Recording, models: usize) -> f64 {
 }
 
 /// The largest sample of a voice.
-fn played(asset: &htex::Asset, model: &str) -> f64 {
-    let options = htex::VoiceOptions::default().with_model(model);
+fn played(asset: &htex::Texture, model: &str) -> f64 {
     let mut out = vec![0.0f32; 4_000];
-    let rendered = asset.voice(&options).and_then(|mut voice| voice.render(&mut out));
+    let rendered = asset
+        .representation(model)
+        .and_then(|representation| representation.voice(&htex::VoiceOptions::default()))
+        .and_then(|mut voice| voice.render(&mut out));
     match rendered {
         Ok(()) => out.iter().fold(0.0, |peak, x| worse(peak, f64::from(x.abs()))),
         Err(error) => {

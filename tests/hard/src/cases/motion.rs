@@ -1,10 +1,11 @@
 //! Motions that no finger makes, on assets and in scenes.
 
-use htex::{Asset, Effects, VoiceOptions};
+use htex::play::Effects;
+use htex::{Texture, VoiceOptions};
 use htex_author::recording::Recording;
 use htex_device::{Capabilities, Quantity, Rates, Settings};
-use htex_scene::file::{self, Budget, Constant, DeviceChoice, Effect, Motion, Scene, Switch};
-use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
+use htex_scene::file::{self, Budget, Constant, DeviceChoice, Effect, Motion, SceneFile, Switch};
+use htex_scene::{Costs, Renderer, Scene, plan};
 
 use super::files::fitted;
 use crate::signals::{RATE_HZ, friction, noise, scaled};
@@ -20,11 +21,11 @@ pub(crate) const SECTION: Section = Section {
 const LIMIT_V: f64 = 150.0;
 
 /// An asset with one or two conditions and all models.
-fn asset(conditions: usize) -> Asset {
+fn asset(conditions: usize) -> Texture {
     let recording = |x| Recording::new("hard", RATE_HZ, vec![x]).unwrap();
     let takes = vec![(recording(friction()), 60.0), (recording(scaled(&noise(), 0.1)), 120.0)];
     let fitted = fitted(takes.into_iter().take(conditions).collect()).unwrap();
-    Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+    Texture::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
 }
 
 fn models() -> Vec<String> {
@@ -38,8 +39,8 @@ fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
     let asset = asset(2);
     let mut peak = 0.0;
     for model in models() {
-        let options = VoiceOptions::default().with_model(&model).with_effects(effects);
-        let mut voice = asset.voice(&options).unwrap();
+        let options = VoiceOptions::default().with_effects(effects);
+        let mut voice = asset.representation(&model[..]).unwrap().voice(&options).unwrap();
         let mut block = [0.0f32; 64];
         for i in 0..200 {
             let (speed_mm_s, force_n) = motions[i % motions.len()];
@@ -59,8 +60,8 @@ fn motion_refused(speed_mm_s: f64, force_n: f64) -> String {
     let asset = asset(2);
     let mut said = String::new();
     for model in models() {
-        let options = VoiceOptions::default().with_model(&model);
-        let mut voice = asset.voice(&options).unwrap();
+        let representation = asset.representation(&model[..]).unwrap();
+        let mut voice = representation.voice(&VoiceOptions::default()).unwrap();
         match voice.set_motion(htex::Motion::new(speed_mm_s, force_n)) {
             Ok(()) => return "it was done".to_owned(),
             Err(error) => said = error.to_string(),
@@ -90,9 +91,9 @@ fn device(quantity: Quantity, rate_hz: f64, carrier_hz: Option<f64>) -> Capabili
 
 /// A live scene with one surface that covers everything, and with every stage that can be forced
 /// on.
-fn scene(conditions: usize) -> LoadedScene {
-    LoadedScene {
-        scene: Scene {
+fn scene(conditions: usize) -> Scene {
+    Scene {
+        file: SceneFile {
             htex_scene: "1.0".to_owned(),
             surfaces: vec![file::Surface {
                 representation: "sslope".to_owned(),
@@ -114,10 +115,6 @@ fn scene(conditions: usize) -> LoadedScene {
     }
 }
 
-fn finger(speed_mm_s: f64, force_n: f64) -> Finger {
-    Finger { speed_mm_s, force_n, at_mm: None }
-}
-
 /// The largest sample of a scene while the finger makes these motions in turn, and after it moves
 /// sanely again. NaN if that is silent, or if the limiter had to handle NaN.
 fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
@@ -133,8 +130,8 @@ fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
             400.. => (60.0, 0.4),
             _ => motions[i / 10 % motions.len()],
         };
-        renderer.set_motion(finger(speed_mm_s, force_n)).unwrap();
-        renderer.render(&mut block);
+        renderer.set_motion(htex::Motion::new(speed_mm_s, force_n)).unwrap();
+        renderer.render(&mut block).unwrap();
         let sizes = block.iter().map(|x| f64::from(x.abs()));
         at_limit += sizes.clone().filter(|x| Some(*x) == drive_v).count() as u64;
         peak = sizes.fold(peak, worse);
@@ -146,15 +143,15 @@ fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
 /// The largest sample of a constant scene with a finger that almost lifts off.
 fn all_but_lifted(force_n: f64) -> f64 {
     let mut scene = scene(1);
-    scene.scene.effects.clear();
-    scene.scene.duration_s = Some(0.1);
-    scene.scene.motion =
+    scene.file.effects.clear();
+    scene.file.duration_s = Some(0.1);
+    scene.file.motion =
         Motion::Constant(Constant { speed_mm_s: 80.0, force_n, from_mm: None, direction_deg: 0.0 });
     let device = device(Quantity::Sound, 20_000.0, None);
     let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
     let mut renderer = Renderer::new(&scene, &plan).unwrap();
     let mut block = [f32::NAN; 2_000];
-    renderer.render(&mut block);
+    renderer.render(&mut block).unwrap();
     let samples = block.iter().map(|x| f64::from(x.abs()));
     samples.fold(0.0, worse)
 }
@@ -164,7 +161,7 @@ fn scene_refused(speed_mm_s: f64, force_n: f64) -> String {
     let device = device(Quantity::LateralForce, 20_000.0, None);
     let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
     let mut renderer = Renderer::new(&scene, &plan).unwrap();
-    let moved = renderer.set_motion(finger(speed_mm_s, force_n));
+    let moved = renderer.set_motion(htex::Motion::new(speed_mm_s, force_n));
     moved.map_or_else(|error| error.to_string(), |()| "it was done".to_owned())
 }
 

@@ -131,6 +131,10 @@ impl Curve for Shape {
         Ok(shape)
     }
 
+    fn band(&self) -> Band {
+        self.band
+    }
+
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.centre_hz = parameters.scalar(CENTRE);
         self.bandwidth_hz = parameters.scalar(BANDWIDTH);

@@ -6,24 +6,25 @@ use std::sync::OnceLock;
 
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
-use htex_play::{Asset, AssetData, Registry};
+use htex_format::Asset;
+use htex_play::{Registry, Texture};
 
 /// An asset with every built-in model, recorded at two speeds and two forces.
-pub fn asset() -> Asset {
-    Asset::new(data())
+pub fn asset() -> Texture {
+    Texture::new(data())
 }
 
-pub fn data() -> AssetData {
-    static DATA: OnceLock<AssetData> = OnceLock::new();
+pub fn data() -> Asset {
+    static DATA: OnceLock<Asset> = OnceLock::new();
     DATA.get_or_init(|| data_of(Surface::CoarseFabric)).clone()
 }
 
 /// An asset of a surface with every built-in model, recorded at two speeds and two forces.
-pub fn asset_of(surface: Surface) -> Asset {
-    Asset::new(data_of(surface))
+pub fn asset_of(surface: Surface) -> Texture {
+    Texture::new(data_of(surface))
 }
 
-fn data_of(surface: Surface) -> AssetData {
+fn data_of(surface: Surface) -> Asset {
     let motions = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)];
     let takes = motions.map(|motion| take(surface, motion));
     let models = Registry::builtin();

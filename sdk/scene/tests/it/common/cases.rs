@@ -23,7 +23,7 @@ impl Case {
     pub(crate) fn golden(&self, folder: &Path) -> String {
         let devices = Devices::new(vec![Arc::new(htex_device_builtin::file::FileAdapter)]);
         let around =
-            Surroundings { models: &Registry::builtin(), embedded: true, devices: &devices };
+            Surroundings { models: &Registry::builtin(), embedded: true, devices: Some(&devices) };
         let file = format!("{}.scene.json", self.name);
         let report = validate(&folder.join(&file), &around).unwrap();
         let golden = json!({ "file": file, "valid": report.valid, "findings": report.findings });

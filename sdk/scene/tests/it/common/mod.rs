@@ -9,26 +9,26 @@ use htex_author::recording::TraceColumns;
 use htex_author::simulate::{SimulationOptions, Surface as Simulated, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
-use htex_play::{Asset, Registry};
-use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, Scene, Surface};
-use htex_scene::{Costs, LoadedScene, Plan, Renderer, Trace, plan};
+use htex_play::{Registry, Texture};
+use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, SceneFile, Surface};
+use htex_scene::{Costs, Plan, Renderer, Scene, Trace, plan};
 
 /// An asset with one condition, 80 mm/s and 0.4 N.
-pub(crate) fn single() -> &'static Asset {
-    static ASSET: OnceLock<Asset> = OnceLock::new();
+pub(crate) fn single() -> &'static Texture {
+    static ASSET: OnceLock<Texture> = OnceLock::new();
     ASSET.get_or_init(|| asset(Simulated::Sandpaper, &[(80.0, 0.4)]))
 }
 
 /// An asset with four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
-pub(crate) fn grid() -> &'static Asset {
-    static ASSET: OnceLock<Asset> = OnceLock::new();
+pub(crate) fn grid() -> &'static Texture {
+    static ASSET: OnceLock<Texture> = OnceLock::new();
     let known = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)];
     ASSET.get_or_init(|| asset(Simulated::CoarseFabric, &known))
 }
 
 /// An asset with nine conditions, 60, 90 and 120 mm/s by 0.3, 0.45 and 0.6 N.
-pub(crate) fn nine() -> &'static Asset {
-    static ASSET: OnceLock<Asset> = OnceLock::new();
+pub(crate) fn nine() -> &'static Texture {
+    static ASSET: OnceLock<Texture> = OnceLock::new();
     let known = |i: usize| {
         let (speed, force) = ((i % 3) as f64, (i / 3) as f64);
         (60.0 + 30.0 * speed, 0.3 + 0.15 * force)
@@ -37,13 +37,13 @@ pub(crate) fn nine() -> &'static Asset {
 }
 
 /// An asset with three speeds and computed conditions between them.
-pub(crate) fn three_speeds() -> &'static Asset {
-    static ASSET: OnceLock<Asset> = OnceLock::new();
+pub(crate) fn three_speeds() -> &'static Texture {
+    static ASSET: OnceLock<Texture> = OnceLock::new();
     let known = [(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)];
     ASSET.get_or_init(|| asset(Simulated::Sandpaper, &known))
 }
 
-fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
+fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Texture {
     let take = |&(speed_mm_s, force_n): &(f64, f64)| {
         let options = SimulationOptions::new(surface)
             .with_speed_mm_s(speed_mm_s)
@@ -58,13 +58,13 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
         .with_models(Registry::builtin().models().iter().map(ModelRequest::new));
     let takes: Vec<Take> = conditions.iter().map(take).collect();
     let fitted = fit_asset(&takes, &request).unwrap();
-    Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+    Texture::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
 }
 
 /// A scene with one surface without a region.
-pub(crate) fn scene(asset: &Asset, motion: Motion, duration_s: f64) -> LoadedScene {
-    LoadedScene {
-        scene: Scene {
+pub(crate) fn scene(asset: &Texture, motion: Motion, duration_s: f64) -> Scene {
+    Scene {
+        file: SceneFile {
             htex_scene: "1.0".to_owned(),
             surfaces: vec![surface()],
             motion,
@@ -116,11 +116,8 @@ pub(crate) fn trace(
 }
 
 /// A scene with a trace as its motion.
-pub(crate) fn traced(asset: &Asset, trace: Trace, duration_s: f64) -> LoadedScene {
-    LoadedScene {
-        trace: Some(trace),
-        ..scene(asset, Motion::Trace("trace.csv".into()), duration_s)
-    }
+pub(crate) fn traced(asset: &Texture, trace: Trace, duration_s: f64) -> Scene {
+    Scene { trace: Some(trace), ..scene(asset, Motion::Trace("trace.csv".into()), duration_s) }
 }
 
 /// A file of 32-bit floats, newtons.
@@ -164,7 +161,7 @@ pub(crate) fn loudspeaker() -> Capabilities {
     }
 }
 
-pub(crate) fn planned(scene: &LoadedScene, device: &Capabilities) -> Plan {
+pub(crate) fn planned(scene: &Scene, device: &Capabilities) -> Plan {
     plan(scene, device, &Costs::embedded()).unwrap()
 }
 
@@ -173,7 +170,7 @@ pub(crate) fn rendered(renderer: &mut Renderer) -> Vec<f32> {
     let mut all = Vec::new();
     let mut block = [0.0f32; 64];
     loop {
-        let frames = renderer.render(&mut block);
+        let frames = renderer.render(&mut block).unwrap();
         all.extend_from_slice(&block[..frames]);
         if frames < block.len() {
             return all;

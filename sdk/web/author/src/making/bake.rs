@@ -1,10 +1,9 @@
 //! Blocks for players on microcontrollers.
 
-use htex::{Asset, AssetData};
+use htex::Texture;
+use htex::format::Asset;
 use htex_format::Quantity;
-use htex_play::bake::{
-    BakeError, Baked, Grid, bake as baked, c_header, c_name, rust_name, rust_source,
-};
+use htex_play::bake::{BakeResult, Grid, bake as baked, c_header, c_name, rust_name, rust_source};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -47,14 +46,14 @@ pub(crate) fn bake(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let [bytes] = files else {
         return Err(Refusal::argument("give one texture"));
     };
-    let asset = Asset::new(AssetData::from_bytes(bytes)?);
-    let grid =
-        given(grid)?.map_or_else(|| Grid::of_default_condition(&asset, model.as_deref()), Ok)?;
-    let baked = baked(&asset, model.as_deref(), &grid, rate_hz, within_db)?;
+    let asset = Texture::new(Asset::from_bytes(bytes)?);
+    let representation = asset.representation(model.as_deref())?;
+    let grid = given(grid)?.map_or_else(|| Grid::for_default_condition(representation), Ok)?;
+    let baked = baked(representation, &grid, rate_hz, within_db)?;
     Answer::new(&block(&baked, &name, rate_hz), baked.bytes.clone())
 }
 
-fn block<'a>(baked: &'a Baked, name: &str, rate_hz: f64) -> Block<'a> {
+fn block<'a>(baked: &'a BakeResult, name: &str, rate_hz: f64) -> Block<'a> {
     Block {
         model: &baked.model,
         quantity: baked.quantity,
@@ -86,10 +85,10 @@ fn numbers(all: &[Value]) -> Result<Vec<f64>, Refusal> {
     numbers.ok_or_else(|| Refusal::argument("speeds and forces of a grid are numbers"))
 }
 
-impl From<BakeError> for Refusal {
-    fn from(error: BakeError) -> Self {
+impl From<htex::Error> for Refusal {
+    fn from(error: htex::Error) -> Self {
         match error {
-            BakeError::Asset(htex::Error::Model(error)) | BakeError::Model(error) => error.into(),
+            htex::Error::Model(error) => error.into(),
             other => Self::argument(other),
         }
     }

@@ -51,13 +51,13 @@ pub(crate) struct DescribedNotice<'a> {
 }
 
 impl<'a> DescribedNotice<'a> {
-    fn of(notice: &'a Notice) -> Self {
+    fn new(notice: &'a Notice) -> Self {
         Self { text: &notice.text, settings: settings(notice.hint) }
     }
 }
 
 pub(crate) fn notices(all: &[Notice]) -> Vec<DescribedNotice<'_>> {
-    all.iter().map(DescribedNotice::of).collect()
+    all.iter().map(DescribedNotice::new).collect()
 }
 
 #[derive(Serialize)]

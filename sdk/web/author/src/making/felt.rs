@@ -1,6 +1,7 @@
 //! What a fingertip feels: the difference between two textures, and the detection threshold.
 
-use htex::{Asset, AssetData};
+use htex::Texture;
+use htex::format::Asset;
 use htex_author::by_hand::ByHandError;
 use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
 use htex_dsp::vibrotactile::Listener;
@@ -13,7 +14,7 @@ use crate::refusal::Refusal;
 
 /// How much of a difference is felt: per third-octave band, and in a few numbers.
 #[derive(Serialize)]
-struct Told {
+struct FeltSummary {
     centre_hz: Vec<f64>,
     reference_db: Vec<f64>,
     level_db: Vec<f64>,
@@ -47,8 +48,8 @@ pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     Answer::new(&told, Vec::new())
 }
 
-fn told(felt: Felt, if_sensitive: &Felt) -> Told {
-    Told {
+fn told(felt: Felt, if_sensitive: &Felt) -> FeltSummary {
+    FeltSummary {
         below_difference_threshold: felt.is_below_difference_threshold(),
         below_if_sensitive: if_sensitive.is_below_difference_threshold(),
         centre_hz: felt.centre_hz,
@@ -62,22 +63,21 @@ fn told(felt: Felt, if_sensitive: &Felt) -> Told {
 }
 
 /// Returns a texture, and its magnitudes at a motion according to a model.
-fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refusal> {
+fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Texture, Vec<f64>), Refusal> {
     let model = side.text("model")?;
     let mut at = side.object("at")?;
     let (speed, force) = (at.number("speed")?, at.number("force")?);
     at.finish()?;
     side.finish()?;
-    let asset = Asset::new(AssetData::from_bytes(bytes)?);
+    let asset = Texture::new(Asset::from_bytes(bytes)?);
     let grid = asset.band().grid_hz();
-    let model = model.as_deref();
-    let magnitude = match (speed, force) {
-        (None, None) => asset.magnitude(model, None, &grid),
-        (speed, force) => asset
-            .motion(model, speed, force)
-            .and_then(|motion| asset.magnitude(model, Some(motion), &grid)),
+    let representation = asset.representation(model.as_deref()).map_err(ByHandError::from)?;
+    let motion = match (speed, force) {
+        (None, None) => None,
+        (speed, force) => Some(representation.motion(speed, force)),
     };
-    Ok((asset, magnitude.map_err(ByHandError::from)?))
+    let magnitude = representation.magnitude(motion, &grid).map_err(ByHandError::from)?;
+    Ok((asset, magnitude))
 }
 
 /// Returns the magnitudes at which sinusoids of given frequencies reach the detection threshold.

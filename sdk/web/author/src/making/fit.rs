@@ -1,6 +1,6 @@
 //! Fits models to recordings to make a texture.
 
-use htex::host::Registry;
+use htex::model::Registry;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_author::{AssetRequest, FittedAsset, GridReport, fit_asset_watched};
 use htex_format::Condition;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::TOOL;
 use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
 use super::progress;
-use super::recordings::{Given, Reading, given};
+use super::recordings::{GivenCondition, Reading, given};
 use super::represented::{Model, ranked, represented};
 use crate::answer::{Answer, Files};
 use crate::document::Document;
@@ -18,8 +18,11 @@ use crate::refusal::Refusal;
 /// Fits models to recordings. The bytes are the asset.
 pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
-    let conditions =
-        call.list("conditions")?.into_iter().map(given).collect::<Result<Vec<Given>, _>>()?;
+    let conditions = call
+        .list("conditions")?
+        .into_iter()
+        .map(given)
+        .collect::<Result<Vec<GivenCondition>, _>>()?;
     let mut settings = call.object("settings")?;
     call.finish()?;
     let reading = Reading::new(names, &mut settings, files)?;
@@ -37,7 +40,7 @@ pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     progress::end();
     let mut fitted = fitted?;
     metadata.apply(&mut fitted.asset.manifest);
-    Answer::new(&Report::of(&fitted), fitted.asset.to_bytes()?)
+    Answer::new(&Report::new(&fitted), fitted.asset.to_bytes()?)
 }
 
 fn request(
@@ -59,7 +62,7 @@ fn request(
 
 fn fitted(
     reading: &Reading<'_>,
-    conditions: &[Given],
+    conditions: &[GivenCondition],
     request: &AssetRequest,
 ) -> Result<FittedAsset, Refusal> {
     let takes = reading.takes(conditions)?;
@@ -74,7 +77,7 @@ fn fitted(
 struct Report<'a> {
     models: Vec<Model<'a>>,
     ranked: Vec<&'a str>,
-    skipped: Vec<Skipped<'a>>,
+    skipped: Vec<SkippedModel<'a>>,
     conditions: &'a [Condition],
     spectra: Vec<DescribedSpectrum<'a>>,
     findings: Vec<Found<'a>>,
@@ -84,7 +87,7 @@ struct Report<'a> {
 }
 
 #[derive(Serialize)]
-struct Skipped<'a> {
+struct SkippedModel<'a> {
     model: &'a str,
     reason: &'a str,
 }
@@ -96,7 +99,7 @@ struct Found<'a> {
 }
 
 impl<'a> Report<'a> {
-    fn of(fitted: &'a FittedAsset) -> Self {
+    fn new(fitted: &'a FittedAsset) -> Self {
         let manifest = &fitted.asset.manifest;
         let skipped = fitted.skipped.iter();
         let findings = fitted.findings.iter();
@@ -107,7 +110,7 @@ impl<'a> Report<'a> {
         Self {
             ranked: ranked(&models),
             models,
-            skipped: skipped.map(|(model, reason)| Skipped { model, reason }).collect(),
+            skipped: skipped.map(|(model, reason)| SkippedModel { model, reason }).collect(),
             conditions: &manifest.conditions,
             spectra: fitted.spectra.iter().map(describe::spectrum).collect(),
             findings: findings

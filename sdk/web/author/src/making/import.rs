@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex::host::Registry;
+use htex::model::Registry;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_exchange::{
     ExchangeError, FORMATS, Format, Import, ImportError, Imported, MOST_BYTES, Missing, PROFILES,
@@ -38,20 +38,20 @@ fn named(setting: &str) -> &str {
 
 #[derive(Serialize)]
 struct Formats<'a> {
-    formats: Vec<Described<'a>>,
+    formats: Vec<FormatSummary<'a>>,
     profiles: Vec<Range<'a>>,
 }
 
 /// A format that can be imported.
 #[derive(Serialize)]
-struct Described<'a> {
+struct FormatSummary<'a> {
     name: &'a str,
     title: &'a str,
     extensions: &'a [&'a str],
     /// Whether models are fitted to its files.
     fitted: bool,
     settings: Vec<&'a str>,
-    asks: Vec<Asked>,
+    asks: Vec<MissingSetting>,
     /// The profile used if none is given.
     profile: Option<&'a str>,
     keeps: &'a str,
@@ -61,7 +61,7 @@ struct Described<'a> {
 }
 
 #[derive(Serialize)]
-struct Asked {
+struct MissingSetting {
     setting: &'static str,
     words: &'static str,
 }
@@ -91,14 +91,14 @@ pub(crate) fn formats(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     Answer::new(&told, Vec::new())
 }
 
-fn described(format: &'static Format) -> Option<Described<'static>> {
+fn described(format: &'static Format) -> Option<FormatSummary<'static>> {
     let reads = format.reads.as_ref()?;
     let (fitted, profile) = match reads {
         Reads::Positions { profile, .. } => (true, Some(*profile)),
         Reads::Signal(_) => (true, None),
         Reads::Asset(_) | Reads::Map => (false, None),
     };
-    Some(Described {
+    Some(FormatSummary {
         name: format.name,
         title: format.title,
         extensions: format.extensions,
@@ -112,8 +112,9 @@ fn described(format: &'static Format) -> Option<Described<'static>> {
     })
 }
 
-fn asked(missing: Vec<Missing>) -> Vec<Asked> {
-    let one = |missing: Missing| Asked { setting: named(missing.setting), words: missing.words };
+fn asked(missing: Vec<Missing>) -> Vec<MissingSetting> {
+    let one =
+        |missing: Missing| MissingSetting { setting: named(missing.setting), words: missing.words };
     missing.into_iter().map(one).collect()
 }
 
@@ -142,7 +143,7 @@ pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Ref
     // Before an error returns, because the next call must not report the steps of this one.
     progress::end();
     let imported = imported?;
-    Answer::new(&Report::of(format, &imported), imported.to_bytes()?)
+    Answer::new(&Report::new(format, &imported), imported.to_bytes()?)
 }
 
 fn how<'a>(name: &'a str, settings: &mut Document) -> Result<Import<'a>, Refusal> {
@@ -194,7 +195,7 @@ struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    fn of(format: &'a Format, imported: &'a Imported) -> Self {
+    fn new(format: &'a Format, imported: &'a Imported) -> Self {
         let models = represented(&imported.asset, &imported.felt);
         Self {
             format: format.name,

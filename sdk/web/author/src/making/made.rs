@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use htex::host::Registry;
-use htex::{Band, Quantity};
+use htex::format::Quantity;
+use htex::model::Band;
+use htex::model::Registry;
 use htex_author::by_hand::{self, ByHandAt, ByHandModel, ByHandModels, MixedAsset};
 use htex_author::settings::Metadata;
 use htex_format::{Asset, Condition};
@@ -77,7 +78,7 @@ fn band(edges: &[Value]) -> Result<Band, Refusal> {
 
 /// Reads a model with its parameters at its conditions.
 fn model(value: Value, registry: &Registry) -> Result<ByHandModel, Refusal> {
-    let mut given = Document::of(value)?;
+    let mut given = Document::from_value(value)?;
     let name = given.text("model")?.unwrap_or_default();
     let at = given.list("conditions")?.into_iter().map(at).collect::<Result<_, _>>()?;
     given.finish()?;
@@ -85,7 +86,7 @@ fn model(value: Value, registry: &Registry) -> Result<ByHandModel, Refusal> {
 }
 
 fn at(value: Value) -> Result<ByHandAt, Refusal> {
-    let mut given = Document::of(value)?;
+    let mut given = Document::from_value(value)?;
     let condition = Condition {
         speed_mm_s: given.number("speed")?,
         force_n: given.number("force")?,
@@ -134,8 +135,8 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
 }
 
 /// Opens a texture and computes its hash.
-fn opened(bytes: &[u8]) -> Result<(htex::Asset, String), Refusal> {
-    let asset = htex::Asset::new(htex::AssetData::from_bytes(bytes)?);
+fn opened(bytes: &[u8]) -> Result<(htex::Texture, String), Refusal> {
+    let asset = htex::Texture::new(htex::format::Asset::from_bytes(bytes)?);
     Ok((asset, blake3::hash(bytes).to_hex().to_string()))
 }
 

@@ -1,6 +1,6 @@
 //! The descriptors of the built-in models, with the usual ranges of their parameters.
 
-use htex::host::{Descriptor, Field, FitOption, Kind, LoadedModel, Registry, Usual};
+use htex::model::{Descriptor, Field, FitOption, Kind, LoadedModel, Registry, Usual};
 use serde::Serialize;
 
 use crate::answer::{Answer, Files};
@@ -10,7 +10,7 @@ use crate::refusal::Refusal;
 pub(crate) fn models(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     call.finish()?;
     let registry = Registry::builtin();
-    let all: Vec<Model<'_>> = registry.models().iter().map(Model::of).collect();
+    let all: Vec<Model<'_>> = registry.models().iter().map(Model::new).collect();
     Answer::new(&all, Vec::new())
 }
 
@@ -45,7 +45,7 @@ struct Range {
 }
 
 impl<'a> Model<'a> {
-    fn of(model: &'a LoadedModel) -> Self {
+    fn new(model: &'a LoadedModel) -> Self {
         let Descriptor { id, name, version, summary, fields, options, keeps_level } =
             model.descriptor();
         let usual = model.usual();

@@ -27,7 +27,7 @@ pub(crate) fn columns(call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let reading = reading(call, files)?;
     let (name, bytes, options) = reading.only()?;
     let preview = preview(name, bytes, options)?;
-    Answer::new(&Columns::of(&preview), Vec::new())
+    Answer::new(&Columns::new(&preview), Vec::new())
 }
 
 #[derive(Serialize)]
@@ -48,7 +48,7 @@ struct Column<'a> {
 }
 
 impl<'a> Columns<'a> {
-    fn of(preview: &'a Preview) -> Self {
+    fn new(preview: &'a Preview) -> Self {
         let columns = preview.columns.iter().map(|column| Column {
             name: &column.name,
             role: column.role.map(|role| role.name()),
@@ -74,17 +74,17 @@ pub(crate) fn process(call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let read = read_take(&take, &reading.spectrum, reading.strict)?;
     let parts = std::slice::from_ref(&read.part);
     let spectrum = TextureSpectrum::average(parts, reading.spectrum.averaging)?;
-    let (picture, numbers) = Picture::of(&take.recording);
-    let processed = Processed {
-        columns: Columns::of(&preview),
+    let (picture, numbers) = Picture::new(&take.recording);
+    let processed = ProcessAnswer {
+        columns: Columns::new(&preview),
         picture,
-        ..Processed::of(&take.recording, &read, &spectrum)
+        ..ProcessAnswer::new(&take.recording, &read, &spectrum)
     };
     Answer::new(&processed, numbers)
 }
 
 #[derive(Serialize)]
-struct Processed<'a> {
+struct ProcessAnswer<'a> {
     columns: Columns<'a>,
     rate_hz: f64,
     duration_s: f64,
@@ -108,8 +108,8 @@ struct Condition {
     force: Option<f64>,
 }
 
-impl<'a> Processed<'a> {
-    fn of(recording: &Recording, read: &'a Read, spectrum: &'a TextureSpectrum) -> Self {
+impl<'a> ProcessAnswer<'a> {
+    fn new(recording: &Recording, read: &'a Read, spectrum: &'a TextureSpectrum) -> Self {
         let stretches = read.part.segments.stretches().into_iter();
         let second = |part: std::ops::Range<usize>| {
             [recording.second(part.start), recording.second(part.end)]
@@ -149,7 +149,7 @@ struct Picture {
 
 impl Picture {
     /// Returns the picture, and its numbers as bytes.
-    fn of(recording: &Recording) -> (Self, Vec<u8>) {
+    fn new(recording: &Recording) -> (Self, Vec<u8>) {
         let samples = recording.samples();
         // `chunks` panics at 0.
         let per_step = samples.div_ceil(STEPS).max(1);

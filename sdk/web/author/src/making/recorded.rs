@@ -4,7 +4,7 @@ use htex_author::RecordedLoop;
 use htex_format::Quantity;
 use serde::Serialize;
 
-use super::recordings::{Given, Reading, given};
+use super::recordings::{GivenCondition, Reading, given};
 use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
@@ -32,8 +32,11 @@ struct Condition {
 /// after the other.
 pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
-    let conditions =
-        call.list("conditions")?.into_iter().map(given).collect::<Result<Vec<Given>, _>>()?;
+    let conditions = call
+        .list("conditions")?
+        .into_iter()
+        .map(given)
+        .collect::<Result<Vec<GivenCondition>, _>>()?;
     let rate_hz = call
         .number("rate")?
         .ok_or_else(|| Refusal::argument("give the rate of the samples, Hz"))?;

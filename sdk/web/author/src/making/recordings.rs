@@ -14,14 +14,15 @@ use crate::refusal::Refusal;
 
 /// A speed in mm/s and a force in N.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Given {
+pub(crate) struct GivenCondition {
     pub(crate) speed: Option<f64>,
     pub(crate) force: Option<f64>,
 }
 
-pub(crate) fn given(condition: Value) -> Result<Given, Refusal> {
-    let mut condition = Document::of(condition)?;
-    let given = Given { speed: condition.number("speed")?, force: condition.number("force")? };
+pub(crate) fn given(condition: Value) -> Result<GivenCondition, Refusal> {
+    let mut condition = Document::from_value(condition)?;
+    let given =
+        GivenCondition { speed: condition.number("speed")?, force: condition.number("force")? };
     condition.finish()?;
     Ok(given)
 }
@@ -33,7 +34,7 @@ pub(crate) struct Reading<'a> {
     pub(crate) strict: bool,
     /// Name of the setup's response, for the provenance.
     pub(crate) response: Option<String>,
-    given: Given,
+    given: GivenCondition,
     recordings: Vec<(String, &'a [u8])>,
     options: Vec<ReadOptions>,
 }
@@ -47,8 +48,10 @@ impl<'a> Reading<'a> {
         files: Files<'a>,
     ) -> Result<Self, Refusal> {
         // These three are no settings of the table that follows.
-        let given =
-            Given { speed: settings.number("speed_mm_s")?, force: settings.number("force_n")? };
+        let given = GivenCondition {
+            speed: settings.number("speed_mm_s")?,
+            force: settings.number("force_n")?,
+        };
         let strict = settings.flag("strict")?;
         let settings: ReadingSettings = settings.table(ReadingSettings::NAMES)?;
         if settings.response.is_some() || settings.tracker.is_some() {
@@ -99,7 +102,7 @@ impl<'a> Reading<'a> {
     }
 
     /// Reads the recordings. `conditions` has one entry for each of them, one for all, or none.
-    pub(crate) fn takes(&self, conditions: &[Given]) -> Result<Vec<Take>, Refusal> {
+    pub(crate) fn takes(&self, conditions: &[GivenCondition]) -> Result<Vec<Take>, Refusal> {
         let (given, wanted) = (conditions.len(), self.recordings.len());
         if given > 1 && given != wanted {
             return Err(Refusal::argument(format!(

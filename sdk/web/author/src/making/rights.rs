@@ -1,6 +1,6 @@
 //! Licence and author of textures, for other files made from them.
 
-use htex::AssetData;
+use htex::format::Asset;
 use htex_format::Rights;
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::document::Document;
 use crate::refusal::Refusal;
 
 #[derive(Serialize)]
-struct Stated<'a> {
+struct RightsSummary<'a> {
     license: Option<&'a str>,
     author: Option<&'a str>,
     /// Both as SPDX lines.
@@ -22,8 +22,8 @@ pub(crate) fn rights(call: Document, files: Files<'_>) -> Result<Answer, Refusal
     let [bytes] = files else {
         return Err(Refusal::argument("give one texture"));
     };
-    let rights = Rights::of(&AssetData::from_bytes(bytes)?.manifest);
-    let stated = Stated {
+    let rights = Rights::of(&Asset::from_bytes(bytes)?.manifest);
+    let stated = RightsSummary {
         license: rights.license.as_deref(),
         author: rights.author.as_deref(),
         text: rights.to_text(),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex::host::Registry;
+use htex::model::Registry;
 use htex_author::recording::{ReadOptions, rules};
 use htex_author::{Exploration, SpectrumOptions, validate_recording_bytes};
 use htex_base::finding::{FINDINGS_TRUNCATED, Report, Rule, Severity};
@@ -16,7 +16,7 @@ use crate::document::Document;
 use crate::refusal::Refusal;
 
 #[derive(Serialize)]
-struct Validated<'a> {
+struct ValidationAnswer<'a> {
     kind: &'static str,
     valid: bool,
     findings: Vec<DescribedFinding<'a>>,
@@ -40,15 +40,18 @@ pub(crate) fn validate(mut call: Document, files: Files<'_>) -> Result<Answer, R
     } else {
         ("recording", of_recording(path, bytes)?)
     };
-    let validated =
-        Validated { kind, valid: report.valid, findings: describe::findings(&report.findings) };
+    let validated = ValidationAnswer {
+        kind,
+        valid: report.valid,
+        findings: describe::findings(&report.findings),
+    };
     Answer::new(&validated, Vec::new())
 }
 
 fn of_texture(bytes: &[u8]) -> Report {
     let models = Registry::builtin();
     let known = |r: &Representation| {
-        let model = htex::model_of(&models, r).ok()?;
+        let model = htex::play::model_of(&models, r).ok()?;
         Some(model.descriptor())
     };
     validate_with(bytes, &Limits::default(), &known)
@@ -61,7 +64,7 @@ fn of_recording(path: &Path, bytes: &[u8]) -> Result<Report, Refusal> {
 }
 
 #[derive(Serialize)]
-struct Explained {
+struct RuleExplanation {
     code: &'static str,
     severity: Severity,
     summary: &'static str,
@@ -78,7 +81,7 @@ pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusa
         .into_iter()
         .flatten()
         .chain([FINDINGS_TRUNCATED]);
-    let explained = all.find(|rule| rule.code == code).map(|rule: &Rule| Explained {
+    let explained = all.find(|rule| rule.code == code).map(|rule: &Rule| RuleExplanation {
         code: rule.code,
         severity: rule.severity,
         summary: rule.summary,

@@ -3,7 +3,7 @@
 
 mod parameters;
 
-use htex::Asset;
+use htex::Texture;
 use htex_author::stored_fields;
 use htex_dsp::grid::Band;
 use htex_host::{LoadedModel, Registry};
@@ -185,7 +185,7 @@ pub fn files() -> Vec<File> {
     let mut files: Vec<File> = registry.models().iter().map(descriptor).collect();
     for (number, plan) in PLANS.iter().enumerate() {
         let bytes = asset(&registry, number, plan);
-        let numbers = numbers(plan, &Asset::from_bytes(&bytes).unwrap());
+        let numbers = numbers(plan, &Texture::from_bytes(&bytes).unwrap());
         let path = |ending: &str| format!("{CASES}/{}.{ending}", plan.name);
         files.push((path("htex"), bytes));
         files.push((path("json"), numbers.into_bytes()));
@@ -257,31 +257,31 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
 }
 
 /// The values read from an asset, one line of JSON per case.
-fn numbers(plan: &Plan, asset: &Asset) -> String {
+fn numbers(plan: &Plan, asset: &Texture) -> String {
     let mut frequency_hz = asset.band().grid_hz();
     frequency_hz.extend(BESIDE_HZ);
     let mut cases = Vec::new();
     for representation in &asset.manifest().representations {
-        let model = Some(&representation.model[..]);
+        let playable = asset.representation(&representation.model[..]).unwrap();
         let given = plan
             .conditions
             .iter()
             .chain(plan.motions)
-            .filter(|motion| htex::exploration::slides(motion[0], motion[1]))
+            .filter(|motion| htex::play::exploration::slides(motion[0], motion[1]))
             .map(|motion| Some(htex::Motion::new(motion[0], motion[1])));
         for motion in given.chain(plan.levels.map(|_| None)) {
-            let (parameters, _) = asset.parameters(model, motion).unwrap();
-            let follows = asset.loaded_model(model).unwrap().follows_motion();
+            let (parameters, _) = playable.parameters(motion).unwrap();
+            let follows = playable.model().unwrap().follows_motion();
             let factor = match motion {
                 Some(motion) if !follows => {
-                    let motions = asset.motions(model).unwrap();
-                    let ceiling = htex::exploration::CEILING;
-                    motions.scaling(motion, ceiling).frequency
+                    let conditions = playable.conditions().unwrap();
+                    let ceiling = htex::play::exploration::CEILING;
+                    conditions.scaling(motion, ceiling).frequency
                 }
                 _ => 1.0,
             };
-            let level_rms = asset.level_rms(model, motion).unwrap();
-            let magnitude = asset.magnitude(model, motion, &frequency_hz);
+            let level_rms = playable.level_rms(motion).unwrap();
+            let magnitude = playable.magnitude(motion, &frequency_hz);
             let mut case = json!({
                 "model": representation.model,
                 "parameters": parameters,

@@ -5,19 +5,18 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::exploration::CEILING;
-use crate::{Asset, Motion, Motions, Quantity};
+use crate::{Conditions, Error, Interval, Motion, Representation};
+use htex_format::{Quantity, Rights};
 use htex_host::{Band, Descriptor, LoadedModel};
 use htex_player::Law;
 
-use crate::bake::BakeError;
 use crate::bake::reading::Bands;
 
 /// A representation of an asset.
-pub(crate) struct Texture<'a> {
-    asset: &'a Asset,
+pub(crate) struct Moments<'a> {
+    representation: Representation<'a>,
     model: LoadedModel,
-    id: String,
-    motions: Motions,
+    conditions: Conditions,
     bands: Bands,
     /// Moments that were computed, by the bits of speed and force.
     known: RefCell<BTreeMap<[u64; 2], Rc<Moment>>>,
@@ -44,29 +43,31 @@ impl Moment {
     }
 }
 
-impl<'a> Texture<'a> {
-    pub(crate) fn new(asset: &'a Asset, model: Option<&str>) -> Result<Self, BakeError> {
-        let loaded = asset.loaded_model(model)?;
-        let id = asset.representation_id(model)?.to_owned();
-        if loaded.follows_motion() {
-            return Err(BakeError::FollowsMotion { model: id });
+impl<'a> Moments<'a> {
+    pub(crate) fn new(representation: Representation<'a>) -> Result<Self, Error> {
+        let model = representation.model()?;
+        if model.follows_motion() {
+            return Err(Error::FollowsMotion { model: representation.id().to_owned() });
         }
         Ok(Self {
-            asset,
-            model: loaded,
-            motions: asset.motions(Some(&id))?,
-            bands: Bands::new(asset.band()),
+            model,
+            conditions: representation.conditions()?,
+            bands: Bands::new(representation.texture().band()),
             known: RefCell::default(),
-            id,
+            representation,
         })
     }
 
     pub(crate) fn id(&self) -> &str {
-        &self.id
+        self.representation.id()
     }
 
     pub(crate) fn quantity(&self) -> Quantity {
-        self.asset.quantity()
+        self.representation.texture().quantity()
+    }
+
+    pub(crate) fn rights(&self) -> Rights {
+        Rights::of(self.representation.texture().manifest())
     }
 
     pub(crate) fn model(&self) -> &Descriptor {
@@ -74,7 +75,7 @@ impl<'a> Texture<'a> {
     }
 
     pub(crate) fn band(&self) -> Band {
-        self.asset.band()
+        self.representation.texture().band()
     }
 
     pub(crate) fn bands(&self) -> &Bands {
@@ -84,10 +85,10 @@ impl<'a> Texture<'a> {
     /// Returns the exponents that are played. An exponent is 0 if the asset does not state the
     /// speed or the force that it belongs to.
     pub(crate) fn law(&self) -> Law {
-        let explored = self.motions.explored();
-        let law = explored.law;
+        let range = self.conditions.range();
+        let law = range.law;
         let over = |is_known: bool, exponent: f64| if is_known { exponent as f32 } else { 0.0 };
-        let (speed, force) = (explored.speed.is_known(), explored.force.is_known());
+        let (speed, force) = (range.speed.is_known(), range.force.is_known());
         Law {
             frequency_speed: over(speed, law.frequency_speed.exponent),
             level_speed: over(speed, law.level_speed.exponent),
@@ -97,27 +98,25 @@ impl<'a> Texture<'a> {
 
     /// Returns the largest level to which the law may raise recorded levels.
     pub(crate) fn ceiling_rms(&self) -> f64 {
-        let representations = &self.asset.manifest().representations;
-        let own = representations.iter().filter(|r| r.model == self.id);
-        let levels = own.flat_map(|r| r.at.iter().map(|at| at.level_rms));
+        let levels = self.representation.data().at.iter().map(|at| at.level_rms);
         CEILING * levels.fold(0.0, f64::max)
     }
 
     /// Returns the lowest and the highest recorded speed, mm/s, if they are known.
     pub(crate) fn recorded_speeds_mm_s(&self) -> Option<(f64, f64)> {
-        match self.motions.explored().speed {
-            crate::Recorded::Between { low, high } => Some((low, high)),
-            crate::Recorded::Unknown => None,
+        match self.conditions.range().speed {
+            Interval::Between { low, high } => Some((low, high)),
+            Interval::Unknown => None,
         }
     }
 
-    pub(crate) fn at(&self, motion: Motion) -> Result<Rc<Moment>, BakeError> {
+    pub(crate) fn moment(&self, motion: Motion) -> Result<Rc<Moment>, Error> {
         let key = [motion.speed_mm_s, motion.force_n].map(f64::to_bits);
         if let Some(known) = self.known.borrow().get(&key) {
             return Ok(Rc::clone(known));
         }
-        let (parameters, level_rms) = self.asset.parameters(Some(&self.id), Some(motion))?;
-        let scaling = self.motions.scaling(motion, CEILING);
+        let (parameters, level_rms) = self.representation.parameters(Some(motion))?;
+        let scaling = self.conditions.scaling(motion, CEILING);
         let moment = Rc::new(Moment {
             stated: self.model.read_magnitude(&parameters, self.band())?,
             parameters,
@@ -131,7 +130,7 @@ impl<'a> Texture<'a> {
 
     /// Returns the magnitude at unit RMS at frequencies of the recording, hertz, i.e. before they
     /// are multiplied by the moment's ratio.
-    pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
+    pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, Error> {
         Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
     }
 }

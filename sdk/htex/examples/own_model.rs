@@ -6,10 +6,8 @@
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex::simulate::{SimulationOptions, Surface, simulate};
 use htex::{Asset, Motion, Registry, VoiceOptions};
-use htex_model::shaped::{Curve, ShapedVoice};
-use htex_model::{
-    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
-};
+use htex_model::shaped::{Curve, ShapedModel};
+use htex_model::{Band, Error, Fit, FitInput, StaticDescriptor, StaticField, Values};
 
 /// The model: a plateau from `low_hz` to `high_hz`.
 struct Plateau;
@@ -21,8 +19,8 @@ struct Edges {
     band: Band,
 }
 
-impl Model for Plateau {
-    type Voice = ShapedVoice<Edges>;
+impl ShapedModel for Plateau {
+    type Curve = Edges;
 
     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
         "org.example.plateau",
@@ -52,36 +50,6 @@ impl Model for Plateau {
         };
         Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
     }
-
-    fn magnitude(
-        parameters: &Values<'_>,
-        band: Band,
-        frequency_hz: &[f64],
-        magnitude: &mut [f64],
-    ) -> Result<(), Error> {
-        htex_model::shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
-    }
-
-    fn interpolate(
-        sets: &[Values<'_>],
-        weights: &[f64],
-        mixed: &mut Numbers<'_>,
-    ) -> Result<(), Error> {
-        mix::linear(sets, weights, mixed)
-    }
-
-    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_model::shaped::voice_rate_hz(band, wanted_hz)
-    }
-
-    fn voice(
-        parameters: &Values<'_>,
-        band: Band,
-        rate_hz: f64,
-        seed: u64,
-    ) -> Result<Self::Voice, Error> {
-        ShapedVoice::new(parameters, band, rate_hz, seed)
-    }
 }
 
 impl Curve for Edges {
@@ -99,12 +67,12 @@ impl Curve for Edges {
         Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
     }
 
-    fn at(&self, frequency_hz: f64) -> f64 {
+    fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
     }
 
     fn level(&self) -> f64 {
-        htex_dsp::grid::curve_level_rms(self.band, |hz| self.at(hz))
+        htex_dsp::grid::curve_level_rms(self.band, |hz| self.magnitude_at(hz))
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::Instant;
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::{Part, Resampler, UnusableRates};
-use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
+use htex_host::{Band, FitCondition, FitInput, HostError, LoadedModel, Registry};
 use htex_play::{AtCondition, Condition, Contact, Law, Motions};
 
 use crate::cost::{Costs, FilterCost};
@@ -108,13 +108,14 @@ fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     let grid = band.grid_hz();
     let shape = |f: &f64| (1.2 + libm::sin(f / 17.0)) / (1.0 + (f / corner_hz).powi(2));
     let magnitude: Vec<f64> = grid.iter().map(shape).collect();
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &grid,
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: 20_000.0,
         options: &model.descriptor().default_options(),
+        condition: FitCondition::default(),
     };
     Ok(model.fit(&request)?.parameters)
 }

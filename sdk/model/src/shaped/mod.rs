@@ -1,11 +1,11 @@
 //! Shared code of models that describe a spectrum by a curve and play it as noise.
 //!
-//! A model implements [`Curve`]. This module then provides the rest of a model: the magnitude at
-//! unit RMS ([`magnitude`]), the rate of a voice ([`voice_rate_hz`]) and the voice itself
-//! ([`ShapedVoice`]).
+//! A model implements [`ShapedModel`] and [`Curve`]. This module then provides the rest of a model:
+//! the magnitude at unit RMS ([`magnitude`]), interpolation, the rate of a voice ([`voice_rate_hz`])
+//! and the voice itself ([`ShapedVoice`]).
 mod places;
 
-use crate::{Error, Values, Voice};
+use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Values, Voice, mix};
 use htex_dsp::grid::Band;
 use htex_dsp::shaped_noise::{ComponentsKey, ShapedNoise, economical_rate_hz};
 
@@ -13,22 +13,22 @@ pub use places::Places;
 
 /// A magnitude curve that a model's parameters define.
 ///
-/// Implement this trait for a model that plays random-phase noise with the spectrum of the curve.
-/// Use [`ShapedVoice`] as the model's voice, and call [`magnitude`] and [`voice_rate_hz`] for the
-/// methods of the same names.
+/// Implement this trait, and [`ShapedModel`], for a model that plays random-phase noise with the
+/// spectrum of the curve.
 ///
 /// # How it is used
 ///
-/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`at`](Self::at) by
-///   [`level`](Self::level).
-/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `at`. It then calls
-///   [`prepare`](Self::prepare) once, with the frequencies of the noise. Both may allocate.
+/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides
+///   [`magnitude_at`](Self::magnitude_at) by [`level`](Self::level).
+/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of
+///   `magnitude_at`. It then calls [`prepare`](Self::prepare) once, with the frequencies of the
+///   noise. Both may allocate.
 /// * Every retune of the voice calls [`set`](Self::set). [`fill`](Self::fill) follows at once, or
 ///   at the end of the cross-fade of 10 ms that is in progress. Both run on the render thread and
 ///   do not allocate.
 ///
-/// The scale of `at` and `fill` does not matter, and they may have different scales: the voice
-/// always normalises to unit RMS in the band.
+/// The scale of `magnitude_at` and `fill` does not matter, and they may have different scales: the
+/// voice always normalises to unit RMS in the band.
 ///
 /// # Example
 ///
@@ -36,10 +36,8 @@ pub use places::Places;
 ///
 /// ```
 /// use htex_dsp::grid::curve_level_rms;
-/// use htex_model::{
-///     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
-/// };
-/// use htex_model::shaped::{Curve, ShapedVoice};
+/// use htex_model::shaped::{Curve, ShapedModel};
+/// use htex_model::{Band, Error, Fit, FitInput, Model, StaticDescriptor, StaticField, Values};
 ///
 /// struct Plateau;
 ///
@@ -64,17 +62,17 @@ pub use places::Places;
 ///         Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
 ///     }
 ///
-///     fn at(&self, frequency_hz: f64) -> f64 {
+///     fn magnitude_at(&self, frequency_hz: f64) -> f64 {
 ///         f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
 ///     }
 ///
 ///     fn level(&self) -> f64 {
-///         curve_level_rms(self.band, |hz| self.at(hz))
+///         curve_level_rms(self.band, |hz| self.magnitude_at(hz))
 ///     }
 /// }
 ///
-/// impl Model for Plateau {
-///     type Voice = ShapedVoice<Edges>;
+/// impl ShapedModel for Plateau {
+///     type Curve = Edges;
 ///
 ///     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
 ///         "org.example.plateau",
@@ -104,41 +102,11 @@ pub use places::Places;
 ///         };
 ///         Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
 ///     }
-///
-///     fn magnitude(
-///         parameters: &Values<'_>,
-///         band: Band,
-///         frequency_hz: &[f64],
-///         magnitude: &mut [f64],
-///     ) -> Result<(), Error> {
-///         htex_model::shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
-///     }
-///
-///     fn interpolate(
-///         sets: &[Values<'_>],
-///         weights: &[f64],
-///         mixed: &mut Numbers<'_>,
-///     ) -> Result<(), Error> {
-///         mix::linear(sets, weights, mixed)
-///     }
-///
-///     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-///         htex_model::shaped::voice_rate_hz(band, wanted_hz)
-///     }
-///
-///     fn voice(
-///         parameters: &Values<'_>,
-///         band: Band,
-///         rate_hz: f64,
-///         seed: u64,
-///     ) -> Result<Self::Voice, Error> {
-///         ShapedVoice::new(parameters, band, rate_hz, seed)
-///     }
 /// }
 ///
-/// let values = Values::read(&Plateau::DESCRIPTOR, &[80.0, 250.0])?;
+/// let values = Values::read(&<Plateau as Model>::DESCRIPTOR, &[80.0, 250.0])?;
 /// let mut magnitude = [0.0; 2];
-/// Plateau::magnitude(&values, Band::TACTILE, &[100.0, 500.0], &mut magnitude)?;
+/// <Plateau as Model>::magnitude(&values, Band::TACTILE, &[100.0, 500.0], &mut magnitude)?;
 /// assert!(magnitude[0] > 0.0 && magnitude[1] == 0.0);
 /// # Ok::<(), Error>(())
 /// ```
@@ -165,9 +133,10 @@ pub trait Curve: Sized + Send + 'static {
 
     /// Returns the curve at a frequency in the band, in any scale. The value is finite and not
     /// negative.
-    fn at(&self, frequency_hz: f64) -> f64;
+    fn magnitude_at(&self, frequency_hz: f64) -> f64;
 
-    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::at`]; above 0.
+    /// Returns the RMS of the curve on the band's grid, in the scale of
+    /// [`Self::magnitude_at`]; above 0.
     fn level(&self) -> f64;
 
     /// Prepares [`Self::fill`] for these frequencies, hertz, e.g. by computing tables. Curves with
@@ -181,8 +150,89 @@ pub trait Curve: Sized + Send + 'static {
     /// (10 ms). So slow computations belong here and not in `set`.
     fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = self.at(f);
+            *m = self.magnitude_at(f);
         }
+    }
+}
+
+/// A model that describes a spectrum by a [`Curve`] and plays it as noise. It is a [`Model`] whose
+/// voice is a [`ShapedVoice`].
+pub trait ShapedModel: 'static {
+    /// The curve of a parameter set.
+    type Curve: Curve;
+
+    /// As [`Model::DESCRIPTOR`].
+    const DESCRIPTOR: StaticDescriptor;
+
+    /// As [`Model::fit`].
+    ///
+    /// # Errors
+    /// If the model cannot describe the spectrum.
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
+
+    /// As [`Model::magnitude`]. The default is the curve at unit RMS.
+    ///
+    /// # Errors
+    /// If the parameters describe no spectrum in this band.
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        magnitude::<Self::Curve>(parameters, band, frequency_hz, out)
+    }
+
+    /// As [`Model::interpolate`]. The default is linear in each number.
+    ///
+    /// # Errors
+    /// If the sets cannot be interpolated.
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, out)
+    }
+}
+
+impl<M: ShapedModel> Model for M {
+    type Voice = ShapedVoice<M::Curve>;
+
+    const DESCRIPTOR: StaticDescriptor = <M as ShapedModel>::DESCRIPTOR;
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        <M as ShapedModel>::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        <M as ShapedModel>::magnitude(parameters, band, frequency_hz, magnitude)
+    }
+
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        <M as ShapedModel>::interpolate(sets, weights, out)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+        voice_rate_hz(band, wanted_hz)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        ShapedVoice::new(parameters, band, rate_hz, seed)
     }
 }
 
@@ -200,7 +250,7 @@ pub fn magnitude<C: Curve>(
     let curve = C::new(parameters, band)?;
     let level = curve.level();
     for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-        *m = if band.contains(f) { curve.at(f) / level } else { 0.0 };
+        *m = if band.contains(f) { curve.magnitude_at(f) / level } else { 0.0 };
     }
     Ok(())
 }
@@ -230,8 +280,8 @@ impl<C: Curve> ShapedVoice<C> {
     ) -> Result<Self, Error> {
         let mut curve = C::new(parameters, band)?;
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
-        // `at` and not `fill`, which needs the frequencies that `prepare` gets only now.
-        noise.start(|_, f| curve.at(f));
+        // `magnitude_at` and not `fill`, which needs the frequencies that `prepare` gets only now.
+        noise.start(|_, f| curve.magnitude_at(f));
         curve.prepare(noise.component_hz(), noise.components_key());
         Ok(Self { curve, noise })
     }

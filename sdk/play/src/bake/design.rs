@@ -152,7 +152,7 @@ pub fn bake(
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
         if between_db <= within_db || is_last {
             let baked = designed.baked(&texture, grid, within_db)?;
-            let rights = Rights::of(asset.manifest());
+            let rights = Rights::from_manifest(asset.manifest());
             return Ok(Baked { rights, ..baked });
         }
         grid = refined;

@@ -2,7 +2,7 @@
 
 use htex_author::report::{Measure, ModelResult, Share, Texture, model_color};
 use htex_author::{FeltShare, FittedAsset};
-use htex_format::{By, Judged, Quality};
+use htex_format::{By, MeasureKind, Quality};
 use htex_host::Registry;
 
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
@@ -115,7 +115,7 @@ fn tables() -> Vec<(Column, Measure)> {
             tables.extend(caption.map(|caption| {
                 let table = Measure {
                     caption: caption.replace("{}", what),
-                    is_correlation: row.judged == Judged::Correlation,
+                    is_correlation: row.judged == MeasureKind::Correlation,
                     repeats: measure == htex_format::Measure::NineBand,
                 };
                 (Column::new(measure, by), table)

@@ -113,7 +113,7 @@ impl Scene {
 /// Returns the rights of all textures in a scene.
 pub(crate) fn rights(ready: &Ready) -> Rights {
     let assets = ready.scene.assets.iter();
-    Rights::of_all(assets.map(|asset| Rights::of(asset.manifest())))
+    Rights::of_all(assets.map(|asset| Rights::from_manifest(asset.manifest())))
 }
 
 /// Whether a file is a scene, judged by its name.

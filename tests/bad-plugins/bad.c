@@ -66,12 +66,22 @@ uint32_t htex_model_abi_version(void) {
 int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
 #ifdef FAULT_DESCRIPTOR_JSON
     static const char text[] = "{\"id\": \"org.example.bad\", \"fields\": [";
-#elif defined FAULT_DESCRIPTOR_DEFAULT
+#elif defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_DESCRIPTOR_SWEEP || defined FAULT_DESCRIPTOR_USUAL
+#if defined FAULT_DESCRIPTOR_SWEEP
+#define USUAL ""
+#define OPTION "\"default\":0,\"sweep\":[0.5,2]"
+#elif defined FAULT_DESCRIPTOR_USUAL
+#define USUAL "\"usual\":{\"min\":0,\"max\":1,\"scale\":\"log\"},"
+#define OPTION "\"default\":0"
+#else
+#define USUAL ""
+#define OPTION "\"default\":2"
+#endif
     static const char text[] =
         "{\"id\":\"org.example.bad\",\"name\":\"Bad\",\"version\":\"1.0.0\",\"summary\":\"Bad.\","
         "\"fields\":[{\"name\":\"a\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},\"min\":0,"
-        "\"max\":1,\"store\":{\"type\":\"f32\"},\"description\":\"A.\"}],"
-        "\"options\":[{\"name\":\"o\",\"unit\":\"1\",\"min\":0,\"max\":1,\"default\":2,"
+        "\"max\":1," USUAL "\"store\":{\"type\":\"f32\"},\"description\":\"A.\"}],"
+        "\"options\":[{\"name\":\"o\",\"unit\":\"1\",\"min\":0,\"max\":1," OPTION ","
         "\"description\":\"O.\"}]}";
 #elif defined FAULT_STORE
     /* The descriptor of the good model, with a store of 0 to 255 millionths, below the least alpha. */
@@ -89,7 +99,8 @@ int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
         OPTION("lower_bound", "0", "1", "0.5") "," OPTION("error", "0", "1", "0") ","
         OPTION("bins", "0", "64", "20") "]}";
 #endif
-#if defined FAULT_DESCRIPTOR_JSON || defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_STORE
+#if defined FAULT_DESCRIPTOR_JSON || defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_DESCRIPTOR_SWEEP \
+    || defined FAULT_DESCRIPTOR_USUAL || defined FAULT_STORE
     size_t len = sizeof text - 1;
     if (capacity && !out) return HTEX_INVALID_ARGUMENT;
     if (capacity) memcpy(out, text, capacity < len ? capacity : len);

@@ -93,17 +93,21 @@ pub fn wasm_if_there() -> Option<PathBuf> {
     Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))
 }
 
-/// Models that are only fitted if a program names them, the same as in `htex_host`. A test compares
-/// the two lists.
-const NAMED: [&str; 2] = ["arma", "map"];
-
-/// Returns the short names of the models that are fitted if none is named, in alphabetical order.
+/// Returns the short names of the models that are fitted if none is named, in alphabetical order,
+/// from the descriptors in `spec/models`.
 ///
 /// # Errors
-/// As [`models`].
+/// As [`models`], and when a descriptor cannot be read.
 pub fn fitted_by_default() -> Result<Vec<String>> {
-    let is_usual = |model: &String| !NAMED.contains(&&model[..]);
-    Ok(models()?.into_iter().filter(is_usual).collect())
+    let mut fitted = Vec::new();
+    for model in models()? {
+        let file = workspace().join(format!("spec/models/org.htex.{model}.json"));
+        let descriptor: serde_json::Value = serde_json::from_slice(&fs_err::read(file)?)?;
+        if descriptor["only_named"] != true {
+            fitted.push(model);
+        }
+    }
+    Ok(fitted)
 }
 
 fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<()> {

@@ -11,7 +11,7 @@ use htex_author::{
     AssetRequest, Exploration, FeltError, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
 use htex_base::files::{AtFile, OwnFolder};
-use htex_format::{By, Keyed, Measure, Rights};
+use htex_format::{By, KeyedMeasures, Measure, Rights};
 use htex_host::Registry;
 use serde::Serialize;
 
@@ -161,10 +161,10 @@ struct Row {
     texture: String,
     model: String,
     #[serde(flatten)]
-    by_magnitude: Keyed,
+    by_magnitude: KeyedMeasures,
     felt: Option<FeltError>,
     #[serde(flatten)]
-    by_samples: Keyed,
+    by_samples: KeyedMeasures,
     /// The measures, formatted as table cells.
     #[serde(skip)]
     cells: String,
@@ -213,7 +213,7 @@ fn play(asset: &htex::Texture, model: &str, file: &Path, wav: Written<'_>) -> Re
     let representation = asset.representation(model).map_err(of_file(file))?;
     let mut voice = representation.voice(&options).map_err(of_file(file))?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
-    let rights = Rights::of(asset.manifest());
+    let rights = Rights::from_manifest(asset.manifest());
     write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).map_err(of_file(file)))
 }
 

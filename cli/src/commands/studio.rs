@@ -79,7 +79,7 @@ impl Studio {
 /// address changes every time.
 fn key() -> Result<Key, Failure> {
     let config = htex_host::folders::config();
-    if let Some(key) = config.and_then(|folder| Key::of(&folder, KEY).ok()) {
+    if let Some(key) = config.and_then(|folder| Key::load_or_create(&folder, KEY).ok()) {
         return Ok(key);
     }
     warn(&["there is no folder of settings that only you can write to; the next time the studio has another address, at which the browser does not find textures that you stored".to_owned()]);
@@ -96,7 +96,7 @@ fn shared() -> Option<PathBuf> {
 fn page_in(folder: &Path) -> Option<PathBuf> {
     let own = OwnFolder::new(folder);
     let has_page = |place: &&str| {
-        let page = own.at(&Path::new(place).join("index.html"));
+        let page = own.entry_path(&Path::new(place).join("index.html"));
         page.is_ok_and(|page| page.is_file())
     };
     let place = [STATIC, ""].into_iter().find(|place| has_page(place))?;

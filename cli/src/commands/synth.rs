@@ -94,7 +94,7 @@ impl Synth {
             .map_err(of_file(&self.asset))?;
         // At least one, because a very short time is also more than 0.
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
-        let rights = Rights::of(asset.manifest());
+        let rights = Rights::from_manifest(asset.manifest());
         let wav = Written::Named(&self.output);
         write_wav(wav, self.rate, frames, &rights, |block| {
             voice.render(block).map_err(of_file(&self.asset))

@@ -16,6 +16,8 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("MOTION_MISSING", "exports", Outcome::Failed),
     ("DESCRIPTOR_JSON", "descriptor", Outcome::Failed),
     ("DESCRIPTOR_DEFAULT", "descriptor", Outcome::Failed),
+    ("DESCRIPTOR_SWEEP", "descriptor", Outcome::Failed),
+    ("DESCRIPTOR_USUAL", "descriptor", Outcome::Failed),
     ("EXTENSIONS", "extensions", Outcome::Failed),
     ("FIT_CRASHES", "fit", Outcome::Crashed),
     ("FIT_RANGE", "fit", Outcome::Failed),

@@ -4,6 +4,9 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use crate::common::{Place, entries};
+use crate::model::ID;
+use crate::versions::{FIELDS, noise};
+use htex_host::{Registry, Search};
 use serde_json::Value;
 
 fn quick<'a>(csv: &'a str, only: &'a str, output: &'a str) -> [&'a str; 8] {
@@ -150,6 +153,55 @@ fn an_interrupted_sweep_goes_on_where_it_stopped() {
     let other = place.recording("coarse-fabric");
     let other = place.json(&quick(&other, "ar,sbeta", "report.html"));
     assert_eq!(points(&other).iter().filter(is_marked).count(), 0);
+}
+
+/// The descriptor of a third-party model says how it is swept, what a slider covers, and that it is
+/// used only by its name.
+#[test]
+fn a_plugin_is_swept_as_its_descriptor_says_and_used_only_by_its_name() {
+    let place = Place::new();
+    let csv = place.recording("sandpaper");
+    let fields = FIELDS.replacen(
+        r#""description""#,
+        r#""usual":{"min":20,"max":1000,"scale":"log"},"description""#,
+        1,
+    );
+    let option = |name: &str, more: &str| {
+        format!(
+            r#"{{"name":"{name}","unit":"1","min":0,"max":4,"default":2,{more},"description":"O."}}"#
+        )
+    };
+    let detail = option("detail", r#""sweep":[0.5,2,4],"not_above":"most""#);
+    let most = option("most", r#""sweep":[2,4]"#);
+    let tone = r#"{"name":"tone","unit":"1","min":0,"max":1,"default":0,"integer":true,"choices":["soft","hard"],"sweep_alone":[1],"description":"T."}"#;
+    let descriptor = format!(
+        r#"{{"id":"{ID}","name":"H","version":"1.0.0","summary":"S.","only_named":true,"fields":[{fields}],"options":[{detail},{most},{tone}]}}"#
+    );
+    place.write("noise.wasm", noise(&descriptor, false));
+    let plugin = ["--plugin", "noise.wasm"];
+    let shown = place.run(&[&["plugin", "info", "hostile"][..], &plugin].concat()).text();
+    for line in [
+        "Used only if you name it.",
+        "usually 20 to 1000 Hz, logarithmic",
+        "swept: 0.5, 2, 4, none above `most`",
+        "swept alone: hard",
+    ] {
+        assert!(shown.contains(line), "{line}: {shown}");
+    }
+    let search = Search::builtin().with_files(vec![place.path("noise.wasm")]);
+    let registry = Registry::search(&search).unwrap();
+    assert!(registry.models().iter().any(|model| model.id() == ID));
+    assert!(registry.by_default().all(|model| model.id() != ID));
+    let sweep = ["tradeoff", &csv, "--only", "hostile", "-o", "report.html", "--json"];
+    let told = place.json(&[&sweep[..], &plugin].concat());
+    let own = |p: &&Value| p["model"] == "hostile" && p["knobs"]["synthesis"] == "streamed";
+    let settings: Vec<&str> =
+        points(&told).iter().filter(own).filter_map(|p| p["setting"].as_str()).collect();
+    let fitted = ["default", "detail=0.5", "detail=0.5 most=4", "most=4", "detail=4 most=4"];
+    for setting in fitted.iter().chain(&["tone=hard"]) {
+        assert!(settings.contains(setting), "{setting}: {settings:?}");
+    }
+    assert!(!settings.contains(&"detail=4"), "{settings:?}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::model::{ID, with_descriptor};
 use htex::model::Search;
 use htex::{Registry, Texture, VoiceOptions};
 
-const FIELDS: &str = concat!(
+pub(crate) const FIELDS: &str = concat!(
     r#"{"name":"centre_hz","unit":"Hz","kind":{"type":"scalar"},"min":5,"max":2000,"store":{"type":"f32"},"description":"C."},"#,
     r#"{"name":"bandwidth_hz","unit":"Hz","kind":{"type":"scalar"},"min":20,"max":2000,"store":{"type":"f32"},"description":"B."}"#
 );
@@ -27,6 +27,11 @@ fn descriptor(version: &str, has_tilt: bool) -> String {
 
 /// White noise, as a module.
 fn module(version: &str, has_tilt: bool) -> Vec<u8> {
+    noise(&descriptor(version, has_tilt), has_tilt)
+}
+
+/// White noise with two parameters, or three if it has a tilt, as a module with this descriptor.
+pub(crate) fn noise(descriptor: &str, has_tilt: bool) -> Vec<u8> {
     let count = if has_tilt { 3 } else { 2 };
     let fit = format!(
         "(f64.store (local.get 10) (f64.const 200)) (f64.store offset=8 (local.get 10) (f64.const 100))
@@ -61,7 +66,12 @@ fn module(version: &str, has_tilt: bool) -> Vec<u8> {
         ),
     ];
     let random = "(global $r (mut i32) (i32.const 1))";
-    wat::parse_str(with_descriptor(&descriptor(version, has_tilt), &changed, random)).unwrap()
+    let text = with_descriptor(descriptor, &changed, random);
+    // A recording's signal needs more memory than most tests.
+    wat::parse_str(
+        text.replace("(memory (export \"memory\") 8)", "(memory (export \"memory\") 80)"),
+    )
+    .unwrap()
 }
 
 /// A resonance, as a library: the template of `htex plugin new`, in its own folder.

@@ -15,11 +15,11 @@ const KEPT_ORDER: usize = 32;
 const HASHES: usize = 16;
 const PLACES: usize = 4;
 
-static KEPT: Lock<Kept> = Lock::new(Kept::NONE);
+static CACHE: Lock<LineCache> = Lock::new(LineCache::NONE);
 
 /// The filters of one bucket, with their line spectral frequencies. The next filter replaces the
 /// oldest one.
-struct Kept {
+struct LineCache {
     filters: [[Filter; PLACES]; HASHES],
     oldest: [u8; HASHES],
 }
@@ -31,7 +31,7 @@ struct Filter {
     lines: [f64; KEPT_ORDER],
 }
 
-impl Kept {
+impl LineCache {
     const NONE: Self = {
         let none = Filter { order: 0, coefficients: [0.0; KEPT_ORDER], lines: [0.0; KEPT_ORDER] };
         Self { filters: [[none; PLACES]; HASHES], oldest: [0; HASHES] }
@@ -44,7 +44,7 @@ impl Kept {
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
     // The render thread must not wait for the lock. Computing the lines again gives the same bits.
-    let kept = if (1..=KEPT_ORDER).contains(&order) { KEPT.try_lock() } else { None };
+    let kept = if (1..=KEPT_ORDER).contains(&order) { CACHE.try_lock() } else { None };
     let Some(mut kept) = kept else {
         return find_lines(coefficients, lines);
     };

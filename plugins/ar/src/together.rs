@@ -20,11 +20,10 @@ pub(crate) fn render(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mu
     let frames = rows[0].len();
     let [first, others @ ..] = &*voices;
     // Renders the rest of the current group first, and then whole groups.
-    let head = (GROUP - first.taken).min(frames);
+    let head = (GROUP - first.taken()).min(frames);
     let body = (frames - head) / GROUP * GROUP;
-    let steady = |voice: &AutoregressionVoice| voice.ramp_left == 0;
-    let alike = others.iter().all(|other| other.taken == first.taken);
-    if !alike || body < LEAST * GROUP || !voices.iter().all(|voice| steady(voice)) {
+    let alike = others.iter().all(|other| other.taken() == first.taken());
+    if !alike || body < LEAST * GROUP || !voices.iter().all(|voice| voice.is_steady()) {
         return alone(voices, rows);
     }
     let parts = rows.map(|row| {
@@ -54,14 +53,15 @@ fn groups(
     rows: &mut [&mut [f32]; VOICES],
 ) -> bool {
     let [a, b, c, d] = voices;
-    let filters = [&mut a.filter, &mut b.filter, &mut c.filter, &mut d.filter];
+    let gains = Quad([a.gain(), b.gain(), c.gain(), d.gain()]);
+    let filters =
+        [&mut a.filter.poles, &mut b.filter.poles, &mut c.filter.poles, &mut d.filter.poles];
     let edges = [&mut a.edges, &mut b.edges, &mut c.edges, &mut d.edges];
     // Before any noise is drawn, so that a refusal has no effect.
     let (Some(mut filters), Some(mut edges)) = (AllPoles::new(filters), Pipelines::new(edges))
     else {
         return false;
     };
-    let gains = Quad([a.gain, b.gain, c.gain, d.gain]);
     // The output buffer is first used for the noise.
     let [r0, r1, r2, r3] = rows;
     GaussianNoise::fill_both([&mut a.noise, &mut b.noise], [r0, r1]);

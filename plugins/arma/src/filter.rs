@@ -7,6 +7,7 @@ use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::line_spectrum::coefficients_of_cosines;
 use htex_dsp::linear_prediction::{ar_magnitude, step_down_in_place};
 use htex_dsp::trig::half_turn_cosines;
+use htex_model::filtered::{finite_level, unstable};
 use htex_model::{Error, Values};
 
 use crate::{MAX_ORDER, MODEL_RATE, POLE_LINES, ZERO_LINES};
@@ -129,7 +130,7 @@ impl Filter {
     }
 
     /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
-    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+    pub(crate) fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         if frequency_hz > 0.5 * self.rate_hz {
             return 0.0;
         }
@@ -138,20 +139,8 @@ impl Filter {
     }
 
     pub(crate) fn level(&self, band: Band) -> Result<f64, Error> {
-        finite_level(curve_level_rms(band, |f| self.at(f)))
+        finite_level(curve_level_rms(band, |f| self.magnitude_at(f)))
     }
-}
-
-/// Checks that magnitudes and samples can be divided by this level.
-fn finite_level(level: f64) -> Result<f64, Error> {
-    if level > 0.0 && level.is_finite() {
-        return Ok(level);
-    }
-    Err(Error::parameters("the filter has no finite energy in the band"))
-}
-
-pub(crate) fn unstable() -> Error {
-    Error::parameters("the filter is not stable: a pole lies on or outside the unit circle")
 }
 
 fn unordered() -> Error {

@@ -7,26 +7,26 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
-#[macro_use]
 extern crate alloc;
 
 mod filter;
 mod fit;
-mod knobs;
 mod mixing;
-mod usual;
 mod voice;
 
 use htex_dsp::all_zero;
 use htex_dsp::grid::Band;
+use htex_model::filtered::FilteredVoice;
 use htex_model::{
-    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values,
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, UsualRange,
+    Values,
 };
 
 use filter::Filter;
-pub use knobs::KNOBS;
-pub use usual::USUAL;
-pub use voice::ArmaVoice;
+use voice::MovingZerosAndPoles;
+
+/// The voice of the model.
+pub type ArmaVoice = FilteredVoice<MovingZerosAndPoles>;
 
 const POLE_LINES: usize = 0;
 const ZERO_LINES: usize = 1;
@@ -50,6 +50,7 @@ impl Model for PolesAndZeros {
         env!("CARGO_PKG_VERSION"),
         "White noise through a filter with poles and zeros: line spectral frequencies of both.",
     )
+    .only_named()
     .fields(&[
         StaticField::list(
             "pole_lines",
@@ -57,31 +58,39 @@ impl Model for PolesAndZeros {
             (0.0, MAX_LINE),
             MAX_ORDER as u32,
             "Line spectral frequencies of the denominator, a sample at the model rate; they ascend inside 0 to pi.",
-        ),
+        )
+        .usual(UsualRange::linear(0.0, MAX_LINE)),
         StaticField::list(
             "zero_lines",
             "rad",
             (0.0, MAX_LINE),
             MAX_ORDER as u32,
             "Line spectral frequencies of the numerator; of a zero on the unit circle two are equal.",
-        ),
+        )
+        .usual(UsualRange::linear(0.0, MAX_LINE)),
         StaticField::scalar(
             "model_rate_hz",
             "Hz",
             (50.0, 1e6),
             "Rate at which the filter runs.",
-        ),
+        )
+        // From the rate of the Penn Haptic Texture Toolkit (1 kHz) to the highest one of the
+        // sweep.
+        .usual(UsualRange::linear(1000.0, 4000.0)),
     ])
     .options(&[
-        StaticOption::integer("poles", (0, MAX_ORDER as u32), 8, "Number of poles."),
-        StaticOption::integer("zeros", (0, MAX_ORDER as u32), 4, "Number of zeros."),
+        StaticOption::integer("poles", (0, MAX_ORDER as u32), 8, "Number of poles.")
+        .sweep(&[2.0, 4.0, 6.0, 12.0, 16.0, 20.0]),
+        StaticOption::integer("zeros", (0, MAX_ORDER as u32), 4, "Number of zeros.")
+        .sweep(&[0.0, 2.0, 8.0, 12.0, 18.0]),
         StaticOption::number(
             "rate_hz",
             "Hz",
             (50.0, 1e6),
             2000.0,
             "Model rate; at most twice the band's upper edge is used by a narrower band.",
-        ),
+        )
+        .sweep_alone(&[2500.0, 4000.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -97,7 +106,7 @@ impl Model for PolesAndZeros {
         let filter = Filter::new(parameters)?;
         let level = filter.level(band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) { filter.at(f) / level } else { 0.0 };
+            *m = if band.contains(f) { filter.magnitude_at(f) / level } else { 0.0 };
         }
         Ok(())
     }

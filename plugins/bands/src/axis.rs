@@ -27,7 +27,7 @@ pub(crate) enum Layout {
 
 impl Layout {
     /// Returns the default layout for this number of bands.
-    pub(crate) fn of(bands: usize) -> Self {
+    pub(crate) fn for_bands(bands: usize) -> Self {
         if bands < EDGES_FROM { Self::Within } else { Self::Edges }
     }
 

@@ -24,8 +24,6 @@ extern crate std;
 
 mod axis;
 mod fit;
-mod knobs;
-mod usual;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -34,16 +32,14 @@ use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::sharpening::sharpen;
-use htex_model::shaped::{Curve, Places, ShapedVoice};
+use htex_model::shaped::{Curve, Places, ShapedModel};
 use htex_model::{
-    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Error, Fit, FitInput, Numbers, StaticDescriptor, StaticField, StaticOption, Store, UsualRange,
     Values, mix, text,
 };
 
 use axis::{Axis, Layout, Point};
 use fit::{Fitter, below_highest_db, total_energy};
-pub use knobs::KNOBS;
-pub use usual::USUAL;
 
 const BELOW: usize = 0;
 const STEP: usize = 1;
@@ -77,8 +73,8 @@ pub struct BandEnergies;
 
 htex_model::export_model!(BandEnergies, symbols: "plugin");
 
-impl Model for BandEnergies {
-    type Voice = ShapedVoice<Spectrum>;
+impl ShapedModel for BandEnergies {
+    type Curve = Spectrum;
 
     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
         "org.htex.bands",
@@ -99,15 +95,20 @@ impl Model for BandEnergies {
             scale: 1.0,
             offset: 0.0,
             log: false,
-        }),
-        StaticField::scalar("step_db", "dB", STEP_RANGE_DB, "The step.").stored(steps(STEP_UNIT_DB)),
+        })
+        // In the fits to 15 simulated recordings of five surfaces, nine tenths of the knots are
+        // at most 42 dB below the highest one, and all but a few at most 60 dB.
+        .usual(UsualRange::linear(0.0, 60.0)),
+        StaticField::scalar("step_db", "dB", STEP_RANGE_DB, "The step.").stored(steps(STEP_UNIT_DB))
+        .usual(UsualRange::log(0.25, 3.0)),
         StaticField::scalar(
             "layout",
             "1",
             (0.0, 1.0),
             "0: knots within the band, even in ln f; 1: from edge to edge, even in ln(f + 20 Hz).",
         )
-        .stored(steps(1.0)),
+        .stored(steps(1.0))
+        .usual(UsualRange::linear(0.0, 1.0)),
     ])
     .options(&[
         StaticOption::integer(
@@ -115,7 +116,11 @@ impl Model for BandEnergies {
             (1, MAX_BANDS),
             DEFAULT_BANDS,
             "Bands, overlapping by half. 9: those of the paper's regression; 19 divide them evenly.",
-        ),
+        )
+        .sweep(&[
+            1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 19.0, 20.0,
+            22.0, 24.0, 26.0, 28.0, 30.0, 34.0, 40.0, 48.0, 56.0, 64.0,
+        ]),
         StaticOption::number(
             "step_db",
             "dB",
@@ -123,13 +128,15 @@ impl Model for BandEnergies {
             DEFAULT_STEP_DB,
             "Knots are rounded to whole steps of this, itself rounded to 0.05 dB; coarser where 255 \
              steps would not reach the lowest knot, which counts as at most 120 dB down.",
-        ),
+        )
+        .sweep(&[3.0, 1.5, 1.0, 0.75, 0.5, 0.25]),
         StaticOption::choice(
             "layout",
             &["auto", "within", "edges"],
             "Where the outermost knots stand: within the band, as in the paper's regression, or at its edges. `auto`: \
              at the edges from 20 bands on.",
-        ),
+        )
+        .sweep_alone(&[1.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -138,7 +145,7 @@ impl Model for BandEnergies {
         let axis = Axis {
             knots,
             layout: match input.options[LAYOUT_OPTION] as usize {
-                0 => Layout::of(knots),
+                0 => Layout::for_bands(knots),
                 1 => Layout::Within,
                 _ => Layout::Edges,
             },
@@ -155,7 +162,7 @@ impl Model for BandEnergies {
         let step_db = step_db(input.options[STEP_OPTION], &below_db);
         let round = |below_db: &f64| libm::round(below_db / step_db).min(MAX_STEPS);
         let below: Vec<f64> = below_db.iter().map(round).collect();
-        let spectrum = Spectrum::of(&below, step_db, axis)?;
+        let spectrum = Spectrum::with_knots(&below, step_db, axis)?;
         let made: Vec<f64> = spectrum.magnitude.iter().map(|m| m * m).collect();
         // The level is chosen so that the total energy of the bands equals the recording's.
         let energy = |power: &[f64]| total_energy(&axis, input.frequency_hz, power);
@@ -199,19 +206,6 @@ impl Model for BandEnergies {
         }
         mix::linear(sets, weights, out)
     }
-
-    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_model::shaped::voice_rate_hz(band, wanted_hz)
-    }
-
-    fn voice(
-        parameters: &Values<'_>,
-        band: Band,
-        rate_hz: f64,
-        seed: u64,
-    ) -> Result<Self::Voice, Error> {
-        ShapedVoice::new(parameters, band, rate_hz, seed)
-    }
 }
 
 /// Returns the wanted step, rounded to the resolution of files, or, if it is larger, the smallest
@@ -246,7 +240,7 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    fn of(below: &[f64], step_db: f64, axis: Axis) -> Result<Self, Error> {
+    fn with_knots(below: &[f64], step_db: f64, axis: Axis) -> Result<Self, Error> {
         let band = axis.band;
         if below.is_empty() {
             return Err(Error::parameters("`below_highest` is empty; it needs at least one knot"));
@@ -310,7 +304,7 @@ impl Curve for Spectrum {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let below = parameters.list(BELOW);
         let axis = Axis { knots: below.len(), layout: Self::layout(parameters), band };
-        Self::of(below, parameters.scalar(STEP), axis)
+        Self::with_knots(below, parameters.scalar(STEP), axis)
     }
 
     fn band(&self) -> Band {
@@ -328,7 +322,7 @@ impl Curve for Spectrum {
     }
 
     /// Linear interpolation between bins.
-    fn at(&self, frequency_hz: f64) -> f64 {
+    fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let last = self.played.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
         let below = place as usize;

@@ -176,7 +176,7 @@ fn the_voice_measures_as_the_stated_magnitude() {
     let parameters = [9.0, 0.0, 10.0, 20.0, 12.0, 24.0, 36.0, 30.0, 40.0, 60.0, 0.5, 0.0];
     let curve = Spectrum::new(&Values::read(&descriptor, &parameters).unwrap(), band).unwrap();
     let stated = shape(&parameters, band);
-    let played = band.grid_hz().into_iter().map(|f| curve.at(f) / curve.level());
+    let played = band.grid_hz().into_iter().map(|f| curve.magnitude_at(f) / curve.level());
     let power: Vec<f64> = played.map(|m| m * m).collect();
     for (read, stated) in power.windows(3).zip(&stated[1..]) {
         let read = (read[0] + 4.0 * read[1] + read[2]) / 6.0;

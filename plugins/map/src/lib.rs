@@ -18,18 +18,16 @@ mod lines;
 mod map;
 mod path;
 mod surface;
-mod usual;
 mod voice;
 
 use htex_dsp::grid::Band;
 use htex_dsp::shaped_noise::economical_rate_hz;
 use htex_model::{
-    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Store, Values,
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Store, UsualRange, Values,
 };
 
 use lines::Lines;
 use map::Map;
-pub use usual::USUAL;
 pub use voice::MapVoice;
 
 const WIDTH: usize = 0;
@@ -68,7 +66,7 @@ pub fn rms(
     band: Band,
 ) -> Result<f64, Error> {
     let map = Map { width, pitch_mm, speed_mm_s, force_n: 0.0, rms: 0.0, grey };
-    map.checked().and_then(|map| Lines::of(&map, band)).map(|lines| lines.rms)
+    map.checked().and_then(|map| Lines::new(&map, band)).map(|lines| lines.rms)
 }
 
 const GREYS: Store = Store::U8 { scale: 1.0, offset: 0.0, log: false };
@@ -82,28 +80,34 @@ impl Model for FrictionMap {
         env!("CARGO_PKG_VERSION"),
         "Grey values over a surface: what is felt follows the place of the finger.",
     )
+    .only_named()
     .fields(&[
         StaticField::scalar("width", "1", (1.0, MOST_SIDE as f64), "Pixels of a row.")
-            .stored(GREYS),
-        StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Distance of two pixels."),
+            .stored(GREYS)
+            .usual(UsualRange::linear(1.0, 255.0)),
+        StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Distance of two pixels.")
+            .usual(UsualRange::log(0.01, 2.0)),
         StaticField::scalar(
             "speed_mm_s",
             "mm/s",
             SPEED_MM_S,
             "Speed at which spectrum and level are stated.",
-        ),
+        )
+        .usual(UsualRange::log(20.0, 200.0)),
         StaticField::scalar(
             "force_n",
             "N",
             FORCE_N,
             "Normal force at which the level is stated; 0 where it is not known.",
-        ),
+        )
+        .usual(UsualRange::linear(0.0, 2.0)),
         StaticField::scalar(
             "rms",
             "1",
             (0.0, MOST_GREY),
             "RMS of the grey values along the rows at that speed, between the edges of the band.",
-        ),
+        )
+        .usual(UsualRange::log(1.0, 120.0)),
         StaticField::list(
             "grey",
             "1",
@@ -111,7 +115,8 @@ impl Model for FrictionMap {
             (MOST_SIDE * MOST_SIDE) as u32,
             "Grey values, row by row from above; 255 is the most friction.",
         )
-        .stored(GREYS),
+        .stored(GREYS)
+        .usual(UsualRange::linear(0.0, 255.0)),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {

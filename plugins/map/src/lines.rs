@@ -31,9 +31,9 @@ impl Lines {
     /// Returns the lines of a map, and checks the RMS that the map states.
     ///
     /// # Errors
-    /// As in [`Self::of`], and if the stated RMS differs from the RMS of the grey values.
+    /// As in [`Self::new`], and if the stated RMS differs from the RMS of the grey values.
     pub(crate) fn stated(map: &Map<'_>, band: Band) -> Result<Self, Error> {
-        let lines = Self::of(map, band)?;
+        let lines = Self::new(map, band)?;
         if (map.rms - lines.rms).abs() <= TOLERANCE * lines.rms {
             Ok(lines)
         } else {
@@ -50,7 +50,7 @@ impl Lines {
     ///
     /// # Errors
     /// If no line in the band has power.
-    pub(crate) fn of(map: &Map<'_>, band: Band) -> Result<Self, Error> {
+    pub(crate) fn new(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let fundamental_hz = map.fundamental_hz();
         let most = map.width / 2;
         let inside = |waves: usize| band.contains(waves as f64 * fundamental_hz);

@@ -30,7 +30,7 @@ pub(crate) struct Path {
 
 /// What a voice has to do when a new motion is set.
 #[derive(PartialEq)]
-pub(crate) enum Way {
+pub(crate) enum Transition {
     /// Start at the place.
     Start,
     /// Nothing: the path reaches the place smoothly.
@@ -61,7 +61,7 @@ impl Path {
 
     /// Sets the place `ahead` samples before the next one, and the speed from there on. The
     /// direction is the one in which the place has moved; if that is unknown, it is along x.
-    pub(crate) fn tell(&mut self, motion: Motion, ahead: f64) -> Way {
+    pub(crate) fn tell(&mut self, motion: Motion, ahead: f64) -> Transition {
         let place = [motion.x_mm, motion.y_mm];
         let per_sample = motion.speed_mm_s.abs() / self.rate_hz;
         let moved = self.told.map(|told| [place[0] - told[0], place[1] - told[1]]);
@@ -82,20 +82,20 @@ impl Path {
         let off = [now[0] - self.at[0], now[1] - self.at[1]];
         if is_first {
             self.at = now;
-            return Way::Start;
+            return Transition::Start;
         }
         // If the place is the expected one, the way to it stays unchanged.
         let left = self.off_left.max(0.0) / self.blend;
         let is_expected = |axis: usize| (off[axis] - left * self.off[axis]).abs() < EXPECTED_MM;
         if is_expected(0) && is_expected(1) {
-            return Way::Smooth;
+            return Transition::Smooth;
         }
         if off[0].abs() > JUMP_MM || off[1].abs() > JUMP_MM {
-            return Way::Jump;
+            return Transition::Jump;
         }
         self.off = off;
         self.off_left = self.blend;
-        Way::Smooth
+        Transition::Smooth
     }
 
     fn speed(&self) -> f64 {

@@ -39,7 +39,7 @@ impl Surface {
     ///
     /// # Errors
     /// If the stated RMS of the map is 0.
-    pub(crate) fn take(&mut self, map: &Map<'_>, passed: f64) -> Result<(), Error> {
+    pub(crate) fn set_map(&mut self, map: &Map<'_>, passed: f64) -> Result<(), Error> {
         if map.rms <= 0.0 {
             return Err(Error::parameters("`rms` is 0, and a map is felt by its differences"));
         }

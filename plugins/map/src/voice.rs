@@ -8,7 +8,7 @@ use htex_model::{Error, Motion, MotionVoice, Values, Voice};
 
 use crate::lines::Lines;
 use crate::map::Map;
-use crate::path::{Path, Way};
+use crate::path::{Path, Transition};
 use crate::surface::Surface;
 
 /// Largest gain of a force.
@@ -55,7 +55,7 @@ struct Ramp {
 }
 
 impl Ramp {
-    const fn at(value: f64) -> Self {
+    const fn resting_at(value: f64) -> Self {
         Self { value, target: value, step: 0.0 }
     }
 
@@ -95,8 +95,8 @@ impl MapVoice {
             ahead: 0,
             moved: false,
             way: 0.0,
-            gain: Ramp::at(1.0),
-            contact: Ramp::at(1.0),
+            gain: Ramp::resting_at(1.0),
+            contact: Ramp::resting_at(1.0),
             is_jumping: false,
             ready: [0.0; BLOCK],
             taken: BLOCK,
@@ -104,7 +104,7 @@ impl MapVoice {
         let map = Map::new(parameters)?;
         let passed = band_limit_power(band, place_hz);
         voice.passed = Lines::stated(&map, band)?.rms_behind(passed);
-        voice.surface.take(&map, voice.passed)?;
+        voice.surface.set_map(&map, voice.passed)?;
         voice.way = Uniform::new(seed).next_unit() * map.grey.len() as f64;
         // Lets the filter's transient decay before the first sample.
         for _ in 0..(0.2 * rate_hz) as usize / BLOCK {
@@ -152,7 +152,7 @@ impl MapVoice {
     fn change(&mut self) {
         if self.is_changing {
             core::mem::swap(&mut self.surface, &mut self.next);
-            self.gain = Ramp::at(self.told.map_or(1.0, |motion| self.gain_of(motion)));
+            self.gain = Ramp::resting_at(self.told.map_or(1.0, |motion| self.gain_of(motion)));
         }
         if self.is_jumping {
             self.path.leap();
@@ -179,9 +179,9 @@ impl MapVoice {
         let blend = self.path.blend();
         let gain = self.gain_of(motion);
         match self.path.tell(motion, ahead) {
-            Way::Start => self.gain = Ramp::at(gain),
-            Way::Smooth => self.gain.set(gain, blend),
-            Way::Jump => {
+            Transition::Start => self.gain = Ramp::resting_at(gain),
+            Transition::Smooth => self.gain.set(gain, blend),
+            Transition::Jump => {
                 self.gain.set(gain, blend);
                 self.is_jumping = true;
                 self.contact.set(0.0, blend);
@@ -207,7 +207,7 @@ impl Voice for MapVoice {
     /// Another map begins after a fade. Its level is corrected for the filters by the same factor
     /// as the first map's.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        self.next.take(&Map::new(parameters)?, self.passed)?;
+        self.next.set_map(&Map::new(parameters)?, self.passed)?;
         self.is_changing = self.next != self.surface;
         let is_silent = self.is_changing || self.is_jumping;
         let contact = if is_silent { 0.0 } else { 1.0 };

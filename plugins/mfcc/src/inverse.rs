@@ -27,10 +27,10 @@ pub(crate) struct Inverse {
     kind: u8,
     band: Band,
     cosines: InverseDct,
-    way: Way,
+    way: Solver,
 }
 
-enum Way {
+enum Solver {
     /// The power is matrix · energies, clipped at 0. There is one row per band, with the band's
     /// power in all bins.
     Matrix(Vec<f64>),
@@ -60,8 +60,8 @@ impl Inverse {
         let grid = band.grid_hz();
         let bank = MelBank::new(bands, band, &grid);
         let way = match kind {
-            NNLS => Way::NonNegative(NonNegative::new(bank.filters())),
-            _ => Way::Matrix(Self::matrix(&bank, kind, bands, grid.len())),
+            NNLS => Solver::NonNegative(NonNegative::new(bank.filters())),
+            _ => Solver::Matrix(Self::matrix(&bank, kind, bands, grid.len())),
         };
         Self { bands, kind, band, cosines: InverseDct::new(bands), way }
     }
@@ -103,7 +103,7 @@ impl Inverse {
         self.cosines.run(cepstrum, energy);
         energy.iter_mut().for_each(|e| *e = libm::exp(*e));
         match &self.way {
-            Way::Matrix(matrix) => {
+            Solver::Matrix(matrix) => {
                 magnitude.fill(0.0);
                 let rows = matrix.chunks(magnitude.len().max(1));
                 for (row, energy) in rows.zip(&*energy) {
@@ -113,7 +113,7 @@ impl Inverse {
                 }
                 magnitude.iter_mut().for_each(|power| *power = power.max(0.0));
             }
-            Way::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
+            Solver::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
         }
         magnitude.iter_mut().for_each(|m| *m = htex_dsp::root::sqrt(*m));
     }

@@ -8,8 +8,6 @@
 extern crate alloc;
 
 mod inverse;
-mod knobs;
-mod usual;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -19,15 +17,13 @@ use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::Scratch;
 use htex_dsp::shaped_noise::ComponentsKey;
-use htex_model::shaped::{Curve, Places, ShapedVoice};
+use htex_model::shaped::{Curve, Places, ShapedModel};
 use htex_model::{
-    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Error, Fit, FitInput, Numbers, StaticDescriptor, StaticField, StaticOption, Store, UsualRange,
     Values, mix,
 };
 
 use inverse::Inverse;
-pub use knobs::KNOBS;
-pub use usual::USUAL;
 
 const CEPSTRUM: usize = 0;
 const BANDS: usize = 1;
@@ -47,8 +43,8 @@ pub struct MelCepstrum;
 
 htex_model::export_model!(MelCepstrum, symbols: "plugin");
 
-impl Model for MelCepstrum {
-    type Voice = ShapedVoice<Spectrum>;
+impl ShapedModel for MelCepstrum {
+    type Curve = Spectrum;
 
     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
         "org.htex.mfcc",
@@ -63,16 +59,21 @@ impl Model for MelCepstrum {
             (-1e5, 1e5),
             MAX_BANDS,
             "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
-        ),
+        )
+        // The fits to 15 simulated recordings of five surfaces have -80 to 18. The first
+        // coefficient, a sum of logarithms, is by far the lowest.
+        .usual(UsualRange::linear(-80.0, 20.0)),
         StaticField::scalar("bands", "1", (2.0, MAX_BANDS as f64), "Number of mel bands.")
-            .stored(WHOLE),
+            .stored(WHOLE)
+            .usual(UsualRange::linear(20.0, 64.0)),
         StaticField::scalar(
             "inverse",
             "1",
             (0.0, 2.0),
             "Way back to a spectrum: 0 pseudo-inverse, 1 non-negative least squares, 2 triangles.",
         )
-        .stored(WHOLE),
+        .stored(WHOLE)
+        .usual(UsualRange::linear(0.0, 2.0)),
     ])
     .options(&[
         StaticOption::integer(
@@ -80,19 +81,24 @@ impl Model for MelCepstrum {
             (1, MAX_BANDS),
             10,
             "Coefficients kept (paper: ten).",
-        ),
+        )
+        .sweep(&[4.0, 5.0, 6.0, 8.0, 10.0, 13.0, 16.0, 20.0, 26.0, 32.0, 40.0])
+        .not_above("bands"),
         StaticOption::integer(
             "bands",
             (2, MAX_BANDS),
             26,
             "Mel bands between the edges of the band.",
-        ),
+        )
+        .sweep(&[26.0, 40.0])
+        .sweep_alone(&[20.0, 32.0, 64.0]),
         StaticOption::choice(
             "inverse",
             &["pinv", "nnls", "interpolate"],
             "Pseudo-inverse of the bank clipped at zero, non-negative least squares, or \
              interpolation between the bands' apexes.",
-        ),
+        )
+        .sweep(&[0.0, 1.0, 2.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -109,19 +115,10 @@ impl Model for MelCepstrum {
         log_energy.iter_mut().for_each(|e| *e = libm::log(e.max(FLOOR)));
         let mut cepstrum = vec![0.0; kept];
         dct_ii(&log_energy, &mut cepstrum);
-        let spectrum = Spectrum::of(inverse, band, &cepstrum)?;
+        let spectrum = Spectrum::with_cepstrum(inverse, band, &cepstrum)?;
         let count = [cepstrum.len() as f64];
         let rest = [bands as f64, input.options[INVERSE_OPTION]];
         Ok(Fit { parameters: [&count[..], &cepstrum, &rest].concat(), level_rms: spectrum.level })
-    }
-
-    fn magnitude(
-        parameters: &Values<'_>,
-        band: Band,
-        frequency_hz: &[f64],
-        magnitude: &mut [f64],
-    ) -> Result<(), Error> {
-        htex_model::shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
     }
 
     /// Interpolates cepstra, i.e. logarithms of energies.
@@ -137,19 +134,6 @@ impl Model for MelCepstrum {
             ));
         }
         mix::linear(sets, weights, out)
-    }
-
-    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_model::shaped::voice_rate_hz(band, wanted_hz)
-    }
-
-    fn voice(
-        parameters: &Values<'_>,
-        band: Band,
-        rate_hz: f64,
-        seed: u64,
-    ) -> Result<Self::Voice, Error> {
-        ShapedVoice::new(parameters, band, rate_hz, seed)
     }
 }
 
@@ -173,7 +157,7 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    fn of(inverse: Arc<Inverse>, band: Band, cepstrum: &[f64]) -> Result<Self, Error> {
+    fn with_cepstrum(inverse: Arc<Inverse>, band: Band, cepstrum: &[f64]) -> Result<Self, Error> {
         let mut spectrum = Self {
             band,
             cepstrum: cepstrum.to_vec(),
@@ -207,7 +191,7 @@ impl Curve for Spectrum {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let bands = whole(parameters, BANDS);
         let inverse = Inverse::shared(bands, whole(parameters, INVERSE) as u8, band);
-        Self::of(inverse, band, parameters.list(CEPSTRUM))
+        Self::with_cepstrum(inverse, band, parameters.list(CEPSTRUM))
     }
 
     fn band(&self) -> Band {
@@ -230,7 +214,7 @@ impl Curve for Spectrum {
     }
 
     /// Linear interpolation between bins.
-    fn at(&self, frequency_hz: f64) -> f64 {
+    fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let last = self.magnitude.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.band.first_bin() as f64).clamp(0.0, last as f64);
         let below = place as usize;

@@ -22,12 +22,12 @@ const SAME: f64 = 1e-9;
 /// decibels. `None` if the points do not determine them, or if the difference at some point is cut
 /// off.
 pub(crate) fn nearest(points: &[Peak], band: Band, [low, high]: [f64; 2]) -> Option<(f64, f64)> {
-    let squares = Squares::of(points, band)?;
+    let squares = Squares::new(points, band)?;
     let [low, high] = [low - 1.0, high - 1.0];
     let [a, b] = squares.least([low, high]);
     let found = (a + 1.0, b + 1.0);
     let profile = Profile::new(found.0, found.1, band);
-    let densities = || inside(points, band).map(|point| profile.at(point.frequency_hz));
+    let densities = || inside(points, band).map(|point| profile.density_at(point.frequency_hz));
     let highest = densities().fold(0.0, f64::max);
     let is_seen = |density: f64| density.is_finite() && density >= FAINTEST * highest;
     (highest > 0.0 && densities().all(is_seen)).then_some(found)
@@ -45,7 +45,7 @@ struct Squares {
 impl Squares {
     /// Computes the sums. `None` if there are fewer points than unknowns, or if they are at too few
     /// places.
-    fn of(points: &[Peak], band: Band) -> Option<Self> {
+    fn new(points: &[Peak], band: Band) -> Option<Self> {
         let faintest = FAINTEST * inside(points, band).map(|p| p.magnitude).fold(0.0, f64::max);
         let row = |point: &Peak| {
             let u = log_unit(point.frequency_hz, band);
@@ -110,7 +110,7 @@ fn inside(points: &[Peak], band: Band) -> impl Iterator<Item = &Peak> {
 /// Best scale and mean squared difference of natural logarithms, for the points inside the band.
 pub(crate) fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let points = || inside(points, profile.band);
-    let density = |point: &Peak| profile.at(point.frequency_hz);
+    let density = |point: &Peak| profile.density_at(point.frequency_hz);
     let least_density = FAINTEST * points().map(density).fold(0.0, f64::max);
     let least_magnitude = FAINTEST * points().map(|point| point.magnitude).fold(0.0, f64::max);
     let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);

@@ -90,37 +90,37 @@ fn to_peaks_and_bins(
     bins: usize,
     input: &FitInput<'_>,
     relative: &[f64],
-) -> Fitted {
+) -> DensityFit {
     let points = [peaks, &spread_bins(bins, input, relative)].concat();
-    Fitted::to(&points, input)
+    DensityFit::to(&points, input)
 }
 
 /// Fits only the peaks. If these leave the fit undetermined or too high, also fits as many bins.
-fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> Fitted {
+fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> DensityFit {
     let bins = spread_bins(input.options[POINTS] as usize, input, relative);
     if peaks.len() < FEWEST_PEAKS {
-        return Fitted::to(&bins, input);
+        return DensityFit::to(&bins, input);
     }
-    let first = Fitted::to(&peaks, input);
+    let first = DensityFit::to(&peaks, input);
     if first.highest <= HIGHEST {
         return first;
     }
     let points = [peaks, bins].concat();
-    let second = Fitted::to(&points, input);
-    let distance = |fitted: &Fitted| least_decibels(&points, &fitted.profile(input.band)).1;
+    let second = DensityFit::to(&points, input);
+    let distance = |fitted: &DensityFit| least_decibels(&points, &fitted.profile(input.band)).1;
     if distance(&first) < distance(&second) { first } else { second }
 }
 
 /// A fitted density, with the RMS of its magnitude and its maximum over the bins, both relative to
 /// the spectrum's largest bin.
-struct Fitted {
+struct DensityFit {
     alpha: f64,
     beta: f64,
     level: f64,
     highest: f64,
 }
 
-impl Fitted {
+impl DensityFit {
     fn to(points: &[Peak], input: &FitInput<'_>) -> Self {
         let band: Band = input.band;
         let bound = input.options[LOWER_BOUND].max(SMALLEST);
@@ -135,7 +135,7 @@ impl Fitted {
         let [alpha, beta] = [alpha, beta].map(|parameter| f64::from(parameter as f32));
         let profile = Profile::new(alpha, beta, band);
         let scale = distance.level_scale(points, &profile);
-        let at = |f: f64| scale * profile.at(f);
+        let at = |f: f64| scale * profile.density_at(f);
         let bins = input.frequency_hz.iter();
         Self {
             alpha,
@@ -225,7 +225,7 @@ impl Distance {
 
 /// Scale at which a density has the energy of the points.
 fn equal_energy(points: &[Peak], profile: &Profile) -> f64 {
-    let density = |point: &Peak| profile.at(point.frequency_hz);
+    let density = |point: &Peak| profile.density_at(point.frequency_hz);
     let fitted: f64 = points.iter().map(density).map(|p| p * p).sum();
     let wanted: f64 = points.iter().map(|p| p.magnitude * p.magnitude).sum();
     htex_dsp::root::sqrt(wanted / fitted)
@@ -235,7 +235,7 @@ fn equal_energy(points: &[Peak], profile: &Profile) -> f64 {
 fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {
-        let p = profile.at(point.frequency_hz);
+        let p = profile.density_at(point.frequency_hz);
         pp += p * p;
         pm += p * point.magnitude;
         mm += point.magnitude * point.magnitude;
@@ -243,7 +243,7 @@ fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let scale = pm / pp;
     let residual: f64 = points
         .iter()
-        .map(|point| scale * profile.at(point.frequency_hz) - point.magnitude)
+        .map(|point| scale * profile.density_at(point.frequency_hz) - point.magnitude)
         .map(|r| r * r)
         .sum();
     (scale, residual / mm)

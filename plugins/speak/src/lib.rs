@@ -12,9 +12,6 @@
 
 extern crate alloc;
 
-mod knobs;
-mod usual;
-
 use alloc::vec::Vec;
 
 use htex_dsp::grid::{GRID_HZ, read_part};
@@ -25,11 +22,8 @@ use htex_dsp::uniform::Uniform;
 use htex_dsp::window::hann_main_lobe;
 use htex_model::{
     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
-    Values, Voice, mix, text,
+    UsualRange, Values, Voice, mix, text,
 };
-
-pub use knobs::KNOBS;
-pub use usual::USUAL;
 
 const FREQUENCY: usize = 0;
 const AMPLITUDE: usize = 1;
@@ -71,7 +65,9 @@ impl Model for SpectralPeak {
             MAX_PEAKS as u32,
             "Frequencies of the sinusoids; those outside the band are not played.",
         )
-        .stored(HERTZ),
+        .stored(HERTZ)
+        // The band of textures.
+        .usual(UsualRange::log(20.0, 1000.0)),
         StaticField::list(
             "amplitude",
             "1",
@@ -80,7 +76,10 @@ impl Model for SpectralPeak {
             "Their amplitudes over the level: half the squares of those in the band, each times the part of its power that \
              the band's bins read (1 inside, 5/6 at an edge), sum to one.",
         )
-        .stored(RATIO),
+        .stored(RATIO)
+        // A single sinusoid has the square root of 2, because half the squares of the
+        // amplitudes add up to one.
+        .usual(UsualRange::linear(0.0, 1.42)),
         StaticField::scalar(
             "random_phase",
             "1",
@@ -91,7 +90,8 @@ impl Model for SpectralPeak {
             scale: 1.0,
             offset: 0.0,
             log: false,
-        }),
+        })
+        .usual(UsualRange::linear(0.0, 1.0)),
     ])
     .options(&[
         StaticOption::integer(
@@ -99,14 +99,16 @@ impl Model for SpectralPeak {
             (1, MAX_PEAKS as u32),
             10,
             "Most peaks kept (paper: ten).",
-        ),
+        )
+        .sweep(&[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0]),
         StaticOption::number(
             "jnd",
             "1",
             (0.0, 1.0),
             0.12,
             "Least relative distance of two peaks (paper: 12 %).",
-        ),
+        )
+        .sweep(&[0.24, 0.12, 0.06, 0.03, 0.0]),
         StaticOption::choice(
             "phase",
             &["seed", "zero"],

@@ -39,11 +39,11 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let orders =
         (order(slope(&points[..=peak], peak)), order(slope(&points[peak..], 0).map(|s| -s)));
     let peak_hz = input.frequency_hz[peak];
-    let shape = Shape::of(peak_hz, orders, input.band)?;
+    let shape = Shape::with_orders(peak_hz, orders, input.band)?;
     Ok(Fit {
         parameters: vec![peak_hz, orders.0, orders.1],
         // Chosen so that shape times level has the recording's magnitude at the peak.
-        level_rms: top * (shape.level() / shape.at(peak_hz)),
+        level_rms: top * (shape.level() / shape.magnitude_at(peak_hz)),
     })
 }
 

@@ -12,8 +12,6 @@
 extern crate alloc;
 
 mod fit;
-mod knobs;
-mod usual;
 
 use alloc::sync::Arc;
 
@@ -22,14 +20,11 @@ use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
-use htex_model::shaped::{Curve, ShapedVoice};
+use htex_model::shaped::{Curve, ShapedModel};
 use htex_model::{
-    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
-    Values, mix, text,
+    Error, Fit, FitInput, StaticDescriptor, StaticField, StaticOption, Store, UsualRange, Values,
+    text,
 };
-
-pub use knobs::KNOBS;
-pub use usual::USUAL;
 
 const PEAK: usize = 0;
 const HIGH_PASS: usize = 1;
@@ -48,8 +43,8 @@ pub struct SpectralSlope;
 
 htex_model::export_model!(SpectralSlope, symbols: "plugin");
 
-impl Model for SpectralSlope {
-    type Voice = ShapedVoice<Shape>;
+impl ShapedModel for SpectralSlope {
+    type Curve = Shape;
 
     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
         "org.htex.sslope",
@@ -64,21 +59,26 @@ impl Model for SpectralSlope {
             (1.0, 2000.0),
             "Dominant peak and cut-off of both filters.",
         )
-        .stored(steps(0.03125)),
+        .stored(steps(0.03125))
+        // The band of textures.
+        .usual(UsualRange::log(20.0, 1000.0)),
         StaticField::scalar(
             "order_high_pass",
             "1",
             (0.05, MAX_ORDER),
             "Order r_a of the Butterworth high-pass.",
         )
-        .stored(steps(ORDER_STEP)),
+        .stored(steps(ORDER_STEP))
+        // The fits to 15 simulated recordings of five surfaces have orders around 1 to 5.
+        .usual(UsualRange::linear(0.5, 6.0)),
         StaticField::scalar(
             "order_low_pass",
             "1",
             (0.05, MAX_ORDER),
             "Order r_b of the Butterworth low-pass.",
         )
-        .stored(steps(ORDER_STEP)),
+        .stored(steps(ORDER_STEP))
+        .usual(UsualRange::linear(0.5, 6.0)),
     ])
     .options(&[
         StaticOption::number(
@@ -87,47 +87,19 @@ impl Model for SpectralSlope {
             (1.0, 20.0),
             20.0,
             "Slopes are rounded to whole multiples of this (paper: 20).",
-        ),
+        )
+        .sweep(&[20.0, 10.0, 5.0, 1.0]),
         StaticOption::choice(
             "slopes",
             &["least-squares", "end-points", "anchored"],
             "How slopes are measured: a line through all bins, through both ends, or through the \
              peak.",
-        ),
+        )
+        .sweep(&[0.0, 1.0, 2.0]),
     ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         fit::fit(input)
-    }
-
-    fn magnitude(
-        parameters: &Values<'_>,
-        band: Band,
-        frequency_hz: &[f64],
-        magnitude: &mut [f64],
-    ) -> Result<(), Error> {
-        htex_model::shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
-    }
-
-    fn interpolate(
-        sets: &[Values<'_>],
-        weights: &[f64],
-        out: &mut Numbers<'_>,
-    ) -> Result<(), Error> {
-        mix::linear(sets, weights, out)
-    }
-
-    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        htex_model::shaped::voice_rate_hz(band, wanted_hz)
-    }
-
-    fn voice(
-        parameters: &Values<'_>,
-        band: Band,
-        rate_hz: f64,
-        seed: u64,
-    ) -> Result<Self::Voice, Error> {
-        ShapedVoice::new(parameters, band, rate_hz, seed)
     }
 }
 
@@ -146,7 +118,7 @@ pub struct Shape {
 const AT_ONCE: usize = 64;
 
 impl Shape {
-    fn of(peak_hz: f64, orders: (f64, f64), band: Band) -> Result<Self, Error> {
+    fn with_orders(peak_hz: f64, orders: (f64, f64), band: Band) -> Result<Self, Error> {
         let mut shape =
             Self { peak_hz, high_pass: orders.0, low_pass: orders.1, band, level: 1.0, logs: None };
         shape.measure()?;
@@ -154,7 +126,7 @@ impl Shape {
     }
 
     fn measure(&mut self) -> Result<(), Error> {
-        self.level = curve_level_rms(self.band, |f| self.at(f));
+        self.level = curve_level_rms(self.band, |f| self.magnitude_at(f));
         if self.level > 0.0 {
             return Ok(());
         }
@@ -173,7 +145,7 @@ impl Shape {
 impl Curve for Shape {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let orders = (parameters.scalar(HIGH_PASS), parameters.scalar(LOW_PASS));
-        Self::of(parameters.scalar(PEAK), orders, band)
+        Self::with_orders(parameters.scalar(PEAK), orders, band)
     }
 
     fn band(&self) -> Band {
@@ -188,7 +160,7 @@ impl Curve for Shape {
     }
 
     /// The value at the peak is one half.
-    fn at(&self, frequency_hz: f64) -> f64 {
+    fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let above = frequency_hz / self.peak_hz;
         analog_low_pass_magnitude(above, self.low_pass)
             * analog_low_pass_magnitude(1.0 / above, self.high_pass)

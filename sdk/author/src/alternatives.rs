@@ -117,8 +117,8 @@ fn other_values(option: &FitOption) -> Vec<f64> {
 /// recording of the voice would read. `None` if the model cannot be fitted.
 fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
     let reference = group.spectrum.as_ref();
-    let request = group.spectrum.fit_request(options);
-    let fit = model.fit_at(&request, group.condition).ok()?;
+    let input = group.spectrum.fit_input(options, group.condition);
+    let fit = model.fit(&input).ok()?;
     let fields = stored_fields(model.descriptor());
     // Compared as an asset stores it, because the error to beat was measured like that too.
     let stored = htex_format::round_within(&fields, model.descriptor(), &fit.parameters).ok()?;

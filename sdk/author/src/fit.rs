@@ -177,8 +177,8 @@ struct GroupFit {
 fn fit_group(choice: &ModelRequest, group: &Group, level: Level) -> Result<GroupFit, AuthorError> {
     let model = &choice.model;
     let start = Instant::now();
-    let request = group.spectrum.fit_request(&choice.options);
-    let fit = model.fit_at(&request, group.condition)?;
+    let input = group.spectrum.fit_input(&choice.options, group.condition);
+    let fit = model.fit(&input)?;
     let fit_ms = start.elapsed().as_secs_f64() * 1e3;
     let stored =
         round_within(&stored_fields(model.descriptor()), model.descriptor(), &fit.parameters)?;

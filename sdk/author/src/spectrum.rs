@@ -6,7 +6,7 @@ use htex_dsp::fft::RealFft;
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
 use htex_format::Quantity;
-use htex_host::FitRequest;
+use htex_host::{FitCondition, FitInput};
 
 use crate::averaging::{Averaging, average};
 use crate::blocks::{Span, repeatability_rms_db};
@@ -152,16 +152,17 @@ impl TextureSpectrum {
         }
     }
 
-    /// Returns the request to fit a model to this spectrum. `options` has one value for each of the
-    /// model's options.
-    pub fn fit_request<'a>(&'a self, options: &'a [f64]) -> FitRequest<'a> {
-        FitRequest {
+    /// Returns the input for fitting a model to this spectrum. `options` has one value for each of
+    /// the model's options, and `condition` is the motion of the recording.
+    pub fn fit_input<'a>(&'a self, options: &'a [f64], condition: FitCondition) -> FitInput<'a> {
+        FitInput {
             band: self.band,
             frequency_hz: &self.frequency_hz,
             magnitude: &self.magnitude,
             signal: &self.signal,
             signal_rate_hz: self.signal_rate_hz,
             options,
+            condition,
         }
     }
 

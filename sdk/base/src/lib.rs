@@ -7,6 +7,7 @@
 //!   `cloud`.
 //! - [`schema`]: JSON Schemas made from Rust types, and checks against them.
 //! - [`native`]: native libraries, loaded from files or by name.
+//! - [`setters!`]: methods that set the fields of options.
 
 pub mod files;
 pub mod finding;
@@ -14,3 +15,31 @@ pub mod native;
 pub mod schema;
 #[cfg(feature = "storage")]
 pub mod storage;
+
+/// Writes methods that set a field and return the options, inside an `impl`.
+///
+/// ```
+/// #[derive(Default)]
+/// struct Options {
+///     seed: u64,
+/// }
+///
+/// impl Options {
+///     htex_base::setters! {
+///         /// Sets the seed.
+///         with_seed(seed: u64);
+///     }
+/// }
+/// assert_eq!(Options::default().with_seed(7).seed, 7);
+/// ```
+#[macro_export]
+macro_rules! setters {
+    ($($(#[$doc:meta])* $name:ident($field:ident: $value:ty);)*) => {
+        $($(#[$doc])*
+        #[must_use]
+        pub fn $name(mut self, $field: $value) -> Self {
+            self.$field = $field;
+            self
+        })*
+    };
+}

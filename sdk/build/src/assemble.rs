@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use htex_base::files::AtFile;
-use htex_format::library::{Packed, Writer};
+use htex_format::library::{PackSummary, Writer};
 use htex_format::{Asset, Rights};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -202,7 +202,7 @@ fn keep_library(
     kept: &Kept,
     path: &Path,
     contents: String,
-    packed: &Packed,
+    packed: &PackSummary,
 ) -> Result<KeptLibrary, BuildError> {
     let library = KeptLibrary {
         contents,

@@ -48,7 +48,7 @@ impl Cache {
 
     /// Returns whether there is a file for a key, even if it cannot be used.
     pub(crate) fn has_file(&self, key: &str) -> bool {
-        let path = self.kept.own().at(&inside(&name(key)));
+        let path = self.kept.own().entry_path(&inside(&name(key)));
         path.is_ok_and(|path| path.symlink_metadata().is_ok())
     }
 

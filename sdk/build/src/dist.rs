@@ -39,7 +39,7 @@ impl Dist {
     /// Returns the path of a file that is not written by [`Self::put`]. None of the folders above
     /// it is a link.
     pub(crate) fn at(&self, file: &Path) -> Result<PathBuf, BuildError> {
-        let at = self.own.at(file);
+        let at = self.own.entry_path(file);
         Ok(at.writing(self.own.path().join(file))?)
     }
 

@@ -147,8 +147,10 @@ impl Elsewhere {
         if let Some(stamp) = self.listed().get(path) {
             return Ok(*stamp);
         }
-        let stat =
-            self.storage()?.stat(location)?.ok_or_else(|| StorageProblem::Missing.at(location))?;
+        let stat = self
+            .storage()?
+            .stat(location)?
+            .ok_or_else(|| StorageProblem::Missing.at_place(location))?;
         let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref(), stat.modified);
         self.listed().insert(path.to_owned(), stamp);
         Ok(stamp)
@@ -166,7 +168,7 @@ impl Elsewhere {
     pub(crate) fn copy(&self, location: &Location, blake3: &str) -> Result<PathBuf, BuildError> {
         let name = named(location)?;
         let copies = self.copies()?;
-        if let Ok(there) = copies.own.at(&copies.inside.join(blake3).join(&name))
+        if let Ok(there) = copies.own.entry_path(&copies.inside.join(blake3).join(&name))
             && there.symlink_metadata().is_ok_and(|is| is.is_file())
             && hash_local(&there).is_ok_and(|hashed| hashed.blake3 == blake3)
         {

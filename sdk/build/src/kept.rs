@@ -32,7 +32,7 @@ impl Kept {
     /// Returns the folder of stored data in the folder of the results.
     pub(crate) fn new(output: &Path) -> Result<Self, BuildError> {
         let folder = htex_base::native::folders::config();
-        let key = folder.and_then(|folder| Key::of(&folder, KEY).ok());
+        let key = folder.and_then(|folder| Key::load_or_create(&folder, KEY).ok());
         let key = match key {
             Some(key) => key,
             None => passing().writing(output)?,

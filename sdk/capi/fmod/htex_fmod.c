@@ -19,6 +19,8 @@
 #include <fmod_common.h>
 #include <htex.h>
 
+#include "models.h"
+
 enum { ASSET, SPEED, FORCE, LEVEL, MODEL, SEED, PARAMETERS };
 
 /* Level that is silence, dB. */
@@ -27,8 +29,7 @@ enum { ASSET, SPEED, FORCE, LEVEL, MODEL, SEED, PARAMETERS };
 /* Of `next`: play nothing. */
 #define NO_VOICE UINT64_MAX
 
-/* The models of libhtex in its order. Projects store the index: new ones come at the end. */
-static const char *const MODELS[] = {"least error", "ar", "mfcc", "speak", "sbeta", "sslope", "bands", "arma", "map"};
+/* Projects store the index of a model: new ones come at the end. */
 enum { MODEL_COUNT = sizeof MODELS / sizeof MODELS[0] };
 
 #define FLOAT(_name, _label, _description, _min, _max, _default)                                                       \

@@ -116,7 +116,7 @@ impl PassedPower {
                 .collect::<Vec<_>>()
         };
         let points: Vec<(f64, f64)> = (first_bin..=last_bin).flat_map(heard).collect();
-        Self { turns: points.chunks(TURNS).map(|p| Turns::of(p, rate_hz)).collect(), points }
+        Self { turns: points.chunks(TURNS).map(|p| Turns::new(p, rate_hz)).collect(), points }
     }
 
     /// Returns the RMS of filtered noise whose magnitude before the filters is `curve`. Corresponds
@@ -154,7 +154,7 @@ impl PassedPower {
 impl Turns {
     const NONE: Self = Self { cos: [1.0; TURNS], sin: [0.0; TURNS], part: [0.0; TURNS] };
 
-    fn of(points: &[(f64, f64)], rate_hz: f64) -> Self {
+    fn new(points: &[(f64, f64)], rate_hz: f64) -> Self {
         let mut turns = Self::NONE;
         for (i, (hz, part)) in points.iter().enumerate() {
             let angle = core::f64::consts::TAU * hz / rate_hz;

@@ -11,7 +11,7 @@ use crate::Band;
 /// assert_eq!(log_unit(1000.0, Band::TACTILE), 1.0);
 /// ```
 pub fn log_unit(f_hz: f64, band: Band) -> f64 {
-    LogAxis::new(band).at(f_hz)
+    LogAxis::new(band).unit_at(f_hz)
 }
 
 /// The axis of [`log_unit`], precomputed for one band.
@@ -27,7 +27,7 @@ impl LogAxis {
     }
 
     /// Position of `f_hz`, as [`log_unit`].
-    pub fn at(&self, f_hz: f64) -> f64 {
+    pub fn unit_at(&self, f_hz: f64) -> f64 {
         libm::log(f_hz / self.low_hz) / self.log_ratio
     }
 }
@@ -41,8 +41,8 @@ impl LogAxis {
 /// ```
 /// use htex_dsp::beta::BetaDensity;
 /// let density = BetaDensity::new(2.0, 2.0);
-/// assert!((density.at(0.5) - 1.5).abs() < 1e-12);
-/// assert_eq!(density.at(0.0), 0.0);
+/// assert!((density.density_at(0.5) - 1.5).abs() < 1e-12);
+/// assert_eq!(density.density_at(0.0), 0.0);
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BetaDensity {
@@ -66,7 +66,7 @@ impl BetaDensity {
         Self { alpha, beta, log_scale }
     }
 
-    pub fn at(&self, u: f64) -> f64 {
+    pub fn density_at(&self, u: f64) -> f64 {
         if self.log_scale.is_nan() || u.is_nan() {
             return f64::NAN;
         }
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     fn density(u: f64, alpha: f64, beta: f64) -> f64 {
-        BetaDensity::new(alpha, beta).at(u)
+        BetaDensity::new(alpha, beta).density_at(u)
     }
 
     #[test]

@@ -46,13 +46,13 @@ impl Direct {
     /// Filters a block in place. `order` is at least the order of the filter.
     pub(crate) fn process(&mut self, order: usize, groups: &mut [[f64; GROUP]]) {
         match order {
-            0..=2 => wide(One::<2>(self, groups)),
-            3..=4 => wide(One::<4>(self, groups)),
+            0..=2 => wide(RunVoice::<2>(self, groups)),
+            3..=4 => wide(RunVoice::<4>(self, groups)),
             // Not 6: from one and a half vectors compilers make a loop that shuffles lanes, and a
             // voice takes a quarter longer.
-            5..=8 => wide(One::<8>(self, groups)),
-            9..=12 => wide(One::<12>(self, groups)),
-            _ => wide(One::<MAX_ORDER>(self, groups)),
+            5..=8 => wide(RunVoice::<8>(self, groups)),
+            9..=12 => wide(RunVoice::<12>(self, groups)),
+            _ => wide(RunVoice::<MAX_ORDER>(self, groups)),
         }
     }
 
@@ -100,9 +100,9 @@ fn first<const N: usize>(of: &[f64; MAX_ORDER]) -> [f64; N] {
 }
 
 /// One voice and its block.
-struct One<'a, const N: usize>(&'a mut Direct, &'a mut [[f64; GROUP]]);
+struct RunVoice<'a, const N: usize>(&'a mut Direct, &'a mut [[f64; GROUP]]);
 
-impl<const N: usize> Work for One<'_, N> {
+impl<const N: usize> Work for RunVoice<'_, N> {
     #[inline(always)]
     fn run(self) {
         let Self(direct, groups) = self;
@@ -119,8 +119,8 @@ fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad
         states: [[Quad::ZERO; N]; GROUP],
         state: [Quad::ZERO; N],
     };
-    wide(Beside(&mut short, four.each_ref().map(|one| &**one)));
-    wide(Four(&mut short, groups));
+    wide(InterleaveVoices(&mut short, four.each_ref().map(|one| &**one)));
+    wide(RunVoices(&mut short, groups));
     for (voice, own) in four.iter_mut().enumerate() {
         own.keep(&part(&short.state, voice));
     }
@@ -128,9 +128,9 @@ fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad
 
 /// Separate from the function that interleaves the voices: otherwise compilers shuffle lanes inside
 /// the loop.
-struct Four<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
+struct RunVoices<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
 
-impl<const N: usize> Work for Four<'_, N> {
+impl<const N: usize> Work for RunVoices<'_, N> {
     #[inline(always)]
     fn run(self) {
         self.0.run(self.1);
@@ -145,9 +145,9 @@ struct Short<T: Lane, const N: usize> {
 }
 
 /// Interleaves four voices.
-struct Beside<'a, const N: usize>(&'a mut Short<Quad, N>, [&'a Direct; VOICES]);
+struct InterleaveVoices<'a, const N: usize>(&'a mut Short<Quad, N>, [&'a Direct; VOICES]);
 
-impl<const N: usize> Work for Beside<'_, N> {
+impl<const N: usize> Work for InterleaveVoices<'_, N> {
     #[inline(always)]
     fn run(self) {
         let Self(short, [a, b, c, d]) = self;

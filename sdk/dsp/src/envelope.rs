@@ -27,7 +27,7 @@ const OVERLAP: usize = 4;
 
 /// Measurements of a stream since the last call of [`Analyser::read`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
+pub struct Measurement {
     /// RMS of the samples; 0 if there are none.
     pub level_rms: f64,
     /// Mean frequency, weighted by power, hertz; 0 for silence.
@@ -221,7 +221,7 @@ impl Analyser {
 
     /// Returns the measurements since the last call, and writes the mean square of each band to
     /// `bands`, as far as there is room.
-    pub fn read(&mut self, bands: &mut [f64]) -> Measured {
+    pub fn read(&mut self, bands: &mut [f64]) -> Measurement {
         let sums = core::mem::take(&mut self.sums);
         if sums.windows > 0 {
             self.bands.iter_mut().for_each(|power| *power /= sums.windows as f64);
@@ -234,6 +234,6 @@ impl Analyser {
             0 => 0.0,
             frames => libm::sqrt(sums.squares / frames as f64),
         };
-        Measured { level_rms, centroid_hz: self.centroid_hz, frames: sums.frames }
+        Measurement { level_rms, centroid_hz: self.centroid_hz, frames: sums.frames }
     }
 }

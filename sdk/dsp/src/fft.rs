@@ -63,7 +63,7 @@ impl RealFft {
             self.points.fill(samples.iter().map(|x| [*x, 0.0]));
             self.complex.forward(&mut self.points);
             for (k, bin) in bins.iter_mut().enumerate().take(self.len / 2 + 1) {
-                *bin = self.points.at(k);
+                *bin = self.points.point(k);
             }
         }
     }
@@ -86,7 +86,7 @@ impl RealFft {
             self.points.fill(folded);
             self.complex.inverse(&mut self.points);
             for (n, pair) in samples.chunks_mut(2).enumerate().take(len / 2) {
-                let z = self.points.at(n);
+                let z = self.points.point(n);
                 pair.iter_mut().zip([z.re, z.im]).for_each(|(x, z)| *x = z);
             }
         } else {
@@ -94,7 +94,7 @@ impl RealFft {
             self.points.fill(whole.map(|x| [x.re, x.im]));
             self.complex.inverse(&mut self.points);
             for (n, x) in samples.iter_mut().enumerate().take(len) {
-                *x = self.points.at(n).re;
+                *x = self.points.point(n).re;
             }
         }
     }
@@ -105,7 +105,7 @@ impl RealFft {
         let half = self.fold.len();
         for (k, bin) in bins.iter_mut().enumerate().take(half) {
             // `% half`, because bin 0 is its own mirror image.
-            let (z, mirrored) = (self.points.at(k), self.points.at((half - k) % half).conj());
+            let (z, mirrored) = (self.points.point(k), self.points.point((half - k) % half).conj());
             let (even, odd) = ((z + mirrored) * 0.5, (z - mirrored) * 0.5);
             // Division by i of the sum over the odd samples.
             let odd = Complex::new(odd.im, -odd.re) * self.fold[k].conj();
@@ -113,7 +113,7 @@ impl RealFft {
         }
         // A transform of length 0 has this bin, but no point to compute it from.
         if let (Some(last), true) = (bins.get_mut(half), half > 0) {
-            let z = self.points.at(0);
+            let z = self.points.point(0);
             *last = Complex::new(z.re - z.im, 0.0);
         }
     }

@@ -68,7 +68,7 @@ impl Band {
 /// All bins together would measure 1.5 times the power of a component, but bins outside the band do
 /// not contribute. Noise with a given level in the band is amplified to compensate.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
-    ReadPart::new(band).at(frequency_hz)
+    ReadPart::new(band).part_at(frequency_hz)
 }
 
 /// [`read_part`], precomputed for one band.
@@ -82,7 +82,7 @@ impl ReadPart {
         Self { first: band.first_bin() as f64, last: band.last_bin() as f64 }
     }
 
-    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+    pub(crate) fn part_at(&self, frequency_hz: f64) -> f64 {
         let at = frequency_hz / GRID_HZ;
         let Self { first, last } = *self;
         if at >= first + WINDOW_BINS && at <= last - WINDOW_BINS {

@@ -34,7 +34,7 @@ fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32>
             .map(|j| {
                 // Input j of the window is at the time j - (taps/2 - 1), relative to the base.
                 let t = j as f64 - (half - 1.0) - shift;
-                sinc(2.0 * cutoff * t) * window.at(t / half)
+                sinc(2.0 * cutoff * t) * window.value_at(t / half)
             })
             .collect();
         // Every phase has unit gain at DC, so a constant input gives a constant output.
@@ -69,7 +69,7 @@ impl Kaiser {
     }
 
     /// The window at `x` in -1 to 1.
-    fn at(&self, x: f64) -> f64 {
+    fn value_at(&self, x: f64) -> f64 {
         if x.abs() > 1.0 {
             return 0.0;
         }

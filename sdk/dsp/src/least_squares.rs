@@ -44,7 +44,7 @@ impl PseudoInverse {
             let column = |c| (0..rows).map(|r| element(r, c)).collect();
             (0..columns).map(column).collect()
         };
-        let factors = Factors::of(vectors);
+        let factors = Factors::new(vectors);
         let tolerance = rows.max(columns) as f64 * f64::EPSILON * factors.largest();
         let mut inverse = alloc::vec![0.0; rows * columns];
         let mut rank = 0;
@@ -87,7 +87,7 @@ struct Factors {
 }
 
 impl Factors {
-    fn of(mut vectors: Vec<Vec<f64>>) -> Self {
+    fn new(mut vectors: Vec<Vec<f64>>) -> Self {
         let n = vectors.len();
         let unit = |i: usize| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect();
         let mut rotation: Vec<Vec<f64>> = (0..n).map(unit).collect();

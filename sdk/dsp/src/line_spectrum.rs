@@ -128,8 +128,8 @@ pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
     // Clearing the memory for few lines takes less time than for many.
     match cosines.len() {
         // 24 lines are 12 factors, and `multiply` needs two places more.
-        0..=24 => Halves::<14>::of(cosines).write(coefficients),
-        _ => Halves::<{ MOST_FACTORS + 2 }>::of(cosines).write(coefficients),
+        0..=24 => Halves::<14>::new(cosines).write(coefficients),
+        _ => Halves::<{ MOST_FACTORS + 2 }>::new(cosines).write(coefficients),
     }
 }
 
@@ -147,7 +147,7 @@ struct Halves<const N: usize> {
 }
 
 impl<const N: usize> Halves<N> {
-    fn of(cosines: &[f64]) -> Self {
+    fn new(cosines: &[f64]) -> Self {
         let mut halves = Self { coefficients: [[0.0; 2]; N], factors: [0; 2] };
         halves.coefficients[0] = [1.0; 2];
         let (pairs, last) = cosines.as_chunks::<2>();

@@ -110,17 +110,17 @@ impl<'a> Pipelines<'a> {
 /// Runs one row of each of four pipelines.
 fn run_four<const N: usize>(mut rows: [&mut Row<f64, N>; VOICES], pairs: &mut [[Quad; PAIR]]) {
     let mut row = Row::NONE;
-    wide(Beside(&mut row, rows.each_ref().map(|row| &**row)));
-    wide(Run(&mut row, pairs));
+    wide(InterleaveRows(&mut row, rows.each_ref().map(|row| &**row)));
+    wide(RunRows(&mut row, pairs));
     for (voice, own) in rows.iter_mut().enumerate() {
         own.state = row.state.part(voice);
     }
 }
 
 /// Interleaves four rows.
-struct Beside<'a, const N: usize>(&'a mut Row<Quad, N>, [&'a Row<f64, N>; VOICES]);
+struct InterleaveRows<'a, const N: usize>(&'a mut Row<Quad, N>, [&'a Row<f64, N>; VOICES]);
 
-impl<const N: usize> Work for Beside<'_, N> {
+impl<const N: usize> Work for InterleaveRows<'_, N> {
     #[inline(always)]
     fn run(self) {
         let Self(row, [a, b, c, d]) = self;
@@ -142,9 +142,9 @@ impl<const N: usize> Work for Beside<'_, N> {
 
 /// Separate from the function that interleaves the rows: otherwise compilers shuffle lanes inside
 /// the loop.
-struct Run<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
+struct RunRows<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
 
-impl<const N: usize> Work for Run<'_, N> {
+impl<const N: usize> Work for RunRows<'_, N> {
     #[inline(always)]
     fn run(self) {
         self.0.run(self.1);

@@ -48,7 +48,7 @@ impl Polyphase {
 
     /// Makes a filter between equal rates whose outputs are `phase / phases` of a sample behind the
     /// source samples.
-    pub(crate) fn at(phase: usize, phases: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
+    pub(crate) fn with_phase(phase: usize, phases: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
         Self { phase, ..Self::new(phases, (1, 0), taps, kernel) }
     }
 

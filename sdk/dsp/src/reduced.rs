@@ -5,7 +5,7 @@
 //! one point at its end, with the level of the block. So the level of a block is reached when the
 //! block ends, on average half a block later than with steps.
 
-use crate::envelope::Measured;
+use crate::envelope::Measurement;
 
 /// Mean frequency up to which the large motor of a gamepad gets the whole strength, hertz.
 const LARGE_MOTOR_HZ: f64 = 60.0;
@@ -95,7 +95,7 @@ impl Points {
     /// time 0.
     pub fn block(
         &mut self,
-        measured: &Measured,
+        measured: &Measurement,
         scale: &Scale,
         rate_hz: f64,
     ) -> impl Iterator<Item = Point> + use<> {
@@ -138,7 +138,7 @@ mod tests {
             let mut points = Points::default();
             let mut last_ns = 0;
             for (level_rms, centroid_hz, frames) in blocks {
-                let measured = Measured { level_rms, centroid_hz, frames };
+                let measured = Measurement { level_rms, centroid_hz, frames };
                 for point in points.block(&measured, &scale, rate_hz) {
                     prop_assert!((0.0..=1.0).contains(&point.strength) && (0.0..=1.0).contains(&point.place));
                     prop_assert!(point.time_ns >= last_ns);

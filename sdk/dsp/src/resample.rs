@@ -69,7 +69,7 @@ impl Resampler {
     /// # Errors
     /// If a rate is outside 1 mHz to 10 MHz, or the rates differ by more than a factor of 10,000.
     pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Option<Self>, UnusableRates> {
-        Self::of(specs(from_hz, to_hz, top_hz)?)
+        Self::with_specs(specs(from_hz, to_hz, top_hz)?)
     }
 
     /// As [`Self::new`], for a source whose rate is fixed at `from_hz`, whatever rate is wanted,
@@ -85,10 +85,10 @@ impl Resampler {
         to_hz: f64,
         top_hz: f64,
     ) -> Result<Option<Self>, UnusableRates> {
-        Self::of(own_specs(from_hz, to_hz, top_hz)?)
+        Self::with_specs(own_specs(from_hz, to_hz, top_hz)?)
     }
 
-    fn of(specs: Vec<Spec>) -> Result<Option<Self>, UnusableRates> {
+    fn with_specs(specs: Vec<Spec>) -> Result<Option<Self>, UnusableRates> {
         let stages: Vec<Stage> = specs.iter().map(Stage::new).collect();
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
@@ -348,7 +348,12 @@ impl Stage {
             // of a frequency and its image are a quarter turn apart, so their powers add up, as at
             // other rates.
             let kernel = spec.own_kernel();
-            return Self::Rational(Polyphase::at(1, OWN_PHASES as usize, spec.taps(), kernel));
+            return Self::Rational(Polyphase::with_phase(
+                1,
+                OWN_PHASES as usize,
+                spec.taps(),
+                kernel,
+            ));
         }
         let (up, down, taps) = (spec.up(), spec.down(), spec.taps());
         let phases = if spec.is_exact() { up } else { INTERPOLATED_PHASES };

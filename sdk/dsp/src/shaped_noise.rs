@@ -113,8 +113,8 @@ pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     // If the part is 1 at both ends, it is 1 in between, and the sum below would give exactly 1 as
     // well. Most components take this shortcut.
-    if part.at(hz - FRAME_SPREAD * spacing_hz) == 1.0
-        && part.at(hz + FRAME_SPREAD * spacing_hz) == 1.0
+    if part.part_at(hz - FRAME_SPREAD * spacing_hz) == 1.0
+        && part.part_at(hz + FRAME_SPREAD * spacing_hz) == 1.0
     {
         return 1.0;
     }
@@ -128,7 +128,7 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
         let x = core::f64::consts::PI * offset_hz / lobe_hz;
         let amplitude = if step == 0 { 1.0 } else { crate::trig::sin(x) / x };
         let weight = amplitude * amplitude;
-        read += weight * part.at(hz + offset_hz);
+        read += weight * part.part_at(hz + offset_hz);
         all += weight;
     }
     read / all

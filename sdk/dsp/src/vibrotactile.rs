@@ -92,7 +92,8 @@ impl Listener {
     /// ```
     /// use htex_dsp::vibrotactile::Listener;
     /// let [typical, sensitive] = [Listener::default(), Listener::sensitive()];
-    /// let gain = sensitive.sensation(250.0) / typical.sensation(250.0);
+    /// let sensation = |of: Listener| of.skin.displacement_m(250.0) / of.threshold_m(250.0);
+    /// let gain = sensation(sensitive) / sensation(typical);
     /// assert!((20.0 * gain.log10() - 16.02).abs() < 0.01);
     /// ```
     #[must_use]
@@ -106,12 +107,6 @@ impl Listener {
             },
             threshold_shift_db: -10.0,
         }
-    }
-
-    /// Returns the displacement that a sinusoidal force of 1 N causes, divided by the threshold, at
-    /// a frequency in hertz above 0.
-    pub fn sensation(&self, frequency_hz: f64) -> f64 {
-        self.skin.displacement_m(frequency_hz) / self.threshold_m(frequency_hz)
     }
 
     /// Returns this listener's detection threshold, metres, peak, at a frequency in hertz above 0.

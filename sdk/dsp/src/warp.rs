@@ -58,26 +58,26 @@ impl Warp {
     /// Makes a reader for a source without content above `top` times its rate (0 to 0.5). A change
     /// of the ratio takes effect after half a kernel (4 to 16 source samples).
     pub fn new(top: f64) -> Self {
-        Self::of(taps(top), PHASE_BITS)
+        Self::with_taps(taps(top), PHASE_BITS)
     }
 
     /// Makes a reader for a ratio of 1 only. The source passes through without delay.
     pub fn through() -> Self {
-        Self::of(1, 0)
+        Self::with_taps(1, 0)
     }
 
     /// Makes a reader that starts to interpolate only when it is needed. While the ratio is 1, the
     /// source passes through bit-identical and without delay. From the first other ratio on, the
     /// reader interpolates as [`Self::new`] does, starting at the current position.
     pub fn when_needed(top: f64) -> Self {
-        let mut warp = Self::of(taps(top), FEW_PHASE_BITS);
+        let mut warp = Self::with_taps(taps(top), FEW_PHASE_BITS);
         // The samples before the first one count as zeros.
         warp.filled = warp.before();
         warp.reads = false;
         warp
     }
 
-    fn of(taps: usize, phase_bits: u32) -> Self {
+    fn with_taps(taps: usize, phase_bits: u32) -> Self {
         Self {
             taps,
             phase_bits,

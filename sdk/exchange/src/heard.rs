@@ -90,7 +90,7 @@ impl Source<'_> {
     /// The rights of what is played, which are written into every file.
     pub(crate) fn rights(&self) -> Rights {
         match self {
-            Self::Asset { asset, .. } => Rights::of(asset.manifest()),
+            Self::Asset { asset, .. } => Rights::from_manifest(asset.manifest()),
             Self::Scene(scene) => scene.rights.clone(),
         }
     }

@@ -104,7 +104,7 @@ pub fn import(
     };
     let given = Rights::new(how.metadata.license.as_deref(), how.metadata.author.as_deref());
     let stated = Stated::of(format, bytes, how.license_file, &given)?;
-    let own = Rights::of(&imported.asset.manifest);
+    let own = Rights::from_manifest(&imported.asset.manifest);
     stated.check(&own, &given)?;
     let mut metadata = how.metadata.clone();
     // What the asset states stays as it is, and so do the bytes of an asset inside the file.

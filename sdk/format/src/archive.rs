@@ -14,6 +14,12 @@ use crate::unpack::{DEFLATED, STORED, unpack};
 use crate::zip_records::{self, Central, Common, END_BYTES, End, Local};
 use htex_base::finding::Findings;
 
+/// Name of the entry that identifies an asset.
+pub(crate) const MIMETYPE: &str = "mimetype";
+/// Contents of that entry.
+pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
+pub(crate) const MANIFEST: &str = "manifest.json";
+
 // Bit 0 is encryption, bit 6 strong encryption, and bit 13 says that values of the local header are
 // hidden, which also happens only in encrypted archives.
 const ENCRYPTED: u16 = 1 | 1 << 6 | 1 << 13;
@@ -29,7 +35,7 @@ pub(crate) struct Entry<'a> {
 }
 
 /// An entry whose records were checked and whose data is still packed.
-struct Packed<'a> {
+struct PackedEntry<'a> {
     name: String,
     common: Common,
     data: &'a [u8],
@@ -67,7 +73,7 @@ impl<'a> Archive<'a> {
     }
 }
 
-impl<'a> Packed<'a> {
+impl<'a> PackedEntry<'a> {
     fn unpack(self, findings: &mut Findings) -> Option<Entry<'a>> {
         let (name, method) = (self.name, self.common.method);
         match unpack(self.data, &self.common) {
@@ -136,7 +142,7 @@ fn directory<'a>(
     end: &End,
     limits: &Limits,
     findings: &mut Findings,
-) -> Option<Vec<Packed<'a>>> {
+) -> Option<Vec<PackedEntry<'a>>> {
     let mut entries = Vec::new();
     let mut names = BTreeSet::new();
     let (mut at, mut expected_local, mut total) = (end.directory_at as usize, 0usize, 0u64);
@@ -162,7 +168,7 @@ fn directory<'a>(
         total += u64::from(central.common.size);
         let data = check_local(bytes, &central, &name, expected_local, findings)?;
         expected_local = data.end;
-        entries.push(Packed { name, common: central.common, data: bytes.get(data)? });
+        entries.push(PackedEntry { name, common: central.common, data: bytes.get(data)? });
     }
     check_ends(end, at, expected_local, findings);
     if total > limits.total_bytes {

@@ -376,7 +376,7 @@ impl Reader<'_> {
     /// Reads a list's length, which is limited to what the remaining bytes can hold.
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
-        let length = self.take::<u64>().ok_or_else(|| truncated(field, condition))?;
+        let length = self.decode::<u64>().ok_or_else(|| truncated(field, condition))?;
         // A longer code for the same length is refused, so that each block has only one encoding.
         if before - self.bytes.len() != shortest(length) {
             return Err(BlockError::Length { field: field.name.clone(), condition });
@@ -394,15 +394,15 @@ impl Reader<'_> {
 
     fn number(&mut self, store: StoredAs) -> Option<f64> {
         let number = match store {
-            StoredAs::F64 => Number::F64(self.take()?),
-            StoredAs::F32 => Number::F32(self.take()?),
-            StoredAs::U16(_) => Number::U16(u16::from_le_bytes(self.take()?)),
-            StoredAs::U8(_) | StoredAs::Packed(_) => Number::U8(self.take()?),
+            StoredAs::F64 => Number::F64(self.decode()?),
+            StoredAs::F32 => Number::F32(self.decode()?),
+            StoredAs::U16(_) => Number::U16(u16::from_le_bytes(self.decode()?)),
+            StoredAs::U8(_) | StoredAs::Packed(_) => Number::U8(self.decode()?),
         };
         Some(value_of(number, store))
     }
 
-    fn take<T: Decode<()>>(&mut self) -> Option<T> {
+    fn decode<T: Decode<()>>(&mut self) -> Option<T> {
         let (value, used) = bincode::decode_from_slice(self.bytes, CONFIGURATION).ok()?;
         self.bytes = self.bytes.get(used..)?;
         Some(value)

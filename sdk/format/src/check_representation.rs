@@ -6,7 +6,7 @@ use std::fmt::Arguments;
 use htex_model::is_model_id;
 
 use crate::manifest::{AtCondition, Condition, Manifest, Representation, Steps, StoredAs};
-use crate::measure::Judged;
+use crate::measure::MeasureKind;
 use crate::quality_json::{BAND_COUNT, Content, Entries, Entry};
 use crate::quantity::Quantity;
 use crate::rules as rule;
@@ -198,7 +198,7 @@ fn check_entries(
                 format!("there are {} band errors; write {BAND_COUNT} finite numbers", errors.len())
             }
             Content::Number(Some(number), judged) if !judged.accepts(number) => match judged {
-                Judged::Correlation => {
+                MeasureKind::Correlation => {
                     format!("{number} is not a valid correlation; write a value from -1 to 1")
                 }
                 _ => format!("{number} is negative or not finite; {what_to_do} or remove {key}"),

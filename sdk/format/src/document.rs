@@ -48,7 +48,7 @@ pub struct DocumentRules {
 
 /// A parsed JSON text of a supported version.
 #[derive(Debug)]
-pub struct Opened {
+pub struct VersionedJson {
     /// The parsed JSON.
     pub value: Value,
     /// Whether its minor version is newer than the supported one.
@@ -58,7 +58,12 @@ pub struct Opened {
 impl Document {
     /// Parses a text that nests at most `max_depth` deep. If that fails, adds a finding that says
     /// why and returns `None`.
-    pub fn open(&self, bytes: &[u8], max_depth: usize, findings: &mut Findings) -> Option<Opened> {
+    pub fn open(
+        &self,
+        bytes: &[u8],
+        max_depth: usize,
+        findings: &mut Findings,
+    ) -> Option<VersionedJson> {
         let (rules, text) = (&self.rules, self.text);
         // Counted on the text, because the parser has a limit of its own and would report another
         // error first.
@@ -70,7 +75,7 @@ impl Document {
         }
         let value = self.value(bytes, findings)?;
         let minor = self.check_version(&value, findings)?;
-        Some(Opened { value, newer: minor > self.minor })
+        Some(VersionedJson { value, newer: minor > self.minor })
     }
 
     fn value(&self, bytes: &[u8], findings: &mut Findings) -> Option<Value> {
@@ -128,7 +133,7 @@ impl Document {
     /// fails, adds a finding that says why and returns `None`.
     pub fn typed<T: DeserializeOwned>(
         &self,
-        opened: &Opened,
+        opened: &VersionedJson,
         findings: &mut Findings,
     ) -> Option<(T, Vec<String>)> {
         match typed(&opened.value) {

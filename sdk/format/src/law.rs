@@ -181,7 +181,7 @@ impl Exponent {
         Self::new(exponent, ExponentSource::Given)
     }
 
-    const fn new(exponent: f64, source: ExponentSource) -> Self {
+    pub(crate) const fn new(exponent: f64, source: ExponentSource) -> Self {
         Self { exponent, source, estimate: None, standard_error: None }
     }
 
@@ -251,6 +251,20 @@ impl Law {
             frequency_speed,
             level_speed: anew(1, self.level_speed, assumed.level_speed),
             level_force: anew(2, self.level_force, assumed.level_force),
+        }
+    }
+
+    /// Returns the law with the exponents that are played and their sources only.
+    #[must_use]
+    pub const fn without_measurements(&self) -> Self {
+        const fn plain(exponent: Exponent) -> Exponent {
+            // Adding zero turns -0 into 0.
+            Exponent::new(exponent.exponent + 0.0, exponent.source)
+        }
+        Self {
+            frequency_speed: plain(self.frequency_speed),
+            level_speed: plain(self.level_speed),
+            level_force: plain(self.level_force),
         }
     }
 

@@ -23,7 +23,6 @@ mod check_representation;
 mod container;
 mod document;
 mod doi;
-mod entries;
 mod entry_ranges;
 mod error;
 mod fields;
@@ -61,7 +60,7 @@ mod zip_writer;
 pub use asset::Asset;
 pub use block::{round_parameters, round_within, stored_bytes};
 pub use check_manifest::is_extension_name;
-pub use document::{Document, DocumentRules, Opened};
+pub use document::{Document, DocumentRules, VersionedJson};
 pub use doi::{InvalidDoi, check_doi};
 pub use entry_ranges::{EntryRange, entry_ranges};
 pub use error::{ReadError, WriteError};
@@ -77,9 +76,9 @@ pub use manifest::{
     AtCondition, Condition, How, Ingredient, Made, Manifest, Plugin, Provenance, Reference,
     Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
 };
-pub use measure::{By, ErrorMeasure, Judged, Measure, MeasureRow};
+pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};
 pub use page::{manifest_schema, report_schema, validation_page};
-pub use quality::{Keyed, LeftOut, Measures, Quality};
+pub use quality::{KeyedMeasures, LeftOut, Measures, Quality};
 pub use quantity::Quantity;
 pub use rights::{Rights, license_file, read_license_file};
 pub use rules::{

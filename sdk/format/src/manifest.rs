@@ -372,7 +372,7 @@ impl Representation {
 
 impl AtCondition {
     fn error_db(&self, measure: ErrorMeasure) -> Option<f64> {
-        self.quality.as_ref().and_then(|quality| measure.of(quality))
+        self.quality.as_ref().and_then(|quality| measure.error_in(quality))
     }
 }
 

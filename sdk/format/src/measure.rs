@@ -13,7 +13,7 @@ use crate::Quality;
 
 /// What the values of a measure mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Judged {
+pub enum MeasureKind {
     /// From -1 to 1, where 1 is best.
     Correlation,
     /// Not negative, where 0 is best.
@@ -22,7 +22,7 @@ pub enum Judged {
     Difference,
 }
 
-impl Judged {
+impl MeasureKind {
     /// Returns whether a measure can have this value.
     pub fn accepts(self, value: f64) -> bool {
         match self {
@@ -65,7 +65,7 @@ pub struct MeasureRow {
     /// Decimals in tables.
     pub decimals: usize,
     /// What its values mean.
-    pub judged: Judged,
+    pub judged: MeasureKind,
     /// Whether assets store it in `quality`.
     pub stored: bool,
     /// Whether it is required in every `quality` and `left_out` that may have it.
@@ -91,7 +91,7 @@ const STORED_ERROR: MeasureRow = MeasureRow {
     short: "",
     unit: "dB",
     decimals: 2,
-    judged: Judged::Error,
+    judged: MeasureKind::Error,
     stored: true,
     required: false,
     left_out: false,
@@ -132,7 +132,7 @@ measures! {
         short: "correlation",
         unit: "",
         decimals: 3,
-        judged: Judged::Correlation,
+        judged: MeasureKind::Correlation,
         required: true,
         column: Some("corr."),
         caption: Some("Spectral correlation with the recording (no unit; 1 is the best, dark)"),
@@ -185,7 +185,7 @@ measures! {
         of_samples: Some("Level of rendered samples relative to the recording's, decibels."),
         name: "level error",
         short: "level",
-        judged: Judged::Difference,
+        judged: MeasureKind::Difference,
         stored: false,
     }
     #[doc = " RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, decibels."]
@@ -263,7 +263,7 @@ impl ErrorMeasure {
 
     /// Returns the error by this measure, computed from the model's magnitudes; `None` if it was
     /// not measured.
-    pub fn of(self, quality: &Quality) -> Option<f64> {
+    pub fn error_in(self, quality: &Quality) -> Option<f64> {
         quality.get(self.measure())
     }
 

@@ -45,19 +45,19 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
         return Some((Vec::new(), 0));
     }
     let mut reader = Reader { bytes, at: 0 };
-    let k = reader.take(PARAMETER_BITS)?;
-    let mut last = u8::try_from(reader.take(FIRST_BITS)?).ok()?;
+    let k = reader.read(PARAMETER_BITS)?;
+    let mut last = u8::try_from(reader.read(FIRST_BITS)?).ok()?;
     let mut steps = vec![last];
     for _ in 1..count {
         let mut quotient = 0;
-        while reader.take(1)? == 1 {
+        while reader.read(1)? == 1 {
             quotient += 1;
             // No valid difference is larger. The check also keeps the shift below from overflowing.
             if quotient > MOST {
                 return None;
             }
         }
-        let z = (quotient << k) | reader.take(k)?;
+        let z = (quotient << k) | reader.read(k)?;
         last = u8::try_from(i32::from(last) + unfold(z)).ok()?;
         steps.push(last);
     }
@@ -125,7 +125,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn take(&mut self, bits: u32) -> Option<u32> {
+    fn read(&mut self, bits: u32) -> Option<u32> {
         let mut value = 0;
         for _ in 0..bits {
             let byte = self.bytes.get(self.at / 8)?;
@@ -138,7 +138,7 @@ impl Reader<'_> {
     /// Returns whether the remaining bits of the last byte are zero.
     fn rest_is_zero(&mut self) -> bool {
         let left = self.at.next_multiple_of(8) - self.at;
-        self.take(left as u32) == Some(0)
+        self.read(left as u32) == Some(0)
     }
 }
 

@@ -44,9 +44,9 @@ impl Measures {
     }
 
     /// Returns the values of the given measures by key. An unknown value is `null` in JSON.
-    pub fn keyed(&self, by: By, measures: impl IntoIterator<Item = Measure>) -> Keyed {
+    pub fn keyed(&self, by: By, measures: impl IntoIterator<Item = Measure>) -> KeyedMeasures {
         let entry = |measure: Measure| (measure.key(by), self.get(measure));
-        Keyed(measures.into_iter().map(entry).collect())
+        KeyedMeasures(measures.into_iter().map(entry).collect())
     }
 
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut f64> {
@@ -66,7 +66,7 @@ impl<const N: usize> From<[(Measure, f64); N]> for Measures {
 
 /// Values by key, in order; an object in JSON.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Keyed(pub Vec<(&'static str, Option<f64>)>);
+pub struct KeyedMeasures(pub Vec<(&'static str, Option<f64>)>);
 
 impl Serialize for Measures {
     /// Writes only the values that are known.
@@ -83,7 +83,7 @@ impl<'de> Deserialize<'de> for Measures {
     }
 }
 
-impl Serialize for Keyed {
+impl Serialize for KeyedMeasures {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
     }

@@ -11,7 +11,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-use crate::measure::{By, Judged, Measure};
+use crate::measure::{By, Measure, MeasureKind};
 use crate::quality::{LeftOut, Quality};
 
 /// Key of the nine band errors. It comes before the key of their RMS.
@@ -31,16 +31,8 @@ pub(crate) struct Entry<'a> {
 }
 
 pub(crate) enum Content<'a> {
-    Number(Option<f64>, Judged),
+    Number(Option<f64>, MeasureKind),
     Bands(&'a [f64]),
-}
-
-/// Which value of [`Quality`] a key stands for.
-#[derive(Clone, Copy)]
-pub(crate) enum Place {
-    Measured(By, Measure),
-    Bands,
-    Rounding,
 }
 
 /// Where a key's value is stored when it is read.
@@ -53,24 +45,18 @@ pub(crate) enum Slot<'a> {
 pub(crate) trait Entries: Default {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
-    /// Which value a key stands for.
-    type Place;
-
     /// Returns all keys in file order, including those without a value.
     fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
 
-    /// Looks up a key without copying it; `None` if it is not known.
-    fn known(key: &str) -> Option<(&'static str, Self::Place)>;
-
-    /// Returns where the value of a key is stored when it is read.
-    fn slot(&mut self, place: Self::Place) -> Slot<'_>;
+    /// Looks up a key without copying it, and returns where its value is stored when it is read.
+    /// `None` if the key is not known.
+    fn slot(&mut self, key: &str) -> Option<(&'static str, Slot<'_>)>;
 }
 
 impl Entries for Quality {
     const NAME: &'static str = "Quality";
     const DESCRIPTION: &'static str =
         "Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.";
-    type Place = Place;
 
     fn entries(&self) -> impl Iterator<Item = Entry<'_>> {
         let by_magnitude = Measure::stored().flat_map(|measure| {
@@ -99,41 +85,29 @@ impl Entries for Quality {
         });
         let rounding = Entry {
             key: ROUNDING,
-            content: Content::Number(self.rounding_error_db, Judged::Error),
+            content: Content::Number(self.rounding_error_db, MeasureKind::Error),
             required: false,
             description: "Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.",
         };
         by_magnitude.chain(by_samples).chain([rounding])
     }
 
-    fn known(key: &str) -> Option<(&'static str, Place)> {
-        let by = match key {
-            BANDS => return Some((BANDS, Place::Bands)),
-            ROUNDING => return Some((ROUNDING, Place::Rounding)),
-            key if key.starts_with("samples_") => By::Samples,
-            _ => By::Magnitude,
+    fn slot(&mut self, key: &str) -> Option<(&'static str, Slot<'_>)> {
+        let (by, values) = match key {
+            BANDS => return Some((BANDS, Slot::Bands(&mut self.band_error_db))),
+            ROUNDING => return Some((ROUNDING, Slot::Number(&mut self.rounding_error_db))),
+            key if key.starts_with("samples_") => (By::Samples, &mut self.by_samples),
+            _ => (By::Magnitude, &mut self.by_magnitude),
         };
         let has = |m: &Measure| by == By::Magnitude || m.row().of_samples.is_some();
         let found = Measure::stored().find(|m| m.key(by) == key && has(m))?;
-        Some((found.key(by), Place::Measured(by, found)))
-    }
-
-    fn slot(&mut self, place: Place) -> Slot<'_> {
-        match place {
-            Place::Bands => Slot::Bands(&mut self.band_error_db),
-            Place::Rounding => Slot::Number(&mut self.rounding_error_db),
-            Place::Measured(By::Samples, measure) => Slot::Number(self.by_samples.get_mut(measure)),
-            Place::Measured(By::Magnitude, measure) => {
-                Slot::Number(self.by_magnitude.get_mut(measure))
-            }
-        }
+        Some((found.key(by), Slot::Number(values.get_mut(found))))
     }
 }
 
 impl Entries for LeftOut {
     const NAME: &'static str = "LeftOut";
     const DESCRIPTION: &'static str = "Leave-one-out error: agreement with the recorded spectrum of what a player interpolates at a condition without its own\nparameters.";
-    type Place = Measure;
 
     fn entries(&self) -> impl Iterator<Item = Entry<'_>> {
         let entry = |measure: Measure| Entry {
@@ -145,13 +119,9 @@ impl Entries for LeftOut {
         Self::measures().map(entry)
     }
 
-    fn known(key: &str) -> Option<(&'static str, Measure)> {
+    fn slot(&mut self, key: &str) -> Option<(&'static str, Slot<'_>)> {
         let found = Self::measures().find(|m| m.row().key == key)?;
-        Some((found.row().key, found))
-    }
-
-    fn slot(&mut self, measure: Measure) -> Slot<'_> {
-        Slot::Number(self.0.get_mut(measure))
+        Some((found.row().key, Slot::Number(self.0.get_mut(found))))
     }
 }
 
@@ -179,16 +149,17 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
         let (mut object, mut found) = (T::default(), Vec::with_capacity(KEYS));
-        while let Some(known) = map.next_key_seed(Key::<T>(PhantomData))? {
-            let Some((key, place)) = known else {
-                map.next_value::<IgnoredAny>()?;
-                continue;
-            };
-            match object.slot(place) {
-                Slot::Number(number) => *number = map.next_value()?,
-                Slot::Bands(errors) => *errors = map.next_value()?,
+        while let Some(known) = map.next_key_seed(Key(&mut object))? {
+            match known {
+                None => drop(map.next_value::<IgnoredAny>()?),
+                Some((key, slot)) => {
+                    found.push(key);
+                    match slot {
+                        Slot::Number(number) => *number = map.next_value()?,
+                        Slot::Bands(errors) => *errors = map.next_value()?,
+                    }
+                }
             }
-            found.push(key);
         }
         let missing = |e: &Entry<'_>| e.required && !found.contains(&e.key);
         if let Some(Entry { key, .. }) = object.entries().find(missing) {
@@ -198,26 +169,26 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
     }
 }
 
-/// Deserializes a key without copying it.
-struct Key<T>(PhantomData<T>);
+/// Deserializes a key of an object without copying it.
+struct Key<'a, T>(&'a mut T);
 
-impl<'de, T: Entries> DeserializeSeed<'de> for Key<T> {
-    type Value = Option<(&'static str, T::Place)>;
+impl<'de, 'a, T: Entries> DeserializeSeed<'de> for Key<'a, T> {
+    type Value = Option<(&'static str, Slot<'a>)>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         deserializer.deserialize_identifier(self)
     }
 }
 
-impl<T: Entries> Visitor<'_> for Key<T> {
-    type Value = Option<(&'static str, T::Place)>;
+impl<'a, T: Entries> Visitor<'_> for Key<'a, T> {
+    type Value = Option<(&'static str, Slot<'a>)>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a key")
     }
 
     fn visit_str<E: de::Error>(self, key: &str) -> Result<Self::Value, E> {
-        Ok(T::known(key))
+        Ok(self.0.slot(key))
     }
 }
 
@@ -229,10 +200,10 @@ fn schema<T: Entries>() -> Schema {
             Content::Bands(_) => json!({
                 "type": "array", "items": { "type": "number" }, "minItems": BAND_COUNT, "maxItems": BAND_COUNT,
             }),
-            Content::Number(_, Judged::Correlation) => {
+            Content::Number(_, MeasureKind::Correlation) => {
                 json!({ "type": "number", "minimum": -1, "maximum": 1 })
             }
-            Content::Number(_, Judged::Error) => {
+            Content::Number(_, MeasureKind::Error) => {
                 json!({ "type": "number", "minimum": 0 })
             }
             Content::Number(..) => json!({ "type": "number" }),

@@ -49,7 +49,7 @@ impl Rights {
 
     /// Returns the rights that an asset states.
     #[must_use]
-    pub fn of(manifest: &Manifest) -> Self {
+    pub fn from_manifest(manifest: &Manifest) -> Self {
         Self::new(manifest.license.as_deref(), manifest.author.as_deref())
     }
 

@@ -5,7 +5,7 @@ use schemars::Schema;
 use serde_json::{Value, json};
 
 use crate::Quantity;
-use crate::entries::{MANIFEST, MIMETYPE};
+use crate::archive::{MANIFEST, MIMETYPE};
 
 /// Pattern of a model's id, as [`htex_model::is_model_id`] checks it.
 pub(crate) const MODEL_ID: &str = r"^[a-z0-9_-]+(\.[a-z0-9_-]+){2,}$";

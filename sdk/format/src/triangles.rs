@@ -143,7 +143,7 @@ fn upright(places: &[[f64; 2]], triangles: &[Triangle]) -> Result<Vec<Triangle>,
     let turned = |(triangle, corners): (usize, &Triangle)| {
         let [a, b, c] = *corners;
         let corners = corners.map(|i| places[i]);
-        match Turn::of(corners) {
+        match Turn::around(corners) {
             Turn::Left => Ok([a, b, c]),
             Turn::Right => Ok([a, c, b]),
             Turn::Flat => Err(TrianglesError::Flat { triangle }),
@@ -161,7 +161,7 @@ enum Turn {
 }
 
 impl Turn {
-    fn of([a, b, c]: [[f64; 2]; 3]) -> Self {
+    fn around([a, b, c]: [[f64; 2]; 3]) -> Self {
         let longest2 = distance2(a, b).max(distance2(b, c)).max(distance2(c, a));
         let area = cross(between(a, b), between(a, c));
         // Written so that anything not known to be larger counts as flat: two equal points, or
@@ -223,7 +223,7 @@ fn check_outline(
     while passed.insert(corner) {
         let three = [corner, next(corner), next(next(corner))].map(|i| places[i]);
         // Straight on is allowed, because conditions may lie on a side of the hull.
-        if Turn::of(three) == Turn::Right {
+        if Turn::around(three) == Turn::Right {
             let condition = next(corner);
             return Err(TrianglesError::Outline { condition });
         }

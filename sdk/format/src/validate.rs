@@ -7,9 +7,9 @@ use std::fmt::Arguments;
 use serde_json::Value;
 
 use crate::archive::Archive;
+use crate::archive::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::block::{self, BlockError};
 use crate::check_manifest::{check_manifest, grid_points};
-use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::fields::{KnownModel, check_fields};
 use crate::json_text::parse_json;
 use crate::limits::Limits;

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::archive::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::check_manifest::check_manifest;
 use crate::check_manifest::grid_points;
-use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::limits::Limits;
 use crate::validate::inspect;
 use crate::zip_writer::ZipWriter;

@@ -33,88 +33,50 @@ macro_rules! voices {
     };
 }
 
-/// The table of a model's crate, with any of `knobs`, `usual` and `motion`. The fit is included
-/// only in programs that fit. In other programs nothing refers to it, so the linker drops it with
-/// everything it uses.
+/// The tables of a model's crate. The fit is included only in programs that fit. In other programs
+/// nothing refers to it, so the linker drops it with everything it uses.
 macro_rules! model {
-    ($model:ident $(, $part:ident)*) => {{
+    ($model:ident) => {{
         #[cfg(feature = "fit")]
         static TABLE: &ModelTable = &$model::TABLE;
+        #[cfg(feature = "fit")]
+        static MOTION: &Option<MotionTable> = &$model::MOTION;
         #[cfg(not(feature = "fit"))]
-        static TABLE: &ModelTable = &ModelTable {
-            fit: without_fits,
-            ..$model::TABLE
+        static TABLE: &ModelTable = &ModelTable { fit: without_fits, ..$model::TABLE };
+        #[cfg(not(feature = "fit"))]
+        static MOTION: &Option<MotionTable> = &match $model::MOTION {
+            Some(motion) => Some(MotionTable { fit: without_fits_at, ..motion }),
+            None => None,
         };
-        let model = TableModel::new(TABLE, voices!($model));
-        $(let model = part!(model, $model, $part);)*
-        model
-    }};
-}
-
-/// Adds one of these parts of its crate to a model.
-macro_rules! part {
-    ($table:ident, $model:ident, knobs) => {{
-        #[cfg(feature = "fit")]
-        let $table = $table.with_knobs(&$model::KNOBS);
-        $table
-    }};
-    ($table:ident, $model:ident, usual) => {{
-        #[cfg(feature = "fit")]
-        let $table = $table.with_usual($model::USUAL);
-        $table
-    }};
-    ($table:ident, $model:ident, motion) => {{
-        #[cfg(feature = "fit")]
-        static MOTION: &MotionTable = &$model::MOTION;
-        #[cfg(not(feature = "fit"))]
-        static MOTION: &MotionTable = &MotionTable { fit: without_fits_at, ..$model::MOTION };
-        $table.with_motion(MOTION)
+        TableModel::new(TABLE, voices!($model), MOTION.as_ref())
     }};
 }
 
 /// Lists the built-in models. A model that is added here is in every program that links this crate.
-///
-/// - `usual`: the ranges of its parameters' sliders, which a test requires.
-/// - `knobs`: the values of its options in a sweep. Without them, a sweep spans the options'
-///   ranges.
-/// - `motion`: it has the extension `htex.motion/1`.
-/// - `only_named`: it is fitted only if the user names it, and not chosen by default.
+/// Its descriptor says everything else, as for a plugin.
 fn tables() -> Vec<TableModel> {
     vec![
-        model!(htex_ar, knobs, usual),
-        model!(htex_mfcc, knobs, usual),
-        model!(htex_speak, knobs, usual),
-        model!(htex_sbeta, knobs, usual),
-        model!(htex_sslope, knobs, usual),
-        model!(htex_bands, knobs, usual),
-        model!(htex_arma, knobs, usual).only_named(),
-        model!(htex_map, usual, motion).only_named(),
+        model!(htex_ar),
+        model!(htex_mfcc),
+        model!(htex_speak),
+        model!(htex_sbeta),
+        model!(htex_sslope),
+        model!(htex_bands),
+        model!(htex_arma),
+        model!(htex_map),
     ]
 }
 
+/// Every model is loaded, and states a usual range for each parameter, which the studio's sliders
+/// need.
 #[cfg(test)]
 #[test]
-fn every_model_is_loaded() {
+fn every_model_is_loaded_and_has_usual_ranges() {
     assert_eq!(models().len(), tables().len());
-}
-
-/// Each parameter of a model must have a usual range within the range that may be stored.
-#[cfg(all(test, feature = "fit"))]
-#[test]
-fn usual_ranges_are_within_the_descriptors() {
     for model in models() {
-        let usual = model.usual();
         for field in &model.descriptor().fields {
-            let own = usual.iter().find(|usual| usual.field == field.name);
-            let is_within = own.is_some_and(|own| {
-                field.min <= own.min && own.min < own.max && own.max <= field.max
-            });
-            assert!(is_within, "{}.{}: {own:?}", model.id(), field.name);
-            let starts = own.map_or(0.0, |own| own.min);
-            let is_log = own.is_some_and(|own| own.scale == htex_model::Scale::Log);
-            assert!(!is_log || starts > 0.0, "{}.{}", model.id(), field.name);
+            assert!(field.usual.is_some(), "{}.{}", model.id(), field.name);
         }
-        assert_eq!(usual.len(), model.descriptor().fields.len());
     }
 }
 

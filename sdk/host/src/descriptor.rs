@@ -1,7 +1,7 @@
 //! Checks of a model's descriptor.
 
 use htex_model::abi::MAX_FIELDS;
-use htex_model::{Descriptor, Field, Kind, is_model_id};
+use htex_model::{Descriptor, Field, FitOption, Kind, is_model_id};
 
 use crate::error::plain;
 
@@ -42,10 +42,20 @@ pub enum DescriptorError {
     /// A name, unit or choice contains control characters.
     #[error("`{text}` has control characters")]
     ControlCharacters { text: String },
+    /// The sweep of the fit options has too many combinations.
+    #[error("a sweep of the fit options has {count} combinations; {MAX_SWEEP} are allowed")]
+    Sweep {
+        /// Product of the numbers of values, at most `usize::MAX`.
+        count: usize,
+    },
     /// Two fields have the same name.
     #[error("two fields are named `{name}`")]
     SameName { name: String },
 }
+
+/// Largest number of combinations of the options' sweeps, and of values in each list, so that a
+/// descriptor does not decide how much memory a sweep takes.
+const MAX_SWEEP: usize = 1_000;
 
 /// Reads and checks a descriptor in JSON, as every loader does.
 ///
@@ -86,11 +96,19 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), DescriptorError> {
         return Err(DescriptorError::Default { name });
     }
     let fields = descriptor.fields.iter().flat_map(|f| [&f.name, &f.unit]);
-    let options =
-        descriptor.options.iter().flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]));
+    let options = descriptor
+        .options
+        .iter()
+        .flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]).chain(&o.not_above));
     if let Some(text) = fields.chain(options).find(|w| w.contains(char::is_control)) {
         let text = plain(text);
         return Err(DescriptorError::ControlCharacters { text });
+    }
+    let together = |all: usize, o: &FitOption| all.saturating_mul(o.sweep.len().max(1));
+    let alone = descriptor.options.iter().map(|o| o.sweep_alone.len()).max().unwrap_or(0);
+    let count = descriptor.options.iter().fold(1, together).max(alone);
+    if count > MAX_SWEEP {
+        return Err(DescriptorError::Sweep { count });
     }
     let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
     htex_dsp::order::sort(&mut names);

@@ -11,19 +11,11 @@ const LONGEST_SHOWN: usize = 4096;
 /// Prepares a model's text for a message. Control characters are escaped, so that the text cannot
 /// control a terminal. A long text is cut.
 pub(crate) fn plain(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len().min(LONGEST_SHOWN));
-    for c in text.chars() {
-        if plain.len() >= LONGEST_SHOWN {
-            plain.push('…');
-            break;
-        }
-        if c.is_control() {
-            plain.extend(c.escape_default());
-        } else {
-            plain.push(c);
-        }
+    let plain = htex_base::finding::plain(text);
+    match plain.char_indices().find(|(at, _)| *at >= LONGEST_SHOWN) {
+        None => plain.into_owned(),
+        Some((at, _)) => format!("{}…", &plain[..at]),
     }
-    plain
 }
 
 /// An error of one call, or of finding or loading a model.
@@ -33,7 +25,7 @@ pub(crate) fn plain(text: &str) -> String {
 /// let error = Registry::builtin().find("wavelet").unwrap_err();
 /// assert!(matches!(error, HostError::UnknownModel { .. }));
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HostError {
     /// The registry has no model of this name.
@@ -102,24 +94,14 @@ pub enum HostError {
     )]
     Synthesis { text: String },
     /// The model's rate cannot be converted to the requested rate.
-    #[error("{what}")]
-    Rates {
-        /// Both rates, and the conversions that are possible.
-        what: String,
-    },
+    #[error(transparent)]
+    Rates(#[from] UnusableRates),
 }
 
 impl HostError {
     /// Adds the file, or the entry of an asset, to an error of loading a model.
     pub(crate) fn loading<E: Display>(origin: impl Display) -> impl FnOnce(E) -> Self {
         move |error| Self::Load { path: origin.to_string(), what: error.to_string() }
-    }
-}
-
-impl From<UnusableRates> for HostError {
-    fn from(rates: UnusableRates) -> Self {
-        let what = rates.to_string();
-        Self::Rates { what }
     }
 }
 

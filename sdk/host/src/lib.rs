@@ -25,7 +25,6 @@ mod decimal;
 mod descriptor;
 mod error;
 mod limits;
-mod marker;
 mod model;
 mod native;
 mod note;
@@ -63,11 +62,11 @@ pub use error::{HostError, OptionError};
 pub use htex_base::native::folders;
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{
-    Descriptor, Field, Fit, FitCondition, FitOption, Kind, Knob, Knobs, Motion, Scale, Status,
-    Store, Usual,
+    Descriptor, Field, Fit, FitCondition, FitInput, FitOption, Kind, Motion, Scale, Status, Store,
+    UsualRange,
 };
 pub use limits::{WasmCache, WasmCompiler, WasmEngine, WasmLimits, WasmTotal};
-pub use model::{FitRequest, LoadedModel, MOTION_EXTENSION};
+pub use model::{LoadedModel, MOTION_EXTENSION};
 pub use note::Note;
 pub use origin::Origin;
 pub use probe::{ProbeArguments, Unusable};

@@ -114,21 +114,12 @@ impl WasmTotal {
         Self { time, memory_bytes, instances }
     }
 
-    #[must_use]
-    pub const fn with_time(self, time: Duration) -> Self {
-        Self { time, ..self }
-    }
-
-    /// Sets the memory of all live instances, bytes.
-    #[must_use]
-    pub const fn with_memory_bytes(self, memory_bytes: usize) -> Self {
-        Self { memory_bytes, ..self }
-    }
-
-    /// Sets the number of live instances.
-    #[must_use]
-    pub const fn with_instances(self, instances: usize) -> Self {
-        Self { instances, ..self }
+    htex_base::setters! {
+        with_time(time: Duration);
+        /// Sets the memory of all live instances, bytes.
+        with_memory_bytes(memory_bytes: usize);
+        /// Sets the number of live instances.
+        with_instances(instances: usize);
     }
 }
 
@@ -177,53 +168,21 @@ impl Default for WasmLimits {
 }
 
 impl WasmLimits {
-    /// Sets the largest module, bytes.
-    #[must_use]
-    pub fn with_module_bytes(mut self, module_bytes: usize) -> Self {
-        self.module_bytes = module_bytes;
-        self
-    }
-
-    /// Sets the largest memory of one instance, bytes.
-    #[must_use]
-    pub fn with_memory_bytes(mut self, memory_bytes: usize) -> Self {
-        self.memory_bytes = memory_bytes;
-        self
-    }
-
-    /// Sets the maximum number of elements of one table.
-    #[must_use]
-    pub fn with_table_elements(mut self, table_elements: usize) -> Self {
-        self.table_elements = table_elements;
-        self
-    }
-
-    /// Sets the stack of WASM code, bytes.
-    #[must_use]
-    pub fn with_stack_bytes(mut self, stack_bytes: usize) -> Self {
-        self.stack_bytes = stack_bytes;
-        self
-    }
-
-    /// Sets the maximum number of voices of one model at a time.
-    #[must_use]
-    pub fn with_voices(mut self, voices: usize) -> Self {
-        self.voices = voices;
-        self
-    }
-
-    /// Sets the longest time of one call that does not render.
-    #[must_use]
-    pub fn with_call(mut self, call: Duration) -> Self {
-        self.call = call;
-        self
-    }
-
-    /// Sets the longest time of rendering 8,192 samples, or of one retune.
-    #[must_use]
-    pub fn with_render(mut self, render: Duration) -> Self {
-        self.render = render;
-        self
+    htex_base::setters! {
+        /// Sets the largest module, bytes.
+        with_module_bytes(module_bytes: usize);
+        /// Sets the largest memory of one instance, bytes.
+        with_memory_bytes(memory_bytes: usize);
+        /// Sets the maximum number of elements of one table.
+        with_table_elements(table_elements: usize);
+        /// Sets the stack of WASM code, bytes.
+        with_stack_bytes(stack_bytes: usize);
+        /// Sets the maximum number of voices of one model at a time.
+        with_voices(voices: usize);
+        /// Sets the longest time of one call that does not render.
+        with_call(call: Duration);
+        /// Sets the longest time of rendering 8,192 samples, or of one retune.
+        with_render(render: Duration);
     }
 
     /// Sets the maximum number of WASM instructions of one call, or `None` for no limit.
@@ -233,58 +192,21 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the longest time of compiling a module.
-    #[must_use]
-    pub fn with_compile(mut self, compile: Duration) -> Self {
-        self.compile = compile;
-        self
-    }
-
-    /// Sets the maximum memory for compiling a module, bytes.
-    #[must_use]
-    pub fn with_compile_bytes(mut self, compile_bytes: usize) -> Self {
-        self.compile_bytes = compile_bytes;
-        self
-    }
-
-    #[must_use]
-    pub fn with_compiler(mut self, compiler: WasmCompiler) -> Self {
-        self.compiler = compiler;
-        self
-    }
-
-    /// Sets the total of all modules of one asset.
-    #[must_use]
-    pub fn with_asset(mut self, asset: WasmTotal) -> Self {
-        self.asset = asset;
-        self
-    }
-
-    /// Sets the total of all modules of one registry and its clones.
-    #[must_use]
-    pub fn with_all(mut self, all: WasmTotal) -> Self {
-        self.all = all;
-        self
-    }
-
-    #[must_use]
-    pub fn with_cache(mut self, cache: WasmCache) -> Self {
-        self.cache = cache;
-        self
-    }
-
-    /// Sets whether a call that writes beyond its arrays fails.
-    #[must_use]
-    pub fn with_guards(mut self, guards: bool) -> Self {
-        self.guards = guards;
-        self
-    }
-
-    /// Sets the engine that runs modules.
-    #[must_use]
-    pub fn with_engine(mut self, engine: WasmEngine) -> Self {
-        self.engine = engine;
-        self
+    htex_base::setters! {
+        /// Sets the longest time of compiling a module.
+        with_compile(compile: Duration);
+        /// Sets the maximum memory for compiling a module, bytes.
+        with_compile_bytes(compile_bytes: usize);
+        with_compiler(compiler: WasmCompiler);
+        /// Sets the total of all modules of one asset.
+        with_asset(asset: WasmTotal);
+        /// Sets the total of all modules of one registry and its clones.
+        with_all(all: WasmTotal);
+        with_cache(cache: WasmCache);
+        /// Sets whether a call that writes beyond its arrays fails.
+        with_guards(guards: bool);
+        /// Sets the engine that runs modules.
+        with_engine(engine: WasmEngine);
     }
 }
 

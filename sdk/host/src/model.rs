@@ -5,16 +5,13 @@ use std::sync::Arc;
 
 use htex_dsp::grid::Band;
 use htex_model::abi::{MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ};
-use htex_model::{Descriptor, Kind, Knobs, Status, Usual, Values};
+use htex_model::{Descriptor, Kind, Status, Values};
 #[cfg(feature = "fit")]
-use htex_model::{Fit, FitCondition};
+use htex_model::{Fit, FitInput};
 
 use crate::descriptor::read_descriptor;
 use crate::error::plain;
-use crate::marker::check_marker;
-#[cfg(feature = "fit")]
-use crate::raw::RawFit;
-use crate::raw::RawModel;
+use crate::raw::{RawModel, check_marker};
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
@@ -25,37 +22,6 @@ pub(crate) const HIGH_RATE_HZ: f64 = 48_000.0;
 pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
 /// Length of the parameter buffer in the first call.
 const USUAL_PARAMETERS: usize = 256;
-
-/// Input of a fit. See [`htex_model::FitInput`] for the units.
-///
-/// ```
-/// use htex_host::{Band, FitRequest, Registry};
-/// let registry = Registry::builtin();
-/// let model = registry.find("sslope")?;
-/// let frequency_hz: Vec<f64> = (4..=200).map(|i| 5.0 * f64::from(i)).collect();
-/// let magnitude: Vec<f64> = frequency_hz.iter().map(|f| 0.01 * 100.0 / f).collect();
-/// let request = FitRequest {
-///     band: Band::TACTILE,
-///     frequency_hz: &frequency_hz,
-///     magnitude: &magnitude,
-///     signal: &[],
-///     signal_rate_hz: 20_000.0,
-///     options: &model.options(&[])?,
-/// };
-/// let fit = model.fit(&request)?;
-/// assert!(fit.level_rms > 0.0);
-/// # Ok::<(), htex_host::HostError>(())
-/// ```
-#[derive(Debug, Clone, Copy)]
-pub struct FitRequest<'a> {
-    pub band: Band,
-    pub frequency_hz: &'a [f64],
-    pub magnitude: &'a [f64],
-    pub signal: &'a [f64],
-    pub signal_rate_hz: f64,
-    /// One value per option of the descriptor, as [`LoadedModel::options`] returns them.
-    pub options: &'a [f64],
-}
 
 /// A model that can be called. A clone shares the model.
 ///
@@ -208,58 +174,46 @@ impl LoadedModel {
         id.rsplit('.').next().unwrap_or(id)
     }
 
-    /// Returns the values of the fit options in a sweep. `None` if the model is not built in or
-    /// chooses no values, and without the feature `fit`.
-    pub fn knobs(&self) -> Option<&'static Knobs> {
-        self.raw.knobs()
-    }
-
-    /// Returns the usual ranges of the parameters, for sliders. Empty if the model is not built in
-    /// or states no ranges, and without the feature `fit`.
-    pub fn usual(&self) -> &'static [Usual] {
-        self.raw.usual()
-    }
-
-    /// Returns whether a program uses the model only if the user names it
-    /// ([`Registry::by_default`](crate::Registry::by_default)).
-    pub fn is_only_named(&self) -> bool {
-        self.raw.is_only_named()
-    }
-
-    /// Fits the model to a spectrum. Needs the feature `fit`.
+    /// Fits the model to a spectrum. `options` of the input has one value for each option of the
+    /// descriptor, as [`Self::options`] returns them. Only models that follow the motion
+    /// ([`Self::follows_motion`]) receive its condition. Needs the feature `fit`.
+    ///
+    /// ```
+    /// use htex_host::{Band, FitCondition, FitInput, Registry};
+    /// let registry = Registry::builtin();
+    /// let model = registry.find("sslope")?;
+    /// let frequency_hz: Vec<f64> = (4..=200).map(|i| 5.0 * f64::from(i)).collect();
+    /// let magnitude: Vec<f64> = frequency_hz.iter().map(|f| 0.01 * 100.0 / f).collect();
+    /// let fit = model.fit(&FitInput {
+    ///     band: Band::TACTILE,
+    ///     frequency_hz: &frequency_hz,
+    ///     magnitude: &magnitude,
+    ///     signal: &[],
+    ///     signal_rate_hz: 20_000.0,
+    ///     options: &model.options(&[])?,
+    ///     condition: FitCondition::default(),
+    /// })?;
+    /// assert!(fit.level_rms > 0.0);
+    /// # Ok::<(), htex_host::HostError>(())
+    /// ```
     ///
     /// # Errors
-    /// [`HostError::Call`] with the model's reason.
+    /// [`HostError::Call`] with the model's reason. For a model that follows the motion, also when
+    /// a speed or force is negative or not finite.
     #[cfg(feature = "fit")]
-    pub fn fit(&self, request: &FitRequest<'_>) -> Result<Fit, HostError> {
-        self.fit_at(request, FitCondition::default())
-    }
-
-    /// Fits the model to a recording at a motion. Models that follow the motion
-    /// ([`Self::follows_motion`]) receive it; others ignore it.
-    ///
-    /// # Errors
-    /// The errors of [`Self::fit`]. For a model that follows the motion, also when a speed or force
-    /// is negative or not finite.
-    #[cfg(feature = "fit")]
-    pub fn fit_at(
-        &self,
-        request: &FitRequest<'_>,
-        condition: FitCondition,
-    ) -> Result<Fit, HostError> {
+    pub fn fit(&self, input: &FitInput<'_>) -> Result<Fit, HostError> {
         let call = "fit";
-        if request.frequency_hz.len() != request.magnitude.len() {
+        if input.frequency_hz.len() != input.magnitude.len() {
             let what = format!(
                 "there are {} magnitudes for {} frequencies; pass one per frequency",
-                request.magnitude.len(),
-                request.frequency_hz.len()
+                input.magnitude.len(),
+                input.frequency_hz.len()
             );
             return Err(self.error(call, Status::InvalidArgument, what));
         }
-        let raw = RawFit::of(request, condition);
         // NaN, so that a level that the model does not write is an error.
         let mut level_rms = f64::NAN;
-        let parameters = self.numbers(call, |out| self.raw.fit(&raw, out, &mut level_rms))?;
+        let parameters = self.numbers(call, |out| self.raw.fit(input, out, &mut level_rms))?;
         if !level_rms.is_finite() || level_rms < 0.0 {
             return Err(self.broken(call, format!("the level is {level_rms}")));
         }

@@ -11,7 +11,7 @@ use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
 
 use crate::HostError;
-use crate::marker::check_marker;
+use crate::raw::check_marker;
 use crate::table::TableModel;
 
 /// Loads a library and fills a table from its symbols.
@@ -48,11 +48,11 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
         let table = unsafe { table_of_symbols!(symbols, VoicesTable, "htex_voices_1_", render) };
         voices = Some(&*Box::leak(Box::new(table)));
     }
-    let model = TableModel::new(table, voices);
-    if !has(MotionTable::ID) {
-        return Ok(model);
+    let mut motion = None;
+    if has(MotionTable::ID) {
+        // SAFETY: a library with this extension exports these names with these types.
+        let table = unsafe { table_of_symbols!(symbols, MotionTable, "htex_motion_1_", set fit) };
+        motion = Some(&*Box::leak(Box::new(table)));
     }
-    // SAFETY: a library with this extension exports these names with these types.
-    let motion = unsafe { table_of_symbols!(symbols, MotionTable, "htex_motion_1_", set fit) };
-    Ok(model.with_motion(Box::leak(Box::new(motion))))
+    Ok(TableModel::new(table, voices, motion))
 }

@@ -17,7 +17,7 @@ use crate::{HostError, Origin};
 /// }
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
     /// Two models have the same id; [`Registry`](crate::Registry) says which one is used.

@@ -7,18 +7,18 @@ use htex_model::{
 };
 
 use crate::HostError;
-use crate::runtime::{Described, RuntimeModel, RuntimeVoice};
+use crate::runtime::{RuntimeModel, RuntimeModelAdapter, RuntimeVoice};
 
 /// The function [`MotionVoice::set_motion`] of a voice.
 type SetMotion<V> = fn(&mut V, Motion);
 
 /// A type that implements [`Model`], as an object.
-struct Own<M: Model> {
+struct TypeModel<M: Model> {
     set_motion: Option<SetMotion<M::Voice>>,
 }
 
 /// The voice of such a type, as an object.
-struct OwnVoice<V> {
+struct TypeVoice<V> {
     voice: V,
     set_motion: Option<SetMotion<V>>,
 }
@@ -26,25 +26,28 @@ struct OwnVoice<V> {
 /// Creates the model of a type.
 ///
 /// # Errors
-/// The errors of [`Described::new`].
-pub(crate) fn model<M: Model>() -> Result<Described, HostError> {
+/// The errors of [`RuntimeModelAdapter::new`].
+pub(crate) fn model<M: Model>() -> Result<RuntimeModelAdapter, HostError> {
     described::<M>(None)
 }
 
 /// Creates the model of a type whose voice follows the motion.
 ///
 /// # Errors
-/// The errors of [`Described::new`].
-pub(crate) fn motion_model<M: Model<Voice: MotionVoice>>() -> Result<Described, HostError> {
+/// The errors of [`RuntimeModelAdapter::new`].
+pub(crate) fn motion_model<M: Model<Voice: MotionVoice>>() -> Result<RuntimeModelAdapter, HostError>
+{
     described::<M>(Some(M::Voice::set_motion))
 }
 
-fn described<M: Model>(set_motion: Option<SetMotion<M::Voice>>) -> Result<Described, HostError> {
+fn described<M: Model>(
+    set_motion: Option<SetMotion<M::Voice>>,
+) -> Result<RuntimeModelAdapter, HostError> {
     let descriptor = Descriptor::from(&M::DESCRIPTOR);
-    Described::new(descriptor, Arc::new(Own::<M> { set_motion }))
+    RuntimeModelAdapter::new(descriptor, Arc::new(TypeModel::<M> { set_motion }))
 }
 
-impl<M: Model> RuntimeModel for Own<M> {
+impl<M: Model> RuntimeModel for TypeModel<M> {
     fn fit(&self, input: &FitInput<'_>) -> Result<Fit, Error> {
         M::fit(input)
     }
@@ -79,7 +82,7 @@ impl<M: Model> RuntimeModel for Own<M> {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error> {
-        Ok(Box::new(OwnVoice {
+        Ok(Box::new(TypeVoice {
             voice: M::voice(parameters, band, rate_hz, seed)?,
             set_motion: self.set_motion,
         }))
@@ -90,7 +93,7 @@ impl<M: Model> RuntimeModel for Own<M> {
     }
 }
 
-impl<V: Voice> RuntimeVoice for OwnVoice<V> {
+impl<V: Voice> RuntimeVoice for TypeVoice<V> {
     fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         self.voice.render(out);
         Ok(())

@@ -5,12 +5,8 @@
 
 use htex_dsp::grid::Band;
 #[cfg(feature = "fit")]
-use htex_model::FitCondition;
+use htex_model::FitInput;
 
-#[cfg(feature = "fit")]
-use crate::FitRequest;
-#[cfg(feature = "fit")]
-use crate::raw::RawFit;
 use crate::table::TableModel;
 use crate::{HostError, LoadedModel, ModelVoice};
 
@@ -51,13 +47,11 @@ impl LoadedModel {
     #[cfg(feature = "fit")]
     pub fn fit_into(
         &self,
-        request: &FitRequest<'_>,
-        condition: FitCondition,
+        input: &FitInput<'_>,
         parameters: &mut [f64],
         level_rms: &mut f64,
     ) -> Result<usize, HostError> {
-        let raw = RawFit::of(request, condition);
-        self.check("fit", self.raw().fit(&raw, parameters, level_rms))
+        self.check("fit", self.raw().fit(input, parameters, level_rms))
     }
 
     /// Writes the shape's magnitude at each frequency to `magnitude`.

@@ -4,48 +4,21 @@
 //! code above does not depend on the loader. [`crate::table`] serves built-in models and native
 //! libraries, and `wasm` serves modules.
 
-use htex_model::abi::ModelTable;
+use htex_model::abi::{ABI_MAJOR, ABI_MARKER, ModelTable};
 use htex_model::voices_1::VoicesRenderFn;
-use htex_model::{Band, FitCondition, Knobs, Motion, Usual};
+use htex_model::{Band, FitInput, Motion};
 
-#[cfg(feature = "fit")]
-use crate::FitRequest;
+use crate::HostError;
 use crate::probe::{ProbeArguments, Unusable};
-
-/// Arguments of a fit, as passed through the ABI.
-pub(crate) struct RawFit<'a> {
-    pub(crate) band: Band,
-    pub(crate) frequency_hz: &'a [f64],
-    pub(crate) magnitude: &'a [f64],
-    pub(crate) signal: &'a [f64],
-    pub(crate) signal_rate_hz: f64,
-    pub(crate) options: &'a [f64],
-    /// Used only by models that follow the motion.
-    pub(crate) condition: FitCondition,
-}
-
-#[cfg(feature = "fit")]
-impl<'a> RawFit<'a> {
-    pub(crate) fn of(request: &FitRequest<'a>, condition: FitCondition) -> Self {
-        Self {
-            band: request.band,
-            frequency_hz: request.frequency_hz,
-            magnitude: request.magnitude,
-            signal: request.signal,
-            signal_rate_hz: request.signal_rate_hz,
-            options: request.options,
-            condition,
-        }
-    }
-}
 
 /// The functions of one model. A returned number is a length or a status, as in `htex_model::abi`.
 pub(crate) trait RawModel: Send + Sync {
     fn abi_version(&self) -> u32;
     fn descriptor(&self, out: &mut [u8]) -> i64;
     fn last_error(&self, out: &mut [u8]) -> i64;
+    /// Only a model that follows the motion uses the condition.
     #[cfg_attr(not(feature = "fit"), allow(dead_code))]
-    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64;
+    fn fit(&self, input: &FitInput<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64;
     fn magnitude(
         &self,
         parameters: &[f64],
@@ -57,16 +30,6 @@ pub(crate) trait RawModel: Send + Sync {
     fn extension(&self, id: &[u8]) -> i64;
     /// Returns whether the model has the extension `htex.motion/1`.
     fn follows_motion(&self) -> bool;
-    fn knobs(&self) -> Option<&'static Knobs> {
-        None
-    }
-    fn usual(&self) -> &'static [Usual] {
-        &[]
-    }
-    /// Returns whether a program uses the model only if the user names it.
-    fn is_only_named(&self) -> bool {
-        false
-    }
     /// For checkers: returns the answers to unusable arrays.
     fn unusable_arrays(&self, _: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         None
@@ -111,4 +74,17 @@ pub(crate) struct Together {
     /// The model's table, whose address identifies the model.
     pub(crate) table: &'static ModelTable,
     pub(crate) handle: i64,
+}
+
+/// Checks that a model has this ABI's major version.
+pub(crate) fn check_marker(origin: &str, marker: u32) -> Result<(), HostError> {
+    // The lowest byte is the minor version, which increases only for optional exports.
+    if marker >> 8 == ABI_MARKER >> 8 {
+        return Ok(());
+    }
+    Err(HostError::Broken {
+        model: origin.to_owned(),
+        call: "htex_model_abi_version",
+        what: format!("its marker is {marker:#x}; this host loads models of ABI {ABI_MAJOR}.x"),
+    })
 }

@@ -4,9 +4,9 @@ use std::cmp::Reverse;
 use std::sync::Arc;
 
 use htex_model::{Descriptor, Model, MotionVoice};
-use semver::{Version, VersionReq};
+use semver::Version;
 
-use crate::runtime::{Described, RuntimeModel};
+use crate::runtime::{RuntimeModel, RuntimeModelAdapter};
 use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 use crate::{builtin, own};
@@ -216,7 +216,11 @@ impl Registry {
         self.add_described(Origin::Own, own::motion_model::<M>()?)
     }
 
-    fn add_described(&mut self, origin: Origin, model: Described) -> Result<(), HostError> {
+    fn add_described(
+        &mut self,
+        origin: Origin,
+        model: RuntimeModelAdapter,
+    ) -> Result<(), HostError> {
         self.add(Rank::File, LoadedModel::new(origin, Arc::new(model))?);
         Ok(())
     }
@@ -233,7 +237,7 @@ impl Registry {
         model: Arc<dyn RuntimeModel>,
     ) -> Result<(), HostError> {
         let origin = Origin::Runtime(written_in.to_owned());
-        self.add_described(origin, Described::new(descriptor, model)?)
+        self.add_described(origin, RuntimeModelAdapter::new(descriptor, model)?)
     }
 
     /// Adds the WASM model of a container called `name`, such as an asset. It comes after plugins
@@ -345,10 +349,10 @@ impl Registry {
         &self.models
     }
 
-    /// Returns the models that a program fits if the user names none. Models that are fitted only
-    /// by name ([`LoadedModel::is_only_named`]) are left out.
+    /// Returns the models that a program fits if the user names none: all except those whose
+    /// descriptor says [`only_named`](Descriptor::only_named).
     pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
-        self.models.iter().filter(|model| !model.is_only_named())
+        self.models.iter().filter(|model| !model.descriptor().only_named)
     }
 
     /// Returns notes for the user: models that shadow others, and plugins that could not be loaded.
@@ -364,31 +368,10 @@ impl Registry {
     pub fn find(&self, name: &str) -> Result<&LoadedModel, HostError> {
         let by_id = self.models.iter().find(|m| m.id() == name);
         let by_name = || self.models.iter().find(|m| m.short_name().eq_ignore_ascii_case(name));
-        by_id.or_else(by_name).ok_or_else(|| HostError::UnknownModel {
-            wanted: name.to_owned(),
-            known: self.known(|m| m.short_name().to_owned()),
+        by_id.or_else(by_name).ok_or_else(|| {
+            let mut names: Vec<&str> = self.every().map(LoadedModel::short_name).collect();
+            names.dedup();
+            HostError::UnknownModel { wanted: name.to_owned(), known: names.join(", ") }
         })
-    }
-
-    /// Finds the first model with this id whose version matches `wanted`, including shadowed
-    /// models.
-    ///
-    /// # Errors
-    /// [`HostError::UnknownModel`] with the known ids and versions.
-    pub fn find_version(&self, id: &str, wanted: &VersionReq) -> Result<&LoadedModel, HostError> {
-        let matches = |m: &&LoadedModel| {
-            let version = Version::parse(&m.descriptor().version);
-            m.id() == id && version.is_ok_and(|version| wanted.matches(&version))
-        };
-        self.every().find(matches).ok_or_else(|| HostError::UnknownModel {
-            wanted: format!("{id} {wanted}"),
-            known: self.known(|m| format!("{} {}", m.id(), m.descriptor().version)),
-        })
-    }
-
-    fn known(&self, name: impl Fn(&LoadedModel) -> String) -> String {
-        let mut names: Vec<String> = self.every().map(name).collect();
-        names.dedup();
-        names.join(", ")
     }
 }

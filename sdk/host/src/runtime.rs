@@ -10,7 +10,7 @@ use htex_model::{
     Band, Descriptor, Error, Fit, FitCondition, FitInput, Motion, Numbers, Status, Values, mix,
 };
 
-use crate::raw::{RawFit, RawModel, RawVoice};
+use crate::raw::{RawModel, RawVoice};
 use crate::{HostError, MOTION_EXTENSION};
 
 /// A model that is an object. Implement this trait if the model is not known at compile time.
@@ -132,7 +132,7 @@ pub trait RuntimeVoice: Send {
 }
 
 /// A model with its descriptor.
-pub(crate) struct Described {
+pub(crate) struct RuntimeModelAdapter {
     shared: Arc<Shared>,
 }
 
@@ -143,7 +143,7 @@ struct Shared {
     model: Arc<dyn RuntimeModel>,
 }
 
-impl Described {
+impl RuntimeModelAdapter {
     /// Creates the model.
     ///
     /// # Errors
@@ -166,22 +166,14 @@ impl Shared {
         Values::read(&self.descriptor, parameters)
     }
 
-    fn fit(&self, call: &RawFit<'_>) -> Result<Fit, Error> {
-        let (speed_mm_s, force_n) = call.condition.numbers();
+    fn fit(&self, input: &FitInput<'_>) -> Result<Fit, Error> {
+        let (speed_mm_s, force_n) = input.condition.numbers();
         let condition = if self.model.follows_motion() {
             FitCondition::from_numbers(speed_mm_s, force_n)?
         } else {
             FitCondition::default()
         };
-        let input = FitInput {
-            band: band(call.band.edges())?,
-            frequency_hz: call.frequency_hz,
-            magnitude: call.magnitude,
-            signal: call.signal,
-            signal_rate_hz: call.signal_rate_hz,
-            options: call.options,
-            condition,
-        };
+        let input = FitInput { band: band(input.band.edges())?, condition, ..*input };
         check_fit_input(&input, &self.descriptor)?;
         let fit = self.model.fit(&input)?;
         check_fit(&fit, &self.descriptor)?;
@@ -196,7 +188,7 @@ impl Shared {
     }
 }
 
-impl RawModel for Described {
+impl RawModel for RuntimeModelAdapter {
     fn abi_version(&self) -> u32 {
         ABI_MARKER
     }
@@ -209,9 +201,9 @@ impl RawModel for Described {
         last_error(out.into())
     }
 
-    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
+    fn fit(&self, input: &FitInput<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
         guarded(|| {
-            let fit = self.shared.fit(call)?;
+            let fit = self.shared.fit(input)?;
             *level_rms = fit.level_rms;
             Ok(copy(&fit.parameters, parameters))
         })
@@ -274,19 +266,19 @@ impl RawModel for Described {
             Ok(0)
         });
         match voice {
-            Some(_) => Ok(Box::new(DescribedVoice { shared: self.shared.clone(), voice })),
+            Some(_) => Ok(Box::new(RuntimeVoiceAdapter { shared: self.shared.clone(), voice })),
             None => Err(status),
         }
     }
 }
 
 /// A voice; `None` after it was freed.
-struct DescribedVoice {
+struct RuntimeVoiceAdapter {
     shared: Arc<Shared>,
     voice: Option<Box<dyn RuntimeVoice>>,
 }
 
-impl DescribedVoice {
+impl RuntimeVoiceAdapter {
     fn call(
         &mut self,
         with: impl FnOnce(&mut dyn RuntimeVoice, &Shared) -> Result<(), Error>,
@@ -303,7 +295,7 @@ fn freed() -> Error {
     Error::new(Status::BadHandle, "no such voice; it was freed")
 }
 
-impl RawVoice for DescribedVoice {
+impl RawVoice for RuntimeVoiceAdapter {
     fn render(&mut self, out: &mut [f32]) -> i64 {
         self.call(|voice, _| voice.render(out))
     }

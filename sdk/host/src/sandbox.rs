@@ -92,7 +92,7 @@ impl Budget {
 
     /// Reserves memory. On error, reserves nothing.
     pub(crate) fn take_memory(&self, bytes: usize) -> Result<(), BudgetError> {
-        self.take(bytes, |b| (&b.memory_bytes, b.total.memory_bytes))
+        self.reserve(bytes, |b| (&b.memory_bytes, b.total.memory_bytes))
             .map_err(|b| BudgetError::Memory { owner: b.owner, bytes: b.total.memory_bytes })
     }
 
@@ -104,7 +104,7 @@ impl Budget {
 
     /// Counts one more instance. On error, counts nothing.
     pub(crate) fn take_instance(&self) -> Result<(), BudgetError> {
-        self.take(1, |b| (&b.instances, b.total.instances))
+        self.reserve(1, |b| (&b.instances, b.total.instances))
             .map_err(|b| BudgetError::Instances { owner: b.owner, instances: b.total.instances })
     }
 
@@ -116,7 +116,11 @@ impl Budget {
 
     /// Adds to a count of this budget and of the budgets that contain it. On error, adds nothing
     /// and returns the budget whose limit would be exceeded.
-    fn take(&self, n: usize, count: impl Fn(&Self) -> (&AtomicUsize, usize)) -> Result<(), &Self> {
+    fn reserve(
+        &self,
+        n: usize,
+        count: impl Fn(&Self) -> (&AtomicUsize, usize),
+    ) -> Result<(), &Self> {
         for (taken, budget) in self.all().enumerate() {
             let (used, most) = count(budget);
             let add = |used: usize| used.checked_add(n).filter(|sum| *sum <= most);

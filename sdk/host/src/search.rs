@@ -68,52 +68,20 @@ impl Search {
         Self { env: false, user_dir: false, ..Self::default() }
     }
 
-    /// Sets the plugin files.
-    #[must_use]
-    pub fn with_files(mut self, files: Vec<PathBuf>) -> Self {
-        self.files = files;
-        self
-    }
-
-    /// Sets the module files that the user did not name.
-    #[must_use]
-    pub fn with_modules(mut self, modules: Vec<PathBuf>) -> Self {
-        self.modules = modules;
-        self
-    }
-
-    /// Sets the plugin folders.
-    #[must_use]
-    pub fn with_dirs(mut self, dirs: Vec<PathBuf>) -> Self {
-        self.dirs = dirs;
-        self
-    }
-
-    /// Sets whether the folders in `HTEX_PLUGIN_PATH` are searched.
-    #[must_use]
-    pub fn with_env(mut self, env: bool) -> Self {
-        self.env = env;
-        self
-    }
-
-    /// Sets whether the user's folder is searched.
-    #[must_use]
-    pub fn with_user_dir(mut self, user_dir: bool) -> Self {
-        self.user_dir = user_dir;
-        self
-    }
-
-    /// Sets whether the models linked into this program are included.
-    #[must_use]
-    pub fn with_builtin(mut self, builtin: bool) -> Self {
-        self.builtin = builtin;
-        self
-    }
-
-    #[must_use]
-    pub fn with_limits(mut self, limits: WasmLimits) -> Self {
-        self.limits = limits;
-        self
+    htex_base::setters! {
+        /// Sets the plugin files.
+        with_files(files: Vec<PathBuf>);
+        /// Sets the module files that the user did not name.
+        with_modules(modules: Vec<PathBuf>);
+        /// Sets the plugin folders.
+        with_dirs(dirs: Vec<PathBuf>);
+        /// Sets whether the folders in `HTEX_PLUGIN_PATH` are searched.
+        with_env(env: bool);
+        /// Sets whether the user's folder is searched.
+        with_user_dir(user_dir: bool);
+        /// Sets whether the models linked into this program are included.
+        with_builtin(builtin: bool);
+        with_limits(limits: WasmLimits);
     }
 
     /// See [`Registry::search`].

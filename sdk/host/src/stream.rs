@@ -30,7 +30,7 @@ impl<S> Stream<S> {
     ///
     /// # Errors
     /// When one rate cannot be converted to the other.
-    pub fn of(
+    pub fn from_source(
         source: S,
         source_rate_hz: f64,
         rate_hz: f64,
@@ -93,7 +93,7 @@ impl Stream {
         let voice_rate_hz = model.voice_rate_hz(parameters, band, rate_hz)?;
         let voice = model.voice(parameters, band, voice_rate_hz, seed)?;
         let own_rate = model.has_own_rate(parameters, band, voice_rate_hz)?;
-        Self::of(voice, voice_rate_hz, rate_hz, band.high_hz, own_rate)
+        Self::from_source(voice, voice_rate_hz, rate_hz, band.high_hz, own_rate)
     }
 
     /// Returns the rate at which the model renders, hertz.

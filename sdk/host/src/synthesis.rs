@@ -113,10 +113,10 @@ impl Synthesis {
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
 #[derive(Debug)]
-pub struct StillSound(Way);
+pub struct StillSound(Generator);
 
 #[derive(Debug)]
-enum Way {
+enum Generator {
     Loop(Loop),
     Filter(Box<FilteredNoise>),
 }
@@ -143,12 +143,12 @@ impl StillSound {
             Synthesis::Streamed => return Ok(None),
             Synthesis::Loop { seconds } => {
                 let stream = Stream::new(model, parameters, band, rate_hz, seed)?;
-                Way::Loop(looped(stream, seconds, rate_hz)?)
+                Generator::Loop(looped(stream, seconds, rate_hz)?)
             }
             Synthesis::Filter { taps } => {
                 let magnitude = |hz: &[f64]| model.magnitude(parameters, band, hz);
                 let noise = FilteredNoise::new(taps, band, rate_hz, seed, magnitude)?;
-                Way::Filter(Box::new(noise))
+                Generator::Filter(Box::new(noise))
             }
         };
         Ok(Some(Self(way)))
@@ -157,8 +157,8 @@ impl StillSound {
     /// Fills `out` with the next samples. Does not allocate.
     pub fn render(&mut self, out: &mut [f32]) {
         match &mut self.0 {
-            Way::Loop(samples) => samples.render(out),
-            Way::Filter(noise) => noise.render(out),
+            Generator::Loop(samples) => samples.render(out),
+            Generator::Filter(noise) => noise.render(out),
         }
     }
 
@@ -166,8 +166,8 @@ impl StillSound {
     pub fn kept_bytes(&self) -> usize {
         size_of::<f32>()
             * match &self.0 {
-                Way::Loop(samples) => samples.samples().len(),
-                Way::Filter(noise) => noise.taps,
+                Generator::Loop(samples) => samples.samples().len(),
+                Generator::Filter(noise) => noise.taps,
             }
     }
 }

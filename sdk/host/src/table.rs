@@ -4,10 +4,10 @@
 use htex_model::abi::ModelTable;
 use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
-use htex_model::{Band, Knobs, Motion, Usual};
+use htex_model::{Band, FitInput, Motion};
 
 use crate::probe::{ProbeArguments, Unusable};
-use crate::raw::{RawFit, RawModel, RawVoice, Together};
+use crate::raw::{RawModel, RawVoice, Together};
 
 /// A model that is called through a table of native functions.
 #[derive(Clone, Copy)]
@@ -17,38 +17,19 @@ pub(crate) struct TableModel {
     voices: Option<&'static VoicesTable>,
     /// Present if the model has the extension `htex.motion/1`.
     motion: Option<&'static MotionTable>,
-    knobs: Option<&'static Knobs>,
-    usual: &'static [Usual],
-    is_only_named: bool,
 }
 
 impl TableModel {
-    pub(crate) fn new(table: &'static ModelTable, voices: Option<&'static VoicesTable>) -> Self {
-        Self { table, voices, motion: None, knobs: None, usual: &[], is_only_named: false }
-    }
-
-    /// Marks the model as one that a program uses only if the user names it.
-    pub(crate) fn only_named(self) -> Self {
-        Self { is_only_named: true, ..self }
-    }
-
-    /// Adds the extension `htex.motion/1`.
-    pub(crate) fn with_motion(self, motion: &'static MotionTable) -> Self {
-        Self { motion: Some(motion), ..self }
+    pub(crate) fn new(
+        table: &'static ModelTable,
+        voices: Option<&'static VoicesTable>,
+        motion: Option<&'static MotionTable>,
+    ) -> Self {
+        Self { table, voices, motion }
     }
 
     pub(crate) fn table(&self) -> &'static ModelTable {
         self.table
-    }
-
-    #[cfg(feature = "fit")]
-    pub(crate) fn with_knobs(self, knobs: &'static Knobs) -> Self {
-        Self { knobs: Some(knobs), ..self }
-    }
-
-    #[cfg(feature = "fit")]
-    pub(crate) fn with_usual(self, usual: &'static [Usual]) -> Self {
-        Self { usual, ..self }
     }
 }
 
@@ -69,23 +50,23 @@ impl RawModel for TableModel {
         unsafe { (self.table.last_error)(out.as_mut_ptr(), out.len()) }
     }
 
-    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
-        let bins = call.frequency_hz.len().min(call.magnitude.len());
+    fn fit(&self, input: &FitInput<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
+        let bins = input.frequency_hz.len().min(input.magnitude.len());
         if let Some(motion) = self.motion {
-            let (speed_mm_s, force_n) = call.condition.numbers();
+            let (speed_mm_s, force_n) = input.condition.numbers();
             // SAFETY: live slices; the shorter of the spectrum's two lengths is used for both.
             return unsafe {
                 (motion.fit)(
-                    call.band.low_hz,
-                    call.band.high_hz,
-                    call.frequency_hz.as_ptr(),
-                    call.magnitude.as_ptr(),
+                    input.band.low_hz,
+                    input.band.high_hz,
+                    input.frequency_hz.as_ptr(),
+                    input.magnitude.as_ptr(),
                     bins,
-                    call.signal.as_ptr(),
-                    call.signal.len(),
-                    call.signal_rate_hz,
-                    call.options.as_ptr(),
-                    call.options.len(),
+                    input.signal.as_ptr(),
+                    input.signal.len(),
+                    input.signal_rate_hz,
+                    input.options.as_ptr(),
+                    input.options.len(),
                     speed_mm_s,
                     force_n,
                     parameters.as_mut_ptr(),
@@ -97,16 +78,16 @@ impl RawModel for TableModel {
         // SAFETY: live slices; the shorter of the spectrum's two lengths is used for both.
         unsafe {
             (self.table.fit)(
-                call.band.low_hz,
-                call.band.high_hz,
-                call.frequency_hz.as_ptr(),
-                call.magnitude.as_ptr(),
+                input.band.low_hz,
+                input.band.high_hz,
+                input.frequency_hz.as_ptr(),
+                input.magnitude.as_ptr(),
                 bins,
-                call.signal.as_ptr(),
-                call.signal.len(),
-                call.signal_rate_hz,
-                call.options.as_ptr(),
-                call.options.len(),
+                input.signal.as_ptr(),
+                input.signal.len(),
+                input.signal_rate_hz,
+                input.options.as_ptr(),
+                input.options.len(),
                 parameters.as_mut_ptr(),
                 parameters.len(),
                 level_rms,
@@ -160,18 +141,6 @@ impl RawModel for TableModel {
 
     fn unusable_arrays(&self, arguments: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         Some(self.probe(arguments))
-    }
-
-    fn knobs(&self) -> Option<&'static Knobs> {
-        self.knobs
-    }
-
-    fn usual(&self) -> &'static [Usual] {
-        self.usual
-    }
-
-    fn is_only_named(&self) -> bool {
-        self.is_only_named
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
@@ -280,7 +249,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::{FitRequest, LoadedModel, Origin};
+    use crate::{LoadedModel, Origin};
 
     /// A model whose samples are positions and whose parameter is the recording's speed.
     struct Ruler;
@@ -334,23 +303,25 @@ mod tests {
 
     #[test]
     fn a_built_in_model_receives_the_motion_if_its_table_has_the_extension() {
-        let plain = TableModel::new(&TABLE, Some(&VOICES));
         let motion =
             Motion { speed_mm_s: 80.0, force_n: 0.4, position_mm: 12.0, x_mm: 12.0, y_mm: 0.0 };
         let condition = FitCondition { speed_mm_s: Some(80.0), force_n: Some(0.4) };
-        for (table, follows) in [(plain.with_motion(&MOTION), true), (plain, false)] {
+        for follows in [true, false] {
+            let motion_table = MOTION.as_ref().filter(|_| follows);
+            let table = TableModel::new(&TABLE, Some(&VOICES), motion_table);
             let model = LoadedModel::new(Origin::Builtin, Arc::new(table)).unwrap();
             assert_eq!(model.follows_motion(), follows);
             let band = crate::Band::TACTILE;
-            let request = FitRequest {
+            let request = FitInput {
                 band,
                 frequency_hz: &[50.0, 100.0, 150.0],
                 magnitude: &[1.0; 3],
                 signal: &[],
                 signal_rate_hz: 1.0,
                 options: &[],
+                condition,
             };
-            let fit = model.fit_at(&request, condition).unwrap();
+            let fit = model.fit(&request).unwrap();
             let known = if follows { (80.0, 0.4) } else { (1.0, 1.0) };
             assert_eq!((fit.parameters[0], fit.level_rms), known);
             let mut voice = model.voice(&fit.parameters, band, 2_000.0, 1).unwrap();

@@ -19,7 +19,7 @@ impl Curve for Plateau {
     fn band(&self) -> Band {
         self.band
     }
-    fn at(&self, frequency_hz: f64) -> f64 {
+    fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         f64::from((self.edges_hz.0..=self.edges_hz.1).contains(&frequency_hz))
     }
 }

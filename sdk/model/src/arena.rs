@@ -35,7 +35,7 @@ impl Arena {
 
     /// Returns a block for a layout. `grow` returns new pages. Returns `None` if `grow` has no more
     /// pages, or if the alignment is above 16 bytes.
-    pub(crate) fn take(
+    pub(crate) fn allocate(
         &mut self,
         layout: Layout,
         grow: impl FnOnce(usize) -> Option<*mut u8>,
@@ -46,14 +46,14 @@ impl Arena {
         let (class, len) = class(layout.size())?;
         let block = self.freed[class];
         if block.is_null() {
-            return self.take_fresh(len, grow);
+            return self.allocate_fresh(len, grow);
         }
         // SAFETY: a freed block, to which `give_back` wrote the address of the one freed before it.
         self.freed[class] = unsafe { block.cast::<*mut u8>().read() };
         Some(block)
     }
 
-    fn take_fresh(
+    fn allocate_fresh(
         &mut self,
         len: usize,
         grow: impl FnOnce(usize) -> Option<*mut u8>,
@@ -77,7 +77,7 @@ impl Arena {
     /// Takes back a block, so that it can be reused.
     ///
     /// # Safety
-    /// [`Self::take`] returned the block for this layout, and nothing uses it any more.
+    /// [`Self::allocate`] returned the block for this layout, and nothing uses it any more.
     pub(crate) unsafe fn give_back(&mut self, block: *mut u8, layout: Layout) {
         let Some((class, _)) = class(layout.size()) else {
             return;
@@ -130,7 +130,7 @@ mod tests {
             }
             let size = (draw & 0xff_ffff) >> (draw % 24);
             let layout = Layout::from_size_align(size, 1 << (draw % 5)).unwrap();
-            let block = arena.take(layout, |pages| {
+            let block = arena.allocate(layout, |pages| {
                 used += pages;
                 (used <= PAGES).then(|| start.wrapping_add((used - pages) * PAGE_BYTES))
             });

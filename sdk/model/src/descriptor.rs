@@ -1,11 +1,11 @@
 //! The descriptor of a model, as a host reads it.
 
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
+use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store, UsualRange};
 
 /// A model's description; passed through the ABI as JSON.
 ///
@@ -47,6 +47,10 @@ pub struct Descriptor {
     /// unchanged. Otherwise the level may be taken from the recording.
     #[serde(default, skip_serializing_if = "is_false")]
     pub keeps_level: bool,
+    /// Whether hosts use the model only if the user names it. If not, they also fit it when the user
+    /// names no model.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub only_named: bool,
 }
 
 fn is_false(flag: &bool) -> bool {
@@ -65,6 +69,7 @@ fn is_false(flag: &bool) -> bool {
 ///     max: 1000.0,
 ///     store: Store::F32,
 ///     default: None,
+///     usual: None,
 ///     description: "Peak.".to_owned(),
 /// };
 /// assert!((field.min..=field.max).contains(&80.0));
@@ -88,6 +93,9 @@ pub struct Field {
     /// Value for assets of earlier minor versions, which lack the field; for scalars only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
+    /// Range of a slider, within `min` to `max`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub usual: Option<UsualRange>,
     /// Meaning of the field.
     pub description: String,
 }
@@ -104,6 +112,9 @@ pub struct Field {
 ///     default: 0.0,
 ///     integer: true,
 ///     choices: vec!["linear".to_owned(), "log".to_owned()],
+///     sweep: Vec::new(),
+///     sweep_alone: vec![1.0],
+///     not_above: None,
 ///     description: "Scale of the frequency axis.".to_owned(),
 /// };
 /// assert_eq!(option.choices[option.default as usize], "linear");
@@ -133,8 +144,40 @@ pub struct FitOption {
     /// Names of the values 0, 1, …; empty for a plain number.
     #[serde(default)]
     pub choices: Vec<String>,
+    /// Values that a sweep tries in all combinations with those of the other options. A choice is
+    /// given by its index.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sweep: Vec<f64>,
+    /// Values that a sweep tries with all other options at their defaults.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sweep_alone: Vec<f64>,
+    /// Name of another option: values above its value have no effect, and a sweep leaves them out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_above: Option<String>,
     /// Effect of the option, and source of its default.
     pub description: String,
+}
+
+impl FitOption {
+    /// Returns a value as a user writes it: a choice by its name, otherwise the number. `None` if
+    /// the value is not allowed.
+    ///
+    /// ```
+    /// use htex_model::{FitOption, StaticOption};
+    /// let scale = StaticOption::choice("scale", &["linear", "log"], "Scale.");
+    /// assert_eq!(FitOption::from(&scale).text(1.0).as_deref(), Some("log"));
+    /// assert_eq!(FitOption::from(&scale).text(2.0), None);
+    /// ```
+    pub fn text(&self, value: f64) -> Option<String> {
+        let is_whole = value as i64 as f64 == value;
+        if !(self.min..=self.max).contains(&value) || (self.integer && !is_whole) {
+            return None;
+        }
+        if self.choices.is_empty() {
+            return Some(value.to_string());
+        }
+        self.choices.get(value as usize).cloned()
+    }
 }
 
 impl Descriptor {
@@ -162,6 +205,7 @@ impl From<&StaticDescriptor> for Descriptor {
             fields: it.fields.iter().map(Field::from).collect(),
             options: it.options.iter().map(FitOption::from).collect(),
             keeps_level: it.keeps_level,
+            only_named: it.only_named,
         }
     }
 }
@@ -176,6 +220,7 @@ impl From<&StaticField> for Field {
             max: it.max,
             store: it.store,
             default: it.default,
+            usual: it.usual,
             description: it.description.into(),
         }
     }
@@ -191,6 +236,9 @@ impl From<&StaticOption> for FitOption {
             default: it.default,
             integer: it.integer,
             choices: it.choices.iter().map(|&choice| choice.into()).collect(),
+            sweep: it.sweep.into(),
+            sweep_alone: it.sweep_alone.into(),
+            not_above: it.not_above.map(Into::into),
             description: it.description.into(),
         }
     }

@@ -9,8 +9,10 @@
 ///
 /// Add `extensions: [motion]`, as in `export_model!(Stick, symbols: "plugin", extensions:
 /// [motion])`, if the model has the extension `htex.motion/1`. Its voice then has to implement
-/// [`MotionVoice`](crate::MotionVoice), and the functions of the extension are in `pub static
-/// MOTION`.
+/// [`MotionVoice`](crate::MotionVoice).
+///
+/// The functions of extensions are in `pub static VOICES`, and in `pub static MOTION`, which is
+/// `None` without the extension.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
@@ -39,6 +41,9 @@
 macro_rules! export_model {
     ($model:ty, symbols: $feature:literal) => {
         $crate::export_model!(@model $model, $feature, false);
+
+        /// The C functions of the extension `htex.motion/1`, which the model does not have.
+        pub static MOTION: Option<$crate::motion_1::MotionTable> = None;
     };
     ($model:ty, symbols: $feature:literal, extensions: [motion]) => {
         $crate::export_model!(@model $model, $feature, true);
@@ -233,10 +238,7 @@ macro_rules! export_model {
                 shim::extension(unsafe { Input::new(id, id_len) }, $motion)
             }
 
-            #[cfg_attr(
-                                        all(feature = $feature, not(target_family = "wasm")),
-                                        unsafe(no_mangle)
-                                    )]
+            #[cfg_attr(all(feature = $feature, not(target_family = "wasm")), unsafe(no_mangle))]
             pub(super) unsafe extern "C" fn htex_voices_1_render(
                 voices: *const i64,
                 count: usize,
@@ -266,10 +268,11 @@ macro_rules! export_model {
     };
     (@motion $feature:literal) => {
         /// The C functions of the extension `htex.motion/1`.
-        pub static MOTION: $crate::motion_1::MotionTable = $crate::motion_1::MotionTable {
-            set: htex_motion_exports::htex_motion_1_set,
-            fit: htex_motion_exports::htex_motion_1_fit,
-        };
+        pub static MOTION: Option<$crate::motion_1::MotionTable> =
+            Some($crate::motion_1::MotionTable {
+                set: htex_motion_exports::htex_motion_1_set,
+                fit: htex_motion_exports::htex_motion_1_fit,
+            });
 
         /// The C functions of `htex.motion/1`; `htex_model::motion_1` documents them.
         #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]

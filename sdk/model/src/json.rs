@@ -3,7 +3,7 @@
 
 use crate::decimal::whole;
 use crate::exact::exact;
-use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
+use crate::{Kind, Scale, StaticDescriptor, StaticField, StaticOption, Store};
 
 /// Returns the length of a descriptor's JSON text, bytes.
 pub const fn length(descriptor: &StaticDescriptor) -> usize {
@@ -53,6 +53,9 @@ impl<const N: usize> Writer<N> {
         if it.keeps_level {
             self.raw(b",\"keeps_level\":true");
         }
+        if it.only_named {
+            self.raw(b",\"only_named\":true");
+        }
         self.raw(b"}");
     }
 
@@ -74,6 +77,16 @@ impl<const N: usize> Writer<N> {
         self.store(it.store);
         if let Some(default) = it.default {
             self.number(b",\"default\":", default);
+        }
+        if let Some(usual) = it.usual {
+            self.number(b",\"usual\":{\"min\":", usual.min);
+            self.number(b",\"max\":", usual.max);
+            let scale = match usual.scale {
+                Scale::Linear => "linear",
+                Scale::Log => "log",
+            };
+            self.member(b",\"scale\":", scale);
+            self.raw(b"}");
         }
         self.member(b",\"description\":", it.description);
         self.raw(b"}");
@@ -111,8 +124,31 @@ impl<const N: usize> Writer<N> {
             self.string(it.choices[i]);
             i += 1;
         }
-        self.member(b"],\"description\":", it.description);
+        self.raw(b"]");
+        self.numbers(b",\"sweep\":", it.sweep);
+        self.numbers(b",\"sweep_alone\":", it.sweep_alone);
+        if let Some(option) = it.not_above {
+            self.member(b",\"not_above\":", option);
+        }
+        self.member(b",\"description\":", it.description);
         self.raw(b"}");
+    }
+
+    /// Writes an array, unless it is empty.
+    const fn numbers(&mut self, key: &[u8], numbers: &[f64]) {
+        let mut i = 0;
+        while i < numbers.len() {
+            if i == 0 {
+                self.raw(key);
+                self.number(b"[", numbers[i]);
+            } else {
+                self.number(b",", numbers[i]);
+            }
+            i += 1;
+        }
+        if i > 0 {
+            self.raw(b"]");
+        }
     }
 
     const fn member(&mut self, key: &[u8], text: &str) {
@@ -181,15 +217,20 @@ impl<const N: usize> Writer<N> {
 #[cfg(all(test, feature = "host"))]
 mod tests {
     use super::*;
-    use crate::Descriptor;
+    use crate::{Descriptor, UsualRange};
 
     const STEPS: Store = Store::U8 { scale: 1.0 / 3.0, offset: -18.0, log: true };
     const ALL: StaticDescriptor =
         StaticDescriptor::new("org.example.all", "A \"B\" \\ ü\n\u{1f}", "1.2.3", "Σ.")
             .keeping_level()
+            .only_named()
             .fields(&[
-                StaticField::scalar("a", "1", (-1e6, 1e-20), "").defaulted(-0.1),
-                StaticField::list("b", "Hz", (0.0, f64::MAX), 65_535, "List.").stored(STEPS),
+                StaticField::scalar("a", "1", (-1e6, 1e-20), "")
+                    .defaulted(-0.1)
+                    .usual(UsualRange::linear(-1.5, 1e-21)),
+                StaticField::list("b", "Hz", (0.0, f64::MAX), 65_535, "List.")
+                    .stored(STEPS)
+                    .usual(UsualRange::log(0.1, 10.0)),
                 StaticField::scalar("c", "1", (0.0, 1.0), "").stored(Store::F64),
                 StaticField::scalar("d", "1", (0.0, 1.0), "").stored(Store::U16 {
                     scale: 0.03125,
@@ -203,9 +244,9 @@ mod tests {
                 }),
             ])
             .options(&[
-                StaticOption::number("n", "dB", (0.05, 6.0), 0.12, "Number."),
-                StaticOption::integer("i", (3, 64), 10, "Integer."),
-                StaticOption::choice("c", &["x", "y", "z"], "Choice."),
+                StaticOption::number("n", "dB", (0.05, 6.0), 0.12, "Number.").not_above("i"),
+                StaticOption::integer("i", (3, 64), 10, "Integer.").sweep(&[3.0, 64.0]),
+                StaticOption::choice("c", &["x", "y", "z"], "Choice.").sweep_alone(&[2.0]),
             ]);
 
     /// The JSON text parses to the constants from which it was generated.

@@ -35,9 +35,8 @@ mod error;
 mod exact;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 mod export;
-mod id;
+pub mod filtered;
 pub mod json;
-mod knobs;
 pub mod mix;
 #[cfg(all(target_family = "wasm", not(feature = "std")))]
 mod module;
@@ -67,14 +66,12 @@ pub use descriptor::descriptor_schema;
 pub use descriptor::{Descriptor, Field, FitOption};
 pub use error::{Error, Status};
 pub use htex_dsp::Band;
-pub use id::is_model_id;
-pub use knobs::{Knob, Knobs};
 pub use motion::{FitCondition, Motion, MotionVoice};
 pub use numbers::Numbers;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 pub use platform::Lock;
-pub use static_descriptor::{StaticDescriptor, StaticField, StaticOption};
+pub use static_descriptor::{StaticDescriptor, StaticField, StaticOption, is_model_id};
 pub use store::{Kind, Store};
 pub use traits::{Fit, FitInput, Model, Voice};
-pub use usual::{Scale, Usual};
+pub use usual::{Scale, UsualRange};
 pub use values::{Fields, Range, Values, flatten};

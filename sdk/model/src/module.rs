@@ -25,7 +25,7 @@ struct Memory(Lock<Arena>);
 // from `memory.grow`; a block is freed with the layout of its allocation.
 unsafe impl GlobalAlloc for Memory {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let block = self.0.lock().and_then(|mut arena| arena.take(layout, grow));
+        let block = self.0.lock().and_then(|mut arena| arena.allocate(layout, grow));
         block.unwrap_or(core::ptr::null_mut())
     }
 

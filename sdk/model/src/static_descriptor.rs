@@ -1,7 +1,7 @@
 //! The descriptor as constants in a model's code. At compile time,
 //! [`export_model!`](crate::export_model) generates from it the JSON text that the ABI returns.
 
-use crate::{Kind, Store};
+use crate::{Kind, Store, UsualRange};
 
 /// A model's description: its id, version, parameter fields and fit options.
 ///
@@ -28,6 +28,9 @@ pub struct StaticDescriptor {
     pub options: &'static [StaticOption],
     /// Whether the parameters determine the level of a fit. If so, hosts leave the level unchanged.
     pub keeps_level: bool,
+    /// Whether hosts use the model only if the user names it. If not, they also fit it when the
+    /// user names no model.
+    pub only_named: bool,
 }
 
 /// One parameter field.
@@ -47,6 +50,8 @@ pub struct StaticField {
     pub store: Store,
     /// Value for assets of earlier minor versions, which do not have the field. Only for scalars.
     pub default: Option<f64>,
+    /// Range of a slider, within `min` to `max`.
+    pub usual: Option<UsualRange>,
     /// Meaning of the field.
     pub description: &'static str,
 }
@@ -68,6 +73,12 @@ pub struct StaticOption {
     pub integer: bool,
     /// Names of the choices 0, 1, …; empty if the option is a plain number.
     pub choices: &'static [&'static str],
+    /// Values that a sweep tries in all combinations with those of the other options.
+    pub sweep: &'static [f64],
+    /// Values that a sweep tries with all other options at their defaults.
+    pub sweep_alone: &'static [f64],
+    /// Name of another option: values above its value have no effect, and a sweep leaves them out.
+    pub not_above: Option<&'static str>,
     /// Effect of the option, and the source of its default.
     pub description: &'static str,
 }
@@ -80,7 +91,16 @@ impl StaticDescriptor {
         version: &'static str,
         summary: &'static str,
     ) -> Self {
-        Self { id, name, version, summary, fields: &[], options: &[], keeps_level: false }
+        Self {
+            id,
+            name,
+            version,
+            summary,
+            fields: &[],
+            options: &[],
+            keeps_level: false,
+            only_named: false,
+        }
     }
 
     /// Sets the parameter fields, 1 to 32.
@@ -96,6 +116,11 @@ impl StaticDescriptor {
     /// Declares that the parameters determine the level of a fit.
     pub const fn keeping_level(self) -> Self {
         Self { keeps_level: true, ..self }
+    }
+
+    /// Declares that hosts use the model only if the user names it.
+    pub const fn only_named(self) -> Self {
+        Self { only_named: true, ..self }
     }
 }
 
@@ -116,6 +141,7 @@ impl StaticField {
             max,
             store: Store::F32,
             default: None,
+            usual: None,
             description,
         }
     }
@@ -141,6 +167,11 @@ impl StaticField {
     pub const fn defaulted(self, value: f64) -> Self {
         Self { default: Some(value), ..self }
     }
+
+    /// Sets the range of a slider.
+    pub const fn usual(self, range: UsualRange) -> Self {
+        Self { usual: Some(range), ..self }
+    }
 }
 
 impl StaticOption {
@@ -152,7 +183,19 @@ impl StaticOption {
         default: f64,
         description: &'static str,
     ) -> Self {
-        Self { name, unit, min, max, default, integer: false, choices: &[], description }
+        Self {
+            name,
+            unit,
+            min,
+            max,
+            default,
+            integer: false,
+            choices: &[],
+            sweep: &[],
+            sweep_alone: &[],
+            not_above: None,
+            description,
+        }
     }
 
     /// An option that is a whole number in `min..=max`.
@@ -177,4 +220,36 @@ impl StaticOption {
         let last = choices.len().saturating_sub(1) as f64;
         Self { integer: true, choices, ..Self::number(name, "1", (0.0, last), 0.0, description) }
     }
+
+    /// Sets the values that a sweep of accuracy against cost (`htex tradeoff`) tries in all
+    /// combinations with the values of the other options, from coarse to fine. A choice is given by
+    /// its index. If no option of a model has values for a sweep, a sweep covers the ranges of the
+    /// options.
+    pub const fn sweep(self, values: &'static [f64]) -> Self {
+        Self { sweep: values, ..self }
+    }
+
+    /// Sets the values that a sweep tries with all other options at their defaults.
+    pub const fn sweep_alone(self, values: &'static [f64]) -> Self {
+        Self { sweep_alone: values, ..self }
+    }
+
+    /// Names the option above whose value this option has no effect.
+    pub const fn not_above(self, option: &'static str) -> Self {
+        Self { not_above: Some(option), ..self }
+    }
+}
+
+/// Returns whether `id` is a valid model id: three or more parts, separated by dots, of `a-z`,
+/// `0-9`, `-` and `_`.
+///
+/// ```
+/// assert!(htex_model::is_model_id("org.example.my-model_2"));
+/// assert!(!htex_model::is_model_id("org.example.MyModel"));
+/// assert!(!htex_model::is_model_id("org..model"));
+/// ```
+pub fn is_model_id(id: &str) -> bool {
+    let allowed = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-' || b == b'_';
+    let word = |part: &str| !part.is_empty() && part.bytes().all(allowed);
+    id.split('.').count() >= 3 && id.split('.').all(word)
 }

@@ -303,8 +303,9 @@ pub trait Model: 'static {
 /// [`render`](Self::render) cannot fail. A voice that cannot continue writes zeros. If it panics,
 /// the content of `out` is undefined.
 ///
-/// The example of [`Model`] implements this trait. The crate `htex-model` has a complete voice for
-/// models that are noise with a given spectrum.
+/// The example of [`Model`] implements this trait. Models that are noise with a given spectrum
+/// implement [`ShapedModel`](crate::shaped::ShapedModel) instead, and models that are noise through a
+/// filter use [`FilteredVoice`](crate::filtered::FilteredVoice).
 pub trait Voice: Send + 'static {
     /// Fills `out` with the next samples. `out` may have any length, and earlier contents are
     /// arbitrary. `[render thread, no allocation, no lock, no I/O]`

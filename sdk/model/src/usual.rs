@@ -1,10 +1,11 @@
-//! Usual ranges of a model's parameters, for sliders. They are not part of the ABI.
-//!
-//! A descriptor contains the ranges that can be stored, which are much wider than a slider needs
-//! (0.001 to 1,000,000 for a shape parameter of sBeta).
+//! The usual range of a parameter, for sliders.
 
 /// The scale of a slider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "host", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "host", serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(description = "The scale of a slider."))]
 pub enum Scale {
     /// Equal steps of the slider are equal differences.
     Linear,
@@ -12,40 +13,45 @@ pub enum Scale {
     Log,
 }
 
-impl Scale {
-    /// Name of the scale in documents: `linear` or `log`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Log => "log",
-        }
-    }
-}
-
-/// The usual range of a parameter. For a list, the range applies to each of its numbers.
+/// The usual range of a parameter, for sliders. For a list, it applies to each of its numbers.
+///
+/// A field's own range is what can be stored, which is much wider than a slider needs (0.001 to
+/// 1,000,000 for a shape parameter of sBeta).
+///
+/// ```
+/// use htex_model::{StaticField, UsualRange};
+/// let peak = StaticField::scalar("peak_hz", "Hz", (1.0, 2000.0), "Peak.")
+///     .usual(UsualRange::log(20.0, 1000.0));
+/// assert_eq!(peak.usual.map(|range| range.max), Some(1000.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Usual {
-    /// Name of the parameter: a field of the descriptor.
-    pub field: &'static str,
-    /// Lower end of the range.
+#[cfg_attr(feature = "host", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(
+        description = "The usual range of a parameter, for sliders. For a list, it applies to each of its numbers."
+    )
+)]
+pub struct UsualRange {
+    /// Lower end, within the range of the field; above 0 if the scale is `log`.
     pub min: f64,
-    /// Upper end of the range.
+    /// Upper end, within the range of the field and above `min`.
     pub max: f64,
     /// Scale on which a slider moves evenly.
     pub scale: Scale,
 }
 
-impl Usual {
+impl UsualRange {
     /// A range for a linear slider.
     #[must_use]
-    pub const fn linear(field: &'static str, (min, max): (f64, f64)) -> Self {
-        Self { field, min, max, scale: Scale::Linear }
+    pub const fn linear(min: f64, max: f64) -> Self {
+        Self { min, max, scale: Scale::Linear }
     }
 
     /// A range above 0 for a logarithmic slider.
     #[must_use]
-    pub const fn log(field: &'static str, range: (f64, f64)) -> Self {
-        Self { scale: Scale::Log, ..Self::linear(field, range) }
+    pub const fn log(min: f64, max: f64) -> Self {
+        Self { min, max, scale: Scale::Log }
     }
 }

@@ -95,7 +95,7 @@ impl Voice {
         let mut voice = Self {
             started: source.motion(),
             level_rms: Glide::new(level_rms as f32, ramp),
-            stream: Stream::of(source, source_rate_hz, rate_hz, top_hz, own_rate)?,
+            stream: Stream::from_source(source, source_rate_hz, rate_hz, top_hz, own_rate)?,
             still,
             follow,
             travel,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use htex::format::{By, Keyed, Measure};
+use htex::format::{By, KeyedMeasures, Measure};
 use htex::model::Band;
 use htex::model::{Origin, Registry};
 use htex_author::settings::{FitSettings, Metadata, SettingsError};
@@ -169,7 +169,7 @@ pub(crate) fn agreement<'py>(
     check(&frequency_hz, band, &reference, &magnitude)?;
     let reference = SpectrumRef { band, frequency_hz: &frequency_hz, magnitude: &reference };
     let found = py.detach(|| htex_author::agreement(reference, &magnitude));
-    let Keyed(measures) = found.measures.keyed(By::Magnitude, Measure::stored());
+    let KeyedMeasures(measures) = found.measures.keyed(By::Magnitude, Measure::stored());
     let mut fields: BTreeMap<_, Value> =
         measures.into_iter().map(|(key, value)| (key, value.into())).collect();
     fields.insert("band_error_db", found.band_error_db.into());

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use htex::format::Asset;
 use htex::library::storage::{Location, Storage};
 use htex::library::{
-    Entry, Interval, LibraryError, LibrarySource as Bytes, Located, Query, Writer,
+    Entry, Interval, LibraryError, LibraryFile, LibrarySource as Bytes, Query, Writer,
 };
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -26,7 +26,7 @@ pub(crate) struct Library {
 
 /// Where the bytes of a library come from: a local or remote file, or memory.
 enum Origin {
-    File(Located),
+    File(LibraryFile),
     Memory(Vec<u8>),
 }
 
@@ -76,7 +76,7 @@ impl Library {
             let origin = match source {
                 Source::File(path) => {
                     let location = Location::parse(path.as_os_str())?;
-                    Origin::File(Located::open(&Storage::from_environment()?, &location)?)
+                    Origin::File(LibraryFile::open(&Storage::from_environment()?, &location)?)
                 }
                 Source::Bytes(bytes) => Origin::Memory(bytes),
             };

@@ -9,7 +9,7 @@ use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::{Part, Resampler, UnusableRates};
 use htex_format::{AtCondition, Condition, Contact, Law};
-use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
+use htex_host::{Band, FitCondition, FitInput, HostError, LoadedModel, Registry};
 use htex_play::{Conditions, Motion};
 
 use crate::cost::{Costs, FilterCost};
@@ -109,13 +109,14 @@ fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     let grid = band.grid_hz();
     let shape = |f: &f64| (1.2 + libm::sin(f / 17.0)) / (1.0 + (f / corner_hz).powi(2));
     let magnitude: Vec<f64> = grid.iter().map(shape).collect();
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &grid,
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: 20_000.0,
         options: &model.descriptor().default_options(),
+        condition: FitCondition::default(),
     };
     Ok(model.fit(&request)?.parameters)
 }

@@ -62,8 +62,18 @@ export interface Model {
   version: string;
   summary: string;
   fields: ModelField[];
-  /** Options for fitting. */
-  options: { name: string; default: number; min: number; max: number; choices: string[]; description: string }[];
+  /** Options for fitting. `sweep` and `sweep_alone` are values for comparing accuracy with cost. */
+  options: {
+    name: string;
+    default: number;
+    min: number;
+    max: number;
+    choices: string[];
+    sweep?: number[];
+    sweep_alone?: number[];
+    not_above?: string;
+    description: string;
+  }[];
   /** Whether the level is one of the parameters. */
   keeps_level?: boolean;
 }

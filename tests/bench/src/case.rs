@@ -8,7 +8,7 @@ use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
     AssetRequest, ModelRequest, SpectrumOptions, Take, TextureSpectrum, fit_asset, segment_spectra,
 };
-use htex_host::FitRequest;
+use htex_host::{FitCondition, FitInput};
 use serde_json::json;
 
 /// The case, and the folder with its files for the other programs.
@@ -81,14 +81,15 @@ impl Case {
 }
 
 /// The input of a fit.
-pub(crate) fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequest<'a> {
-    FitRequest {
+pub(crate) fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitInput<'a> {
+    FitInput {
         band: spectrum.band,
         frequency_hz: &spectrum.frequency_hz,
         magnitude: &spectrum.magnitude,
         signal: &spectrum.signal,
         signal_rate_hz: spectrum.signal_rate_hz,
         options,
+        condition: FitCondition::default(),
     }
 }
 

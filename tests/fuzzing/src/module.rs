@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use htex_host::{Band, FitRequest, HostError, LoadedModel, Stream, WasmCache, WasmLimits};
+use htex_host::{
+    Band, FitCondition, FitInput, HostError, LoadedModel, Stream, WasmCache, WasmLimits,
+};
 
 use crate::body::{Bytes, body, signature};
 use crate::promise::{finite, sentence};
@@ -67,13 +69,14 @@ fn refused(error: &HostError) -> bool {
 fn use_all(model: &LoadedModel) {
     let band = Band::TACTILE;
     let (grid, ones) = (band.grid_hz(), vec![1.0; band.bins()]);
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &grid,
         magnitude: &ones,
         signal: &ones,
         signal_rate_hz: 4000.0,
         options: &model.descriptor().default_options(),
+        condition: FitCondition::default(),
     };
     let parameters = match model.fit(&request) {
         Ok(fit) => {

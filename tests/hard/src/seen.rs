@@ -2,7 +2,7 @@
 
 use htex_dsp::grid::level_rms;
 use htex_dsp::spectrum::SegmentAnalyzer;
-use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Registry, Stream};
+use htex_host::{Band, Fit, FitCondition, FitInput, HostError, LoadedModel, Registry, Stream};
 
 use crate::signals::{self, RATE_HZ};
 
@@ -44,13 +44,14 @@ pub fn fit_with(
     signal: &[f64],
     options: &[(&str, &str)],
 ) -> Result<Fit, HostError> {
-    model.fit(&FitRequest {
+    model.fit(&FitInput {
         band: BAND,
         frequency_hz: &BAND.grid_hz(),
         magnitude,
         signal,
         signal_rate_hz: RATE_HZ,
         options: &model.options(options)?,
+        condition: FitCondition::default(),
     })
 }
 

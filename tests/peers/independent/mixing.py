@@ -11,7 +11,7 @@ MOST_LINES = 64
 
 def mix(model: str, sets: list[Values], weights: list[float]) -> Values:
     """The mix of at least one set; a single one is played as it is."""
-    return sets[0] if len(sets) == 1 else MIXES[model](sets, weights)
+    return sets[0] if len(sets) == 1 else MIXES.get(model, mix_scalars)(sets, weights)
 
 
 def mean(columns: list, weights: list[float]):
@@ -135,13 +135,12 @@ def filter_of(frequencies: list[float]) -> list[float]:
     return (-((plus + minus) / 2)[1 : order + 1]).tolist()
 
 
+# All other models mix every number linearly.
 MIXES = {
     "org.htex.ar": mix_ar,
     "org.htex.arma": mix_arma,
     "org.htex.map": mix_maps,
     "org.htex.mfcc": mix_mfcc,
     "org.htex.speak": mix_speak,
-    "org.htex.sbeta": mix_scalars,
-    "org.htex.sslope": mix_scalars,
     "org.htex.bands": mix_bands,
 }

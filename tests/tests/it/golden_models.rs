@@ -1,6 +1,6 @@
 //! The models, called through the ABI, against numbers computed independently with SciPy.
 
-use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
+use htex_host::{Band, Fit, FitCondition, FitInput, LoadedModel, Registry};
 use htex_tests::{Golden, smooth_spectrum};
 
 /// The paper's variant of sPeak.
@@ -15,13 +15,14 @@ fn model(name: &str) -> LoadedModel {
 
 fn fit(model: &LoadedModel, magnitude: &[f64], options: &[(&str, &str)]) -> Fit {
     let band = Band::TACTILE;
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &band.grid_hz(),
         magnitude,
         signal: &[],
         signal_rate_hz: 20_000.0,
         options: &model.options(options).unwrap(),
+        condition: FitCondition::default(),
     };
     model.fit(&request).unwrap()
 }
@@ -115,7 +116,7 @@ fn sbeta_fits_of_ten_points() {
         let magnitude = fitted_magnitude(&sbeta, &fit);
         let u = htex_dsp::beta::log_unit(150.0, Band::TACTILE);
         let [alpha, beta] = [fit.parameters[0], fit.parameters[1]];
-        let density = htex_dsp::beta::BetaDensity::new(alpha, beta).at(u);
+        let density = htex_dsp::beta::BetaDensity::new(alpha, beta).density_at(u);
         case.hold("/scale", &[magnitude[26] / density]);
         held += 1;
     }
@@ -159,13 +160,14 @@ fn bands_of_whole_and_narrow_spectra() {
             if case.has_input("mag") { case.input("mag") } else { smooth_spectrum(&grid) };
         let options = ["bands", "step_db", "layout"].map(|key| (key, case.input_text(key)));
         let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
-        let request = FitRequest {
+        let request = FitInput {
             band,
             frequency_hz: &grid,
             magnitude: &magnitude,
             signal: &[],
             signal_rate_hz: 20_000.0,
             options: &bands.options(&options).unwrap(),
+            condition: FitCondition::default(),
         };
         let fit = bands.fit(&request).unwrap();
         let count = fit.parameters[0] as usize;
@@ -211,13 +213,14 @@ fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
         let expected = case.expected("/magnitude");
         let [poles, zeros] = ["a", "b"].map(|key| case.input(key).len().to_string());
         let options = [("poles", &poles[..]), ("zeros", &zeros[..]), ("rate_hz", "1000")];
-        let request = FitRequest {
+        let request = FitInput {
             band,
             frequency_hz: &grid,
             magnitude: &expected,
             signal: &[],
             signal_rate_hz: 1_000.0,
             options: &arma.options(&options).unwrap(),
+            condition: FitCondition::default(),
         };
         let fit = arma.fit(&request).unwrap();
         let magnitude = arma.magnitude(&fit.parameters, band, &grid).unwrap();
@@ -247,13 +250,14 @@ fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
         .map(|&f| gain * htex_dsp::linear_prediction::ar_magnitude(&truth, f, rate_hz))
         .collect();
     let ar = model("ar");
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &band.grid_hz(),
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: rate_hz,
         options: &ar.options(&[("order", "2")]).unwrap(),
+        condition: FitCondition::default(),
     };
     let fit = ar.fit(&request).unwrap();
     // The bin at 0 Hz and half of the bin at 1 kHz do not belong to the process: 1 % of the power.

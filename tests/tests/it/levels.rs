@@ -3,7 +3,7 @@
 use htex_author::{Level, SpectrumRef, stored_fields, stored_level};
 use htex_dsp::peaks::select_peaks;
 use htex_format::round_parameters;
-use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
+use htex_host::{Band, Fit, FitCondition, FitInput, LoadedModel, Registry};
 use proptest::prelude::*;
 
 /// Number of spectra for each property: a sample, unless all are requested.
@@ -48,13 +48,14 @@ struct Stored {
 
 /// `None` if the model has nothing to fit: sPeak, for a spectrum without a peak.
 fn stored(model: &LoadedModel, options: &[f64], grid: &[f64], magnitude: &[f64]) -> Option<Stored> {
-    let request = FitRequest {
+    let request = FitInput {
         band: BAND,
         frequency_hz: grid,
         magnitude,
         signal: &[],
         signal_rate_hz: 4_000.0,
         options,
+        condition: FitCondition::default(),
     };
     let fit = model.fit(&request).ok()?;
     let parameters = round_parameters(&stored_fields(model.descriptor()), &fit.parameters).unwrap();

@@ -1,7 +1,7 @@
 //! Libraries on an S3-compatible server, which counts the requests.
 
 use htex_base::storage::{Location, Settings, Storage};
-use htex_format::library::{Library, LibraryError, Located, Writer};
+use htex_format::library::{Library, LibraryError, LibraryFile, Writer};
 use htex_object_server::{Fault, Server};
 
 const NAME: &str = "textures/many.htexlib";
@@ -35,7 +35,7 @@ fn storage(server: &Server) -> Storage {
     Storage::new(Settings::default(), server.variables().into_iter().collect())
 }
 
-fn open(server: &Server) -> Result<Library<Located>, LibraryError> {
+fn open(server: &Server) -> Result<Library<LibraryFile>, LibraryError> {
     Library::open_located(&storage(server), &Location::parse(URI.as_ref()).unwrap())
 }
 

@@ -3,7 +3,7 @@
 use htex_author::{Level, SpectrumRef, stored_fields, stored_level};
 use htex_dsp::spectrum::SegmentAnalyzer;
 use htex_format::round_parameters;
-use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream};
+use htex_host::{Band, FitCondition, FitInput, LoadedModel, Registry, Stream};
 
 const BAND: Band = Band::TACTILE;
 const RATE_HZ: f64 = 4_000.0;
@@ -44,13 +44,14 @@ struct Stored {
 
 fn stored(magnitude: &[f64], options: &[(&str, &str)]) -> Stored {
     let (model, grid) = (speak(), BAND.grid_hz());
-    let request = FitRequest {
+    let request = FitInput {
         band: BAND,
         frequency_hz: &grid,
         magnitude,
         signal: &[],
         signal_rate_hz: RATE_HZ,
         options: &model.options(options).unwrap(),
+        condition: FitCondition::default(),
     };
     let fit = model.fit(&request).unwrap();
     let parameters = round_parameters(&stored_fields(model.descriptor()), &fit.parameters).unwrap();

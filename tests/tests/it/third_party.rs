@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use builds::*;
-use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Motion, Status, Stream};
+use htex_host::{
+    Band, Fit, FitCondition, FitInput, HostError, LoadedModel, Motion, Status, Stream,
+};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
 use xtask::needs;
@@ -316,13 +318,14 @@ fn is_the_same(native: &LoadedModel, wasm: &LoadedModel) {
 // ---- ways and means ----
 
 fn fit(model: &LoadedModel, magnitude: &[f64], signal: &[f64]) -> Result<Fit, HostError> {
-    model.fit(&FitRequest {
+    model.fit(&FitInput {
         band: Band::TACTILE,
         frequency_hz: &Band::TACTILE.grid_hz(),
         magnitude,
         signal,
         signal_rate_hz: RATE_HZ,
         options: &model.options(&[]).unwrap(),
+        condition: FitCondition::default(),
     })
 }
 

@@ -2,7 +2,7 @@
 //! block sizes, follows its seed, and changes without a click.
 
 use htex_dsp::grid::level_rms;
-use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream, render_together};
+use htex_host::{Band, FitCondition, FitInput, LoadedModel, Registry, Stream, render_together};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum};
 use htex_tests::smooth_spectrum;
 
@@ -14,13 +14,14 @@ fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
     let magnitude: Vec<f64> = smooth_spectrum(&grid).iter().enumerate().map(ripple).collect();
     let models = Registry::builtin();
     let fit = |model: &LoadedModel| {
-        let request = FitRequest {
+        let request = FitInput {
             band,
             frequency_hz: &grid,
             magnitude: &magnitude,
             signal: &[],
             signal_rate_hz: RATE_HZ,
             options: &model.options(&[]).unwrap(),
+            condition: FitCondition::default(),
         };
         (model.clone(), model.fit(&request).unwrap().parameters)
     };
@@ -194,13 +195,14 @@ fn louder_at_one_end(model: &LoadedModel) -> Vec<f64> {
     let grid = band.grid_hz();
     let curve = |f: &f64| (-f / 90.0).exp() * (1.2 + (f / 25.0).sin());
     let magnitude: Vec<f64> = grid.iter().map(curve).collect();
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &grid,
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: RATE_HZ,
         options: &model.options(&[]).unwrap(),
+        condition: FitCondition::default(),
     };
     model.fit(&request).unwrap().parameters
 }

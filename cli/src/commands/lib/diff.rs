@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 
 use clap::Args;
-use htex_format::library::{Entry, Library, Located};
+use htex_format::library::{Entry, Library, LibraryFile};
 use serde::Serialize;
 
 use super::given::Given;
@@ -37,7 +37,7 @@ struct Differences {
 /// An iterator over a library's entries that knows the next one.
 struct Walk<'a> {
     given: &'a Given,
-    entries: htex_format::library::Entries<'a, Located>,
+    entries: htex_format::library::Entries<'a, LibraryFile>,
     next: Option<Entry>,
 }
 
@@ -55,7 +55,7 @@ impl Diff {
 }
 
 impl<'a> Walk<'a> {
-    fn new(given: &'a Given, library: &'a Library<Located>) -> Result<Self, Failure> {
+    fn new(given: &'a Given, library: &'a Library<LibraryFile>) -> Result<Self, Failure> {
         let entries = library.entries();
         let mut walk = Self { given, entries, next: None };
         walk.step()?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use htex_base::storage::{Location, Storage};
-use htex_format::library::{Library, Located};
+use htex_format::library::{Library, LibraryFile};
 
 use crate::failure::Failure;
 use crate::of_file::of_file;
@@ -19,7 +19,7 @@ impl Given {
         OsStringValueParser::new().try_map(|text| Location::parse(&text).map(Self))
     }
 
-    pub(crate) fn open(&self) -> Result<Library<Located>, Failure> {
+    pub(crate) fn open(&self) -> Result<Library<LibraryFile>, Failure> {
         Library::open_located(&storage()?, &self.0).map_err(of_file(&self.shown()))
     }
 

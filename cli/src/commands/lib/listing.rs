@@ -1,7 +1,8 @@
 //! Prints lists of entries as table lines or a JSON array, while the index is still being read.
 
 use htex_base::finding::plain;
-use htex_format::library::{Entry, IndexedLaw, Interval};
+use htex_format::Law;
+use htex_format::library::{Entry, Interval};
 
 use crate::assets::short_name;
 use crate::failure::Failure;
@@ -70,7 +71,7 @@ fn row(entry: &Entry) -> String {
 
 /// Formats the law as exponents: of frequencies over the speed, and of the level over speed and
 /// force.
-fn law(law: &IndexedLaw) -> String {
+fn law(law: &Law) -> String {
     let [a, b, c] = [law.frequency_speed, law.level_speed, law.level_force]
         .map(|exponent| number(exponent.exponent));
     format!("f^{a} v^{b} F^{c}")

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::library::{EXTENSION, LibraryError, Packed, Writer};
+use htex_format::library::{EXTENSION, LibraryError, PackSummary, Writer};
 use serde_json::{Value, json};
 
 use super::sources::sources;
@@ -93,7 +93,7 @@ impl Pack {
 }
 
 /// Summarises the library that was written, as JSON.
-fn summary(path: &Path, name: &str, packed: &Packed) -> Value {
+fn summary(path: &Path, name: &str, packed: &PackSummary) -> Value {
     json!({
         "file": path.display().to_string(),
         "name": name,
@@ -106,8 +106,8 @@ fn summary(path: &Path, name: &str, packed: &Packed) -> Value {
     })
 }
 
-fn text(path: &Path, packed: &Packed) -> String {
-    let Packed { entries, bytes, index_bytes, saved_bytes, .. } = packed;
+fn text(path: &Path, packed: &PackSummary) -> String {
+    let PackSummary { entries, bytes, index_bytes, saved_bytes, .. } = packed;
     let textures = if *entries == 1 { "texture" } else { "textures" };
     let mut text = format!(
         "{}: {entries} {textures} in {bytes} bytes, {index_bytes} of them the index\n",

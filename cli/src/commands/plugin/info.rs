@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_host::{Descriptor, Field, FitOption, Kind};
+use htex_host::{Descriptor, Field, FitOption, Kind, Scale};
 
 use crate::commands::plugin::named::named;
 use crate::exit::Exit;
@@ -39,7 +39,10 @@ fn text(descriptor: &Descriptor) -> String {
     let fields: String = descriptor.fields.iter().map(field).collect();
     let options: String = descriptor.options.iter().map(option).collect();
     let options = if options.is_empty() { "  none\n".to_owned() } else { options };
-    format!("{name} ({id} {version})\n{summary}\n\nparameters\n{fields}\nfit options\n{options}")
+    let used = if descriptor.only_named { "Used only if you name it.\n" } else { "" };
+    format!(
+        "{name} ({id} {version})\n{summary}\n{used}\nparameters\n{fields}\nfit options\n{options}"
+    )
 }
 
 fn field(field: &Field) -> String {
@@ -48,7 +51,12 @@ fn field(field: &Field) -> String {
         Kind::List { max_len } => format!(", up to {max_len}"),
     };
     let (range, name) = (range(field.min, field.max, &field.unit), &field.name);
-    format!("  {name}: {range}{many}\n      {}\n", field.description)
+    let usual = field.usual.map_or_else(String::new, |usual| {
+        let range = self::range(usual.min, usual.max, &field.unit);
+        let scale = if usual.scale == Scale::Log { ", logarithmic" } else { "" };
+        format!("      usually {range}{scale}\n")
+    });
+    format!("  {name}: {range}{many}\n      {}\n{usual}", field.description)
 }
 
 fn option(option: &FitOption) -> String {
@@ -60,7 +68,17 @@ fn option(option: &FitOption) -> String {
         let first = option.choices.get(*default as usize).map(String::as_str).unwrap_or_default();
         format!("{} [{first}]", option.choices.join(" or "))
     };
-    format!("  {name}: {values}\n      {}\n", option.description)
+    let above = option.not_above.as_ref();
+    let above = above.map_or_else(String::new, |other| format!(", none above `{other}`"));
+    let swept = |values: &[f64], how: &str| {
+        let texts: Vec<String> = values.iter().filter_map(|value| option.text(*value)).collect();
+        if texts.is_empty() {
+            return String::new();
+        }
+        format!("      swept{how}: {}{above}\n", texts.join(", "))
+    };
+    let (together, alone) = (swept(&option.sweep, ""), swept(&option.sweep_alone, " alone"));
+    format!("  {name}: {values}\n      {}\n{together}{alone}", option.description)
 }
 
 /// Formats a range with its unit. A plain number has no unit.

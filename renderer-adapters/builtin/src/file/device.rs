@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use htex_base::files::Unfinished;
+use htex_base::files::FileInProgress;
 use htex_device::{Capabilities, Device, DeviceError, Status};
 
 use crate::file::plan::Plan;
@@ -13,7 +13,7 @@ pub(crate) struct FileDevice {
     capabilities: Capabilities,
     path: String,
     /// `None` once the device is finished or failed.
-    open: Option<(Sink, Unfinished)>,
+    open: Option<(Sink, FileInProgress)>,
     frames: u64,
     peak: f32,
 }
@@ -26,8 +26,8 @@ impl FileDevice {
     pub(crate) fn create(plan: &Plan, rate_hz: f64) -> Result<Self, DeviceError> {
         plan.check_rate(rate_hz)?;
         let path = plan.path.display().to_string();
-        let created = Unfinished::create(&plan.path).and_then(|mut file| {
-            // The writer has its own handle. `Unfinished` keeps the other one until it renames the
+        let created = FileInProgress::create(&plan.path).and_then(|mut file| {
+            // The writer has its own handle. `FileInProgress` keeps the other one until it renames the
             // file.
             let writer = file.file().try_clone()?;
             Ok((Sink::new(writer, plan, rate_hz)?, file))

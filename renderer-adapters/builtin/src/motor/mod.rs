@@ -22,7 +22,7 @@ pub use plan::{
     setting,
 };
 
-use htex_dsp::envelope::Measured;
+use htex_dsp::envelope::Measurement;
 
 /// A motor or interface that plays blocks. Implement this trait to add a device that cannot play
 /// samples.
@@ -57,5 +57,5 @@ pub struct Block<'a> {
     /// The samples, at most 1 in magnitude. The last block may be shorter than the others.
     pub samples: &'a [f32],
     /// Their level and mean frequency.
-    pub measured: Measured,
+    pub measured: Measurement,
 }

@@ -63,7 +63,7 @@ impl Vibrator {
             ));
         }
         // SAFETY: the user named this library.
-        let library = unsafe { Library::named(path) };
+        let library = unsafe { Library::from_name(path) };
         let library =
             library.map_err(|error| refused(format!("`{path}` cannot be loaded: {error}")))?;
         let missing = |name: &'static str| refused(format!("`{path}` has no `{name}`"));

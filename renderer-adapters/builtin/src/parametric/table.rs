@@ -38,7 +38,7 @@ pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
         });
     }
     // SAFETY: the user named this library as a runtime.
-    let entry = of(unsafe { Library::named(path) });
+    let entry = of(unsafe { Library::from_name(path) });
     entry.map_err(|reason| DeviceError::Setting {
         name: "runtime".to_owned(),
         what: format!("`{path}` cannot be loaded as an OpenXR runtime: {reason}"),

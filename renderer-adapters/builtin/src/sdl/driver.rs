@@ -92,7 +92,7 @@ fn installed() -> Result<Table, DeviceError> {
 /// library of the system.
 fn named(path: &str) -> Result<Table, DeviceError> {
     // SAFETY: the user named this library as a driver.
-    let table = Table::of(unsafe { Library::named(path) });
+    let table = Table::of(unsafe { Library::from_name(path) });
     table.map_err(|reason| DeviceError::Setting {
         name: "driver".to_owned(),
         what: format!("`{path}` cannot be loaded as SDL 2: {reason}"),

@@ -3,7 +3,7 @@
 use crate::{Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
 use htex_format::{StoredAs, StoredField, round_within, stored_bytes};
-use htex_host::{Fit, HostError, LoadedModel};
+use htex_host::{Fit, FitCondition, HostError, LoadedModel};
 
 use crate::tradeoff::baseline::quantise;
 use crate::tradeoff::setting::Keep;
@@ -42,7 +42,9 @@ impl Contender {
     /// Fits the model to a spectrum. For a baseline, computes the data to store.
     pub(crate) fn fit(&self, spectrum: &TextureSpectrum) -> Result<Fit, HostError> {
         match &self.kind {
-            ContenderKind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
+            ContenderKind::Model(model, options) => {
+                model.fit(&spectrum.fit_input(options, FitCondition::default()))
+            }
             ContenderKind::Quantised => {
                 let parameters = quantise(&spectrum.magnitude).0;
                 let level_rms = level_rms(&parameters);

@@ -1,18 +1,18 @@
-//! The knobs of a sweep: options for storing and playing, and values for fit options for which the
-//! model itself lists none ([`LoadedModel::knobs`](htex_host::LoadedModel::knobs)).
+//! The knobs of a sweep: options for storing and playing, and values for the fit options of a model
+//! whose descriptor lists none ([`FitOption::sweep`]).
 
-use htex_host::{FitOption, Knob};
+use htex_host::FitOption;
 
 /// Options for storing and playing. They are varied one at a time, with the fit at its defaults.
 /// Ways to load a model are added to these.
-pub const PLAYING: &[Knob] = &[
-    Knob::new(
+pub const PLAYING: &[(&str, &[&str])] = &[
+    (
         "synthesis",
         &["loop:0.5", "loop:2", "loop:10", "filter:127", "filter:255", "filter:511", "filter:1023"],
     ),
-    Knob::new("store", &["f32", "f64"]),
-    Knob::new("block_samples", &["1", "16", "64", "1024"]),
-    Knob::new("output_rate_hz", &["4000", "8000", "48000", "192000"]),
+    ("store", &["f32", "f64"]),
+    ("block_samples", &["1", "16", "64", "1024"]),
+    ("output_rate_hz", &["4000", "8000", "48000", "192000"]),
 ];
 
 /// Number of values, less one, for an option for which the model lists none.

@@ -1,7 +1,7 @@
 //! The report of a sweep as an HTML page.
 
 use crate::report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
-use htex_format::{By, ErrorMeasure, Judged, Measure};
+use htex_format::{By, ErrorMeasure, Measure, MeasureKind};
 
 use crate::tradeoff::against::Cost;
 use crate::tradeoff::error_axis::ErrorAxis;
@@ -146,7 +146,7 @@ fn cells(p: &Point) -> Vec<Cell> {
         format!("± {:.2}", p.by_samples.band_error_spread_db),
     ));
     cells.extend(others().map(|other| match other.row().judged {
-        Judged::Correlation => text(format!("{:.4}", own(other))),
+        MeasureKind::Correlation => text(format!("{:.4}", own(other))),
         _ => Cell::Plain(own(other)),
     }));
     cells.push(timed(p.ns_per_sample, p.spread));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::FeltError;
-use htex_format::{By, Judged, Keyed, Measure, Measures};
+use htex_format::{By, KeyedMeasures, Measure, MeasureKind, Measures};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
@@ -106,12 +106,12 @@ impl Shares {
 
 /// Returns the measures of points that are errors.
 pub fn errors() -> impl Iterator<Item = Measure> {
-    Measure::of_both().filter(|m| m.row().judged == Judged::Error)
+    Measure::of_both().filter(|m| m.row().judged == MeasureKind::Error)
 }
 
 /// Returns the measures of points that are not errors.
 pub fn others() -> impl Iterator<Item = Measure> {
-    Measure::of_both().filter(|m| m.row().judged != Judged::Error)
+    Measure::of_both().filter(|m| m.row().judged != MeasureKind::Error)
 }
 
 /// Accuracy of rendered samples.
@@ -130,8 +130,8 @@ fn of_magnitudes<S: Serializer>(measures: &Measures, serializer: S) -> Result<S:
 
 impl Played {
     /// Returns the numbers with their keys. The spread comes after the error to which it belongs.
-    pub(crate) fn keyed(&self) -> Keyed {
-        let mut keyed = Keyed::default();
+    pub(crate) fn keyed(&self) -> KeyedMeasures {
+        let mut keyed = KeyedMeasures::default();
         for measure in Measure::of_both() {
             keyed.0.extend(self.measures.keyed(By::Samples, [measure]).0);
             if measure == Measure::NineBand {

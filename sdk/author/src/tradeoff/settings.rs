@@ -1,55 +1,57 @@
 //! The settings of a sweep, made from the knobs of models and of playing.
 
-use htex_host::{Knob, Knobs, LoadedModel, Registry};
+use htex_host::{FitOption, LoadedModel};
 
 use crate::tradeoff::knobs::{PLAYING, few, of_range};
 use crate::tradeoff::{Setting, TradeoffError};
+
+/// The values of a knob, by its name.
+type Knob = (String, Vec<String>);
 
 /// Returns the settings of a model's fit options, the defaults first. A quick sweep varies only one
 /// knob at a time.
 pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     let mut settings = vec![Setting::default()];
-    let knobs = knobs(model);
     let mut add = |options: Vec<(String, String)>| {
         let options = without_defaults(model, options);
         let setting = Setting { options, ..Setting::default() };
-        // A plugin with the same name as a built-in model may lack some of these options.
         let given: Vec<(&str, &str)> =
             setting.options.iter().map(|(n, v)| (&n[..], &v[..])).collect();
         let takes = model.options(&given).is_ok();
-        let idle = knobs.is_some_and(|knobs| is_idle(model, knobs, &setting));
-        if takes && !idle && !settings.contains(&setting) {
+        if takes && !is_idle(model, &setting) && !settings.contains(&setting) {
             settings.push(setting);
         }
     };
-    if let Some(knobs) = knobs.filter(|_| !quick) {
-        products(knobs.together).into_iter().for_each(&mut add);
+    let (together, mut alone) = knobs(model);
+    if quick {
+        alone = [together, alone].concat();
+    } else {
+        products(&together).into_iter().for_each(&mut add);
     }
-    for (name, values) in alone(model, knobs, quick) {
+    for (name, values) in alone {
         let values = if quick { few(&values) } else { values };
         values.into_iter().for_each(|value| add(vec![(name.clone(), value)]));
     }
     settings
 }
 
-/// The knobs of the built-in model with the same name. Thus a model that is loaded in another way,
-/// or that replaces the built-in one, is swept in the same way.
-fn knobs(model: &LoadedModel) -> Option<&'static Knobs> {
-    Registry::builtin().find(model.short_name()).ok()?.knobs()
-}
-
-/// Names and values of the knobs that are varied one at a time.
-fn alone(model: &LoadedModel, knobs: Option<&Knobs>, quick: bool) -> Vec<(String, Vec<String>)> {
-    let Some(knobs) = knobs else {
-        let options = model.descriptor().options.iter();
-        return options.map(|o| (o.name.clone(), of_range(o))).collect();
+/// Returns the knobs that are varied in all combinations, and those that are varied one at a time:
+/// the whole range of each option, if the model lists no values.
+fn knobs(model: &LoadedModel) -> (Vec<Knob>, Vec<Knob>) {
+    let options = &model.descriptor().options;
+    let listed = |values: fn(&FitOption) -> &[f64]| -> Vec<Knob> {
+        let texts = |o: &FitOption| -> Vec<String> {
+            values(o).iter().filter_map(|value| o.text(*value)).collect()
+        };
+        let knobs = options.iter().map(|o| (o.name.clone(), texts(o)));
+        knobs.filter(|(_, values)| !values.is_empty()).collect()
     };
-    let together = if quick { knobs.together } else { &[] };
-    let owned = |knob: &Knob| {
-        let values = knob.values.iter().map(|&value| value.to_owned());
-        (knob.name.to_owned(), values.collect())
-    };
-    together.iter().chain(knobs.alone).map(owned).collect()
+    let (together, alone) = (listed(|o| &o.sweep), listed(|o| &o.sweep_alone));
+    if together.is_empty() && alone.is_empty() {
+        let ranges = options.iter().map(|o| (o.name.clone(), of_range(o)));
+        return (Vec::new(), ranges.collect());
+    }
+    (together, alone)
 }
 
 /// Returns the settings of [`PLAYING`].
@@ -58,10 +60,10 @@ fn alone(model: &LoadedModel, knobs: Option<&Knobs>, quick: bool) -> Vec<(String
 /// When the table of knobs has an invalid value.
 pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
     let mut settings = Vec::new();
-    for knob in PLAYING {
-        let values = if quick { few(knob.values) } else { knob.values.to_vec() };
+    for (name, values) in PLAYING {
+        let values = if quick { few(values) } else { values.to_vec() };
         for value in values {
-            settings.push(Setting::default().playing(knob.name, value)?);
+            settings.push(Setting::default().playing(name, value)?);
         }
     }
     Ok(settings)
@@ -69,13 +71,16 @@ pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffErro
 
 /// Returns all combinations of the knobs' values.
 fn products(knobs: &[Knob]) -> Vec<Vec<(String, String)>> {
-    knobs.iter().fold(vec![Vec::new()], |all, knob| {
-        let with = |value: &'static str| {
-            let pair = (knob.name.to_owned(), value.to_owned());
+    if knobs.is_empty() {
+        return Vec::new();
+    }
+    knobs.iter().fold(vec![Vec::new()], |all, (name, values)| {
+        let with = |value: &String| {
+            let pair = (name.clone(), value.clone());
             let one = move |options: &Vec<_>| [&options[..], std::slice::from_ref(&pair)].concat();
             all.iter().map(one).collect::<Vec<_>>()
         };
-        knob.values.iter().copied().flat_map(with).collect()
+        values.iter().flat_map(with).collect()
     })
 }
 
@@ -93,42 +98,43 @@ fn without_defaults(
     options
 }
 
-/// Whether a knob has no effect in this setting because its value is above another knob's.
-fn is_idle(model: &LoadedModel, knobs: &Knobs, setting: &Setting) -> bool {
+/// Whether an option has no effect in this setting because its value is above that of the option
+/// that limits it ([`FitOption::not_above`]).
+fn is_idle(model: &LoadedModel, setting: &Setting) -> bool {
+    let options = &model.descriptor().options;
     let value = |name: &str| {
         let given = setting.options.iter().find(|(n, _)| n == name);
-        let default = || {
-            let option = model.descriptor().options.iter().find(|o| o.name == name);
-            option.map_or(f64::NAN, |o| o.default)
-        };
+        let default = || options.iter().find(|o| o.name == name).map_or(f64::NAN, |o| o.default);
         given.and_then(|(_, v)| v.parse().ok()).unwrap_or_else(default)
     };
-    knobs.not_above.is_some_and(|(low, high)| value(low) > value(high))
+    options.iter().any(|o| o.not_above.as_ref().is_some_and(|high| value(&o.name) > value(high)))
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 mod tests {
+    use htex_host::Registry;
+
     use super::*;
 
     #[test]
     fn every_knob_of_a_model_turns_something() {
         let registry = Registry::builtin();
         for model in registry.models() {
-            let Some(knobs) = model.knobs() else {
-                continue;
-            };
+            let options = &model.descriptor().options;
             let settings = fit_settings(model, false);
-            for knob in knobs.together.iter().chain(knobs.alone) {
-                for value in knob.values {
-                    let values = model.options(&[(knob.name, value)]);
-                    assert!(values.is_ok(), "{} {}={value}", model.short_name(), knob.name);
+            for option in options {
+                for value in option.sweep.iter().chain(&option.sweep_alone) {
+                    let text = option.text(*value);
+                    let text = text.unwrap_or_else(|| panic!("{} {value}", option.name));
+                    let values = model.options(&[(&option.name, &text)]);
+                    assert!(values.is_ok(), "{} {}={text}", model.short_name(), option.name);
+                    let turned = |s: &Setting| s.options.iter().any(|(n, _)| *n == option.name);
+                    assert!(settings.iter().any(turned), "{} {}", model.short_name(), option.name);
                 }
-                let turned = |s: &Setting| s.options.iter().any(|(name, _)| name == knob.name);
-                assert!(settings.iter().any(turned), "{} {}", model.short_name(), knob.name);
             }
             assert_eq!(settings[0], Setting::default());
-            assert!(fit_settings(model, true).len() < settings.len());
+            assert!(options.is_empty() || fit_settings(model, true).len() < settings.len());
         }
         assert_eq!(playing_settings(false).unwrap().len(), 17);
     }

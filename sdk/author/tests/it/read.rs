@@ -7,7 +7,7 @@ use htex_author::{
 };
 use htex_dsp::grid::level_rms;
 use htex_format::Measure;
-use htex_host::{LoadedModel, Registry, Stream};
+use htex_host::{FitCondition, LoadedModel, Registry, Stream};
 
 const SECONDS: f64 = 60.0;
 const RATE_HZ: f64 = 4000.0;
@@ -38,7 +38,7 @@ fn measures_of_magnitudes_are_those_of_the_voice() {
         let reference = spectrum.as_ref();
         for model in registry.models() {
             let options = model.descriptor().default_options();
-            let fit = model.fit(&spectrum.fit_request(&options)).unwrap();
+            let fit = model.fit(&spectrum.fit_input(&options, FitCondition::default())).unwrap();
             let read = read_spectrum(model, &fit.parameters, 1.0, reference).unwrap();
             let voice = played(model, &fit.parameters, &spectrum);
             let at_level = |magnitude: &[f64]| -> Vec<f64> {
@@ -74,7 +74,7 @@ fn a_filter_plays_at_the_level_of_a_recording_near_half_its_rate() {
     for name in ["ar", "arma"] {
         let model = registry.find(name).unwrap();
         let options = model.descriptor().default_options();
-        let fit = model.fit(&spectrum.fit_request(&options)).unwrap();
+        let fit = model.fit(&spectrum.fit_input(&options, FitCondition::default())).unwrap();
         let reference = spectrum.as_ref();
         let stored = stored_level(model, &fit, &fit.parameters, reference, Level::Recording);
         let heard = level_rms(&played(model, &fit.parameters, &spectrum));

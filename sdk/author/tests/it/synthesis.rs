@@ -5,7 +5,7 @@ use htex_author::{
     SpectrumOptions, TextureSpectrum, agreement, segment_spectra, spectrum_of_samples,
 };
 use htex_format::Measure;
-use htex_host::{FitRequest, LoadedModel, Registry, StillSound, Synthesis};
+use htex_host::{FitCondition, FitInput, LoadedModel, Registry, StillSound, Synthesis};
 
 const RATE_HZ: f64 = 20_000.0;
 
@@ -18,13 +18,14 @@ fn spectrum() -> TextureSpectrum {
 }
 
 fn parameters(model: &LoadedModel, spectrum: &TextureSpectrum) -> Vec<f64> {
-    let request = FitRequest {
+    let request = FitInput {
         band: spectrum.band,
         frequency_hz: &spectrum.frequency_hz,
         magnitude: &spectrum.magnitude,
         signal: &spectrum.signal,
         signal_rate_hz: spectrum.signal_rate_hz,
         options: &model.descriptor().default_options(),
+        condition: FitCondition::default(),
     };
     model.fit(&request).unwrap().parameters
 }

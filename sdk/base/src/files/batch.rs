@@ -42,7 +42,7 @@ impl Batch {
     /// The errors of [`crate::files::write_file`], and the errors of earlier files if this file
     /// completes their group.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        self.write_to(Target::of(path, Readers::All)?, bytes)
+        self.write_to(Target::new(path)?, bytes)
     }
 
     /// Like [`Self::write`], but a link at `path` is replaced and not followed.

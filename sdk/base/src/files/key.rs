@@ -13,9 +13,9 @@ use crate::files::private;
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
-/// let key = htex_base::files::Key::of(folder.path(), "wasm.key")?;
+/// let key = htex_base::files::Key::load_or_create(folder.path(), "wasm.key")?;
 /// let tag = key.tag("module", b"content");
-/// assert_eq!(htex_base::files::Key::of(folder.path(), "wasm.key")?.tag("module", b"content"), tag);
+/// assert_eq!(htex_base::files::Key::load_or_create(folder.path(), "wasm.key")?.tag("module", b"content"), tag);
 /// assert_ne!(key.tag("other", b"content"), tag);
 /// # Ok::<(), std::io::Error>(())
 /// ```
@@ -28,7 +28,7 @@ impl Key {
     /// # Errors
     /// If the folder belongs to another user or is writable by others, or the file belongs to
     /// another user or is not private; and errors of the system.
-    pub fn of(folder: &Path, name: &str) -> io::Result<Self> {
+    pub fn load_or_create(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);
         if !path.try_exists()? {

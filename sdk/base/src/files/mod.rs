@@ -71,7 +71,7 @@ fn unfinished<T>(run: impl FnOnce(&mut BTreeSet<PathBuf>) -> T) -> T {
 /// A file that is being written. If it is dropped before [`Self::keep`], it is removed. Data that
 /// was written to a pipe or a device cannot be removed.
 #[derive(Debug)]
-pub struct Unfinished(Target);
+pub struct FileInProgress(Target);
 
 #[derive(Debug)]
 enum Target {
@@ -82,7 +82,7 @@ enum Target {
 }
 
 impl Target {
-    fn of(path: &Path, readable_by: Readers) -> io::Result<Self> {
+    fn new(path: &Path) -> io::Result<Self> {
         let path = followed(path)?;
         let there = path.metadata().ok();
         if there.as_ref().is_some_and(std::fs::Metadata::is_dir) {
@@ -99,7 +99,7 @@ impl Target {
                 "its folder does not exist; create it first",
             ));
         }
-        Self::beside(path, there, readable_by)
+        Self::beside(path, there, Readers::All)
     }
 
     /// Creates a new file for `path`, whatever is there. A link is replaced and not followed.
@@ -130,23 +130,14 @@ impl Target {
     }
 }
 
-impl Unfinished {
+impl FileInProgress {
     /// Creates the temporary file for the target `path`.
     ///
     /// # Errors
     /// If `path` is a folder or a dangling link, its folder does not exist, or the system reports
     /// an error.
     pub fn create(path: &Path) -> io::Result<Self> {
-        Target::of(path, Readers::All).map(Self)
-    }
-
-    /// Like [`Self::create`], but only this user may read the file. An existing file keeps its
-    /// permissions.
-    ///
-    /// # Errors
-    /// The errors of [`Self::create`].
-    pub fn create_private(path: &Path) -> io::Result<Self> {
-        Target::of(path, Readers::User).map(Self)
+        Target::new(path).map(Self)
     }
 
     /// Creates the temporary file for `path`. A link at that path is replaced and not followed.
@@ -185,7 +176,7 @@ impl Unfinished {
     }
 }
 
-impl Drop for Unfinished {
+impl Drop for FileInProgress {
     fn drop(&mut self) {
         if let Target::Beside(beside, _) = &self.0 {
             unfinished(|all| all.remove(beside.path()));
@@ -236,7 +227,7 @@ pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut unfinished = Unfinished::create(path)?;
+    let mut unfinished = FileInProgress::create(path)?;
     write(unfinished.file())?;
     unfinished.keep()
 }
@@ -247,19 +238,6 @@ pub fn replace_file(
 /// The errors of [`replace_file`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_file(path, |file| file.write_all(bytes))
-}
-
-/// Writes a file like [`replace_file`], but only this user may read it.
-///
-/// # Errors
-/// The errors of [`replace_file`].
-pub fn replace_private_file(
-    path: &Path,
-    write: impl FnOnce(&mut File) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut unfinished = Unfinished::create_private(path)?;
-    write(unfinished.file())?;
-    unfinished.keep()
 }
 
 fn folder(path: &Path) -> &Path {

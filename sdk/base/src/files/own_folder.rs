@@ -13,7 +13,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
-use crate::files::{Batch, Readers, Unfinished, private, read_regular};
+use crate::files::{Batch, FileInProgress, Readers, private, read_regular};
 
 /// A folder in which no link is followed.
 ///
@@ -63,7 +63,7 @@ impl OwnFolder {
     ///
     /// # Errors
     /// If a part above the entry is a link or not a folder, or the path leads out of the folder.
-    pub fn at(&self, inside: &Path) -> io::Result<PathBuf> {
+    pub fn entry_path(&self, inside: &Path) -> io::Result<PathBuf> {
         let mut path = self.folder.clone();
         let mut parts = inside.components().peekable();
         while let Some(part) = parts.next() {
@@ -89,7 +89,7 @@ impl OwnFolder {
         let mut folders: Vec<&Path> = inside.ancestors().collect();
         folders.retain(|folder| *folder != Path::new(""));
         for folder in folders.into_iter().rev() {
-            let path = self.at(folder)?;
+            let path = self.entry_path(folder)?;
             match self.create_dir(&path) {
                 // What exists may be a link to a folder, which the system would follow for
                 // everything below.
@@ -144,7 +144,7 @@ impl OwnFolder {
         write: impl FnOnce(&mut File) -> io::Result<()>,
     ) -> io::Result<()> {
         let path = self.entry(inside)?;
-        let mut unfinished = Unfinished::in_place_of(path, self.readable_by)?;
+        let mut unfinished = FileInProgress::in_place_of(path, self.readable_by)?;
         write(unfinished.file())?;
         unfinished.keep()
     }
@@ -178,7 +178,7 @@ impl OwnFolder {
     /// # Errors
     /// The errors of [`Self::at`] and [`read_regular`], and an error for a link.
     pub fn read(&self, inside: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
-        let path = self.at(inside)?;
+        let path = self.entry_path(inside)?;
         refuse_link(&path)?;
         read_regular(&path, most_bytes)
     }
@@ -195,7 +195,7 @@ impl OwnFolder {
 
     /// Opens a regular file. Does not follow a link, and does not wait for the other end of a pipe.
     fn open_with(&self, inside: &Path, options: &mut OpenOptions) -> io::Result<File> {
-        let path = self.at(inside)?;
+        let path = self.entry_path(inside)?;
         refuse_link(&path)?;
         if path.symlink_metadata().is_ok_and(|is| !is.is_file()) {
             return Err(no_file(&path));
@@ -238,7 +238,7 @@ impl OwnFolder {
     /// # Errors
     /// The errors of [`Self::write`].
     pub fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
-        let from = self.at(from)?;
+        let from = self.entry_path(from)?;
         fs::rename(from, self.entry(to)?)
     }
 
@@ -248,7 +248,7 @@ impl OwnFolder {
     /// # Errors
     /// The errors of [`Self::at`], an error for a folder, and errors of the system.
     pub fn remove(&self, inside: &Path) -> io::Result<()> {
-        let path = match self.at(inside) {
+        let path = match self.entry_path(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
             path => path?,
         };
@@ -272,7 +272,7 @@ impl OwnFolder {
     /// # Errors
     /// The errors of [`Self::at`], an error for a link, and errors of the system.
     pub fn files(&self, inside: &Path) -> io::Result<Vec<String>> {
-        let path = self.at(inside)?;
+        let path = self.entry_path(inside)?;
         match check_folder(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
             checked => checked?,
@@ -298,7 +298,7 @@ impl OwnFolder {
     /// The errors of [`Self::at`], errors for a link or something that is not a folder, and errors
     /// of the system.
     pub fn remove_folder(&self, inside: &Path) -> io::Result<()> {
-        let path = match self.at(inside) {
+        let path = match self.entry_path(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
             path => path?,
         };
@@ -328,7 +328,7 @@ impl OwnFolder {
     /// Returns the path of a file to write, and creates the folders above it.
     fn entry(&self, inside: &Path) -> io::Result<PathBuf> {
         self.make_folder(inside.parent().unwrap_or(Path::new("")))?;
-        self.at(inside)
+        self.entry_path(inside)
     }
 
     /// Creates a file for writing. First removes what a killed process left under its name.

@@ -77,7 +77,7 @@ impl Library {
     ///
     /// # Errors
     /// If there is no such library, or it cannot be loaded.
-    pub unsafe fn named(path: &str) -> Result<Self, LoadError> {
+    pub unsafe fn from_name(path: &str) -> Result<Self, LoadError> {
         let file = Path::new(path);
         let is_bare = file.components().count() == 1 && !file.is_absolute();
         if !is_bare || file.is_file() {
@@ -140,13 +140,17 @@ impl<E> Symbols<'_, E> {
     }
 }
 
-/// Makes a table of a library's functions from [`Symbols`]. The name of each function is the prefix
-/// followed by the name of the field. Unsafe, because each symbol must have the type of its field.
-/// An error returns from the function that uses the macro.
+/// Makes a table of a library's functions from [`Symbols`], or of a module's from anything with a
+/// method `get`. The name of each function is the prefix followed by the name of the field. Unsafe
+/// for a library, because each symbol must have the type of its field. An error returns from the
+/// function that uses the macro. Fields that are no functions follow after a semicolon.
 #[macro_export]
 macro_rules! table_of_symbols {
-    ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)*) => {
-        $table { $($field: $symbols.get(concat!($prefix, stringify!($field)))?),* }
+    ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)* $(; $other:ident: $value:expr)*) => {
+        $table {
+            $($field: $symbols.get(concat!($prefix, stringify!($field)))?,)*
+            $($other: $value,)*
+        }
     };
 }
 

@@ -94,7 +94,7 @@ pub enum StorageProblem {
 
 impl StorageProblem {
     /// Creates the error for this problem at a URI or a path.
-    pub fn at(self, place: impl Display) -> StorageError {
+    pub fn at_place(self, place: impl Display) -> StorageError {
         StorageError { place: place.to_string(), problem: self }
     }
 }
@@ -102,6 +102,6 @@ impl StorageProblem {
 impl StorageError {
     /// Adds the URI or the path to an error of the system.
     pub(crate) fn io_at(place: impl Display) -> impl FnOnce(io::Error) -> Self {
-        move |error| StorageProblem::Io { error }.at(place)
+        move |error| StorageProblem::Io { error }.at_place(place)
     }
 }

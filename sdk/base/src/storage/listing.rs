@@ -29,7 +29,7 @@ pub struct Entry {
 pub(crate) fn pattern(location: &Location, text: &str) -> Result<Pattern, StorageError> {
     Pattern::new(text).map_err(|error| {
         let problem = format!("the pattern {text}: {error}");
-        StorageProblem::Uri { problem }.at(location)
+        StorageProblem::Uri { problem }.at_place(location)
     })
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn too_many(location: &Location) -> StorageError {
     let problem = format!(
         "there are too many files: at most {MOST_ENTRIES} that match, of {MOST_LISTED}; name a folder or pattern with fewer"
     );
-    StorageProblem::Uri { problem }.at(location)
+    StorageProblem::Uri { problem }.at_place(location)
 }
 
 /// Returns the files below a local folder whose relative names match. Links to folders are not

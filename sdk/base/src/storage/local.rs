@@ -31,7 +31,7 @@ pub(crate) fn stat(path: &Path) -> Result<Option<Stat>, StorageError> {
             modified: is.modified().ok(),
         })),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(StorageProblem::Io { error }.at(path.display())),
+        Err(error) => Err(StorageProblem::Io { error }.at_place(path.display())),
     }
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StorageError> {
 pub(crate) fn remove(path: &Path) -> Result<(), StorageError> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(StorageProblem::Io { error }.at(path.display()))
+            Err(StorageProblem::Io { error }.at_place(path.display()))
         }
         _ => Ok(()),
     }
@@ -65,6 +65,6 @@ fn check(path: &Path, bytes: u64, most_bytes: u64) -> Result<(), StorageError> {
     if bytes <= most_bytes {
         Ok(())
     } else {
-        Err(StorageProblem::TooLarge { most_bytes }.at(path.display()))
+        Err(StorageProblem::TooLarge { most_bytes }.at_place(path.display()))
     }
 }

@@ -73,7 +73,7 @@ impl Location {
         };
         let wrong = |problem: &str| {
             let problem = problem.to_owned();
-            StorageProblem::Uri { problem }.at(without_secrets(&lossy))
+            StorageProblem::Uri { problem }.at_place(without_secrets(&lossy))
         };
         if argument.to_str().is_none() {
             return Err(wrong("a URI is Unicode text; write a path without a scheme"));

@@ -72,12 +72,12 @@ pub struct Storage {
     settings: Settings,
     variables: Variables,
     clients: Arc<Clients>,
-    named: Named,
+    named: NameSource,
 }
 
 /// Who names the files that are accessed.
 #[derive(Debug, Clone, Default)]
-enum Named {
+enum NameSource {
     /// The user, who may name any server.
     #[default]
     ByPerson,
@@ -88,7 +88,7 @@ enum Named {
 impl Storage {
     /// Creates access with these limits and variables.
     pub fn new(settings: Settings, variables: Variables) -> Self {
-        Self { settings, variables, clients: Arc::default(), named: Named::ByPerson }
+        Self { settings, variables, clients: Arc::default(), named: NameSource::ByPerson }
     }
 
     /// Restricts access to locations that a file such as a recipe may name. `origin` is the
@@ -96,7 +96,7 @@ impl Storage {
     /// of `origin` are allowed. Stores are those in the variables, which the user sets.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
-        self.named = Named::InFileAt(origin.cloned());
+        self.named = NameSource::InFileAt(origin.cloned());
         self
     }
 
@@ -165,7 +165,7 @@ impl Storage {
     /// The errors of [`Self::stat`], and an error if the file does not exist.
     pub fn size(&self, location: &Location) -> Result<u64, StorageError> {
         let stat = self.stat(location)?;
-        stat.map(|stat| stat.bytes).ok_or_else(|| StorageProblem::Missing.at(location))
+        stat.map(|stat| stat.bytes).ok_or_else(|| StorageProblem::Missing.at_place(location))
     }
 
     /// Reads a range of bytes. To read several ranges of one file, use [`Self::open`].
@@ -217,7 +217,7 @@ impl Storage {
         let mut found = match folder.place() {
             LocalOrRemote::Local(path) => listing::of_folder(path, &pattern)?,
             LocalOrRemote::Remote(uri) if uri.scheme.is_read_only() => {
-                return Err(StorageProblem::NoList.at(folder));
+                return Err(StorageProblem::NoList.at_place(folder));
             }
             LocalOrRemote::Remote(uri) => {
                 // Stores would list nothing below a key that ends with two slashes, and callers
@@ -279,7 +279,7 @@ impl Storage {
 
     fn writable(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
         if uri.scheme.is_read_only() {
-            Err(StorageProblem::ReadOnly.at(location))
+            Err(StorageProblem::ReadOnly.at_place(location))
         } else {
             self.store(location, uri)
         }
@@ -287,8 +287,10 @@ impl Storage {
 
     fn store(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
         let is_of_person = match &self.named {
-            Named::ByPerson => true,
-            Named::InFileAt(origin) => origin.as_ref().is_some_and(|at| at.is_same_server(uri)),
+            NameSource::ByPerson => true,
+            NameSource::InFileAt(origin) => {
+                origin.as_ref().is_some_and(|at| at.is_same_server(uri))
+            }
         };
         let parts = (&self.settings, &self.variables, &*self.clients);
         Store::open(location, uri, parts, is_of_person)

@@ -32,7 +32,7 @@ impl Store {
         _: (&Settings, &Variables, &Clients),
         _: bool,
     ) -> Result<Self, StorageError> {
-        Err(StorageProblem::NoCloud.at(location))
+        Err(StorageProblem::NoCloud.at_place(location))
     }
 
     pub(crate) fn usage(&self) -> (u64, u64) {

@@ -38,7 +38,7 @@ pub struct Usage {
 /// ```
 pub struct Remote {
     location: Location,
-    of: Of,
+    of: Content,
     len: u64,
     etag: Option<String>,
     /// The bytes that the first request returned, and the offset of the first of them.
@@ -46,7 +46,7 @@ pub struct Remote {
     head_start: u64,
 }
 
-enum Of {
+enum Content {
     File { file: Mutex<File>, requests: AtomicU64, bytes: AtomicU64 },
     Store { store: Box<Store>, version: Version },
 }
@@ -65,7 +65,7 @@ impl Remote {
             etag: part.version.etag.clone(),
             head: part.bytes,
             head_start,
-            of: Of::Store { store: Box::new(store), version: part.version },
+            of: Content::Store { store: Box::new(store), version: part.version },
         })
     }
 
@@ -78,7 +78,7 @@ impl Remote {
         let len = file.metadata().map_err(StorageError::io_at(path.display()))?.len();
         let mut remote = Self {
             location: location.clone(),
-            of: Of::File {
+            of: Content::File {
                 file: Mutex::new(file),
                 requests: AtomicU64::new(0),
                 bytes: AtomicU64::new(0),
@@ -113,8 +113,8 @@ impl Remote {
     /// Returns the requests and bytes so far, including those for opening.
     pub fn usage(&self) -> Usage {
         let (requests, bytes) = match &self.of {
-            Of::Store { store, .. } => store.usage(),
-            Of::File { requests, bytes, .. } => {
+            Content::Store { store, .. } => store.usage(),
+            Content::File { requests, bytes, .. } => {
                 (requests.load(Ordering::Relaxed), bytes.load(Ordering::Relaxed))
             }
         };
@@ -150,8 +150,8 @@ impl Remote {
     fn fetch(&self, range: Range<u64>) -> Result<Vec<u8>, StorageError> {
         let wanted = range.end - range.start;
         let found = match &self.of {
-            Of::Store { store, version } => store.part(range, Some(version.clone()))?.bytes,
-            Of::File { file, requests, bytes } => {
+            Content::Store { store, version } => store.part(range, Some(version.clone()))?.bytes,
+            Content::File { file, requests, bytes } => {
                 let read =
                     read_file(&mut file.lock().unwrap_or_else(PoisonError::into_inner), &range);
                 let read = read.map_err(StorageError::io_at(&self.location))?;
@@ -165,7 +165,7 @@ impl Remote {
         if found.len() as u64 == wanted {
             Ok(found)
         } else {
-            Err(StorageProblem::Changed.at(&self.location))
+            Err(StorageProblem::Changed.at_place(&self.location))
         }
     }
 
@@ -179,7 +179,7 @@ impl Remote {
 
     pub(crate) fn out_of_range(&self, range: Range<u64>) -> StorageError {
         let (offset, end, len) = (range.start, range.end, self.len);
-        StorageProblem::Range { offset, end, len }.at(&self.location)
+        StorageProblem::Range { offset, end, len }.at_place(&self.location)
     }
 }
 

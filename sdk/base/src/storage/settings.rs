@@ -54,7 +54,7 @@ impl Settings {
             let seconds = text.trim().parse::<f64>().unwrap_or(f64::NAN);
             if !(0.1..=86_400.0).contains(&seconds) {
                 let problem = "not a number of seconds from 0.1 to 86400".to_owned();
-                return Err(StorageProblem::Settings { problem }.at(TIMEOUT));
+                return Err(StorageProblem::Settings { problem }.at_place(TIMEOUT));
             }
             settings.total = Duration::from_secs_f64(seconds);
         }

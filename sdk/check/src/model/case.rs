@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use htex_host::{
-    Band, FitCondition, FitRequest, HostError, LoadedModel, Status, Stream, WasmLimits,
-};
+use htex_host::{Band, FitCondition, FitInput, HostError, LoadedModel, Status, Stream, WasmLimits};
 use htex_model::Fit;
 
 use crate::harness::Finding;
@@ -105,15 +103,16 @@ impl Case {
         (magnitude, signal): (&[f64], &[f64]),
         condition: FitCondition,
     ) -> Result<Fit, HostError> {
-        let request = FitRequest {
+        let request = FitInput {
             band,
             frequency_hz,
             magnitude,
             signal,
             signal_rate_hz: RATE_HZ,
             options: &self.model.descriptor().default_options(),
+            condition,
         };
-        self.model.fit_at(&request, condition)
+        self.model.fit(&request)
     }
 
     /// Returns parameters for every reference spectrum that the model can describe; at least one.

@@ -17,7 +17,8 @@ crate::harness::checks! { Case;
         "The descriptor is valid.",
         "JSON of the schema; the same text at each call; reverse-DNS id, semantic version, name and summary present; 1 to 32 fields; names not \
          empty and all different; finite ranges with min <= max; stores with positive, finite steps; option defaults in \
-         range, and integers for integer options.";
+         range, and integers for integer options; usual ranges within the fields' ranges, and values of sweeps that the \
+         options take.";
     "extensions" needs ["exports"] abi::extensions:
         "Unknown extensions are absent.",
         "`htex_model_extension` must return 0 for made-up ids, an empty id and a very long one.";

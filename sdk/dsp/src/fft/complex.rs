@@ -29,7 +29,7 @@ impl Points {
         parts.zip(points).for_each(|((re, im), z)| [*re, *im] = z);
     }
 
-    pub(super) fn at(&self, k: usize) -> Complex<f64> {
+    pub(super) fn point(&self, k: usize) -> Complex<f64> {
         Complex::new(self.re[k], self.im[k])
     }
 
@@ -205,18 +205,18 @@ impl Chirp {
 
     fn run(&mut self, points: &mut Points) {
         let turned = self.chirp.iter().enumerate().map(|(n, turn)| {
-            let z = points.at(n) * turn;
+            let z = points.point(n) * turn;
             [z.re, z.im]
         });
         self.work.fill(turned);
         self.longer.forward(&mut self.work);
         for k in 0..self.work.re.len() {
-            let z = self.work.at(k) * self.kernel.at(k);
+            let z = self.work.point(k) * self.kernel.point(k);
             [self.work.re[k], self.work.im[k]] = [z.re, z.im];
         }
         self.longer.inverse(&mut self.work);
         let turned = self.chirp.iter().enumerate().map(|(k, turn)| {
-            let z = self.work.at(k) * turn;
+            let z = self.work.point(k) * turn;
             [z.re, z.im]
         });
         points.fill(turned);

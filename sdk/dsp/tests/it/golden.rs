@@ -303,7 +303,7 @@ fn beta_density() {
     for case in cases("sbeta", &["pdf"]) {
         let (alpha, beta) = (case.number("alpha"), case.number("beta"));
         let density = BetaDensity::new(alpha, beta);
-        let got: Vec<f64> = case.numbers("u").iter().map(|u| density.at(*u)).collect();
+        let got: Vec<f64> = case.numbers("u").iter().map(|u| density.density_at(*u)).collect();
         case.check("pdf", &got);
     }
     for case in cases("sbeta", &["log_unit"]) {
@@ -340,7 +340,7 @@ fn beta_fits() {
 
 fn scale_and_cost(u: &[f64], m: &[f64], [alpha, beta]: [f64; 2]) -> (f64, f64) {
     let density = BetaDensity::new(alpha, beta);
-    let density: Vec<f64> = u.iter().map(|&u| density.at(u)).collect();
+    let density: Vec<f64> = u.iter().map(|&u| density.density_at(u)).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let scale = dot(&density, m) / dot(&density, &density);
     let residual: Vec<f64> = density.iter().zip(m).map(|(d, m)| scale * d - m).collect();

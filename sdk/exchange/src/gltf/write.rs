@@ -50,7 +50,7 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
     };
     let manifest = job.asset.manifest();
     let mut document = document(&manifest.name, &texture, &buffer);
-    let rights = Rights::of(manifest);
+    let rights = Rights::from_manifest(manifest);
     if !rights.is_empty() {
         document["asset"]["copyright"] = rights.described("").into();
     }

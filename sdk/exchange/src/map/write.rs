@@ -3,7 +3,7 @@
 use htex_author::{AuthorError, Difference, TextureSpectrum};
 use htex_dsp::grid::level_rms;
 use htex_format::Rights;
-use htex_host::{FitCondition, FitRequest, Registry};
+use htex_host::{FitCondition, FitInput, Registry};
 use htex_play::{Motion, Texture};
 
 use super::MODEL;
@@ -37,7 +37,7 @@ pub(crate) fn written(
     model: Option<&str>,
     motion: Option<Motion>,
 ) -> Result<Printed, ExchangeError> {
-    let rights = Rights::of(asset.manifest());
+    let rights = Rights::from_manifest(asset.manifest());
     match own(asset, model)? {
         None => fitted(asset, model, motion),
         Some(_) if motion.is_some() => Err(cannot(
@@ -84,15 +84,16 @@ fn fitted(
     let failed = |error: htex_host::HostError| cannot(&error.to_string());
     let registry = Registry::builtin();
     let map = registry.find(MODEL).map_err(failed)?;
-    let request = FitRequest {
+    let request = FitInput {
         band,
         frequency_hz: &frequency_hz,
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: 0.0,
         options: &[],
+        condition,
     };
-    let fit = map.fit_at(&request, condition).map_err(failed)?;
+    let fit = map.fit(&request).map_err(failed)?;
     let shape = map.magnitude(&fit.parameters, band, &frequency_hz).map_err(failed)?;
     let reference = TextureSpectrum {
         quantity: asset.quantity(),
@@ -104,7 +105,8 @@ fn fitted(
         signal: Vec::new(),
         signal_rate_hz: 0.0,
     };
-    let (bytes, white) = image(&fit.parameters, fit.level_rms, &Rights::of(asset.manifest()))?;
+    let (bytes, white) =
+        image(&fit.parameters, fit.level_rms, &Rights::from_manifest(asset.manifest()))?;
     Ok(Printed {
         bytes,
         lost: Some(loss(&reference, shape, fit.level_rms)?),

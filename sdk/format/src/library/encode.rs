@@ -171,7 +171,7 @@ fn put_law(page: &mut Vec<u8>, entry: &Entry) {
     fn number<T: PartialEq>(all: &[T], one: &T) -> u8 {
         all.iter().position(|x| x == one).unwrap_or_default() as u8
     }
-    let exponents = entry.law.exponents();
+    let exponents = entry.law.exponents().map(|(_, exponent)| exponent);
     let sources = exponents.iter().enumerate();
     let bits = sources.map(|(i, one)| number(&SOURCES, &one.source) << (2 * i + 2));
     page.push(number(&CONTACTS, &entry.contact) | bits.fold(0, |all, bits| all | bits));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::{Contact, Exponent, ExponentSource, Law};
+use crate::{Contact, Law};
 use serde::{Serialize, Serializer};
 
 /// What the index states about a texture.
@@ -25,8 +25,9 @@ pub struct Entry {
     pub conditions: Conditions,
     /// What slid over the surface.
     pub contact: Contact,
-    /// How frequencies and level change at a motion outside these conditions.
-    pub law: IndexedLaw,
+    /// How frequencies and level change at a motion outside these conditions, without the
+    /// measurements of its exponents.
+    pub law: Law,
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
     /// Size of the texture's `.htex` file, bytes.
@@ -47,49 +48,6 @@ pub struct Conditions {
     /// Normal forces, newtons; `None` if no force is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_n: Option<Interval>,
-}
-
-/// A motion law ([`crate::Law`]) without its measurements.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct IndexedLaw {
-    /// How frequencies change with the speed.
-    pub frequency_speed: IndexedExponent,
-    /// How the level changes with the speed.
-    pub level_speed: IndexedExponent,
-    /// How the level changes with the normal force.
-    pub level_force: IndexedExponent,
-}
-
-/// An exponent of a law and where it comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct IndexedExponent {
-    /// The exponent, from -4 to 4.
-    pub exponent: f64,
-    pub source: ExponentSource,
-}
-
-impl IndexedLaw {
-    pub(crate) const fn new(exponents: [IndexedExponent; 3]) -> Self {
-        let [frequency_speed, level_speed, level_force] = exponents;
-        Self { frequency_speed, level_speed, level_force }
-    }
-
-    /// The exponents in the order of the index.
-    #[cfg(feature = "write")]
-    pub(crate) const fn exponents(&self) -> [IndexedExponent; 3] {
-        [self.frequency_speed, self.level_speed, self.level_force]
-    }
-}
-
-impl From<Law> for IndexedLaw {
-    fn from(law: Law) -> Self {
-        // Adding zero turns -0 into 0.
-        let indexed = |(_, Exponent { exponent, source, .. }): (_, Exponent)| IndexedExponent {
-            exponent: exponent + 0.0,
-            source,
-        };
-        Self::new(law.exponents().map(indexed))
-    }
 }
 
 /// A closed interval. Both ends are finite and not negative.
@@ -126,7 +84,7 @@ impl Entry {
 
 impl Interval {
     /// Returns the smallest interval that contains all numbers; `None` if there are no numbers.
-    pub(crate) fn of(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
+    pub(crate) fn around(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
         numbers.into_iter().fold(None, |interval, x| {
             let Self { min, max } = interval.unwrap_or(Self { min: x, max: x });
             Some(Self { min: min.min(x), max: max.max(x) })

@@ -1,8 +1,8 @@
 //! Facts about an asset that the index states, taken from its manifest.
 
-use crate::{Contact, Manifest};
+use crate::{Contact, Law, Manifest};
 
-use crate::library::entry::{Conditions, IndexedLaw, Interval};
+use crate::library::entry::{Conditions, Interval};
 
 /// Largest number of tags, and of models, that a texture may have in the index.
 pub(crate) const MOST_WORDS: usize = 64;
@@ -14,11 +14,11 @@ pub(crate) struct Facts {
     pub models: Vec<String>,
     pub conditions: Conditions,
     pub contact: Contact,
-    pub law: IndexedLaw,
+    pub law: Law,
 }
 
 impl Facts {
-    pub(crate) fn of(manifest: &Manifest) -> Self {
+    pub(crate) fn new(manifest: &Manifest) -> Self {
         let representations = manifest.representations.iter();
         let known = manifest.conditions.iter();
         // Adding zero turns -0, which a manifest may have, into 0.
@@ -28,11 +28,11 @@ impl Facts {
             tags: manifest.tags.clone(),
             models: representations.map(|r| r.model.clone()).collect(),
             conditions: Conditions {
-                speed_mm_s: Interval::of(speeds),
-                force_n: Interval::of(forces),
+                speed_mm_s: Interval::around(speeds),
+                force_n: Interval::around(forces),
             },
             contact: manifest.contact,
-            law: manifest.law().into(),
+            law: manifest.law().without_measurements(),
         }
     }
 }

@@ -4,7 +4,7 @@ use htex_base::finding::{Findings, Rule};
 
 use crate::library::error::LibraryError;
 use crate::library::rules as rule;
-use crate::library::wire::Malformed;
+use crate::library::wire::WireError;
 
 /// A broken rule, with its place and a message that says what is wrong and what to do.
 #[derive(Debug, Clone)]
@@ -24,7 +24,7 @@ impl Fault {
     }
 
     /// Creates the fault for a page whose contents cannot be read.
-    pub(crate) fn page(place: &str, malformed: Malformed) -> Self {
+    pub(crate) fn page(place: &str, malformed: WireError) -> Self {
         let message = format!("{malformed}; pack the library again");
         Self::new(rule::LIBRARY_PAGE_INVALID, place, message)
     }

@@ -4,11 +4,9 @@
 //! columns can. A page's entries are chosen before compression, so that its size is bounded without
 //! trial and error.
 
-use crate::{Contact, ExponentSource, MOST_EXPONENT};
+use crate::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
 
-use crate::library::entry::{
-    Conditions, Cut, Entry, IndexedExponent, IndexedLaw, Interval, TexturePlace,
-};
+use crate::library::entry::{Conditions, Cut, Entry, Interval, TexturePlace};
 use crate::library::facts::MOST_WORDS;
 use crate::library::fault::{Fault, entry_place, leaf_place};
 use crate::library::header::{Header, MINOR};
@@ -16,7 +14,7 @@ use crate::library::limits::Limits;
 use crate::library::name::check_name;
 use crate::library::root::Root;
 use crate::library::rules as rule;
-use crate::library::wire::{Cursor, Malformed};
+use crate::library::wire::{Cursor, WireError};
 
 /// Smallest size of an entry, bytes: its hash, three exponents, and one byte in most columns.
 // A name has two lengths. The other columns with a byte at least are tags, models, conditions, law,
@@ -50,7 +48,7 @@ struct Columns {
     tags: Vec<Vec<String>>,
     models: Vec<Vec<String>>,
     conditions: Vec<Conditions>,
-    laws: Vec<(Contact, IndexedLaw)>,
+    laws: Vec<(Contact, Law)>,
     places: Vec<TexturePlace>,
     hashes: Vec<[u8; 32]>,
 }
@@ -78,7 +76,7 @@ impl LeafReader<'_> {
         entries.collect()
     }
 
-    fn columns(&self, cursor: &mut Cursor<'_>) -> Result<Columns, Malformed> {
+    fn columns(&self, cursor: &mut Cursor<'_>) -> Result<Columns, WireError> {
         let count = cursor.count(LEAST_ENTRY_BYTES)?;
         if count == 0 {
             return Err(cursor.malformed("a leaf has no entry"));
@@ -160,13 +158,13 @@ pub(crate) fn length(range: &std::ops::Range<u64>) -> u64 {
 fn column<'a, T>(
     cursor: &mut Cursor<'a>,
     count: usize,
-    mut read: impl FnMut(&mut Cursor<'a>) -> Result<T, Malformed>,
-) -> Result<Vec<T>, Malformed> {
+    mut read: impl FnMut(&mut Cursor<'a>) -> Result<T, WireError>,
+) -> Result<Vec<T>, WireError> {
     (0..count).map(|_| read(cursor)).collect()
 }
 
 /// Reads the tags and models that the leaf's entries use.
-fn words<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<&'a str>, Malformed> {
+fn words<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<&'a str>, WireError> {
     let count = cursor.count(1)?;
     let words = column(cursor, count, Cursor::text)?;
     if words.is_sorted_by(|a, b| a < b) {
@@ -175,7 +173,7 @@ fn words<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<&'a str>, Malformed> {
     Err(cursor.malformed("the words are not sorted"))
 }
 
-fn names(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<String>, Malformed> {
+fn names(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<String>, WireError> {
     let mut text = Vec::new();
     column(cursor, count, |cursor| {
         cursor.following(&mut text)?;
@@ -185,7 +183,7 @@ fn names(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<String>, Malformed
 }
 
 /// Reads a list of words, stored as indices into `words`.
-fn chosen(cursor: &mut Cursor<'_>, words: &[&str]) -> Result<Vec<String>, Malformed> {
+fn chosen(cursor: &mut Cursor<'_>, words: &[&str]) -> Result<Vec<String>, WireError> {
     let count = cursor.count(1)?;
     if count > MOST_WORDS {
         return Err(cursor.malformed("a texture has more than 64 tags or models"));
@@ -197,7 +195,7 @@ fn chosen(cursor: &mut Cursor<'_>, words: &[&str]) -> Result<Vec<String>, Malfor
     })
 }
 
-fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, Malformed> {
+fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, WireError> {
     let bits = cursor.byte()?;
     let known = |bit, one| (bits & bit != 0, bits & one != 0);
     let (speed, force) = (known(SPEED, ONE_SPEED), known(FORCE, ONE_FORCE));
@@ -210,11 +208,11 @@ fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, Malformed> {
 
 /// Reads a contact and a law. The first byte has two bits for the contact and two for the source of
 /// each exponent; the exponents follow.
-fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
+fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, Law), WireError> {
     let bits = usize::from(cursor.byte()?);
     let unknown = |cursor: &Cursor<'_>| cursor.malformed("a contact or a source does not exist");
     let contact = CONTACTS.get(bits & 3).copied().ok_or_else(|| unknown(cursor))?;
-    let mut exponents = [IndexedExponent { exponent: 0.0, source: ExponentSource::Assumed }; 3];
+    let mut exponents = [Exponent::assumed(0.0); 3];
     let in_range = |x: f64| (-MOST_EXPONENT..=MOST_EXPONENT).contains(&x);
     for (i, one) in exponents.iter_mut().enumerate() {
         let source = SOURCES.get((bits >> (2 * i + 2)) & 3).copied();
@@ -226,13 +224,14 @@ fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
             return Err(cursor.malformed("an exponent is not a number from -4 to 4"));
         }
     }
-    Ok((contact, IndexedLaw::new(exponents)))
+    let [frequency_speed, level_speed, level_force] = exponents;
+    Ok((contact, Law { frequency_speed, level_speed, level_force }))
 }
 
 fn interval(
     cursor: &mut Cursor<'_>,
     (is_known, is_one): (bool, bool),
-) -> Result<Option<Interval>, Malformed> {
+) -> Result<Option<Interval>, WireError> {
     if !is_known {
         return Ok(None);
     }
@@ -249,7 +248,7 @@ fn interval(
 
 /// Reads where the textures are. Their own bytes follow each other, and shared objects are inserted
 /// into them.
-fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Malformed> {
+fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, WireError> {
     let mut at = cursor.varint()?;
     let owns = column(cursor, count, |cursor| {
         let start = at;
@@ -261,7 +260,7 @@ fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Ma
     Ok(places.map(|(own, cuts)| TexturePlace { own, cuts }).collect())
 }
 
-fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {
+fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, WireError> {
     // A cut consists of three integers.
     let count = cursor.count(3)?;
     if count > MOST_CUTS {
@@ -280,7 +279,7 @@ fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {
 }
 
 /// Reads a number and returns its sum with `to`.
-fn sum(cursor: &mut Cursor<'_>, to: u64, problem: &'static str) -> Result<u64, Malformed> {
+fn sum(cursor: &mut Cursor<'_>, to: u64, problem: &'static str) -> Result<u64, WireError> {
     let more = cursor.varint()?;
     to.checked_add(more).ok_or(cursor.malformed(problem))
 }

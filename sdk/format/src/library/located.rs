@@ -11,14 +11,14 @@ use crate::library::source::{LibrarySource, LocalFile};
 
 /// A local or remote file, of which only the requested ranges are read.
 #[derive(Debug)]
-pub enum Located {
+pub enum LibraryFile {
     /// A local file.
     File(LocalFile),
     /// A file on a web server or in an object store.
     Elsewhere(Box<Remote>),
 }
 
-impl Library<Located> {
+impl Library<LibraryFile> {
     /// Opens a library by path or URI, within the default [`Limits`](crate::library::Limits).
     ///
     /// Opening one texture of a remote file takes three requests: the start of the file, a page of
@@ -39,11 +39,11 @@ impl Library<Located> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn open_located(storage: &Storage, location: &Location) -> Result<Self, LibraryError> {
-        Self::open_source(Located::open(storage, location)?)
+        Self::open_source(LibraryFile::open(storage, location)?)
     }
 }
 
-impl Located {
+impl LibraryFile {
     /// Opens a file by path or URI.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl Located {
     }
 }
 
-impl LibrarySource for Located {
+impl LibrarySource for LibraryFile {
     fn len(&self) -> io::Result<u64> {
         match self {
             Self::File(file) => LibrarySource::len(file),

@@ -70,17 +70,17 @@ mod wire;
 #[cfg(feature = "write")]
 mod writer;
 
-pub use entry::{Conditions, Entry, IndexedExponent, IndexedLaw, Interval};
+pub use entry::{Conditions, Entry, Interval};
 pub use error::LibraryError;
 pub use header::{EXTENSION, MAGIC};
 pub use index::Index;
 pub use limits::Limits;
 #[cfg(feature = "storage")]
-pub use located::Located;
+pub use located::LibraryFile;
 pub use name::{InvalidName, Names, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
 #[cfg(feature = "write")]
-pub use packer::Packed;
+pub use packer::PackSummary;
 pub use query::Query;
 pub use ratio::Ratio;
 pub use reader::{Entries, Library};

@@ -9,10 +9,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::{Asset, Contact};
+use crate::{Asset, Contact, Law};
 
 use crate::library::encode::Pages;
-use crate::library::entry::{Conditions, Entry, IndexedLaw};
+use crate::library::entry::{Conditions, Entry};
 use crate::library::error::LibraryError;
 use crate::library::facts::{Facts, MOST_WORDS};
 use crate::library::header::{HEADER_BYTES, Header, MINOR};
@@ -20,7 +20,7 @@ use crate::library::leaf::length;
 use crate::library::limits::Limits;
 use crate::library::name::{check_library_name, check_name, file_key};
 use crate::library::sharing::Sharing;
-use crate::library::spool::{Spool, SpoolReader, Spooled, Store};
+use crate::library::spool::{Spool, SpoolRange, SpoolReader, Store};
 use crate::library::wire::TEXT_BYTES;
 
 /// The textures of a library that is being written.
@@ -30,7 +30,7 @@ pub(crate) struct Packer<S> {
     name: String,
     spool: Spool<S>,
     /// The textures by name. The map sorts them, as the index and the payload need them.
-    added: BTreeMap<String, Added>,
+    added: BTreeMap<String, PendingTexture>,
     /// The name of each texture by its [`file_key`], to find names that are the same file on some
     /// systems.
     files: BTreeMap<[u8; 16], String>,
@@ -49,20 +49,20 @@ struct Words {
 }
 
 /// What is kept in memory for a texture that was added.
-struct Added {
+struct PendingTexture {
     words: Arc<Words>,
     conditions: Conditions,
     contact: Contact,
-    law: IndexedLaw,
+    law: Law,
     is_licensed: bool,
     blake3: [u8; 32],
-    spooled: Spooled,
+    spooled: SpoolRange,
 }
 
 /// Numbers about a library that was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Packed {
+pub struct PackSummary {
     /// Number of textures.
     pub entries: u64,
     /// Size of the file, bytes.
@@ -109,11 +109,11 @@ impl<S: Store> Packer<S> {
             name: name.to_owned(),
             error: Box::new(error),
         })?;
-        let facts = Facts::of(&read.manifest);
+        let facts = Facts::new(&read.manifest);
         check_words(name, "tags", &facts.tags)?;
         check_words(name, "models", &facts.models)?;
         let spooled = self.spool.add(asset).map_err(LibraryError::unchanged(&self.path))?;
-        let added = Added {
+        let added = PendingTexture {
             words: self.common_words(facts.tags, facts.models),
             conditions: facts.conditions,
             contact: facts.contact,
@@ -149,18 +149,18 @@ impl<S: Store> Packer<S> {
     }
 
     /// Writes the library to `target`.
-    pub(crate) fn finish(self, target: &mut impl Write) -> Result<Packed, LibraryError> {
+    pub(crate) fn finish(self, target: &mut impl Write) -> Result<PackSummary, LibraryError> {
         // Only here, when all textures are known, so that the message can say how many have no
         // licence.
         self.check_licences()?;
         let Self { path, name, spool, added, .. } = self;
         let (mut spool, modules) = spool.finish().map_err(LibraryError::unchanged(&path))?;
-        let sharing = Sharing::of(modules);
+        let sharing = Sharing::new(modules);
         let (header, index, total) = index(&name, &added, &sharing);
         check_limits(&name, &header, total)?;
         write(target, &header, &index, &mut spool, &sharing, &added)
             .map_err(LibraryError::unchanged(&path))?;
-        Ok(Packed {
+        Ok(PackSummary {
             entries: header.entries,
             bytes: header.payload.end,
             index_bytes: header.leaves.end,
@@ -193,7 +193,11 @@ fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryEr
 }
 
 /// Encodes the index. Returns the header, the root and leaves, and the total size of all textures.
-fn index(name: &str, added: &BTreeMap<String, Added>, sharing: &Sharing) -> (Header, Vec<u8>, u64) {
+fn index(
+    name: &str,
+    added: &BTreeMap<String, PendingTexture>,
+    sharing: &Sharing,
+) -> (Header, Vec<u8>, u64) {
     let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
     // Own bytes of the textures follow each other in the order of names. `write` copies them in the
     // same order.
@@ -270,7 +274,7 @@ fn write(
     index: &[u8],
     spool: &mut SpoolReader<impl Store>,
     sharing: &Sharing,
-    added: &BTreeMap<String, Added>,
+    added: &BTreeMap<String, PendingTexture>,
 ) -> io::Result<()> {
     target.write_all(&header.to_bytes())?;
     target.write_all(index)?;

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::library::entry::{Cut, TexturePlace};
 use crate::library::leaf::{MOST_CUTS, length};
-use crate::library::spool::{Module, Spooled};
+use crate::library::spool::{Module, SpoolRange};
 
 /// The modules of all textures. Those that occur more than once are the shared objects.
 pub(crate) struct Sharing {
@@ -23,7 +23,7 @@ pub(crate) struct Sharing {
 impl Sharing {
     /// Decides which modules are shared. They are sorted by their hashes, so that the file does not
     /// depend on the order in which textures were added.
-    pub(crate) fn of(modules: Vec<Module>) -> Self {
+    pub(crate) fn new(modules: Vec<Module>) -> Self {
         let mut shared: Vec<usize> = (0..modules.len()).filter(|i| modules[*i].uses > 1).collect();
         shared.sort_by_key(|i| modules[*i].blake3);
         let (mut places, mut bytes) = (vec![None; modules.len()], 0);
@@ -53,7 +53,7 @@ impl Sharing {
 
     /// Returns where the texture's bytes will be in the file. Its own bytes begin at `start` in the
     /// payload.
-    pub(crate) fn place(&self, spooled: &Spooled, start: u64) -> TexturePlace {
+    pub(crate) fn place(&self, spooled: &SpoolRange, start: u64) -> TexturePlace {
         let (mut inlined, mut cuts) = (0, Vec::new());
         for (at, module) in &spooled.modules {
             let module = *module as usize;
@@ -74,7 +74,7 @@ impl Sharing {
 
     /// Returns the ranges of a texture's own bytes in the spool: the bytes around its modules, and
     /// the modules that only this texture has.
-    pub(crate) fn own_pieces(&self, spooled: &Spooled) -> Vec<Range<u64>> {
+    pub(crate) fn own_pieces(&self, spooled: &SpoolRange) -> Vec<Range<u64>> {
         let (mut at, mut pieces) = (spooled.own.start, Vec::new());
         for (before, module) in &spooled.modules {
             let module = *module as usize;

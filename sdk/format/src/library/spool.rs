@@ -64,7 +64,7 @@ pub(crate) struct Module {
 
 /// Where a texture's bytes are in the spool.
 #[derive(Debug, Clone)]
-pub(crate) struct Spooled {
+pub(crate) struct SpoolRange {
     /// Range of all bytes except the modules.
     pub own: Range<u64>,
     /// For each module, the number of own bytes before it and its index.
@@ -81,7 +81,7 @@ impl<S: Store> Spool<S> {
     }
 
     /// Adds a texture, which must be a valid asset.
-    pub(crate) fn add(&mut self, asset: &[u8]) -> io::Result<Spooled> {
+    pub(crate) fn add(&mut self, asset: &[u8]) -> io::Result<SpoolRange> {
         let modules = entry_ranges(asset).into_iter();
         let modules =
             modules.filter(|e| e.name.starts_with(MODULES) && e.data.len() >= LEAST_SHARED);
@@ -101,7 +101,7 @@ impl<S: Store> Spool<S> {
             at = range.end;
         }
         self.write(&asset[at..])?;
-        Ok(Spooled { own: start..self.end, modules: cuts.into() })
+        Ok(SpoolRange { own: start..self.end, modules: cuts.into() })
     }
 
     /// Adds a module, or counts one more use if it is already there. Returns its index.

@@ -205,7 +205,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             return Ok(());
         }
         match Asset::from_bytes(&asset) {
-            Ok(asset) => self.check_facts(entry, &Facts::of(&asset.manifest), place),
+            Ok(asset) => self.check_facts(entry, &Facts::new(&asset.manifest), place),
             Err(error) => {
                 let message = format!("{}: {error}", entry.name);
                 self.findings.add(rule::LIBRARY_ASSET_INVALID, place, message);

@@ -9,7 +9,7 @@ const VARINT_BYTES: usize = 10;
 /// Why a page's contents cannot be read: the offset in the unpacked page, and what is wrong there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{problem} at byte {at} of the unpacked page")]
-pub(crate) struct Malformed {
+pub(crate) struct WireError {
     pub at: usize,
     pub problem: &'static str,
 }
@@ -25,15 +25,15 @@ impl<'a> Cursor<'a> {
         Self { bytes, at: 0 }
     }
 
-    pub(crate) fn malformed(&self, problem: &'static str) -> Malformed {
-        Malformed { at: self.at, problem }
+    pub(crate) fn malformed(&self, problem: &'static str) -> WireError {
+        WireError { at: self.at, problem }
     }
 
     pub(crate) fn rest(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
+    pub(crate) fn read_bytes(&mut self, count: usize) -> Result<&'a [u8], WireError> {
         let end = self.at.checked_add(count);
         let taken = end
             .and_then(|end| self.bytes.get(self.at..end))
@@ -42,18 +42,18 @@ impl<'a> Cursor<'a> {
         Ok(taken)
     }
 
-    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
+    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N], WireError> {
         let mut array = [0; N];
-        array.copy_from_slice(self.take(N)?);
+        array.copy_from_slice(self.read_bytes(N)?);
         Ok(array)
     }
 
-    pub(crate) fn byte(&mut self) -> Result<u8, Malformed> {
+    pub(crate) fn byte(&mut self) -> Result<u8, WireError> {
         self.array().map(|[byte]| byte)
     }
 
     /// Reads a LEB128 integer. Superfluous bytes are an error.
-    pub(crate) fn varint(&mut self) -> Result<u64, Malformed> {
+    pub(crate) fn varint(&mut self) -> Result<u64, WireError> {
         let mut value = 0u64;
         for i in 0..VARINT_BYTES {
             let byte = self.byte()?;
@@ -78,7 +78,7 @@ impl<'a> Cursor<'a> {
 
     /// Reads the number of values that follow. Each takes at least `least` bytes, so the number is
     /// limited by the rest of the page.
-    pub(crate) fn count(&mut self, least: usize) -> Result<usize, Malformed> {
+    pub(crate) fn count(&mut self, least: usize) -> Result<usize, WireError> {
         let count = self.varint()?;
         let most = self.rest() / least.max(1);
         match usize::try_from(count) {
@@ -88,21 +88,21 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads the length of a text.
-    fn length(&mut self) -> Result<usize, Malformed> {
+    fn length(&mut self) -> Result<usize, WireError> {
         match usize::try_from(self.varint()?) {
             Ok(length) if length <= TEXT_BYTES => Ok(length),
             _ => Err(self.malformed("a text is longer than 255 bytes")),
         }
     }
 
-    pub(crate) fn text(&mut self) -> Result<&'a str, Malformed> {
+    pub(crate) fn text(&mut self) -> Result<&'a str, WireError> {
         let length = self.length()?;
-        let bytes = self.take(length)?;
+        let bytes = self.read_bytes(length)?;
         std::str::from_utf8(bytes).map_err(|_| self.malformed("a text is not UTF-8"))
     }
 
     /// Replaces `text`, which holds the text before, by the next text.
-    pub(crate) fn following(&mut self, text: &mut Vec<u8>) -> Result<(), Malformed> {
+    pub(crate) fn following(&mut self, text: &mut Vec<u8>) -> Result<(), WireError> {
         let shared = self.length()?;
         if shared > text.len() {
             return Err(self.malformed("a text shares more than the text before it has"));
@@ -112,7 +112,7 @@ impl<'a> Cursor<'a> {
             return Err(self.malformed("a text is longer than 255 bytes"));
         }
         text.truncate(shared);
-        text.extend_from_slice(self.take(rest)?);
+        text.extend_from_slice(self.read_bytes(rest)?);
         Ok(())
     }
 }

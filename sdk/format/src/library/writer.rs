@@ -3,10 +3,10 @@
 use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 
-use htex_base::files::{Scratch, Unfinished};
+use htex_base::files::{FileInProgress, Scratch};
 
 use crate::library::error::LibraryError;
-use crate::library::packer::{Packed, Packer};
+use crate::library::packer::{PackSummary, Packer};
 use crate::library::spool::ScratchFile;
 
 /// Number of bytes collected in memory before they are written.
@@ -27,7 +27,7 @@ const BUFFER_BYTES: usize = 1 << 20;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Writer {
-    target: Unfinished,
+    target: FileInProgress,
     path: std::path::PathBuf,
     packer: Packer<ScratchFile>,
 }
@@ -39,7 +39,7 @@ impl Writer {
     /// If the name has a control character or more than 255 bytes, or no file can be written there.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
-        let target = Unfinished::create(path).map_err(LibraryError::unchanged(path))?;
+        let target = FileInProgress::create(path).map_err(LibraryError::unchanged(path))?;
         let scratch = ScratchFile(Scratch::beside(path).map_err(LibraryError::unchanged(path))?);
         Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
     }
@@ -67,7 +67,7 @@ impl Writer {
     /// # Errors
     /// If a texture states no licence, a file cannot be written, or the library exceeds the default
     /// limits of readers.
-    pub fn finish(self) -> Result<Packed, LibraryError> {
+    pub fn finish(self) -> Result<PackSummary, LibraryError> {
         let Self { mut target, path, packer } = self;
         let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());
         let packed = packer.finish(&mut file)?;
@@ -114,7 +114,7 @@ impl MemoryWriter {
     ///
     /// # Errors
     /// If a texture states no licence, or the library exceeds the default limits of readers.
-    pub fn finish(self) -> Result<(Packed, Vec<u8>), LibraryError> {
+    pub fn finish(self) -> Result<(PackSummary, Vec<u8>), LibraryError> {
         let mut bytes = Vec::new();
         let packed = self.0.finish(&mut bytes)?;
         Ok((packed, bytes))

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use htex_format::{By, ErrorMeasure, Judged, LeftOut, Measure};
+use htex_format::{By, ErrorMeasure, LeftOut, Measure, MeasureKind};
 use xtask::generated::{file, section};
 
 #[test]
@@ -23,9 +23,9 @@ fn row(by: By, measure: Measure, definition: &str) -> String {
     let row = measure.row();
     let required = row.required && by == By::Magnitude;
     let range = match row.judged {
-        Judged::Correlation => "-1 to 1",
-        Judged::Error => "from 0",
-        Judged::Difference => "a number",
+        MeasureKind::Correlation => "-1 to 1",
+        MeasureKind::Error => "from 0",
+        MeasureKind::Difference => "a number",
     };
     let mark = if required { " *" } else { "" };
     format!("| `{}`{mark} | {range} | {} |\n", measure.key(by), cell(definition))

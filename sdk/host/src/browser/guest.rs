@@ -17,7 +17,7 @@ use crate::sandbox::{Budget, BudgetError};
 struct Names(Vec<&'static str>);
 
 impl Find for Names {
-    fn find<P: Parameters, R: Returned>(
+    fn get<P: Parameters, R: Returned>(
         &mut self,
         name: &'static str,
     ) -> Result<TypedFunc<P, R>, Fault> {
@@ -38,7 +38,7 @@ impl Guest {
         let mut usage = Usage::new(&module.budget)?;
         module.budget.time_left()?;
         let mut names = Names::default();
-        let functions = Functions::of(&mut names, module.shared.follows_motion())?;
+        let functions = Functions::find(&mut names, module.shared.follows_motion())?;
         let start = Instant::now();
         let raw = module.guest.instance(&names.0.join(","));
         // The start function may have run, so its time counts even if it failed.

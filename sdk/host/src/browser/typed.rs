@@ -26,7 +26,7 @@ impl<P: Parameters, R: Returned> TypedFunc<P, R> {
         let mut slots = Slots::default();
         parameters.push(&mut slots);
         let (types, values) = (&slots.types[..slots.len], &slots.values[..slots.len]);
-        instance.call(self.index, types, values, R::TYPE).map(R::of).map_err(Fault::Trap)
+        instance.call(self.index, types, values, R::TYPE).map(R::from_bits).map_err(Fault::Trap)
     }
 }
 
@@ -118,19 +118,19 @@ several!(A B C D E F G H I J K L M N O);
 pub(super) trait Returned {
     const TYPE: u8;
 
-    fn of(bits: u64) -> Self;
+    fn from_bits(bits: u64) -> Self;
 }
 
 impl Returned for () {
     const TYPE: u8 = NONE;
 
-    fn of(_: u64) -> Self {}
+    fn from_bits(_: u64) -> Self {}
 }
 
 impl Returned for u32 {
     const TYPE: u8 = I32;
 
-    fn of(bits: u64) -> Self {
+    fn from_bits(bits: u64) -> Self {
         bits as Self
     }
 }
@@ -138,7 +138,7 @@ impl Returned for u32 {
 impl Returned for i64 {
     const TYPE: u8 = I64;
 
-    fn of(bits: u64) -> Self {
+    fn from_bits(bits: u64) -> Self {
         bits.cast_signed()
     }
 }
@@ -146,7 +146,7 @@ impl Returned for i64 {
 impl Returned for f64 {
     const TYPE: u8 = F64;
 
-    fn of(bits: u64) -> Self {
+    fn from_bits(bits: u64) -> Self {
         Self::from_bits(bits)
     }
 }

@@ -34,14 +34,14 @@ pub(super) struct Cache {
 impl Cache {
     /// Opens the cache, and creates its folder and key if they do not exist. `None` if the cache is
     /// off, or if its folder belongs to another user or others may write to it.
-    pub(super) fn of(cache: &WasmCache) -> Option<Self> {
+    pub(super) fn open(cache: &WasmCache) -> Option<Self> {
         let folder = match cache {
             WasmCache::User => folders::cache()?.join("wasm"),
             WasmCache::Dir(folder) => folder.clone(),
             WasmCache::Off => return None,
         };
         private::folder(&folder).ok()?;
-        let key = Key::of(&folders::config()?, KEY).ok()?;
+        let key = Key::load_or_create(&folders::config()?, KEY).ok()?;
         Some(Self { folder, key })
     }
 
@@ -151,7 +151,7 @@ mod tests {
         fn cache(&self) -> Option<Cache> {
             let folder = self.folder();
             private::folder(&folder).ok()?;
-            let key = Key::of(&self.dir.path().join("config"), KEY).ok()?;
+            let key = Key::load_or_create(&self.dir.path().join("config"), KEY).ok()?;
             Some(Cache { folder, key })
         }
 

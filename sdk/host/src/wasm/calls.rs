@@ -1,11 +1,10 @@
 //! The calls of the model ABI on an instance. Arrays are copied into the instance's buffer, and
 //! results are copied out of it.
 
-use htex_model::{Band, Motion};
+use htex_model::{Band, FitInput, Motion};
 
 use super::fault::Fault;
 use super::instance::{Deadline, Instance};
-use crate::raw::RawFit;
 
 /// Longest last-error text that is read, bytes.
 const LONGEST_ERROR: usize = 4096;
@@ -41,28 +40,28 @@ impl Instance {
 
     pub(super) fn fit(
         &mut self,
-        call: &RawFit<'_>,
+        input: &FitInput<'_>,
         parameters: &mut [f64],
         level_rms: &mut f64,
     ) -> Result<i64, Fault> {
-        let bins = call.frequency_hz.len().min(call.magnitude.len());
-        let numbers = 2 * bins + call.signal.len() + call.options.len() + parameters.len() + 1;
+        let bins = input.frequency_hz.len().min(input.magnitude.len());
+        let numbers = 2 * bins + input.signal.len() + input.options.len() + parameters.len() + 1;
         // All arrays consist of f64, so each one that follows another is aligned.
         let frequency = self.buffer(numbers * 8)?;
-        let magnitude = self.write(frequency, &call.frequency_hz[..bins])?;
-        let signal = self.write(magnitude, &call.magnitude[..bins])?;
-        let options = self.write(signal, call.signal)?;
-        let level = self.write(options, call.options)?;
-        // NaN, so that a level that the module does not write is noticed (`LoadedModel::fit_at`).
+        let magnitude = self.write(frequency, &input.frequency_hz[..bins])?;
+        let signal = self.write(magnitude, &input.magnitude[..bins])?;
+        let options = self.write(signal, input.signal)?;
+        let level = self.write(options, input.options)?;
+        // NaN, so that a level that the module does not write is noticed (`LoadedModel::fit`).
         let out = self.write(level, &[f64::NAN])?;
         let behind = out + (parameters.len() * 8) as u32;
         self.guard(behind)?;
-        let (low, high) = call.band.edges();
-        let (signals, knobs) = (call.signal.len() as u32, call.options.len() as u32);
-        let (rate_hz, capacity) = (call.signal_rate_hz, parameters.len() as u32);
+        let (low, high) = input.band.edges();
+        let (signals, knobs) = (input.signal.len() as u32, input.options.len() as u32);
+        let (rate_hz, capacity) = (input.signal_rate_hz, parameters.len() as u32);
         let bins = bins as u32;
         let returned = if self.follows_motion() {
-            let (speed, force) = call.condition.numbers();
+            let (speed, force) = input.condition.numbers();
             self.call_if(
                 Deadline::Call,
                 |f| Some(&f.motion.as_ref()?.fit),

@@ -33,7 +33,7 @@ fn effort_within(limits: &WasmLimits, bytes: &[u8]) -> Result<Effort, CompileErr
 /// Returns the compiled module from the cache, or compiles and caches it.
 pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, CompileError> {
     let limits = &sandbox.limits;
-    let cache = Cache::of(&limits.cache);
+    let cache = Cache::open(&limits.cache);
     let find = |engine: &Engine| cache.as_ref()?.find(engine, bytes);
     let optimised = engine(limits, Effort::Optimised)?;
     // The cache comes before the estimate: what was compiled once needs no time to compile, however

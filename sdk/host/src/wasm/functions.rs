@@ -1,5 +1,7 @@
 //! The functions of a module, which each engine finds by name.
 
+use htex_base::native::table_of_symbols;
+
 use super::fault::Fault;
 use super::typed::{Parameters, Returned, TypedFunc};
 
@@ -8,7 +10,7 @@ pub(super) type Usize = u32;
 
 /// Finds the functions of an instance.
 pub(super) trait Find {
-    fn find<P: Parameters, R: Returned>(
+    fn get<P: Parameters, R: Returned>(
         &mut self,
         name: &'static str,
     ) -> Result<TypedFunc<P, R>, Fault>;
@@ -50,29 +52,18 @@ type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 
 impl Functions {
     /// Finds all functions. `motion` says whether to include those of `htex.motion/1`.
-    pub(super) fn of(module: &mut impl Find, motion: bool) -> Result<Self, Fault> {
-        Ok(Self {
-            abi_version: module.find("htex_model_abi_version")?,
-            descriptor: module.find("htex_model_descriptor")?,
-            last_error: module.find("htex_model_last_error")?,
-            fit: module.find("htex_model_fit")?,
-            magnitude: module.find("htex_model_magnitude")?,
-            interpolate: module.find("htex_model_interpolate")?,
-            voice_rate: module.find("htex_model_voice_rate")?,
-            voice_new: module.find("htex_model_voice_new")?,
-            voice_render: module.find("htex_model_voice_render")?,
-            voice_retune: module.find("htex_model_voice_retune")?,
-            voice_free: module.find("htex_model_voice_free")?,
-            extension: module.find("htex_model_extension")?,
-            alloc: module.find("htex_model_alloc")?,
-            free: module.find("htex_model_free")?,
-            motion: motion.then(|| MotionFunctions::of(module)).transpose()?,
-        })
+    pub(super) fn find(module: &mut impl Find, motion: bool) -> Result<Self, Fault> {
+        Ok(table_of_symbols!(
+            module, Self, "htex_model_",
+            abi_version descriptor last_error fit magnitude interpolate
+            voice_rate voice_new voice_render voice_retune voice_free extension alloc free;
+            motion: motion.then(|| MotionFunctions::find(module)).transpose()?
+        ))
     }
 }
 
 impl MotionFunctions {
-    fn of(module: &mut impl Find) -> Result<Self, Fault> {
-        Ok(Self { set: module.find("htex_motion_1_set")?, fit: module.find("htex_motion_1_fit")? })
+    fn find(module: &mut impl Find) -> Result<Self, Fault> {
+        Ok(table_of_symbols!(module, Self, "htex_motion_1_", set fit))
     }
 }

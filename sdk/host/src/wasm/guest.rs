@@ -25,7 +25,7 @@ impl Guest {
         let mut store = Store::new(&module.engine.engine, usage);
         store.limiter(|usage| usage);
         let time = limits.call.min(module.budget.time_left()?);
-        let fault = |e| Fault::of(&e, limits, time.as_millis());
+        let fault = |e| Fault::from_trap(&e, limits, time.as_millis());
         // The start function is code of the module too, so it gets a deadline.
         arm(&mut store, module, time).map_err(fault)?;
         let start = Instant::now();
@@ -35,7 +35,7 @@ impl Guest {
         let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
         let memory = raw.get_memory(&mut store, "memory").ok_or(Fault::NoMemory)?;
         let mut exports = Exports { store: &mut store, raw: &raw };
-        let functions = Functions::of(&mut exports, module.shared.follows_motion())?;
+        let functions = Functions::find(&mut exports, module.shared.follows_motion())?;
         Ok((Self { store, memory }, functions))
     }
 
@@ -59,7 +59,7 @@ impl Guest {
         _taken: Duration,
         most: Duration,
     ) -> Result<R, Fault> {
-        result.map_err(|error| Fault::of(&error, &module.limits, most.as_millis()))
+        result.map_err(|error| Fault::from_trap(&error, &module.limits, most.as_millis()))
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
@@ -98,7 +98,7 @@ struct Exports<'a> {
 }
 
 impl Find for Exports<'_> {
-    fn find<P: Parameters, R: Returned>(
+    fn get<P: Parameters, R: Returned>(
         &mut self,
         name: &'static str,
     ) -> Result<TypedFunc<P, R>, Fault> {

@@ -4,15 +4,15 @@ use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_model::motion_1::MotionTable;
-use htex_model::{Band, Status};
+use htex_model::shim::copy;
+use htex_model::{Band, FitInput, Status};
 
 use super::fault::Fault;
 use super::instance::Instance;
 use super::module::WasmModule;
-use super::voice::{WasmVoice, copy_text};
+use super::voice::WasmVoice;
 use crate::HostError;
-use crate::marker::check_marker;
-use crate::raw::{RawFit, RawModel, RawVoice};
+use crate::raw::{RawModel, RawVoice, check_marker};
 
 std::thread_local! {
     /// The text of this thread's last error, as in a native model.
@@ -107,11 +107,11 @@ impl RawModel for WasmModel {
     }
 
     fn last_error(&self, out: &mut [u8]) -> i64 {
-        LAST_ERROR.with(|last| copy_text(&last.borrow(), out))
+        LAST_ERROR.with(|last| copy(last.borrow().as_bytes(), out))
     }
 
-    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
-        self.status(|instance| instance.fit(call, parameters, level_rms))
+    fn fit(&self, input: &FitInput<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
+        self.status(|instance| instance.fit(input, parameters, level_rms))
     }
 
     fn magnitude(

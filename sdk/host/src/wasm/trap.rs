@@ -7,7 +7,11 @@ use crate::WasmLimits;
 
 impl Fault {
     /// Converts an error of the engine. The message of an exceeded limit names the limit.
-    pub(super) fn of(error: &wasmtime::Error, limits: &WasmLimits, deadline_ms: u128) -> Self {
+    pub(super) fn from_trap(
+        error: &wasmtime::Error,
+        limits: &WasmLimits,
+        deadline_ms: u128,
+    ) -> Self {
         let Some(trap) = error.downcast_ref::<Trap>() else {
             // An error of `Usage` is not a trap. Its context, one line for each running function,
             // is left out.

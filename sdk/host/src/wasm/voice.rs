@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use htex_model::shim::copy;
 use htex_model::{Band, Motion};
 
 use super::calls::BLOCK;
@@ -117,13 +118,6 @@ impl RawVoice for WasmVoice {
     }
 
     fn last_error(&self, out: &mut [u8]) -> i64 {
-        copy_text(&self.last_error, out)
+        copy(self.last_error.as_bytes(), out)
     }
-}
-
-/// Copies as many bytes as fit and returns the length of the whole text.
-pub(super) fn copy_text(text: &str, out: &mut [u8]) -> i64 {
-    let n = text.len().min(out.len());
-    out[..n].copy_from_slice(&text.as_bytes()[..n]);
-    text.len() as i64
 }

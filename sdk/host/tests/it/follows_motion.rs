@@ -3,7 +3,7 @@
 use crate::common;
 
 use common::{SAMPLE, limits, load, load_within, text};
-use htex_host::{Band, FitCondition, FitRequest, HostError, LoadedModel, Motion, Status};
+use htex_host::{Band, FitCondition, FitInput, HostError, LoadedModel, Motion, Status};
 
 /// Returns 1 for `htex.motion/1`, which it recognises by the sixth letter.
 const SAYS_YES: (&str, &str) = (
@@ -81,16 +81,16 @@ fn a_voice_is_told_where_the_finger_is() {
 fn a_fit_is_told_what_is_known_of_the_recording() {
     let fit = |model: &LoadedModel, speed_mm_s, force_n| {
         let grid = Band::TACTILE.grid_hz();
-        let request = FitRequest {
+        let request = FitInput {
             band: Band::TACTILE,
             frequency_hz: &grid,
             magnitude: &vec![1.0; grid.len()],
             signal: &[],
             signal_rate_hz: 20_000.0,
             options: &[],
+            condition: FitCondition { speed_mm_s, force_n },
         };
-        let condition = FitCondition { speed_mm_s, force_n };
-        let fit = model.fit_at(&request, condition).unwrap();
+        let fit = model.fit(&request).unwrap();
         (fit.level_rms, fit.parameters[0])
     };
     let model = following();

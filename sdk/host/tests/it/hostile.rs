@@ -7,18 +7,19 @@ use crate::common;
 use std::time::{Duration, Instant};
 
 use common::{ID, SAMPLE, limits, load, load_within, text, with_descriptor};
-use htex_host::{Band, FitRequest, HostError, LoadedModel, ModelVoice};
+use htex_host::{Band, FitCondition, FitInput, HostError, LoadedModel, ModelVoice};
 
 const BAND: Band = Band::TACTILE;
 
 fn fit(model: &LoadedModel) -> Result<(), HostError> {
-    let request = FitRequest {
+    let request = FitInput {
         band: BAND,
         frequency_hz: &[20.0, 25.0],
         magnitude: &[1.0, 1.0],
         signal: &[],
         signal_rate_hz: 2000.0,
         options: &[],
+        condition: FitCondition::default(),
     };
     model.fit(&request).map(drop)
 }

@@ -1,7 +1,7 @@
 //! Compares calls of a model in the program itself with calls of an exported one.
 
 use htex_ar::Autoregression;
-use htex_host::{Band, FitRequest, HostError, Origin, Registry, Status};
+use htex_host::{Band, FitCondition, FitInput, HostError, Origin, Registry, Status};
 
 #[test]
 fn a_registered_model_equals_the_built_in_one_bit_for_bit() {
@@ -15,13 +15,14 @@ fn a_registered_model_equals_the_built_in_one_bit_for_bit() {
     let grid_hz = Band::TACTILE.grid_hz();
     let magnitude: Vec<f64> = grid_hz.iter().map(|hz| 1.0 / (100.0 + hz)).collect();
     let options = own.descriptor().default_options();
-    let request = FitRequest {
+    let request = FitInput {
         band: Band::TACTILE,
         frequency_hz: &grid_hz,
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: 20_000.0,
         options: &options,
+        condition: FitCondition::default(),
     };
     let fit = own.fit(&request).unwrap();
     assert_eq!(fit, builtin.fit(&request).unwrap());

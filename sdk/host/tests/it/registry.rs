@@ -6,7 +6,6 @@ use std::path::Path;
 
 use common::{ID, limits, text, with_descriptor};
 use htex_host::{HostError, Note, Origin, Registry, Search};
-use semver::VersionReq;
 
 /// Writes a plugin with this version.
 fn write(folder: &Path, name: &str, version: &str) {
@@ -57,11 +56,9 @@ fn files_precede_embedded_models_then_folders_then_built_in_models() {
     let notes: Vec<String> = registry.notes().iter().map(shadowed).collect();
     assert_eq!(notes, ["2.0.0", "1.2.0", "4.0.0"]);
 
-    let find = |wanted: &str| registry.find_version(ID, &VersionReq::parse(wanted).unwrap());
-    assert_eq!(find("^1").unwrap().descriptor().version, "1.2.0");
-    assert_eq!(find("*").unwrap().descriptor().version, "3.0.0");
-    let error = find("^9").unwrap_err().to_string();
-    assert!(error.contains("^9") && error.contains("hostile 1.2.0"), "{error}");
+    let versions = || registry.all(ID).map(|model| &model.descriptor().version[..]);
+    assert_eq!(versions().find(|version| version.starts_with("1.")), Some("1.2.0"));
+    assert_eq!(versions().next(), Some("3.0.0"));
 }
 
 /// Neither the file's name nor its place decides: a newer minor version can play everything that an
@@ -182,8 +179,8 @@ fn folders_of_the_environment() {
         )
         .unwrap();
         assert_eq!(version(&registry), "2.0.0", "HTEX_PLUGIN_PATH before the user's folder");
-        let find = |wanted: &str| registry.find_version(ID, &VersionReq::parse(wanted).unwrap());
-        assert!(find("^1").is_ok(), "the user's folder");
+        let mut all = registry.all(ID);
+        assert!(all.any(|model| model.descriptor().version == "1.0.0"), "the user's folder");
         assert!(matches!(registry.notes()[0], Note::Folder { .. }), "{:?}", registry.notes());
         return assert_eq!(registry.notes().len(), 2);
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use htex_host::{
-    Band, Descriptor, FitRequest, HostError, LoadedModel, Origin, Registry, RuntimeModel,
+    Band, Descriptor, FitCondition, HostError, LoadedModel, Origin, Registry, RuntimeModel,
     RuntimeVoice, Status,
 };
 use htex_model::{Error, Fit, FitInput, StaticDescriptor, StaticField, Values};
@@ -78,13 +78,14 @@ fn steps() -> LoadedModel {
 }
 
 fn fit(magnitude: [f64; 3], options: &[f64]) -> Result<Fit, HostError> {
-    steps().fit(&FitRequest {
+    steps().fit(&FitInput {
         band: Band::TACTILE,
         frequency_hz: &[50.0, 100.0, 150.0],
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: 20_000.0,
         options,
+        condition: FitCondition::default(),
     })
 }
 

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use htex_host::{Band, FitRequest, LoadedModel, Origin, Registry, WasmCache, WasmLimits};
+use htex_host::{
+    Band, FitCondition, FitInput, LoadedModel, Origin, Registry, WasmCache, WasmLimits,
+};
 use xtask::plugins;
 
 const RATE_HZ: f64 = 20_000.0;
@@ -24,13 +26,14 @@ fn uncached() -> WasmLimits {
 
 fn fitted(model: &LoadedModel) -> Vec<f64> {
     let grid = Band::TACTILE.grid_hz();
-    let request = FitRequest {
+    let request = FitInput {
         band: Band::TACTILE,
         frequency_hz: &grid,
         magnitude: &smooth_spectrum(&grid),
         signal: &[],
         signal_rate_hz: RATE_HZ,
         options: &model.options(&[]).unwrap(),
+        condition: FitCondition::default(),
     };
     model.fit(&request).unwrap().parameters
 }

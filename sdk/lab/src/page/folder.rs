@@ -145,7 +145,7 @@ fn read(
     depth: usize,
     files: &mut BTreeMap<String, Bytes>,
 ) -> Result<(), FolderError> {
-    let folder = own.at(below.as_ref()).map_err(|error| wrong(own.path(), error))?;
+    let folder = own.entry_path(below.as_ref()).map_err(|error| wrong(own.path(), error))?;
     let failed = |error: std::io::Error| wrong(&folder, error);
     for entry in std::fs::read_dir(&folder).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -297,8 +297,8 @@ mod tests {
         for folder in [&one, &other] {
             std::fs::create_dir(folder).unwrap();
         }
-        let key = Key::of(&outer.path().join("config"), "studio.key").unwrap();
-        let again = Key::of(&outer.path().join("config"), "studio.key").unwrap();
+        let key = Key::load_or_create(&outer.path().join("config"), "studio.key").unwrap();
+        let again = Key::load_or_create(&outer.path().join("config"), "studio.key").unwrap();
         let own = name(&one, &key);
         assert!(own.len() == 32 && own.bytes().all(|c| c.is_ascii_hexdigit()));
         assert_eq!(own, name(&one.join("../one"), &again));

@@ -41,7 +41,7 @@ const NO_SPECTRUM: &str =
 ///         self.band
 ///     }
 ///
-///     fn at(&self, frequency_hz: f64) -> f64 {
+///     fn magnitude_at(&self, frequency_hz: f64) -> f64 {
 ///         f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
 ///     }
 /// }
@@ -80,7 +80,7 @@ const NO_SPECTRUM: &str =
 ///
 /// let values = Values::read(&<Plateau as Model>::DESCRIPTOR, &[80.0, 250.0])?;
 /// let mut magnitude = [0.0; 2];
-/// Plateau::magnitude(&values, Band::TACTILE, &[100.0, 500.0], &mut magnitude)?;
+/// <Plateau as Model>::magnitude(&values, Band::TACTILE, &[100.0, 500.0], &mut magnitude)?;
 /// assert!(magnitude[0] > 0.0 && magnitude[1] == 0.0);
 /// # Ok::<(), Error>(())
 /// ```
@@ -96,6 +96,20 @@ pub trait ShapedModel: 'static {
     /// # Errors
     /// As [`Model::fit`].
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
+
+    /// As [`Model::magnitude`]. The default is the curve at unit RMS.
+    ///
+    /// # Errors
+    /// If the parameters describe no spectrum in this band.
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        check::<Self::Curve>(parameters, band)?;
+        magnitude::<Self::Curve>(parameters, band, frequency_hz, out)
+    }
 
     /// As [`Model::interpolate`]. By default every number is interpolated linearly.
     ///
@@ -125,8 +139,7 @@ impl<M: ShapedModel> Model for M {
         frequency_hz: &[f64],
         out: &mut [f64],
     ) -> Result<(), Error> {
-        check::<M::Curve>(parameters, band)?;
-        magnitude::<M::Curve>(parameters, band, frequency_hz, out)
+        <M as ShapedModel>::magnitude(parameters, band, frequency_hz, out)
     }
 
     fn interpolate(
@@ -166,15 +179,15 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 ///
 /// # How it is used
 ///
-/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`at`](Self::at) by
+/// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`magnitude_at`](Self::magnitude_at) by
 ///   [`level`](Self::level).
-/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `at`. It then calls
+/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `magnitude_at`. It then calls
 ///   [`prepare`](Self::prepare) once, with the frequencies of the noise. Both may allocate.
 /// * Every retune of the voice calls [`set`](Self::set). [`fill`](Self::fill) follows at once, or
 ///   at the end of the cross-fade of 10 ms that is in progress. Both run on the render thread and
 ///   do not allocate.
 ///
-/// The scale of `at` and `fill` does not matter, and they may have different scales: the voice
+/// The scale of `magnitude_at` and `fill` does not matter, and they may have different scales: the voice
 /// always normalises to unit RMS in the band.
 ///
 /// # Known doubt
@@ -206,12 +219,12 @@ pub trait Curve: Sized + Send + 'static {
 
     /// Returns the curve at a frequency in the band, in any scale. The value is finite and not
     /// negative.
-    fn at(&self, frequency_hz: f64) -> f64;
+    fn magnitude_at(&self, frequency_hz: f64) -> f64;
 
-    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::at`]. The default
+    /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::magnitude_at`]. The default
     /// computes it; override it to return a stored value.
     fn level(&self) -> f64 {
-        curve_level_rms(self.band(), |hz| self.at(hz))
+        curve_level_rms(self.band(), |hz| self.magnitude_at(hz))
     }
 
     /// Prepares [`Self::fill`] for these frequencies, hertz, e.g. by computing tables. Curves with
@@ -225,7 +238,7 @@ pub trait Curve: Sized + Send + 'static {
     /// (10 ms). So slow computations belong here and not in `set`.
     fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = self.at(f);
+            *m = self.magnitude_at(f);
         }
     }
 }
@@ -244,7 +257,7 @@ pub fn magnitude<C: Curve>(
     let curve = C::new(parameters, band)?;
     let level = curve.level();
     for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-        *m = if band.contains(f) { curve.at(f) / level } else { 0.0 };
+        *m = if band.contains(f) { curve.magnitude_at(f) / level } else { 0.0 };
     }
     Ok(())
 }
@@ -274,8 +287,8 @@ impl<C: Curve> ShapedVoice<C> {
     ) -> Result<Self, Error> {
         let mut curve = C::new(parameters, band)?;
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
-        // `at` and not `fill`, which needs the frequencies that `prepare` gets only now.
-        noise.start(|_, f| curve.at(f));
+        // `magnitude_at` and not `fill`, which needs the frequencies that `prepare` gets only now.
+        noise.start(|_, f| curve.magnitude_at(f));
         curve.prepare(noise.component_hz(), noise.components_key());
         Ok(Self { curve, noise })
     }

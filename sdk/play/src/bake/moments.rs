@@ -67,7 +67,7 @@ impl<'a> Moments<'a> {
     }
 
     pub(crate) fn rights(&self) -> Rights {
-        Rights::of(self.representation.texture().manifest())
+        Rights::from_manifest(self.representation.texture().manifest())
     }
 
     pub(crate) fn model(&self) -> &Descriptor {

@@ -18,7 +18,7 @@ fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
     let one = |r: &htex_format::Representation| {
         let mut scene = scene(single(), constant(80.0, 0.4), 1.0);
         scene.file.surfaces[0].representation = r.model.clone();
-        let error_db = measure.of(r.at[0].quality.as_ref().unwrap()).unwrap();
+        let error_db = measure.error_in(r.at[0].quality.as_ref().unwrap()).unwrap();
         let ns = RESERVE * planned(&scene, &file()).ns_per_sample_total;
         (r.model.clone(), error_db, ns)
     };

@@ -1,6 +1,6 @@
 //! The AR model beyond its usual order and rate.
 
-use htex_host::{Band, FitRequest, Stream};
+use htex_host::{Band, FitCondition, FitInput, Stream};
 
 use crate::seen::{fit_with, model, models, spectrum, told};
 use crate::signals::{RATE_HZ, friction, noise, tone};
@@ -139,13 +139,14 @@ const CASES: &[Case] = &[
                 let band = Band { high_hz, ..BAND };
                 let grid = band.grid_hz();
                 let magnitude: Vec<f64> = grid.iter().map(|f| 1.0 / f).collect();
-                let fitted = ar.fit(&FitRequest {
+                let fitted = ar.fit(&FitInput {
                     band,
                     frequency_hz: &grid,
                     magnitude: &magnitude,
                     signal: &[],
                     signal_rate_hz: RATE_HZ,
                     options: &ar.options(&[]).unwrap(),
+                    condition: FitCondition::default(),
                 });
                 fitted.unwrap().parameters.last().copied()
             };

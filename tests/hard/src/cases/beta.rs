@@ -71,7 +71,7 @@ fn density_error(parameters: &[f64], places: &[f64]) -> f64 {
             let density = BetaDensity::new(alpha, beta);
             for &u in places {
                 let log = log_density(u, alpha, beta, &scale);
-                let found = density.at(u);
+                let found = density.density_at(u);
                 let error = match log.to_f64() {
                     // A value that rounds to zero must be close to zero.
                     small if small < -700.0 => (found >= 1e-300).into(),
@@ -201,14 +201,14 @@ const CASES: &[Case] = &[
         none("the limit: infinite, finite, 0"),
         || {
             failures([
-                BetaDensity::new(0.5, 2.0).at(0.0) == f64::INFINITY,
-                BetaDensity::new(2.0, 0.5).at(1.0) == f64::INFINITY,
-                (BetaDensity::new(1.0, 3.0).at(0.0) - 3.0).abs() < 1e-12,
-                (BetaDensity::new(3.0, 1.0).at(1.0) - 3.0).abs() < 1e-12,
-                BetaDensity::new(2.0, 0.5).at(0.0) == 0.0,
-                BetaDensity::new(1e6, 1e6).at(1.0) == 0.0,
-                BetaDensity::new(0.5, 0.5).at(-0.1) == 0.0,
-                BetaDensity::new(0.5, 0.5).at(1.1) == 0.0,
+                BetaDensity::new(0.5, 2.0).density_at(0.0) == f64::INFINITY,
+                BetaDensity::new(2.0, 0.5).density_at(1.0) == f64::INFINITY,
+                (BetaDensity::new(1.0, 3.0).density_at(0.0) - 3.0).abs() < 1e-12,
+                (BetaDensity::new(3.0, 1.0).density_at(1.0) - 3.0).abs() < 1e-12,
+                BetaDensity::new(2.0, 0.5).density_at(0.0) == 0.0,
+                BetaDensity::new(1e6, 1e6).density_at(1.0) == 0.0,
+                BetaDensity::new(0.5, 0.5).density_at(-0.1) == 0.0,
+                BetaDensity::new(0.5, 0.5).density_at(1.1) == 0.0,
             ])
         },
     ),
@@ -220,10 +220,14 @@ const CASES: &[Case] = &[
         || {
             let bad = [0.0, -1.0, f64::INFINITY, f64::NAN];
             let density = bad.map(|p| {
-                BetaDensity::new(p, 1.0).at(0.5).is_nan()
-                    && BetaDensity::new(1.0, p).at(0.5).is_nan()
+                BetaDensity::new(p, 1.0).density_at(0.5).is_nan()
+                    && BetaDensity::new(1.0, p).density_at(0.5).is_nan()
             });
-            failures(density.into_iter().chain([BetaDensity::new(2.0, 2.0).at(f64::NAN).is_nan()]))
+            failures(
+                density
+                    .into_iter()
+                    .chain([BetaDensity::new(2.0, 2.0).density_at(f64::NAN).is_nan()]),
+            )
         },
     ),
     within(

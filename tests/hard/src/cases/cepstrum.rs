@@ -5,7 +5,7 @@ use htex_dsp::grid::level_rms;
 use htex_dsp::least_squares::PseudoInverse;
 use htex_dsp::mel::{MelBank, hz_to_mel, mel_to_hz};
 use htex_dsp::non_negative::{NonNegative, Scratch};
-use htex_host::{Band, FitRequest};
+use htex_host::{Band, FitCondition, FitInput};
 
 use crate::big::{Big, big};
 use crate::seen::{fit_with, model, spectrum, told};
@@ -53,13 +53,14 @@ fn empty_bands(bands: &str) -> f64 {
     let magnitude: Vec<f64> = grid.iter().map(|f| 1.0 / f).collect();
     failures(INVERSES.map(|inverse| {
         let options = [("bands", bands), ("coefficients", bands), ("inverse", inverse)];
-        let fitted = mfcc.fit(&FitRequest {
+        let fitted = mfcc.fit(&FitInput {
             band: NARROW,
             frequency_hz: &grid,
             magnitude: &magnitude,
             signal: &[],
             signal_rate_hz: 200.0,
             options: &mfcc.options(&options).unwrap(),
+            condition: FitCondition::default(),
         });
         fitted.is_ok_and(|fit| {
             let shape = mfcc.magnitude(&fit.parameters, NARROW, &grid);

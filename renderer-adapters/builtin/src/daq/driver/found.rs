@@ -28,7 +28,7 @@ pub(super) fn installed() -> Result<Table, DeviceError> {
 /// a file in the current folder, else a library of the system.
 pub(super) fn named(path: &str) -> Result<Table, DeviceError> {
     // SAFETY: the user named this library as a driver.
-    let table = table(unsafe { Library::named(path) });
+    let table = table(unsafe { Library::from_name(path) });
     table.map_err(|reason| DeviceError::Setting {
         name: "driver".to_owned(),
         what: format!("`{path}` cannot be loaded as the NI-DAQmx library: {reason}"),

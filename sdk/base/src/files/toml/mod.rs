@@ -43,14 +43,14 @@ impl std::error::Error for TomlError {}
 
 impl TomlError {
     /// Creates an error at a byte of the text.
-    fn at(text: &str, byte: usize, message: String) -> Self {
+    fn at_byte(text: &str, byte: usize, message: String) -> Self {
         let (line, column) = place(text, byte);
         Self { line, column, message }
     }
 
-    fn of(text: &str, error: &de::Error) -> Self {
+    fn from_parser(text: &str, error: &de::Error) -> Self {
         let byte = error.span().map_or(0, |span| span.start);
-        Self::at(text, byte, error.message().replace('\n', "; "))
+        Self::at_byte(text, byte, error.message().replace('\n', "; "))
     }
 }
 
@@ -68,7 +68,7 @@ impl TomlError {
 /// If the text is not TOML, holds another type of value, or is nested deeper than [`MOST_LEVELS`].
 pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
     check_nesting(text)?;
-    toml::from_str(text).map_err(|error| TomlError::of(text, &error))
+    toml::from_str(text).map_err(|error| TomlError::from_parser(text, &error))
 }
 
 /// Returns the line of each key, counted from 1, or `None` if the text has no such key. A path

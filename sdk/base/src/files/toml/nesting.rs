@@ -42,14 +42,14 @@ pub(super) fn check_nesting(text: &str) -> Result<(), TomlError> {
     let mut nesting = Nesting::default();
     let source = Source::new(text);
     source.lex().try_for_each(|token| {
-        let refused = |message| TomlError::at(text, token.span().start(), message);
-        nesting.take(&token, text).map_err(refused)?;
+        let refused = |message| TomlError::at_byte(text, token.span().start(), message);
+        nesting.count(&token, text).map_err(refused)?;
         if nesting.levels() > MOST_LEVELS { Err(refused(nesting.too_deep(text))) } else { Ok(()) }
     })
 }
 
 impl Nesting {
-    fn take(&mut self, token: &Token, text: &str) -> Result<(), String> {
+    fn count(&mut self, token: &Token, text: &str) -> Result<(), String> {
         use TokenKind as Kind;
         let start = token.span().start();
         match token.kind() {

@@ -13,7 +13,7 @@ use reqwest::dns::{Addrs, Name, Resolve, Resolving};
 
 /// Who named an address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NamedBy {
+pub(super) enum UrlSource {
     Person,
     /// A file, or a server that redirects.
     Other,
@@ -22,7 +22,7 @@ pub(super) enum NamedBy {
 /// The reason not to go to an address.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
-pub(super) struct NotFollowed(pub(super) &'static str);
+pub(super) struct RedirectRefusal(pub(super) &'static str);
 
 /// The message for a file or a redirect that leads to an address that is not public.
 pub(super) const INNER: &str = "it leads to an address of this machine or network, which only a person names: give that URL as an argument \
@@ -88,7 +88,7 @@ pub(super) fn is_inner_number(host: &str) -> bool {
 }
 
 /// The system's resolver, limited to addresses to which a connection is allowed.
-pub(super) struct Resolver(pub(super) NamedBy);
+pub(super) struct Resolver(pub(super) UrlSource);
 
 impl Resolver {
     /// Returns whether a connection to an address is allowed. No name may lead to a link-local
@@ -99,8 +99,8 @@ impl Resolver {
             IpAddr::V6(v6) => v6.is_unicast_link_local(),
         };
         match self.0 {
-            NamedBy::Person => !is_link_local,
-            NamedBy::Other => !is_inner(address),
+            UrlSource::Person => !is_link_local,
+            UrlSource::Other => !is_inner(address),
         }
     }
 }
@@ -115,10 +115,10 @@ impl Resolve for Resolver {
             let usable: Vec<SocketAddr> = found.filter(|a| here.may_connect(a.ip())).collect();
             if usable.is_empty() {
                 let reason = match here.0 {
-                    NamedBy::Person => "its name has only link-local addresses",
-                    NamedBy::Other => INNER,
+                    UrlSource::Person => "its name has only link-local addresses",
+                    UrlSource::Other => INNER,
                 };
-                return Err(NotFollowed(reason).into());
+                return Err(RedirectRefusal(reason).into());
             }
             Ok(Box::new(usable.into_iter()) as Addrs)
         })
@@ -199,8 +199,8 @@ mod tests {
     #[test]
     fn what_a_person_names_may_be_an_inner_address_and_none_by_link() {
         let may = |by, address: &str| address.parse().is_ok_and(|a| Resolver(by).may_connect(a));
-        assert!(may(NamedBy::Person, "127.0.0.1") && !may(NamedBy::Other, "127.0.0.1"));
-        assert!(!may(NamedBy::Person, "169.254.169.254"));
-        assert!(may(NamedBy::Other, "8.8.8.8"));
+        assert!(may(UrlSource::Person, "127.0.0.1") && !may(UrlSource::Other, "127.0.0.1"));
+        assert!(!may(UrlSource::Person, "169.254.169.254"));
+        assert!(may(UrlSource::Other, "8.8.8.8"));
     }
 }

@@ -9,7 +9,7 @@ use rustls::ClientConfig;
 use rustls::crypto::ring::default_provider;
 use rustls_platform_verifier::BuilderVerifierExt;
 
-use super::addresses::{NamedBy, Resolver};
+use super::addresses::{Resolver, UrlSource};
 use crate::storage::Settings;
 
 /// Longest time for a connection. If the server has not answered by then, the request is tried
@@ -31,10 +31,14 @@ impl Clients {
     ///
     /// # Errors
     /// A sentence if no certificate of the system can be read.
-    pub(super) fn of(&self, by: NamedBy, settings: &Settings) -> Result<reqwest::Client, String> {
+    pub(super) fn client_for(
+        &self,
+        by: UrlSource,
+        settings: &Settings,
+    ) -> Result<reqwest::Client, String> {
         let kept = match by {
-            NamedBy::Person => &self.by_person,
-            NamedBy::Other => &self.world,
+            UrlSource::Person => &self.by_person,
+            UrlSource::Other => &self.world,
         };
         shared(kept, || client(settings, by))
     }
@@ -51,7 +55,7 @@ fn shared(
     Ok(kept.insert(make()?).clone())
 }
 
-fn client(settings: &Settings, by: NamedBy) -> Result<reqwest::Client, String> {
+fn client(settings: &Settings, by: UrlSource) -> Result<reqwest::Client, String> {
     let tls = ClientConfig::builder_with_provider(Arc::new(default_provider()))
         .with_safe_default_protocol_versions()
         .and_then(|tls| tls.with_platform_verifier())

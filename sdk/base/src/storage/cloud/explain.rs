@@ -49,7 +49,7 @@ impl Store {
             Fail::Own(error) => return error,
             Fail::Local(error) => {
                 let copy = format_args!("the local copy of {}", self.location);
-                return StorageProblem::Io { error }.at(copy);
+                return StorageProblem::Io { error }.at_place(copy);
             }
             Fail::Slow => StorageProblem::TooSlow {
                 limit_s: self.settings.total.as_secs_f64(),
@@ -69,14 +69,14 @@ impl Store {
             }
             Fail::Request(_) | Fail::Body => self.by_last(last, seconds),
         };
-        problem.at(&self.location)
+        problem.at_place(&self.location)
     }
 
     fn by_last(&self, last: Last, seconds: f64) -> StorageProblem {
         let what = words(&last);
         let (status, code) = match last {
             Last::Status { status, code } => (status, code),
-            Last::NotFollowed(_) => return StorageProblem::Refused { what },
+            Last::RedirectRefusal(_) => return StorageProblem::Refused { what },
             Last::Nothing | Last::Cut(_) => return self.unavailable(what, seconds),
         };
         match status {
@@ -158,6 +158,6 @@ fn words(last: &Last) -> String {
         Last::Status { status, code: None } => format!("status {status}"),
         Last::Status { status, code: Some(code) } => format!("status {status}, {code}"),
         Last::Cut(cause) => cause.clone(),
-        Last::NotFollowed(reason) => (*reason).to_owned(),
+        Last::RedirectRefusal(reason) => (*reason).to_owned(),
     }
 }

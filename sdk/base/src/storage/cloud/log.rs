@@ -19,8 +19,8 @@ use object_store::client::{
     HttpResponseBody, HttpService,
 };
 
-use super::addresses::NotFollowed;
-use super::redirects::Following;
+use super::addresses::RedirectRefusal;
+use super::redirects::RedirectClient;
 
 /// Largest part of a refusal's body that is read to find its code, bytes.
 const MOST_REFUSAL_BYTES: usize = 65_536;
@@ -46,7 +46,7 @@ pub(crate) enum Last {
     /// No response, or only a part of one.
     Cut(String),
     /// The client refused to follow a redirect, or to connect.
-    NotFollowed(&'static str),
+    RedirectRefusal(&'static str),
 }
 
 impl Log {
@@ -78,8 +78,8 @@ fn cause(error: &HttpError) -> Last {
     while let Some(source) = cause.source() {
         cause = source;
     }
-    if let Some(NotFollowed(reason)) = cause.downcast_ref() {
-        return Last::NotFollowed(reason);
+    if let Some(RedirectRefusal(reason)) = cause.downcast_ref() {
+        return Last::RedirectRefusal(reason);
     }
     let text = cause.to_string();
     Last::Cut(if text.is_empty() || text.contains("://") {
@@ -98,7 +98,7 @@ const MOST_LIST_BYTES: usize = 16 << 20;
 pub(crate) enum Client {
     /// With credentials, to a store in the environment. Redirects are not followed.
     Store(reqwest::Client),
-    Web(Following),
+    Web(RedirectClient),
 }
 
 impl Client {
@@ -109,8 +109,8 @@ impl Client {
         }
         .map_err(|error| match cause(&error) {
             // A retry would not lead anywhere else.
-            Last::NotFollowed(reason) => {
-                HttpError::new(HttpErrorKind::Unknown, NotFollowed(reason))
+            Last::RedirectRefusal(reason) => {
+                HttpError::new(HttpErrorKind::Unknown, RedirectRefusal(reason))
             }
             _ => error,
         })
@@ -126,17 +126,20 @@ pub(crate) struct Connector {
 
 impl HttpConnector for Connector {
     fn connect(&self, _: &ClientOptions) -> object_store::Result<HttpClient> {
-        Ok(HttpClient::new(Logged { client: self.client.clone(), log: Arc::clone(&self.log) }))
+        Ok(HttpClient::new(LoggingClient {
+            client: self.client.clone(),
+            log: Arc::clone(&self.log),
+        }))
     }
 }
 
 #[derive(Debug)]
-struct Logged {
+struct LoggingClient {
     client: Client,
     log: Arc<Log>,
 }
 
-impl Logged {
+impl LoggingClient {
     /// Returns whether a request lists a store, so that its response is read into memory. S3 and
     /// Google use `list-type`, Azure uses `comp`.
     fn is_list(&self, request: &HttpRequest) -> bool {
@@ -150,14 +153,14 @@ impl Logged {
 /// Returns a body that ends with an error if it is larger than a list can be.
 fn bounded(body: HttpResponseBody) -> HttpResponseBody {
     let limited = Limited::new(body, MOST_LIST_BYTES);
-    let too_long = |_| HttpError::new(HttpErrorKind::Decode, NotFollowed(LONG_LIST));
+    let too_long = |_| HttpError::new(HttpErrorKind::Decode, RedirectRefusal(LONG_LIST));
     HttpResponseBody::new(limited.map_err(too_long))
 }
 
 const LONG_LIST: &str = "a page of its list has more than 16 MiB, which none has";
 
 #[async_trait]
-impl HttpService for Logged {
+impl HttpService for LoggingClient {
     async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         self.log.requests.fetch_add(1, Ordering::Relaxed);
         let is_list = self.is_list(&request);
@@ -169,7 +172,7 @@ impl HttpService for Logged {
             self.log.ended(Last::Status { status, code: None });
             let log = Arc::clone(&self.log);
             let body = if is_list { bounded(body) } else { body };
-            let body = HttpResponseBody::new(Counted { body, log });
+            let body = HttpResponseBody::new(LoggingBody { body, log });
             return Ok(HttpResponse::from_parts(parts, body));
         }
         // If the body of a refusal cannot be read to its end, the refusal has no code.
@@ -200,12 +203,12 @@ fn is_code(word: &str) -> bool {
 }
 
 /// A body that logs its bytes and failures.
-struct Counted {
+struct LoggingBody {
     body: HttpResponseBody,
     log: Arc<Log>,
 }
 
-impl Body for Counted {
+impl Body for LoggingBody {
     type Data = Bytes;
     type Error = HttpError;
 

@@ -23,11 +23,11 @@ pub(crate) use read::Version;
 use crate::storage::listing::{self, Entry, MOST_ENTRIES, MOST_LISTED};
 use crate::storage::location::Uri;
 use crate::storage::{Location, Settings, Stat, StorageError, StorageProblem, Variables};
-use addresses::NamedBy;
+use addresses::UrlSource;
 use explain::Fail;
 use log::{Client, Connector, Log};
-use redirects::Following;
-use stores::Parts;
+use redirects::RedirectClient;
+use stores::StoreRequest;
 
 /// Number of threads that wait for the network, for all files of the process.
 const THREADS: usize = 2;
@@ -51,18 +51,18 @@ impl Store {
         (settings, variables, clients): (&Settings, &Variables, &Clients),
         is_of_person: bool,
     ) -> Result<Self, StorageError> {
-        let problem = |problem| StorageProblem::Settings { problem }.at(location);
-        let of = |by| clients.of(by, settings).map_err(problem);
-        let by = if is_of_person { NamedBy::Person } else { NamedBy::Other };
+        let problem = |problem| StorageProblem::Settings { problem }.at_place(location);
+        let of = |by| clients.client_for(by, settings).map_err(problem);
+        let by = if is_of_person { UrlSource::Person } else { UrlSource::Other };
         // The server of a store is named in the environment, so by the user.
         let client = if uri.scheme.is_read_only() {
-            Client::Web(Following { first: of(by)?, world: of(NamedBy::Other)?, by })
+            Client::Web(RedirectClient { first: of(by)?, world: of(UrlSource::Other)?, by })
         } else {
-            Client::Store(of(NamedBy::Person)?)
+            Client::Store(of(UrlSource::Person)?)
         };
         let log = Arc::new(Log::default());
         let connector = Connector { client, log: Arc::clone(&log) };
-        let parts = Parts { uri, settings, variables, connector };
+        let parts = StoreRequest { uri, settings, variables, connector };
         let opened = parts.open().map_err(problem)?;
         Ok(Self {
             store: opened.store,
@@ -174,7 +174,7 @@ fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
     });
     runtime.as_ref().map_err(|error| {
         let problem = format!("no threads for the network: {error}");
-        StorageProblem::Settings { problem }.at(location)
+        StorageProblem::Settings { problem }.at_place(location)
     })
 }
 

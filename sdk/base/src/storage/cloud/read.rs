@@ -23,7 +23,7 @@ pub(crate) struct Version {
 }
 
 impl Version {
-    fn of(meta: &ObjectMeta) -> Self {
+    fn new(meta: &ObjectMeta) -> Self {
         let modified = match meta.e_tag {
             Some(_) => 0,
             None => meta.last_modified.timestamp_millis(),
@@ -47,7 +47,7 @@ pub(crate) struct ReadPart {
 trait Sink: Send + 'static {
     /// Drops all bytes received so far.
     fn start_over(&mut self) -> io::Result<()>;
-    fn take(&mut self, bytes: &[u8]) -> io::Result<()>;
+    fn accept(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
 
 impl Sink for Vec<u8> {
@@ -56,7 +56,7 @@ impl Sink for Vec<u8> {
         Ok(())
     }
 
-    fn take(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn accept(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.extend_from_slice(bytes);
         Ok(())
     }
@@ -68,7 +68,7 @@ impl Sink for File {
         self.rewind()
     }
 
-    fn take(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn accept(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.write_all(bytes)
     }
 }
@@ -100,7 +100,7 @@ impl Store {
     async fn whole<S: Sink>(self, mut sink: S, most_bytes: u64) -> Result<S, Fail> {
         for attempt in 0.. {
             let found = self.store.get_opts(&self.key, GetOptions::default()).await?;
-            let version = Version::of(&found.meta);
+            let version = Version::new(&found.meta);
             self.check_size(version.bytes, most_bytes)?;
             sink.start_over()?;
             match Self::take_all(found, version.bytes, &mut sink).await {
@@ -122,7 +122,7 @@ impl Store {
             let chunk = chunk.map_err(|_| Fail::Body)?;
             // A server may send more than it stated, which would exceed the limit that was checked.
             rest = rest.checked_sub(chunk.len() as u64).ok_or(Fail::Body)?;
-            sink.take(&chunk)?;
+            sink.accept(&chunk)?;
         }
         match rest {
             0 => Ok(()),
@@ -141,10 +141,10 @@ impl Store {
             Err(_) if range.start == 0 && self.is_beyond_end() => return Ok(ReadPart::of_empty()),
             found => found?,
         };
-        let is = Version::of(&found.meta);
+        let is = Version::new(&found.meta);
         // Not every server obeys `If-Match`, and weak tags cannot be sent in it.
         if version.is_some_and(|version| version != is) {
-            return Err(Fail::Own(StorageProblem::Changed.at(&self.location)));
+            return Err(Fail::Own(StorageProblem::Changed.at_place(&self.location)));
         }
         let mut bytes = Vec::new();
         let len = found.range.end - found.range.start;
@@ -162,7 +162,7 @@ impl Store {
         if bytes <= most_bytes {
             Ok(())
         } else {
-            Err(Fail::Own(StorageProblem::TooLarge { most_bytes }.at(&self.location)))
+            Err(Fail::Own(StorageProblem::TooLarge { most_bytes }.at_place(&self.location)))
         }
     }
 }

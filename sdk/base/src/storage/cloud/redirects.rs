@@ -4,30 +4,30 @@ use http::{HeaderMap, Method, Response, StatusCode, header};
 use object_store::client::{HttpError, HttpErrorKind, HttpRequest, HttpResponse, HttpService};
 use reqwest::Url;
 
-use super::addresses::{INNER, NamedBy, NotFollowed, is_inner_number};
+use super::addresses::{INNER, RedirectRefusal, UrlSource, is_inner_number};
 
 /// Largest number of redirects for one request.
 const MOST_REDIRECTS: usize = 5;
 
 /// The clients for requests to a web server.
 #[derive(Debug, Clone)]
-pub(super) struct Following {
+pub(super) struct RedirectClient {
     /// For the named server itself.
     pub(super) first: reqwest::Client,
     /// For the servers to which it redirects.
     pub(super) world: reqwest::Client,
     /// Who named the server.
-    pub(super) by: NamedBy,
+    pub(super) by: UrlSource,
 }
 
-impl Following {
+impl RedirectClient {
     /// Sends a request and follows its redirects. Does not follow a redirect from HTTPS to HTTP, or
     /// to an address of this machine or network, except on the same server. A request does not
     /// state its referrer, whose query may be a signature.
     pub(super) async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         let (method, headers) = (request.method().clone(), request.headers().clone());
         let first = url(&request.uri().to_string())?;
-        if self.by == NamedBy::Other {
+        if self.by == UrlSource::Other {
             check_number(&first)?;
         }
         let mut at = first.clone();
@@ -117,5 +117,5 @@ fn url(text: &str) -> Result<Url, HttpError> {
 
 /// Creates the error for a refusal by this client. A retry would not help.
 fn refused(reason: &'static str) -> HttpError {
-    HttpError::new(HttpErrorKind::Unknown, NotFollowed(reason))
+    HttpError::new(HttpErrorKind::Unknown, RedirectRefusal(reason))
 }

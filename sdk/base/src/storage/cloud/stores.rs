@@ -18,26 +18,26 @@ use crate::storage::{Settings, Variables};
 const PAUSE_GROWTH: f64 = 6.0;
 
 /// A store, the key in it, and whether requests are signed.
-pub(crate) struct Opened {
+pub(crate) struct StoreAndKey {
     pub(crate) store: Arc<dyn ObjectStore>,
     pub(crate) key: Path,
     pub(crate) is_signed: bool,
 }
 
 /// What a store is created from.
-pub(crate) struct Parts<'a> {
+pub(crate) struct StoreRequest<'a> {
     pub(crate) uri: &'a Uri,
     pub(crate) settings: &'a Settings,
     pub(crate) variables: &'a Variables,
     pub(crate) connector: Connector,
 }
 
-impl Parts<'_> {
+impl StoreRequest<'_> {
     /// Creates the store of a URI. No request is sent yet.
     ///
     /// # Errors
     /// A sentence that contains the names of variables but never their values.
-    pub(crate) fn open(self) -> Result<Opened, String> {
+    pub(crate) fn open(self) -> Result<StoreAndKey, String> {
         match self.uri.scheme {
             Scheme::S3 => self.s3(),
             Scheme::Gs => self.gs(),
@@ -64,7 +64,7 @@ impl Parts<'_> {
         })
     }
 
-    fn s3(self) -> Result<Opened, String> {
+    fn s3(self) -> Result<StoreAndKey, String> {
         self.variables.check("AWS_")?;
         let mut builder = AmazonS3Builder::new();
         for (name, value) in self.variables.with_prefix("AWS_") {
@@ -105,10 +105,10 @@ impl Parts<'_> {
         let store = builder
             .build()
             .map_err(|_| "a variable of AWS_* is not valid; correct it".to_owned())?;
-        Ok(Opened { store: Arc::new(store), key, is_signed })
+        Ok(StoreAndKey { store: Arc::new(store), key, is_signed })
     }
 
-    fn gs(self) -> Result<Opened, String> {
+    fn gs(self) -> Result<StoreAndKey, String> {
         self.variables.check("GOOGLE_")?;
         let mut builder = GoogleCloudStorageBuilder::new();
         for (name, value) in self.variables.with_prefix("GOOGLE_") {
@@ -139,10 +139,10 @@ impl Parts<'_> {
         let store = builder.build().map_err(|_| {
             "a variable of GOOGLE_* is not valid, or the file that it names; correct it".to_owned()
         })?;
-        Ok(Opened { store: Arc::new(store), key, is_signed })
+        Ok(StoreAndKey { store: Arc::new(store), key, is_signed })
     }
 
-    fn az(self) -> Result<Opened, String> {
+    fn az(self) -> Result<StoreAndKey, String> {
         self.variables.check("AZURE_")?;
         let mut builder = MicrosoftAzureBuilder::new();
         for (name, value) in self.variables.with_prefix("AZURE_") {
@@ -178,12 +178,12 @@ impl Parts<'_> {
         let store = builder.build();
         let store =
             store.map_err(|_| "a variable of AZURE_* is not valid; correct it".to_owned())?;
-        Ok(Opened { store: Arc::new(store), key, is_signed })
+        Ok(StoreAndKey { store: Arc::new(store), key, is_signed })
     }
 
     /// Creates a store for a web server. The store's address is the whole URL and its key is empty,
     /// so that escapes and query stay unchanged.
-    fn web(self) -> Result<Opened, String> {
+    fn web(self) -> Result<StoreAndKey, String> {
         let Uri { authority, path, .. } = self.uri;
         let query = self.uri.query.as_ref().map(|query| format!("?{query}"));
         let url =
@@ -197,6 +197,6 @@ impl Parts<'_> {
             .with_http_connector(self.connector)
             .build()
             .map_err(|_| wrong())?;
-        Ok(Opened { store: Arc::new(store), key: Path::default(), is_signed: false })
+        Ok(StoreAndKey { store: Arc::new(store), key: Path::default(), is_signed: false })
     }
 }

@@ -45,7 +45,7 @@ impl Store {
         let len = file.metadata().map_err(StorageError::io_at(path.display()))?.len();
         if len > MOST_BYTES {
             let most_bytes = MOST_BYTES;
-            return Err(StorageProblem::TooLarge { most_bytes }.at(path.display()));
+            return Err(StorageProblem::TooLarge { most_bytes }.at_place(path.display()));
         }
         if len <= MOST_SINGLE_BYTES {
             let mut bytes = Vec::new();

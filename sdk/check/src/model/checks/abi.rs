@@ -1,6 +1,6 @@
 //! Checks of the marker, the exports, the descriptor and extensions.
 
-use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Store};
+use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Scale, Store};
 
 use crate::harness::{Finding, Found, Owner, made_up_extensions};
 use crate::model::case::Case;
@@ -77,6 +77,36 @@ fn wrong_in(descriptor: &Descriptor) -> Option<String> {
         })
         .or_else(|| twice(descriptor.options.iter().map(|o| o.name.as_str())))
         .or_else(|| descriptor.options.iter().find_map(wrong_default))
+        .or_else(|| wrong_hint(descriptor))
+}
+
+/// Finds a usual range or a value of a sweep that is not allowed.
+fn wrong_hint(descriptor: &Descriptor) -> Option<String> {
+    let usual_works = |field: &&Field| {
+        field.usual.is_none_or(|usual| {
+            let starts = if usual.scale == Scale::Log { usual.min > 0.0 } else { true };
+            starts && field.min <= usual.min && usual.min < usual.max && usual.max <= field.max
+        })
+    };
+    if let Some(field) = descriptor.fields.iter().find(|field| !usual_works(field)) {
+        let (name, min, max) = (&field.name, field.min, field.max);
+        return Some(format!(
+            "`{name}`: the usual range must ascend within {min} to {max}, above 0 if it is logarithmic"
+        ));
+    }
+    let options = &descriptor.options;
+    for option in options {
+        let mut values = option.sweep.iter().chain(&option.sweep_alone);
+        if let Some(value) = values.find(|value| option.text(**value).is_none()) {
+            return Some(format!("`{}`: the option cannot be {value} in a sweep", option.name));
+        }
+        let other = option.not_above.as_ref();
+        let is_missing = |name: &&String| !options.iter().any(|o| o.name == **name);
+        if let Some(other) = other.filter(is_missing) {
+            return Some(format!("`{}`: there is no option `{other}` above it", option.name));
+        }
+    }
+    None
 }
 
 fn store_works(field: &Field) -> bool {

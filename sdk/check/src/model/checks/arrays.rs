@@ -1,6 +1,6 @@
 //! Checks how calls use the host's arrays: what they read, how far they write, and what they keep.
 
-use htex_host::{Band, FitCondition, FitRequest, HostError, ModelVoice, Origin, ProbeArguments};
+use htex_host::{Band, FitCondition, FitInput, HostError, ModelVoice, Origin, ProbeArguments};
 
 use crate::harness::{Finding, Found};
 use crate::model::case::{Case, RATE_HZ, is_cannot_fit};
@@ -79,16 +79,17 @@ fn fits(case: &Case) -> Result<Vec<f64>, Finding> {
         let mut magnitude = Fenced::input(&spectrum, "fit", "magnitude");
         let mut knobs = Fenced::input(&options, "fit", "options");
         capacities("fit", &whole, |out| {
-            let request = FitRequest {
+            let request = FitInput {
                 band: Band::TACTILE,
                 frequency_hz: hz.get(),
                 magnitude: magnitude.get(),
                 signal: &[],
                 signal_rate_hz: RATE_HZ,
                 options: knobs.get(),
+                condition: FitCondition::default(),
             };
             let (model, mut level) = (&case.model, 0.0);
-            model.fit_into(&request, FitCondition::default(), out, &mut level)
+            model.fit_into(&request, out, &mut level)
         })?;
         hz.unchanged(&grid, "frequency_hz")?;
         magnitude.unchanged(&spectrum, "magnitude")?;

@@ -1,6 +1,6 @@
 //! Checks that invalid arguments are refused.
 
-use htex_host::{Band, FitCondition, FitRequest, HostError, Kind, Status};
+use htex_host::{Band, FitCondition, FitInput, HostError, Kind, Status};
 use htex_model::{Values, flatten};
 
 use crate::harness::{Finding, Found};
@@ -147,21 +147,22 @@ pub(crate) fn inputs(case: &Case) -> Found {
     let grid = Band::TACTILE.grid_hz();
     let magnitude: Vec<f64> = grid.iter().map(|&hz| (REFERENCES[0].curve)(hz)).collect();
     let options = case.model.descriptor().default_options();
-    let good = FitRequest {
+    let good = FitInput {
         band: Band::TACTILE,
         frequency_hz: &grid,
         magnitude: &magnitude,
         signal: &[],
         signal_rate_hz: RATE_HZ,
         options: &options,
+        condition: FitCondition::default(),
     };
     let with = |numbers: &[f64], at: usize, number: f64| {
         let mut numbers = numbers.to_vec();
         numbers[at] = number;
         numbers
     };
-    let fit = |what: &str, status: Status, request: FitRequest<'_>| {
-        refused(status, "fit", what, case.model.fit_at(&request, FitCondition::default()))
+    let fit = |what: &str, status: Status, request: FitInput<'_>| {
+        refused(status, "fit", what, case.model.fit(&request))
     };
     let argument = Status::InvalidArgument;
     let mut count = 0;
@@ -169,7 +170,7 @@ pub(crate) fn inputs(case: &Case) -> Found {
         let magnitude = with(&magnitude, 7, number);
         let what = format!("a magnitude of {number}");
         let magnitude = &magnitude;
-        fit(&what, argument, FitRequest { magnitude, ..good })?;
+        fit(&what, argument, FitInput { magnitude, ..good })?;
     }
     for (number, what) in [
         (f64::NAN, "a frequency of NaN"),
@@ -178,11 +179,11 @@ pub(crate) fn inputs(case: &Case) -> Found {
         (f64::NEG_INFINITY, "a frequency of -inf"),
     ] {
         let frequency_hz = &with(&grid, 7, number);
-        fit(what, argument, FitRequest { frequency_hz, ..good })?;
+        fit(what, argument, FitInput { frequency_hz, ..good })?;
     }
     for bins in [0, 2] {
         let (frequency_hz, magnitude) = (&grid[..bins], &magnitude[..bins]);
-        let request = FitRequest { frequency_hz, magnitude, ..good };
+        let request = FitInput { frequency_hz, magnitude, ..good };
         fit(&format!("{bins} bins"), argument, request)?;
     }
     for (signal, signal_rate_hz, what) in [
@@ -191,12 +192,12 @@ pub(crate) fn inputs(case: &Case) -> Found {
         (&[0.1; 3], f64::NAN, "a signal at a rate of NaN"),
         (&[0.1; 3], 0.0, "a signal at a rate of 0 Hz"),
     ] {
-        let request = FitRequest { signal, signal_rate_hz, ..good };
+        let request = FitInput { signal, signal_rate_hz, ..good };
         fit(what, argument, request)?;
     }
     for (options, what) in wrong_options(case, &options) {
         let options = &options;
-        fit(&what, Status::InvalidOption, FitRequest { options, ..good })?;
+        fit(&what, Status::InvalidOption, FitInput { options, ..good })?;
         count += 1;
     }
     let parameters = case.parameters()?;

@@ -70,7 +70,7 @@ impl Model for {{TYPE}} {
         let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
         let shape = best_shape(input.frequency_hz, &relative, band);
         let scale = scale(input.frequency_hz, &relative, &shape);
-        let level = curve_level_rms(band, |f| shape.at(f));
+        let level = curve_level_rms(band, |f| shape.magnitude_at(f));
         Ok(Fit {
             parameters: vec![shape.centre_hz, shape.bandwidth_hz],
             level_rms: largest * scale * level,
@@ -138,14 +138,14 @@ impl Curve for Shape {
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.centre_hz = parameters.scalar(CENTRE);
         self.bandwidth_hz = parameters.scalar(BANDWIDTH);
-        self.level = curve_level_rms(self.band, |f| self.at(f));
+        self.level = curve_level_rms(self.band, |f| self.magnitude_at(f));
         if self.level > 0.0 {
             return Ok(());
         }
         Err(Error::argument("no multiple of 5 Hz lies in the band"))
     }
 
-    fn at(&self, frequency_hz: f64) -> f64 {
+    fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let f = frequency_hz / self.centre_hz;
         let detuned = (f - 1.0 / f) * self.centre_hz / self.bandwidth_hz;
         1.0 / libm::sqrt(1.0 + detuned * detuned)
@@ -169,7 +169,7 @@ fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
         let shape = shape(x);
         let scale = scale(frequency_hz, magnitude, &shape);
         let pairs = frequency_hz.iter().zip(magnitude);
-        pairs.map(|(&f, m)| scale * shape.at(f) - m).map(|d| d * d).sum()
+        pairs.map(|(&f, m)| scale * shape.magnitude_at(f) - m).map(|d| d * d).sum()
     };
     let (low, high) = (libm::log(band.low_hz), libm::log(band.high_hz));
     let starts = [0.2, 0.4, 0.6, 0.8].map(|part| [low + part * (high - low), libm::log(100.0)]);
@@ -187,7 +187,7 @@ fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
 fn scale(frequency_hz: &[f64], magnitude: &[f64], shape: &Shape) -> f64 {
     let (mut hm, mut hh) = (0.0, 0.0);
     for (&f, m) in frequency_hz.iter().zip(magnitude) {
-        let h = shape.at(f);
+        let h = shape.magnitude_at(f);
         hm += h * m;
         hh += h * h;
     }

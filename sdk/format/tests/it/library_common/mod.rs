@@ -3,7 +3,7 @@
 pub mod cases;
 pub mod raw;
 
-use htex_format::library::{Library, Packed, Writer};
+use htex_format::library::{Library, PackSummary, Writer};
 use htex_format::{Asset, Manifest, Plugin};
 use serde_json::json;
 
@@ -83,7 +83,7 @@ impl Texture {
 }
 
 /// Packs textures in the given order. Returns what was written, and the file.
-pub fn pack(name: &str, textures: &[Texture]) -> (Packed, Vec<u8>) {
+pub fn pack(name: &str, textures: &[Texture]) -> (PackSummary, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("packed.htexlib");
     let mut writer = Writer::create(&path, name).unwrap();

@@ -1,6 +1,6 @@
 //! The descriptors of the built-in models, with the usual ranges of their parameters.
 
-use htex::model::{Descriptor, Field, FitOption, Kind, LoadedModel, Registry, Usual};
+use htex::model::{Descriptor, Field, FitOption, Kind, LoadedModel, Registry, UsualRange};
 use serde::Serialize;
 
 use crate::answer::{Answer, Files};
@@ -32,44 +32,35 @@ struct Parameter<'a> {
     kind: Kind,
     min: f64,
     max: f64,
-    usual: Option<Range>,
+    usual: Option<UsualRange>,
     default: Option<f64>,
     description: &'a str,
 }
 
-#[derive(Serialize)]
-struct Range {
-    min: f64,
-    max: f64,
-    scale: &'static str,
-}
-
 impl<'a> Model<'a> {
     fn new(model: &'a LoadedModel) -> Self {
-        let Descriptor { id, name, version, summary, fields, options, keeps_level } =
+        let Descriptor { id, name, version, summary, fields, options, keeps_level, .. } =
             model.descriptor();
-        let usual = model.usual();
         Self {
             id,
             name,
             version,
             summary,
-            fields: fields.iter().map(|field| parameter(field, usual)).collect(),
+            fields: fields.iter().map(parameter).collect(),
             options,
             keeps_level: *keeps_level,
         }
     }
 }
 
-fn parameter<'a>(field: &'a Field, usual: &[Usual]) -> Parameter<'a> {
-    let own = usual.iter().find(|usual| usual.field == field.name);
+fn parameter(field: &Field) -> Parameter<'_> {
     Parameter {
         name: &field.name,
         unit: &field.unit,
         kind: field.kind,
         min: field.min,
         max: field.max,
-        usual: own.map(|usual| Range { min: usual.min, max: usual.max, scale: usual.scale.name() }),
+        usual: field.usual,
         default: field.default,
         description: &field.description,
     }

@@ -22,7 +22,7 @@ pub(crate) fn rights(call: Document, files: Files<'_>) -> Result<Answer, Refusal
     let [bytes] = files else {
         return Err(Refusal::argument("give one texture"));
     };
-    let rights = Rights::of(&Asset::from_bytes(bytes)?.manifest);
+    let rights = Rights::from_manifest(&Asset::from_bytes(bytes)?.manifest);
     let stated = RightsSummary {
         license: rights.license.as_deref(),
         author: rights.author.as_deref(),

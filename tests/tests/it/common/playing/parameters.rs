@@ -4,6 +4,7 @@ use htex_dsp::grid::Band;
 use htex_dsp::line_spectrum::line_spectral_frequencies_of_reflection;
 use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::uniform::Uniform;
+use htex_host::{Field, Kind, Registry};
 
 /// A model's flat array for one condition of an asset.
 pub fn parameters(model: &str, band: Band, asset: usize, condition: usize) -> Vec<f64> {
@@ -18,8 +19,29 @@ pub fn parameters(model: &str, band: Band, asset: usize, condition: usize) -> Ve
         "sslope" => vec![draw.within(10.0, 1_200.0), draw.within(0.3, 4.0), draw.within(0.3, 4.0)],
         "bands" => bands(&mut draw, asset),
         "map" => map(&mut draw, band, asset, condition),
-        other => panic!("no parameters for {other}"),
+        other => usual(&mut draw, other),
     }
+}
+
+/// Numbers in the usual ranges of a model's fields; lists have five.
+fn usual(draw: &mut Draw, model: &str) -> Vec<f64> {
+    let registry = Registry::builtin();
+    let number = |draw: &mut Draw, field: &Field| match field.usual {
+        Some(usual) => draw.within(usual.min, usual.max),
+        None => draw.within(field.min, field.max),
+    };
+    let mut flat = Vec::new();
+    for field in &registry.find(model).unwrap().descriptor().fields {
+        let count = match field.kind {
+            Kind::Scalar => 1,
+            Kind::List { max_len } => max_len.min(5),
+        };
+        if field.kind != Kind::Scalar {
+            flat.push(f64::from(count));
+        }
+        flat.extend((0..count).map(|_| number(draw, field)));
+    }
+    flat
 }
 
 struct Draw(Uniform);

@@ -1,0 +1,271 @@
+//! Shared code of models whose voice is white noise through a recursive filter.
+//!
+//! A model implements [`MovingFilter`]. This module then provides its voice ([`FilteredVoice`]): the
+//! noise, the limits of the band, blocks of any length, and the change of parameters.
+
+use alloc::sync::Arc;
+
+use htex_dsp::all_pole::{GROUP, Group};
+use htex_dsp::band_limit::{PassedPower, band_limit};
+use htex_dsp::grid::{Band, GRID_HZ};
+use htex_dsp::noise::{GROUP as NOISE_GROUP, GaussianNoise};
+use htex_dsp::pipeline::Pipeline;
+
+use crate::{Error, Values, Voice, text};
+
+/// Duration of a change of parameters, seconds.
+const RAMP_S: f64 = 0.010;
+/// Duration that is rendered and discarded before the first sample, seconds, with a limit in
+/// samples. After it the filter's transient has decayed.
+const SETTLE_S: f64 = 0.5;
+const SETTLE_SAMPLES: f64 = 4096.0;
+/// Number of groups of samples per step.
+const BLOCK: usize = 32;
+
+/// A group of output samples.
+type GroupSamples = [f32; GROUP];
+
+/// A filter whose coefficients move from one parameter set to the next, so that every filter on the
+/// way is stable. All methods but [`new`](Self::new) run on the render thread and do not allocate.
+pub trait MovingFilter: Sized + Send + 'static {
+    /// Index of the field with the rate at which the filter runs, hertz.
+    const RATE_FIELD: usize;
+
+    /// Makes the filter of these parameters. Returns it with the level of white noise of unit RMS
+    /// behind it and behind the limits of the band.
+    ///
+    /// # Errors
+    /// If the filter is not stable, or has no finite energy in the band.
+    fn new(parameters: &Values<'_>, band: Band, passed: &PassedPower)
+    -> Result<(Self, f64), Error>;
+
+    /// Sets the filter that is reached after `steps` calls of [`step`](Self::step), and returns the
+    /// level behind it, as [`new`](Self::new) does.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new). The filter then continues unchanged.
+    fn set_target(
+        &mut self,
+        parameters: &Values<'_>,
+        passed: &PassedPower,
+        steps: u32,
+    ) -> Result<f64, Error>;
+
+    /// Moves the coefficients by one step. `is_last`: they reach the target itself.
+    fn step(&mut self, is_last: bool);
+
+    /// Filters one sample.
+    fn tick(&mut self, x: f64) -> f64;
+
+    /// Filters groups of samples in place.
+    fn process(&mut self, block: &mut [Group]);
+
+    /// As [`Voice::render_together`].
+    fn render_together(voices: &mut [&mut FilteredVoice<Self>], frames: usize, out: &mut [f32]) {
+        let rows = out.chunks_exact_mut(frames.max(1));
+        for (voice, row) in voices.iter_mut().zip(rows) {
+            voice.render(row);
+        }
+    }
+}
+
+/// The voice of a model with a [`MovingFilter`]: an endless stream of filtered noise of unit RMS.
+pub struct FilteredVoice<F> {
+    /// The noise before the filter.
+    pub noise: GaussianNoise,
+    /// The filter.
+    pub filter: F,
+    /// The limits of the band, behind the filter.
+    pub edges: Pipeline,
+    rate_hz: f64,
+    /// How much power passes `edges`.
+    passed: Arc<PassedPower>,
+    gain: f64,
+    target_gain: f64,
+    gain_step: f64,
+    ramp_len: u32,
+    ramp_left: u32,
+    /// Unused samples of the last group.
+    ready: GroupSamples,
+    taken: usize,
+}
+
+impl<F: MovingFilter> FilteredVoice<F> {
+    /// Makes a voice with unit RMS.
+    ///
+    /// # Errors
+    /// If `rate_hz` is not the rate of the parameters, and the errors of [`MovingFilter::new`].
+    pub fn new(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        if rate_hz != parameters.scalar(F::RATE_FIELD) {
+            return Err(Error::argument(text![
+                "the filter runs at its model rate of ",
+                parameters.scalar(F::RATE_FIELD),
+                " Hz, not at ",
+                rate_hz,
+                " Hz",
+            ]));
+        }
+        let passed = PassedPower::shared(band, rate_hz);
+        let (filter, level) = F::new(parameters, band, &passed)?;
+        let gain = gain(rate_hz, level);
+        let mut voice = Self {
+            noise: GaussianNoise::new(seed),
+            filter,
+            edges: band_limit(band, rate_hz),
+            rate_hz,
+            passed,
+            gain,
+            target_gain: gain,
+            gain_step: 0.0,
+            ramp_len: rounded_up(RAMP_S * rate_hz).max(1),
+            ramp_left: 0,
+            ready: [0.0; GROUP],
+            taken: GROUP,
+        };
+        let settle = rounded_up((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize;
+        // A whole number of groups of noise, so that the first block begins at the start of one.
+        voice.render(&mut alloc::vec![0.0; settle.next_multiple_of(NOISE_GROUP)]);
+        Ok(voice)
+    }
+
+    /// Returns the gain of the noise before the filter.
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// Returns how many samples of the last group were already given out.
+    pub fn taken(&self) -> usize {
+        self.taken
+    }
+
+    /// Returns whether no change of parameters is in progress.
+    pub fn is_steady(&self) -> bool {
+        self.ramp_left == 0
+    }
+
+    /// Renders the next samples in whole groups.
+    fn groups(&mut self, out: &mut [GroupSamples]) {
+        let changing = out.len().min((self.ramp_left as usize).div_ceil(GROUP));
+        let (changing, steady) = out.split_at_mut(changing);
+        for group in changing {
+            *group = self.changing();
+        }
+        let mut block = [[0.0; GROUP]; BLOCK];
+        for out in steady.chunks_mut(BLOCK) {
+            let block = &mut block[..out.len()];
+            // The output buffer is first used for the noise.
+            self.noise.fill(out.as_flattened_mut());
+            let noise = out.as_flattened().iter();
+            for (x, noise) in block.as_flattened_mut().iter_mut().zip(noise) {
+                *x = self.gain * f64::from(*noise);
+            }
+            self.filter.process(block);
+            self.finish(block, out);
+        }
+    }
+
+    /// Renders a group of samples while parameters change.
+    fn changing(&mut self) -> GroupSamples {
+        let mut out = [[0.0; GROUP]];
+        self.noise.fill(out.as_flattened_mut());
+        let [noise] = out;
+        let group = noise.map(|x| {
+            if self.ramp_left > 0 {
+                self.ramp();
+            }
+            self.filter.tick(self.gain * f64::from(x))
+        });
+        self.finish(&mut [group], &mut out);
+        out[0]
+    }
+
+    /// Limits the filter's output to the band, and stores it as output samples.
+    fn finish(&mut self, block: &mut [Group], out: &mut [GroupSamples]) {
+        self.edges.process(block.as_flattened_mut().as_chunks_mut().0);
+        let out = out.as_flattened_mut().iter_mut();
+        for (sample, x) in out.zip(block.as_flattened()) {
+            *sample = *x as f32;
+        }
+    }
+
+    /// Advances the ramp by one sample.
+    fn ramp(&mut self) {
+        self.ramp_left -= 1;
+        // The last step sets the target itself, because the steps have rounding errors.
+        let is_last = self.ramp_left == 0;
+        self.filter.step(is_last);
+        self.gain = if is_last { self.target_gain } else { self.gain + self.gain_step };
+    }
+}
+
+impl<F: MovingFilter> Voice for FilteredVoice<F> {
+    fn render(&mut self, out: &mut [f32]) {
+        let kept = out.len().min(GROUP - self.taken);
+        let (first, rest) = out.split_at_mut(kept);
+        first.copy_from_slice(&self.ready[self.taken..self.taken + kept]);
+        self.taken += kept;
+        let (groups, last) = rest.as_chunks_mut();
+        self.groups(groups);
+        if !last.is_empty() {
+            let mut group = [[0.0; GROUP]];
+            self.groups(&mut group);
+            [self.ready] = group;
+            last.copy_from_slice(&self.ready[..last.len()]);
+            self.taken = last.len();
+        }
+    }
+
+    fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32]) {
+        F::render_together(voices, frames, out);
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        if parameters.scalar(F::RATE_FIELD) != self.rate_hz {
+            return Err(Error::argument(text![
+                "a voice at ",
+                self.rate_hz,
+                " Hz accepts filters of this rate only",
+            ]));
+        }
+        // Before anything else changes: if the parameters are refused, the voice must continue
+        // unchanged.
+        let level = self.filter.set_target(parameters, &self.passed, self.ramp_len)?;
+        self.target_gain = gain(self.rate_hz, level);
+        self.ramp_left = self.ramp_len;
+        self.gain_step = (self.target_gain - self.gain) * (1.0 / f64::from(self.ramp_len));
+        Ok(())
+    }
+}
+
+/// Rounds a number of samples up. Without `std` there is no `ceil`.
+fn rounded_up(samples: f64) -> u32 {
+    let whole = samples as u32;
+    whole + u32::from(f64::from(whole) < samples)
+}
+
+/// Returns the gain of the noise that gives samples of unit RMS.
+fn gain(rate_hz: f64, level: f64) -> f64 {
+    // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
+    htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level
+}
+
+/// Checks that magnitudes and samples can be divided by this level.
+///
+/// # Errors
+/// If it is not finite, or not above 0.
+pub fn finite_level(level: f64) -> Result<f64, Error> {
+    if level > 0.0 && level.is_finite() {
+        return Ok(level);
+    }
+    Err(Error::parameters("the filter has no finite energy in the band"))
+}
+
+/// Makes the error of a filter that is not stable.
+pub fn unstable() -> Error {
+    Error::parameters("the filter is not stable: a pole lies on or outside the unit circle")
+}

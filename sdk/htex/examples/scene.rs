@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..DeviceOverride::default()
     };
     let scene = LoadedScene::open(&path, &around, &device)?;
-    let adapter = &devices.find("org.htex.file")?.adapter;
+    let adapter = &devices.find_output("org.htex.file")?.adapter;
     let plan = plan(&scene, &adapter.capabilities(&scene.settings)?, &Costs::embedded())?;
     for stage in &plan.stages {
         println!("{}: {}", stage.name, stage.reason);

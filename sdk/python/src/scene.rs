@@ -62,7 +62,7 @@ impl Scene {
             let devices = devices(installed).map_err(raised)?;
             let around = Surroundings { models: &models, embedded, devices: &devices };
             let loaded = LoadedScene::open(&path, &around, &device).map_err(raised)?;
-            let known = devices.find(&loaded.scene.device.adapter).map_err(raised)?;
+            let known = devices.find_output(&loaded.scene.device.adapter).map_err(raised)?;
             let able = known.adapter.capabilities(&loaded.settings).map_err(raised)?;
             Ok(Self { file: path, models, embedded, device, loaded, able, devices })
         })

@@ -199,7 +199,7 @@ fn settings(quantity: Option<Quantity>) -> BTreeMap<String, String> {
 
 fn start(scene: &LoadedScene, devices: &Devices) -> Result<(Renderer, Plan), Failure> {
     let device = |error| Failure::of(htex_status::HTEX_STATUS_INVALID_SCENE, error);
-    let adapter = &devices.find(ADAPTER).map_err(device)?.adapter;
+    let adapter = &devices.find_output(ADAPTER).map_err(device)?.adapter;
     let capabilities = adapter.capabilities(&scene.settings).map_err(device)?;
     // Not the costs measured on this machine, so that the plan depends on no file of the user.
     let plan = plan(scene, &capabilities, &Costs::embedded())?;

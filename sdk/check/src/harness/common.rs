@@ -1,6 +1,6 @@
 //! Checks that models and devices have in common.
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 
 /// Allowed growth of the resident memory, bytes.
 const ALLOWED: f64 = 2.0 * 1024.0 * 1024.0;
@@ -38,7 +38,7 @@ impl Growth {
 /// # Errors
 /// A failed finding if memory grows by more than 2 MiB in either case, and the errors of `measure`.
 /// A skipped finding if resident memory cannot be read.
-pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
+pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> CheckResult {
     if resident_bytes().is_none() {
         return Err(Finding::skipped("resident memory is read on Linux only"));
     }
@@ -76,7 +76,7 @@ pub fn resident_bytes() -> Option<f64> {
 ///
 /// # Errors
 /// A failed finding that names an extension that `has` reports, and the errors of `has`.
-pub fn made_up_extensions<E: Into<Finding>>(has: impl Fn(&str) -> Result<bool, E>) -> Found {
+pub fn made_up_extensions<E: Into<Finding>>(has: impl Fn(&str) -> Result<bool, E>) -> CheckResult {
     let long = "x".repeat(100_000);
     let ids = ["htex.no-such-thing/1", "com.example.unheard-of/7", "", "\u{1f}é", &long];
     for id in ids {

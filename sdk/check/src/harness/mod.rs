@@ -3,9 +3,9 @@
 //! a crash or an endless loop becomes a finding.
 //!
 //! ```
-//! use htex_check::harness::{Finding, Found, Owner, run_one};
+//! use htex_check::harness::{CheckResult, Finding, Owner, run_one};
 //!
-//! fn positive(number: &i32) -> Found {
+//! fn positive(number: &i32) -> CheckResult {
 //!     if *number > 0 {
 //!         Ok(Finding::passed("it is positive"))
 //!     } else {
@@ -22,11 +22,12 @@
 //! let load = || "-1".parse::<i32>();
 //! let finding = run_one(CHECKS, "positive", load, |_| Owner::reached("positive"))?;
 //! assert_eq!(finding.message, "-1 is not positive");
-//! # Ok::<(), htex_check::harness::UnknownCheck>(())
+//! # Ok::<(), htex_check::harness::CheckError>(())
 //! ```
 #![forbid(unsafe_code)]
 
 mod common;
+mod error;
 mod finding;
 mod process;
 mod report;
@@ -35,8 +36,9 @@ mod table;
 
 pub use crate::checks;
 pub use common::{Growth, made_up_extensions, memory, resident_bytes};
-pub use finding::{Finding, Found, Outcome};
+pub use error::CheckError;
+pub use finding::{CheckResult, Finding, Outcome};
 pub use process::run_process;
 pub use report::{CheckReport, Report};
 pub use runner::{Owner, Runner, run_all, run_one};
-pub use table::{Check, UnknownCheck, select};
+pub use table::{Check, select};

@@ -7,8 +7,8 @@ use std::process::Command;
 use std::time::Duration;
 
 use crate::harness::process::run_process;
-use crate::harness::table::{Check, UnknownCheck, find};
-use crate::harness::{CheckReport, Finding};
+use crate::harness::table::{Check, find};
+use crate::harness::{CheckError, CheckReport, Finding};
 
 /// The steps of loading, in order. Each has a check with the same name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
@@ -84,7 +84,7 @@ pub fn run_one<Case, Error: Display>(
     name: &str,
     load: impl FnOnce() -> Result<Case, Error>,
     owner: impl FnOnce(&Error) -> Owner,
-) -> Result<Finding, UnknownCheck> {
+) -> Result<Finding, CheckError> {
     let check = find(checks, name)?;
     let error = match load() {
         Ok(case) => return Ok((check.run)(&case).unwrap_or_else(|finding| finding)),

@@ -93,7 +93,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let files = Named(named.collect());
     let around = Surroundings { models: &models, embedded, devices: &devices };
     let loaded = LoadedScene::from_files(scene, &files, &around, &device)?;
-    let known = devices.find(&loaded.scene.device.adapter);
+    let known = devices.find_output(&loaded.scene.device.adapter);
     let able = known
         .and_then(|known| known.adapter.capabilities(&loaded.settings))
         .map_err(Refusal::scene)?;

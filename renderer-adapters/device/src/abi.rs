@@ -84,7 +84,7 @@ pub enum Code {
 
 impl Code {
     /// Converts a number that crossed the ABI to its code. Unknown negative numbers are `Failed`.
-    pub fn from_answer(answer: i64) -> Self {
+    pub(crate) fn from_answer(answer: i64) -> Self {
         match answer {
             0.. => Self::Ok,
             -1 => Self::InvalidArgument,

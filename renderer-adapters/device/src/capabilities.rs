@@ -78,7 +78,7 @@ impl Capabilities {
     }
 
     /// Returns the lowest rate that can represent the carrier, hertz; 0 without a carrier.
-    pub fn lowest_with_carrier_hz(&self) -> f64 {
+    pub(crate) fn lowest_with_carrier_hz(&self) -> f64 {
         self.carrier_hz.map_or(0.0, |hz| RATE_PER_CARRIER * hz)
     }
 

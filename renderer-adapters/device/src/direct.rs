@@ -9,7 +9,7 @@
 use crate::Settings;
 
 /// Length of the window whose mean is the direct voltage, seconds.
-pub const DIRECT_WINDOW_S: f64 = 0.1;
+const DIRECT_WINDOW_S: f64 = 0.1;
 /// Limit of the direct voltage for a display that states none, volts.
 pub const DIRECT_LIMIT_V: f64 = 1.0;
 /// Name of the setting in which a display states its limit.
@@ -49,7 +49,7 @@ impl DirectVoltage {
     }
 
     /// Takes the limit from a display's settings, or [`DIRECT_LIMIT_V`] if they have none.
-    pub fn from_settings(settings: &Settings, rate_hz: f64) -> Self {
+    pub(crate) fn from_settings(settings: &Settings, rate_hz: f64) -> Self {
         Self::new(settings.number(DIRECT_SETTING), rate_hz)
     }
 

@@ -46,7 +46,7 @@ pub use capabilities::{Capabilities, Quantity, RATE_PER_CARRIER, Rates};
 pub use descriptor::{
     Descriptor, Direction, Endpoint, FromScene, Mapping, Profile, Setting, SettingKind,
 };
-pub use direct::{DIRECT_LIMIT_V, DIRECT_SETTING, DIRECT_WINDOW_S, DirectVoltage, Excess};
+pub use direct::{DIRECT_LIMIT_V, DIRECT_SETTING, DirectVoltage, Excess};
 pub use error::{DeviceError, LibraryFault};
 pub use native::{NativeAdapter, NativeInput, NativeOutput};
 pub use registry::{AdapterEntry, Devices, Note, Origin, Search};

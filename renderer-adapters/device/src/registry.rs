@@ -216,11 +216,7 @@ impl Devices {
         adapter.open_input(&Settings::resolve(adapter.descriptor(), profile, &given)?)
     }
 
-    /// Finds an adapter of a direction by its id or its short name.
-    ///
-    /// # Errors
-    /// [`DeviceError::Unknown`] with the known names.
-    pub fn find(&self, direction: Direction, name: &str) -> Result<&AdapterEntry, DeviceError> {
+    fn find(&self, direction: Direction, name: &str) -> Result<&AdapterEntry, DeviceError> {
         let by_id = self.of_direction(direction).find(|entry| entry.descriptor().id == name);
         let by_name = || self.of_direction(direction).find(|entry| entry.has_name(name));
         by_id.or_else(by_name).ok_or_else(|| {

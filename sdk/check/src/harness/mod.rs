@@ -1,6 +1,6 @@
 //! The common part of the checkers for models and for devices: a table of checks ([`checks!`]), a
-//! runner, and the report. The runner runs each check in a separate process ([`run_all`]), so that
-//! a crash or an endless loop becomes a finding.
+//! runner, and the report. The runner runs each check in a separate process, so that a crash or an
+//! endless loop becomes a finding.
 //!
 //! ```
 //! use htex_check::harness::{CheckResult, Finding, Owner, run_one};
@@ -35,10 +35,12 @@ mod runner;
 mod table;
 
 pub use crate::checks;
-pub use common::{Growth, made_up_extensions, memory, resident_bytes};
+pub(crate) use common::{Growth, made_up_extensions, memory};
 pub use error::CheckError;
 pub use finding::{CheckResult, Finding, Outcome};
-pub use process::run_process;
+pub(crate) use process::run_process;
 pub use report::{CheckReport, Report};
-pub use runner::{Owner, Runner, run_all, run_one};
-pub use table::{Check, select};
+pub(crate) use runner::run_all;
+pub use runner::{Owner, Runner, run_one};
+pub use table::Check;
+pub(crate) use table::select;

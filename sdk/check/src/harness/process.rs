@@ -17,7 +17,7 @@ const AFTER_THE_END: Duration = Duration::from_secs(1);
 
 /// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds
 /// `timeout`, the finding says so.
-pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
+pub(crate) fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = match command.spawn() {
         Ok(child) => child,

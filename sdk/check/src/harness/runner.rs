@@ -29,7 +29,7 @@ impl Owner {
     }
 
     /// The error belongs to this check, and it is unknown whether the steps before it passed.
-    pub fn not_reached(check: &'static str) -> Self {
+    pub(crate) fn not_reached(check: &'static str) -> Self {
         let reached = false;
         Self { check, reached }
     }
@@ -48,7 +48,7 @@ pub struct Runner {
 /// Runs each check in a separate process. `add_arguments` appends the arguments that name the
 /// check. A check is skipped if one that it needs failed, or was skipped for this reason. A check
 /// that does not apply does not cause others to be skipped.
-pub fn run_all<'a, Case: 'a>(
+pub(crate) fn run_all<'a, Case: 'a>(
     checks: impl IntoIterator<Item = &'a Check<Case>>,
     runner: &Runner,
     add_arguments: impl Fn(&mut Command, &'static str),

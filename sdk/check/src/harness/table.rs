@@ -53,7 +53,7 @@ pub(crate) fn find<'a, Case>(
 ///
 /// # Errors
 /// When a name is not in the table.
-pub fn select<'a, Case>(
+pub(crate) fn select<'a, Case>(
     checks: &'a [Check<Case>],
     names: &[String],
 ) -> Result<Vec<&'a Check<Case>>, CheckError> {

@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
-use htex_check::device::Subject;
-use htex_device::{Adapter, DeviceError, Devices, KnownDevice, Settings};
+#[cfg(feature = "lab")]
+use htex_device::Input;
+use htex_device::{Adapter, AdapterEntry, DeviceError, Devices, Direction, Search};
 use htex_device_builtin::Optional;
 
-use crate::adapters;
 use crate::failure::Failure;
+use crate::output::warn;
 
-/// Says how to build this program with a device or source that it lacks.
+/// Says how to build this program with a device that it lacks.
 pub(crate) fn built_with(left_out: &Optional) -> String {
     let Optional { what, feature, package, .. } = left_out;
     format!(
@@ -20,13 +22,13 @@ pub(crate) fn built_with(left_out: &Optional) -> String {
     )
 }
 
-/// Returns the reason why no device or source of this name exists, if this build leaves it out.
-/// `instead` is a sentence.
-pub(crate) fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
-    let left_out = Optional::left_out(name)?;
-    let (what, how) = (left_out.what, built_with(&left_out));
-    let why = format!("this htex is built without {what}; {how}. {instead}");
-    Some(DeviceError::Missing(why))
+/// Returns the devices of this program in display order. The first input replays recordings.
+fn builtin() -> Vec<Arc<dyn Adapter>> {
+    let recordings: Vec<Arc<dyn Adapter>> = vec![
+        #[cfg(feature = "lab")]
+        Arc::new(htex_lab::record::Replay),
+    ];
+    recordings.into_iter().chain(htex_device_builtin::devices()).collect()
 }
 
 /// Where to search for devices.
@@ -46,46 +48,129 @@ pub(crate) struct DeviceArgs {
 impl DeviceArgs {
     /// Returns the devices that are found. Reports those that shadow others on standard error.
     pub(crate) fn devices(&self) -> Result<Devices, Failure> {
-        Ok(adapters::reported(self.devices_quietly()?))
+        let devices = self.devices_quietly()?;
+        let notes: Vec<String> = devices.notes().iter().map(ToString::to_string).collect();
+        warn(&notes);
+        Ok(devices)
     }
 
     /// Returns the devices as [`Self::devices`] does, but without reports.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
-        let search = adapters::search(&self.device_file, &self.device_dir);
-        Ok(Devices::search(htex_device_builtin::devices(), &search)?)
+        let (files, dirs) = (self.device_file.clone(), self.device_dir.clone());
+        Ok(Devices::search(builtin(), &Search { files, dirs, ..Search::default() })?)
     }
 
-    /// Returns the reason why no device of this name exists, if this build leaves it out.
+    /// Returns the reason why no output of this name exists, if this build leaves it out.
     pub(crate) fn missing(name: &str) -> Option<DeviceError> {
         let instead =
             "`--device` names another device, and `htex synth` and `htex render` write files";
         left_out(name, instead)
     }
 
-    /// Returns the device in the file of this name if the file exists, else the device with this
-    /// short name or id.
-    pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
-        let found = adapters::named(name, || self.devices());
-        found.map_err(|error| match Self::missing(name) {
-            Some(why) if error.is_unknown_name() => why.into(),
-            _ => error,
-        })
-    }
-
-    /// Returns the device as [`Self::named`] does, but for a checker, which loads a library itself.
-    pub(crate) fn subject(&self, name: &str) -> Result<Subject, Failure> {
-        adapters::subject(name, || self.devices_quietly())
+    /// Opens the input that `NAME:TARGET` names.
+    #[cfg(feature = "lab")]
+    pub(crate) fn open_input(
+        &self,
+        text: &str,
+        profile: Option<&str>,
+        given: &BTreeMap<String, String>,
+    ) -> Result<Box<dyn Input>, Failure> {
+        let name = text.split(':').next().unwrap_or_default();
+        let opened = self.devices()?.open_input(text, profile, given);
+        opened.map_err(|error| explained(name, Direction::Input, error).into())
     }
 
     /// Returns these arguments for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.device_file.iter().map(|path| ("--device-file", path));
         let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
-        adapters::again(files.chain(dirs))
+        files.chain(dirs).flat_map(|(flag, path)| [flag.into(), path.into()]).collect()
     }
 }
 
-/// The settings of a device or source.
+/// Returns the reason why no device of this name exists, if this build leaves it out. `instead` is
+/// a sentence.
+fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
+    let left_out = Optional::left_out(name)?;
+    let (what, how) = (left_out.what, built_with(&left_out));
+    let why = format!("this htex is built without {what}; {how}. {instead}");
+    Some(DeviceError::Missing(why))
+}
+
+/// Returns the error, or the reason why this build does not have a device of this name.
+fn explained(name: &str, direction: Direction, error: DeviceError) -> DeviceError {
+    if !matches!(error, DeviceError::Unknown { .. }) {
+        return error;
+    }
+    let why = match direction {
+        Direction::Output => DeviceArgs::missing(name),
+        Direction::Input => left_out(name, "`htex device list` shows the inputs that it has"),
+    };
+    why.unwrap_or(error)
+}
+
+/// A device, and how it is set.
+#[derive(Args)]
+pub(crate) struct OneDeviceArgs {
+    /// The device, by short name, id or library file
+    #[arg(value_name = "FILE|ID")]
+    pub(crate) device: String,
+
+    /// The input of this name, if an output has the same name
+    #[arg(long)]
+    input: bool,
+
+    #[command(flatten)]
+    pub(crate) devices: DeviceArgs,
+
+    #[command(flatten)]
+    pub(crate) settings: SettingArgs,
+}
+
+impl OneDeviceArgs {
+    /// Returns the file of a library. A folder does not count: a folder called `sdl` must not hide
+    /// the device of that name.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        Some(Path::new(&self.device)).filter(|file| file.is_file())
+    }
+
+    /// Finds the device in `devices`: an output of this name, or else an input.
+    pub(crate) fn find(&self, devices: &Devices) -> Result<AdapterEntry, DeviceError> {
+        let name = &self.device;
+        let found = match devices.find_output(name) {
+            Ok(output) if !self.input => Ok(output),
+            Err(error) if !self.input => devices.find_input(name).map_err(|_| error),
+            _ => devices.find_input(name),
+        };
+        let direction = if self.input { Direction::Input } else { Direction::Output };
+        found.cloned().map_err(|error| explained(name, direction, error))
+    }
+
+    /// Returns the arguments that name the device, as they are typed.
+    pub(crate) fn shown(&self) -> String {
+        let flag = if self.input { "--input " } else { "" };
+        format!("{flag}{}", self.device)
+    }
+
+    /// Loads the library, or finds the device.
+    pub(crate) fn load(&self) -> Result<AdapterEntry, Failure> {
+        Ok(match self.file() {
+            Some(file) => AdapterEntry::load(file)?,
+            None => self.find(&self.devices.devices()?)?,
+        })
+    }
+
+    /// Returns these arguments for another run of this program.
+    pub(crate) fn again(&self) -> Vec<OsString> {
+        let mut arguments = self.devices.again();
+        arguments.extend(self.settings.again());
+        arguments.extend(self.input.then(|| OsString::from("--input")));
+        arguments.push((&self.device).into());
+        arguments
+    }
+}
+
+/// The settings of a device.
 #[derive(Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
@@ -93,7 +178,7 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// A setting of the device or source, e.g. rate_hz=20000, which overrides the profile; may be
+    /// A setting of the device, e.g. rate_hz=20000, which overrides the profile; may be
     /// given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
@@ -115,13 +200,6 @@ impl SettingArgs {
         let settings = self.settings.iter().map(|pair| ("--set", pair));
         let pair = |(flag, value): (&str, &String)| [flag.into(), value.into()];
         profile.chain(settings).flat_map(pair).collect()
-    }
-
-    /// Returns all settings of an adapter.
-    pub(crate) fn resolve(&self, adapter: &dyn Adapter) -> Result<Settings, Failure> {
-        let given = self.given()?;
-        let settings = Settings::resolve(adapter.descriptor(), self.profile(), &given)?;
-        Ok(settings)
     }
 }
 

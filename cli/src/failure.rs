@@ -74,19 +74,13 @@ impl Failure {
         )
     }
 
-    /// Whether the error is an unknown name of a device or source.
-    pub(crate) fn is_unknown_name(&self) -> bool {
-        use htex_device::DeviceError::{Unknown, UnknownSource};
-        matches!(self, Self::Device(Unknown { .. } | UnknownSource { .. }))
-    }
-
     /// Returns 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
         use htex_base::storage::{
             StorageError,
             StorageProblem::{NoCloud, ReadOnly},
         };
-        use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
+        use htex_device::DeviceError::{Rate, Setting, Unknown};
         use htex_host::HostError::{Option, UnknownModel};
         #[cfg(feature = "lab")]
         if self.is_wrong_use_of_lab() {
@@ -99,7 +93,7 @@ impl Failure {
         match self {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
-            | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. } | UnknownSource { .. })
+            | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. })
             | Self::Storage(StorageError { problem: NoCloud | ReadOnly, .. })
             | Self::Asset {
                 error:

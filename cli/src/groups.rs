@@ -13,7 +13,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Inspect", &["info", "spectrum", "compare", "validate", "explain", "formats"]),
     ("Play", &["synth", "play", "render", "plan", "gain", "export", "bake"]),
     ("Libraries", &["build", "lib"]),
-    ("Plugins and devices", &["plugin", "device", "source"]),
+    ("Plugins and devices", &["plugin", "device"]),
     ("Laboratory", &["record", "response", "study", "studio"]),
     ("Tools", &["completions", "man", "schema"]),
 ];

@@ -8,20 +8,16 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::recording::ColumnMap;
 use htex_base::files::AtFile;
-use htex_device::Source;
+use htex_device::Input;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 
 use crate::failure::Failure;
-use crate::sources::SourceArgs;
 
 /// The signals of a source, and an additional tracker.
 #[derive(Args)]
 #[command(next_help_heading = "Source")]
 pub(crate) struct InputArgs {
-    #[command(flatten)]
-    pub(crate) sources: SourceArgs,
-
     /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31.
     /// Without this, roles follow from the channels' names
     #[arg(long, value_name = "MAP")]
@@ -83,16 +79,15 @@ impl InputArgs {
         self.tracker.as_deref() == Some("lines:-")
     }
 
-    pub(crate) fn signals(&self, name: &str, source: &dyn Source) -> Result<Signals, Failure> {
+    pub(crate) fn signals(&self, name: &str, source: &dyn Input) -> Result<Signals, Failure> {
         let map = parsed(self.map.as_deref())?;
         let calibrations = self
             .calibration
             .iter()
             .map(|path| Calibration::read(path))
             .collect::<Result<_, _>>()?;
-        let signals =
-            Signals::new(name, source.channels(), calibrations, map.as_ref(), self.quantity())?;
-        Ok(signals)
+        let channels = &source.stream().channels;
+        Ok(Signals::new(name, channels, calibrations, map.as_ref(), self.quantity())?)
     }
 
     pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>, Failure> {

@@ -3,8 +3,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
-mod adapter_checks;
-mod adapters;
 mod assets;
 mod bounded;
 mod checking;
@@ -43,7 +41,6 @@ mod scenes;
 mod schemas;
 mod shown;
 mod signals;
-mod sources;
 mod transfer;
 mod validation;
 mod version;

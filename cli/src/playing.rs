@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use htex_device::guardian::{Guarded, is_unconfirmed, is_wanted, not_started};
-use htex_device::{Device, DeviceError, SettingKind, StreamFormat};
+use htex_device::guardian::{GuardedOutput, is_unconfirmed, is_wanted, not_started};
+use htex_device::{DeviceError, SettingKind, StreamFormat};
 use htex_scene::file::Motion;
 use htex_scene::{Plan, Renderer};
 
@@ -59,7 +59,7 @@ pub(crate) fn stay_until_zero() {
 
 /// An open device and the renderer that feeds it.
 pub(crate) struct Output {
-    pub(crate) device: Box<dyn Device>,
+    pub(crate) device: Box<dyn htex_device::Output>,
     block: Vec<f32>,
     rate_hz: f64,
     /// When the first block was made. Used for a device without a clock in a scene without an end.
@@ -84,16 +84,20 @@ impl Output {
         for file in written.filter(|s| s.kind == SettingKind::Path) {
             ready.check_output(Path::new(settings.text(&file.name)))?;
         }
-        let device: Box<dyn Device> = if is_wanted(&ready.capabilities) {
-            Box::new(Guarded::open(&ready.device, settings, &format, guardian()?)?)
+        let device: Box<dyn htex_device::Output> = if is_wanted(&ready.capabilities) {
+            Box::new(GuardedOutput::open(&ready.device, settings, &format, guardian()?)?)
         } else {
-            ready.device.adapter.open(settings, &format)?
+            ready.device.adapter.open_output(settings, &format)?
         };
         let output = Self::new(device, frames as usize, plan.rate_hz);
         Ok(Self { clocked: ready.capabilities.paced, ..output })
     }
 
-    pub(crate) fn new(device: Box<dyn Device>, block_frames: usize, rate_hz: f64) -> Self {
+    pub(crate) fn new(
+        device: Box<dyn htex_device::Output>,
+        block_frames: usize,
+        rate_hz: f64,
+    ) -> Self {
         Self {
             device,
             block: vec![0.0; block_frames],

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_device::{Capabilities, DeviceError, Devices, KnownDevice, SettingKind, Settings};
+use htex_device::{AdapterEntry, Capabilities, DeviceError, Devices, SettingKind, Settings};
 use htex_host::Registry;
 use htex_scene::file::{Constant, Motion};
 use htex_scene::{Costs, DeviceOverride, Plan, Scene, Surroundings};
@@ -27,7 +27,7 @@ pub(crate) struct SceneArgs {
     player: PlayerArgs,
 
     #[command(flatten)]
-    devices: DeviceArgs,
+    pub(crate) devices: DeviceArgs,
 }
 
 /// A device and its settings.
@@ -103,7 +103,7 @@ impl ChoiceArgs {
 pub(crate) struct Ready {
     pub(crate) file: PathBuf,
     pub(crate) scene: Scene,
-    pub(crate) device: KnownDevice,
+    pub(crate) device: AdapterEntry,
     pub(crate) capabilities: Capabilities,
     pub(crate) devices: Devices,
 }
@@ -166,8 +166,8 @@ impl SceneArgs {
         let name = scene.pointer("/device/adapter").and_then(Value::as_str);
         let devices = DeviceArgs::default().devices_quietly()?;
         // A scene that names no device plays to a file.
-        let device = devices.find(name.unwrap_or("file")).ok();
-        let settings = |known: &KnownDevice| crate::schemas::settings(known.descriptor());
+        let device = devices.find_output(name.unwrap_or("file")).ok();
+        let settings = |known: &AdapterEntry| crate::schemas::settings(known.descriptor());
         device.map(settings).transpose()
     }
 }
@@ -205,7 +205,7 @@ impl Loader {
         let notes = scene.notes.iter().map(ToString::to_string);
         let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
         warn(&new);
-        let device = self.devices.find(&scene.file.device.adapter)?.clone();
+        let device = self.devices.find_output(&scene.file.device.adapter)?.clone();
         let capabilities = capabilities(&device, &scene.settings, &self.devices)?;
         Ok(Ready {
             file: file.to_owned(),
@@ -237,7 +237,7 @@ impl Ready {
 /// Returns the capabilities of a device. For a display that is not connected, they are derived from
 /// its settings, as far as a plan or a file needs them.
 fn capabilities(
-    device: &KnownDevice,
+    device: &AdapterEntry,
     settings: &Settings,
     devices: &Devices,
 ) -> Result<Capabilities, Failure> {
@@ -245,7 +245,7 @@ fn capabilities(
         Err(error @ DeviceError::Missing(_)) if settings.number("limit_v") > 0.0 => error,
         other => return Ok(other?),
     };
-    let file = devices.find("org.htex.file")?;
+    let file = devices.find_output("org.htex.file")?;
     let mut given: BTreeMap<String, String> = ["limit_v", "carrier_hz"]
         .iter()
         .map(|name| (name.to_string(), settings.text(name).to_owned()))

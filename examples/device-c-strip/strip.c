@@ -16,7 +16,7 @@ enum { HEIGHT = 200, PATH_BYTES = 4096, DEVICES = 16 };
 
 static const char descriptor[] =
     "{\"id\":\"org.example.strip\",\"name\":\"Strip chart\",\"version\":\"1.0.0\","
-    "\"summary\":\"Draws the force into an SVG file.\",\"settings\":["
+    "\"summary\":\"Draws the force into an SVG file.\",\"direction\":\"output\",\"settings\":["
     "{\"name\":\"path\",\"kind\":{\"type\":\"path\"},\"description\":\"The file.\"},"
     "{\"name\":\"full_scale_n\",\"kind\":{\"type\":\"number\",\"min\":0.001,\"max\":100},"
     "\"default\":\"1\",\"description\":\"Force at the chart's upper edge; more is refused.\"},"
@@ -46,20 +46,18 @@ static int64_t give(const char *text, uint8_t *out, size_t capacity) {
     return (int64_t)len;
 }
 
-uint32_t htex_device_abi_version(void) { return HTEX_DEVICE_ABI_MARKER; }
-
-int64_t htex_device_descriptor(uint8_t *out, size_t capacity) {
+static int64_t device_descriptor(uint8_t *out, size_t capacity) {
     return give(descriptor, out, capacity);
 }
 
-int64_t htex_device_last_error(uint8_t *out, size_t capacity) {
+static int64_t device_last_error(uint8_t *out, size_t capacity) {
     return give(last_error, out, capacity);
 }
 
 /* A file needs no connected device. */
-int64_t htex_device_endpoints(uint8_t *out, size_t capacity) { return give("[]", out, capacity); }
+static int64_t device_endpoints(uint8_t *out, size_t capacity) { return give("[]", out, capacity); }
 
-int64_t htex_device_extension(const uint8_t *id, size_t id_len) {
+static int64_t device_extension(const uint8_t *id, size_t id_len) {
     (void)id, (void)id_len;
     return 0;
 }
@@ -124,7 +122,7 @@ static int64_t read_settings(struct settings *all, const uint8_t *text, size_t l
     return 0;
 }
 
-int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, uint8_t *out,
+static int64_t device_capabilities(const uint8_t *settings, size_t settings_len, uint8_t *out,
                                  size_t capacity) {
     struct settings all;
     int64_t status = read_settings(&all, settings, settings_len);
@@ -195,7 +193,7 @@ static int64_t file_error(struct device *d) {
     return fail(HTEX_DEVICE_FILE, d->settings.path, ": cannot be written");
 }
 
-int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double rate_hz,
+static int64_t device_open(const uint8_t *settings, size_t settings_len, double rate_hz,
                          uint32_t block_frames) {
     struct device d = {0};
     int64_t status = read_settings(&d.settings, settings, settings_len);
@@ -221,7 +219,7 @@ int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double ra
     return d.file ? d.handle : file_error(&d);
 }
 
-int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
+static int64_t device_write(int64_t device, const float *samples, size_t frames,
                           uint32_t timeout_ms) {
     (void)timeout_ms; /* there is always space */
     struct device *d = find(device);
@@ -248,7 +246,7 @@ int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
     return ferror(d->file) ? file_error(d) : (int64_t)frames;
 }
 
-int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
+static int64_t device_status(int64_t device, double *out, size_t capacity) {
     struct device *d = find(device);
     if (!d) return HTEX_DEVICE_BAD_HANDLE;
     if (!usable(out, capacity, sizeof *out))
@@ -262,7 +260,7 @@ int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
     return HTEX_DEVICE_STATUS_NUMBERS;
 }
 
-int64_t htex_device_finish(int64_t device) {
+static int64_t device_finish(int64_t device) {
     struct device *d = find(device);
     if (!d) return HTEX_DEVICE_BAD_HANDLE;
     if (!d->file) return fail(HTEX_DEVICE_CLOSED, "", "the chart is closed");
@@ -279,7 +277,7 @@ int64_t htex_device_finish(int64_t device) {
     return fail(HTEX_DEVICE_FILE, d->settings.path, ": cannot be written");
 }
 
-int64_t htex_device_close(int64_t device) {
+static int64_t device_close(int64_t device) {
     struct device *d = find(device);
     if (!d) return HTEX_DEVICE_BAD_HANDLE;
     abandon(d);
@@ -287,4 +285,24 @@ int64_t htex_device_close(int64_t device) {
     d->handle = 0;
     pthread_mutex_unlock(&lock);
     return HTEX_DEVICE_OK;
+}
+
+/* ---- export ---- */
+
+const htex_device_table *htex_device_adapter(void) {
+    static const htex_device_table table = {
+        .marker = HTEX_DEVICE_ABI_MARKER,
+        .size = sizeof(htex_device_table),
+        .descriptor = device_descriptor,
+        .last_error = device_last_error,
+        .endpoints = device_endpoints,
+        .open = device_open,
+        .finish = device_finish,
+        .close = device_close,
+        .extension = device_extension,
+        .capabilities = device_capabilities,
+        .write = device_write,
+        .status = device_status,
+    };
+    return &table;
 }

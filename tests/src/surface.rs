@@ -21,12 +21,10 @@ pub struct Surface {
     pub function: &'static str,
     /// Prefix of constants.
     pub constant: &'static str,
-    /// The macro that marks a function as exported.
+    /// The macro that marks a function as exported; empty if the functions are members of a table.
     pub export: &'static str,
     /// The source with constants, function types and the table.
     pub code: &'static str,
-    /// A source with further function types, which another surface shares.
-    pub shared: Option<&'static str>,
     /// The table of functions.
     pub table: &'static str,
     /// Functions outside the table, and their types.
@@ -42,7 +40,6 @@ pub const MODEL: Surface = Surface {
     constant: "HTEX_",
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/abi.rs",
-    shared: None,
     table: "ModelTable",
     more: &[("alloc", "AllocFn"), ("free", "FreeFn")],
     statuses: Some(("sdk/model/src/error.rs", "Status")),
@@ -55,7 +52,6 @@ pub const VOICES: Surface = Surface {
     constant: "HTEX_VOICES_1_",
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/voices_1.rs",
-    shared: None,
     table: "VoicesTable",
     more: &[],
     statuses: None,
@@ -68,36 +64,21 @@ pub const MOTION: Surface = Surface {
     constant: "HTEX_MOTION_1_",
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/motion_1.rs",
-    shared: None,
     table: "MotionTable",
     more: &[],
     statuses: None,
 };
 
-/// The device ABI.
+/// The device ABI, whose functions are members of a table.
 pub const DEVICE: Surface = Surface {
     header: "htex_device.h",
     function: "htex_device_",
     constant: "HTEX_DEVICE_",
-    export: "HTEX_DEVICE_EXPORT(",
+    export: "",
     code: "renderer-adapters/device/src/abi.rs",
-    shared: None,
     table: "DeviceTable",
     more: &[],
     statuses: Some(("renderer-adapters/device/src/abi.rs", "Code")),
-};
-
-/// The source ABI.
-pub const SOURCE: Surface = Surface {
-    header: "htex_source.h",
-    function: "htex_source_",
-    constant: "HTEX_SOURCE_",
-    export: "HTEX_SOURCE_EXPORT(",
-    code: "renderer-adapters/device/src/source/abi.rs",
-    shared: Some("renderer-adapters/device/src/abi.rs"),
-    table: "SourceTable",
-    more: &[],
-    statuses: Some(("renderer-adapters/device/src/source/abi.rs", "Code")),
 };
 
 impl Surface {
@@ -116,6 +97,9 @@ impl Surface {
     /// Functions that the header declares.
     pub fn header_prototypes(&self) -> Prototypes {
         let header = self.header();
+        if self.export.is_empty() {
+            return self.header_members(&header);
+        }
         let mark = format!("{}{}", self.export, self.function);
         let declarations = header.split(&mark).skip(1);
         let prototype = |text: &str| {
@@ -124,6 +108,25 @@ impl Surface {
             (format!("{}{name}", self.function), declared)
         };
         declarations.map(prototype).collect()
+    }
+
+    /// Members of the table that the header defines.
+    fn header_members(&self, header: &str) -> Prototypes {
+        let (_, table) = header.split_once("typedef struct").unwrap();
+        let members = table.split_once('{').unwrap().1.split_once('}').unwrap().0;
+        let members = members.split(';').map(one_line).filter(|text| !text.is_empty());
+        members.enumerate().map(|(i, text)| (self.place(i), text)).collect()
+    }
+
+    /// The declaration of the function that returns the table, if there is one.
+    fn entry(&self) -> Option<String> {
+        let prefix = self.function;
+        self.export.is_empty().then(|| format!("const {prefix}table *{prefix}adapter(void);\n"))
+    }
+
+    /// The name of a member of the table, by its place, which is frozen.
+    fn place(&self, i: usize) -> String {
+        format!("{}table {i:02}", self.function)
     }
 
     /// Constants that the header defines.
@@ -146,12 +149,20 @@ impl Surface {
             let (name, kind) = field.trim().strip_prefix("pub ")?.split_once(": ")?;
             Some((name.to_owned(), kind.to_owned()))
         });
+        if self.export.is_empty() {
+            let member = |(name, kind): (String, String)| match kind
+                .strip_prefix("Option<")
+                .and_then(|kind| kind.strip_suffix('>'))
+            {
+                Some(kind) => c_prototype(&format!("(*{name})"), function_type(&code, kind)),
+                None => c_declaration(&kind, &name),
+            };
+            return fields.map(member).enumerate().map(|(i, text)| (self.place(i), text)).collect();
+        }
         let more = self.more.iter().map(|(name, kind)| (name.to_string(), kind.to_string()));
-        let shared = self.shared.map(rust_code).unwrap_or_default();
-        let types = code.clone() + &shared;
         let prototype = |(name, kind): (String, String)| {
             let name = format!("{}{name}", self.function);
-            let text = c_prototype(&name, function_type(&types, &kind));
+            let text = c_prototype(&name, function_type(&code, &kind));
             (name, text)
         };
         fields.chain(more).map(prototype).collect()
@@ -188,8 +199,11 @@ impl Surface {
     pub fn listing(&self, constants: &Constants) -> String {
         let constants = constants.iter().map(|(name, value)| format!("{name} {value}\n"));
         let prototypes = self.rust_prototypes();
-        let functions = prototypes.values().map(|text| format!("{text};\n"));
-        constants.chain(functions).collect()
+        let functions = prototypes.iter().map(|(name, text)| match &self.export[..] {
+            "" => format!("{name}: {text};\n"),
+            _ => format!("{text};\n"),
+        });
+        constants.chain(functions).chain(self.entry()).collect()
     }
 
     /// Compares the listing with the frozen ones, the newest of which is in use. Each has a version
@@ -241,10 +255,36 @@ impl Surface {
             );
         }
         unit += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
-        for prototype in self.rust_prototypes().values() {
-            unit += &format!("{prototype};\n");
+        if self.export.is_empty() {
+            // A table of the same members, each of which takes the other's value.
+            let members = self.rust_prototypes();
+            let table = format!("{}table", self.function);
+            unit += "typedef struct {\n";
+            unit.extend(members.values().map(|text| format!("{text};\n")));
+            unit += "} same;\n";
+            unit += &format!("{assertion}(sizeof(same) == sizeof({table}), \"size\");\n");
+            unit += &format!("void assign(same *a, const {table} *b);\n");
+            unit += &format!("void assign(same *a, const {table} *b) {{\n");
+            for text in members.values() {
+                let name = member_name(text);
+                unit += &format!("a->{name} = b->{name};\n");
+            }
+            unit += "}\n";
+            unit.extend(self.entry());
+        } else {
+            for prototype in self.rust_prototypes().values() {
+                unit += &format!("{prototype};\n");
+            }
         }
         unit + "#ifdef __cplusplus\n}\n#endif\nint main(void) { return 0; }\n"
+    }
+}
+
+/// Returns the name in the C declaration of a member: a number or a pointer to a function.
+fn member_name(text: &str) -> &str {
+    match text.split_once("(*") {
+        Some((_, rest)) => rest.split_once(')').unwrap().0,
+        None => text.rsplit(' ').next().unwrap(),
     }
 }
 

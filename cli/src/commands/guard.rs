@@ -19,7 +19,7 @@ impl Guard {
         crate::signals::ignore();
         let devices = self.devices.devices_quietly()?;
         let (from, to) = (std::io::stdin().lock(), std::io::stdout().lock());
-        hold(|id| devices.find(id).cloned(), from, to);
+        hold(|id| devices.find_output(id).cloned(), from, to);
         Ok(Exit::SUCCESS)
     }
 }

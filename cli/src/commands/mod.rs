@@ -33,7 +33,6 @@ mod render;
 mod response;
 mod schema;
 mod simulate;
-mod source;
 mod spectrum;
 #[cfg(feature = "lab")]
 mod studio;
@@ -90,7 +89,6 @@ pub(crate) enum Command {
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
-    Source(source::Source),
 }
 
 impl Command {
@@ -137,7 +135,6 @@ impl Command {
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),
-            Self::Source(args) => args.run(),
         }
     }
 }

@@ -127,7 +127,7 @@ impl Render {
     }
 
     fn open(&self, ready: &Ready, rate_hz: f64) -> Result<Opened, Failure> {
-        let known = ready.devices.find("org.htex.file")?;
+        let known = ready.devices.find_output("org.htex.file")?;
         let is_file = ready.device.descriptor().id == known.descriptor().id;
         let mut given = if is_file {
             ready.settings().iter().map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
@@ -160,7 +160,7 @@ impl Render {
                 "{path} exists; name the file to write, or to replace, by -o FILE"
             )));
         }
-        let device = known.adapter.open(&settings, &format)?;
+        let device = known.adapter.open_output(&settings, &format)?;
         Ok(Opened { path, aside, output: Output::new(device, BLOCK, rate_hz) })
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_base::files::open_regular;
 use htex_base::finding::{Findings, Report, Severity};
+use htex_device::DeviceError;
 use htex_format::library::{EXTENSION, MAGIC};
 use htex_format::{DESCRIPTOR_INVALID, Limits, PLUGIN_UNUSABLE, Representation, validate_with};
 use htex_host::{Registry, Search, WasmLimits};
@@ -258,7 +259,10 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
     if has("id") && has("settings") {
         let read = serde_json::from_str::<htex_device::Descriptor>(&text());
         let problem = match read {
-            Ok(descriptor) => descriptor.check().err().map(|error| error.to_string()),
+            Ok(descriptor) => descriptor.check().err().map(|error| match error {
+                DeviceError::Invalid { what, .. } => what,
+                other => other.to_string(),
+            }),
             Err(error) => Some(error.to_string()),
         };
         return descriptor(&document, problem, Named::device()?);

@@ -88,6 +88,7 @@ fn descriptors_are_held_to_their_schemas() {
     let device = |limit: f64| {
         json!({
             "id": "org.example.knob", "name": "Knob", "version": "1.0.0", "summary": "Turns.",
+            "direction": "output",
             "settings": [{ "name": "limit_v", "kind": { "type": "number", "min": 0, "max": limit },
                            "description": "Volts." }],
         })

@@ -9,24 +9,6 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Asserts that the last table of a specification lists the checks, in their order and in their
-/// words: name, guarantee, and the checks that it needs, which are earlier ones.
-pub fn guarantees_are_checked<'a>(
-    file: &str,
-    checks: impl Iterator<Item = (&'a str, &'a str, &'a [&'a str])>,
-) {
-    let text = std::fs::read_to_string(workspace().join(file)).unwrap();
-    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| ")).collect();
-    let heading = rows.iter().position(|row| row.contains("| guarantee |"));
-    let (mut earlier, mut expected) = (Vec::new(), Vec::new());
-    for (name, guarantee, needs) in checks {
-        assert!(needs.iter().all(|need| earlier.contains(need)), "{name} needs {needs:?}");
-        earlier.push(name);
-        expected.push(format!("| {} | `{name}` | {guarantee} |", earlier.len()));
-    }
-    assert_eq!(rows[heading.unwrap() + 1..], expected);
-}
-
 /// An example of `examples`, of one source file, built by its `build.sh` in a folder of its own.
 pub fn example(place: &Place, folder: &str, source: &str) -> PathBuf {
     for file in [source, "build.sh"] {
@@ -72,9 +54,9 @@ pub fn complaints(report: &serde_json::Value) -> Vec<(String, String)> {
     all.filter(|(_, outcome)| outcome != "passed" && outcome != "skipped").collect()
 }
 
-/// The report of `htex device check` or `htex source check`, whose exit status says the same.
-pub fn checked(place: &Place, kind: &str, arguments: &[&str]) -> serde_json::Value {
-    let all = [&[kind, "check", "--json"], arguments].concat();
+/// The report of `htex device check`, whose exit status says the same.
+pub fn checked(place: &Place, arguments: &[&str]) -> serde_json::Value {
+    let all = [&["device", "check", "--json"], arguments].concat();
     let run = place.run(&all);
     let report: serde_json::Value = serde_json::from_str(&run.text()).unwrap_or_else(|_| {
         unreachable!("{}", run.error());

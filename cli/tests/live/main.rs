@@ -19,6 +19,7 @@ mod drive;
 mod finger;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod input;
 #[cfg(unix)]
 mod live;
 #[cfg(target_os = "linux")]
@@ -28,6 +29,5 @@ mod record;
 #[cfg(all(unix, feature = "lab"))]
 mod record_page;
 #[cfg(unix)]
-mod source;
 #[cfg(unix)]
 mod study;

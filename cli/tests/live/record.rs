@@ -268,7 +268,7 @@ fn what_cannot_be_recorded_is_said_before_anything_is() {
     place.write("bad.csv", "1,2,3\n");
     let file = format!("file:{recording}");
     let cases: [(&[&str], i32, &str); 9] = [
-        (&["--source", "tape:x"], 2, "no source `tape`; there are file, daq"),
+        (&["--source", "tape:x"], 2, "no input `tape`; there are file, daq"),
         (&["--source", "file:none.csv"], 1, "none.csv"),
         (&["--source", &file, "--take", "../x"], 2, "the name of the takes"),
         (&["--source", &file, "--seconds", "0"], 2, "the length of a take is 0"),

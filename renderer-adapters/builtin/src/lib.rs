@@ -1,12 +1,12 @@
-//! The built-in devices and sources, one per module. An adapter that is added to [`devices`] or
-//! [`sources`] becomes available in the command, in Python and in C.
+//! The built-in devices, one per module. An adapter that is added to [`devices`] becomes available
+//! in the command, in Python and in C.
 //!
-//! [`motor`] is what devices share that receive a level and a frequency per block.
+//! [`motor`] is what outputs share that receive a level and a frequency per block.
 //!
 //! ```
 //! use htex_device::Devices;
 //! let devices = Devices::new(htex_device_builtin::devices());
-//! assert_eq!(devices.find("file")?.descriptor().id, "org.htex.file");
+//! assert_eq!(devices.find_output("file")?.descriptor().id, "org.htex.file");
 //! # Ok::<(), htex_device::DeviceError>(())
 //! ```
 #![deny(unsafe_code)] // Allowed where a driver is called.
@@ -18,6 +18,8 @@ pub mod audio;
 pub mod channels;
 #[cfg(feature = "daq")]
 pub mod daq;
+#[cfg(not(target_family = "wasm"))]
+mod driver;
 pub mod file;
 // A page has neither libraries to load nor threads that keep a clock.
 #[cfg(not(target_family = "wasm"))]
@@ -29,36 +31,30 @@ pub mod sdl;
 
 use std::sync::Arc;
 
-use htex_device::{Adapter, SourceAdapter};
+use htex_device::Adapter;
 
-/// Returns the devices in display order.
+/// Returns the devices in display order: outputs, then inputs.
 pub fn devices() -> Vec<Arc<dyn Adapter>> {
     vec![
         Arc::new(file::FileAdapter),
         #[cfg(feature = "daq")]
-        Arc::new(daq::Daq::new()),
+        Arc::new(daq::Daq),
         #[cfg(feature = "audio")]
-        Arc::new(audio::Audio::new()),
+        Arc::new(audio::Audio),
         #[cfg(not(target_family = "wasm"))]
-        Arc::new(channels::Channels::new()),
+        Arc::new(channels::Channels),
         #[cfg(not(target_family = "wasm"))]
-        Arc::new(sdl::Sdl::new()),
+        Arc::new(sdl::Sdl),
         #[cfg(not(target_family = "wasm"))]
-        Arc::new(parametric::Parametric::new()),
-    ]
-}
-
-/// Returns the sources in display order.
-pub fn sources() -> Vec<Arc<dyn SourceAdapter>> {
-    vec![
+        Arc::new(parametric::Parametric),
         #[cfg(feature = "daq")]
-        Arc::new(daq::DaqInput::new()),
+        Arc::new(daq::DaqInput),
         #[cfg(feature = "audio")]
-        Arc::new(audio::AudioInput::new()),
+        Arc::new(audio::AudioInput),
     ]
 }
 
-/// A device, and a source of the same name, that are built in only with a Cargo feature.
+/// An output, and an input of the same name, that are built in only with a Cargo feature.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,

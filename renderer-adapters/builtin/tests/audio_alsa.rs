@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use htex_device::{Adapter, Capabilities, Device, DeviceError, Quantity, Settings, StreamFormat};
+use htex_device::{Adapter, Capabilities, DeviceError, Output, Quantity, Settings, StreamFormat};
 use htex_device_builtin::audio::Audio;
 
 const LONG: Duration = Duration::from_secs(20);
@@ -77,7 +77,7 @@ fn what_is_beyond_full_scale_is_refused() {
 
 #[test]
 fn a_card_says_what_it_can_do() {
-    let (audio, _) = (Audio::new(), folder());
+    let (audio, _) = (Audio, folder());
     let there = audio.endpoints().unwrap();
     assert!(
         there.iter().any(|e| e.name == "alsa:float" && e.summary.contains("records")),
@@ -94,7 +94,7 @@ fn a_card_says_what_it_can_do() {
 fn a_machine_without_a_card_says_what_to_check() {
     for name in ["default", "alsa:nothing"] {
         let settings = settings(name, "60");
-        let error = Audio::new().capabilities(&settings).unwrap_err();
+        let error = Audio.capabilities(&settings).unwrap_err();
         assert!(matches!(error, DeviceError::Missing(_)), "{error}");
         assert!(error.to_string().contains(name) && error.to_string().contains("aplay -l"));
     }
@@ -105,12 +105,12 @@ fn settings(device: &str, buffer_ms: &str) -> Settings {
     let given = [("device", device), ("buffer_ms", buffer_ms)];
     let given: BTreeMap<String, String> =
         given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Settings::resolve(Audio::new().descriptor(), None, &given).unwrap()
+    Settings::resolve(Audio.descriptor(), None, &given).unwrap()
 }
 
-fn open(name: &str, buffer_ms: &str) -> Result<Box<dyn Device>, DeviceError> {
+fn open(name: &str, buffer_ms: &str) -> Result<Box<dyn Output>, DeviceError> {
     let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 512 };
-    Audio::new().open(&settings(&format!("alsa:{name}"), buffer_ms), &format)
+    Audio.open_output(&settings(&format!("alsa:{name}"), buffer_ms), &format)
 }
 
 /// Returns both channels of what a device recorded.

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use htex_device::{Delivered, DeviceError, Source, SourceAdapter, Sources};
+use htex_device::{Adapter, DeviceError, Devices, Input, InputFrames};
 use htex_device_builtin::audio::AudioInput;
 
 const LONG: Duration = Duration::from_secs(5);
@@ -18,8 +18,8 @@ const FRAMES: usize = 40_000;
 #[test]
 fn what_is_read_is_what_the_card_delivers() {
     let mut source = open("float", &[("channels", "2"), ("rate_hz", "48000")]).unwrap();
-    assert_eq!((source.rate_hz(), source.channels().len()), (48_000.0, 2));
-    assert_eq!(source.channels()[1].name, "ch2");
+    assert_eq!((source.stream().rate_hz, source.stream().channels.len()), (48_000.0, 2));
+    assert_eq!(source.stream().channels[1].name, "ch2");
     let early = source.read(&mut [0.0; 2], Duration::ZERO);
     assert!(matches!(early, Err(DeviceError::Closed(_))), "{early:?}");
     source.start().unwrap();
@@ -27,13 +27,13 @@ fn what_is_read_is_what_the_card_delivers() {
     while read.len() < 2 * 20_000 {
         let mut block = [0.0; 2 * 333];
         match source.read(&mut block, LONG).unwrap() {
-            Delivered::Frames(frames) => read.extend_from_slice(&block[..2 * frames]),
-            Delivered::End => break,
+            InputFrames::Count(frames) => read.extend_from_slice(&block[..2 * frames]),
+            InputFrames::End => break,
         }
     }
     let same = |(i, x): (usize, &f64)| *x == f64::from(sample(i));
     assert!(read.iter().enumerate().all(same), "{:?}", &read[..8]);
-    source.stop().unwrap();
+    source.finish().unwrap();
     let late = source.read(&mut [0.0; 2], Duration::ZERO);
     assert!(matches!(late, Err(DeviceError::Closed(_))), "{late:?}");
     assert!(matches!(source.start(), Err(DeviceError::Closed(_))));
@@ -49,8 +49,8 @@ fn an_overrun_ends_the_source_behind_what_came_before_it() {
     let error = loop {
         let mut block = [0.0; 2 * 100];
         match source.read(&mut block, LONG) {
-            Ok(Delivered::Frames(frames)) => read.extend_from_slice(&block[..2 * frames]),
-            Ok(Delivered::End) => unreachable!("a card does not end"),
+            Ok(InputFrames::Count(frames)) => read.extend_from_slice(&block[..2 * frames]),
+            Ok(InputFrames::End) => unreachable!("a card does not end"),
             Err(error) => break error,
         }
         assert!(read.len() < 100_000, "it goes on behind a gap");
@@ -69,16 +69,11 @@ fn an_overrun_ends_the_source_behind_what_came_before_it() {
 #[test]
 fn inputs_are_listed() {
     folder();
-    let there = AudioInput::new().endpoints().unwrap();
+    let there = AudioInput.endpoints().unwrap();
     let is_float =
         |e: &htex_device::Endpoint| e.name == "alsa:float" && e.summary.contains("plays");
     assert!(there.iter().any(is_float), "{there:?}");
-    htex_device::SourceDescriptor {
-        descriptor: AudioInput::new().descriptor().clone(),
-        target: "device".to_owned(),
-    }
-    .check()
-    .unwrap();
+    AudioInput.descriptor().check().unwrap();
 }
 
 #[test]
@@ -101,15 +96,15 @@ fn what_a_card_does_not_have_is_refused() {
     }
 }
 
-fn open(name: &str, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
+fn open(name: &str, given: &[(&str, &str)]) -> Result<Box<dyn Input>, DeviceError> {
     named(&format!("alsa:{name}"), given)
 }
 
-fn named(device: &str, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
+fn named(device: &str, given: &[(&str, &str)]) -> Result<Box<dyn Input>, DeviceError> {
     folder();
     let given: BTreeMap<String, String> =
         given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Sources::new(vec![Arc::new(AudioInput::new())]).open(&format!("audio:{device}"), None, &given)
+    Devices::new(vec![Arc::new(AudioInput)]).open_input(&format!("audio:{device}"), None, &given)
 }
 
 /// Returns a sample of the file, which has frames of two channels.

@@ -19,7 +19,7 @@ fn settings(given: &[(&str, &str)]) -> Settings {
         .iter()
         .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
         .collect();
-    Settings::resolve(Channels::new().descriptor(), None, &given).unwrap()
+    Settings::resolve(Channels.descriptor(), None, &given).unwrap()
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn a_card_of_four_channels_plays_on_the_chosen_ones() {
     fs::write(folder.join("asound.conf"), card).unwrap();
     // SAFETY: this process has one test, which has started no other thread.
     unsafe { std::env::set_var("ALSA_CONFIG_PATH", folder.join("asound.conf")) };
-    let channels = Channels::new();
+    let channels = Channels;
     let listed = channels.endpoints().unwrap();
     assert!(listed.iter().any(|e| e.name == "alsa:pad" && e.setting == "device"), "{listed:?}");
     let settings = settings(&[("device", "alsa:pad")]);
@@ -45,7 +45,7 @@ fn a_card_of_four_channels_plays_on_the_chosen_ones() {
     can.check().unwrap();
     assert!(can.has_rate(RATE_HZ), "{can:?}");
     let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 480 };
-    let mut device = channels.open(&settings, &format).unwrap();
+    let mut device = channels.open_output(&settings, &format).unwrap();
     let samples: Vec<f32> = (0..4_000).map(|i| (i as f32 * 0.05).sin() * 0.8).collect();
     for block in samples.chunks(512) {
         assert_eq!(device.write(block, LONG).unwrap(), block.len());

@@ -27,12 +27,12 @@ fn the_installed_loader_finds_the_runtime() {
     std::fs::write(&manifest, text).unwrap();
     // SAFETY: this process has one test, which has started no other thread.
     unsafe { std::env::set_var("XR_RUNTIME_JSON", &manifest) };
-    let adapter = Parametric::new();
+    let adapter = Parametric;
     let endpoints = adapter.endpoints().unwrap();
     let names: Vec<&str> = endpoints.iter().map(|e| e.name.as_str()).collect();
     assert_eq!(names, ["left", "right"]);
     let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 80 };
-    let mut device = adapter.open(&settings(&[]).unwrap(), &format).unwrap();
+    let mut device = adapter.open_output(&settings(&[]).unwrap(), &format).unwrap();
     write_all(device.as_mut(), &sine(200.0, 0.5, 0.2, RATE_HZ));
     device.finish().unwrap();
     drop(device);

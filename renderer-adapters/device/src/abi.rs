@@ -1,29 +1,37 @@
-//! The frozen device ABI: the numbers and signatures between a host and a native device.
+//! The frozen device ABI: the numbers and signatures between a host and a native device, which is
+//! an output or an input.
 //!
-//! Only scalars and pointer + length cross. A function that returns a text writes to the caller's
-//! buffer and returns the length needed. If the buffer is too small, the caller calls again.
-//! Negative results are [`Code`]s. Settings cross as UTF-8 lines, each `name=value` and a line end,
-//! in the order of the descriptor. The host passes all of them, with profiles and defaults already
-//! resolved.
+//! A library exports one function, [`EntryFn`], which returns its [`DeviceTable`]. Only scalars and
+//! pointer + length cross the calls of the table. A function that returns a text writes to the
+//! caller's buffer and returns the length needed. If the buffer is too small, the caller calls
+//! again. Negative results are [`Code`]s. Settings cross as UTF-8 lines, each `name=value` and a
+//! line end, in the order of the descriptor. The host passes all of them, with profiles and
+//! defaults already resolved. Samples of an output are `f32`. Samples of an input are `f64` and
+//! interleaved: frame after frame, and within a frame one sample of each channel.
 
 /// Major version: a host loads only devices of its own major version.
 pub const ABI_MAJOR: u32 = 1;
-/// Minor version: grows with optional exports.
+/// Minor version: grows with further functions at the end of the table.
 pub const ABI_MINOR: u32 = 0;
-/// The marker that a device returns: a fixed upper half, then one byte each for major and minor
-/// version.
+/// The marker of a table: a fixed upper half, then one byte each for major and minor version.
 pub const ABI_MARKER: u32 = 0x4844_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
 
 /// Maximum length of any text in either direction, bytes.
 pub const MAX_TEXT_BYTES: usize = 1_048_576;
 /// Maximum number of settings in a descriptor, and of profiles.
 pub const MAX_SETTINGS: usize = 64;
-/// Lowest rate of a device, hertz.
+/// Lowest rate of an output, hertz.
 pub const MIN_RATE_HZ: f64 = 1.0;
+/// Lowest rate of an input, hertz.
+pub const MIN_INPUT_RATE_HZ: f64 = 0.001;
 /// Highest rate of a device, hertz.
 pub const MAX_RATE_HZ: f64 = 10_000_000.0;
-/// Maximum number of frames in a block that a device asks for or is opened for. The minimum is one.
+/// Maximum number of frames in a block that an output asks for or is opened for. The minimum is one.
 pub const MAX_BLOCK_FRAMES: u32 = 1_048_576;
+/// Maximum number of channels of an input. The minimum is one.
+pub const MAX_CHANNELS: usize = 1_024;
+/// Maximum length of a channel's name or unit, bytes.
+pub const MAX_NAME_BYTES: usize = 256;
 
 /// Index of the status number: frames that the device took since it was opened.
 pub const STATUS_FRAMES_WRITTEN: usize = 0;
@@ -58,9 +66,9 @@ pub enum Code {
     OverLimit = -6,
     /// The device ran dry; the output is at zero. The text says what to do.
     Underflow = -7,
-    /// The call came after `finish` or after an error.
+    /// The call came before `start`, after `finish` or after an error.
     Closed = -8,
-    /// A file could not be written; the text begins with `PATH: `.
+    /// A file could not be written or read; the text begins with `PATH: `.
     File = -9,
     /// No such device is open, or it was closed.
     BadHandle = -10,
@@ -68,11 +76,15 @@ pub enum Code {
     Panicked = -11,
     /// Any other failure; see the last-error text.
     Failed = -12,
+    /// Frames of an input were lost because they were read too late. The text says what to do.
+    Overrun = -13,
+    /// An input has ended, as a file does; there are no more frames.
+    End = -14,
 }
 
 impl Code {
     /// Converts a number that crossed the ABI to its code. Unknown negative numbers are `Failed`.
-    pub fn from_answer(answer: i64) -> Self {
+    pub(crate) fn from_answer(answer: i64) -> Self {
         match answer {
             0.. => Self::Ok,
             -1 => Self::InvalidArgument,
@@ -86,13 +98,16 @@ impl Code {
             -9 => Self::File,
             -10 => Self::BadHandle,
             -11 => Self::Panicked,
+            -13 => Self::Overrun,
+            -14 => Self::End,
             _ => Self::Failed,
         }
     }
 }
 
-/// Returns [`ABI_MARKER`]. `[any thread]`
-pub type AbiVersion = extern "C" fn() -> u32;
+/// The function that a library exports under the name `htex_device_adapter`: returns its table, which lives as long as the library.
+/// `[any thread]`
+pub type EntryFn = extern "C" fn() -> *const DeviceTable;
 /// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`. Returns the length, which is the same
 /// at each call. `[any thread]`
 pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
@@ -101,7 +116,26 @@ pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Writes a JSON array of the devices that are connected now. Returns the length, which may change.
 /// `[any thread; may wait]`
 pub type EndpointsJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Writes as JSON what a device with these settings can do. Returns the length. Opens nothing.
+/// Opens a device and returns its handle, greater than zero. An output is opened for blocks of
+/// `block_frames`, silent and at zero. An input does not sample yet, and both numbers are 0.
+/// `[any thread; may wait]`
+pub type OpenFn = unsafe extern "C" fn(
+    settings: *const u8,
+    settings_len: usize,
+    rate_hz: f64,
+    block_frames: u32,
+) -> i64;
+/// Ends the stream; returns 0. An output plays all written samples, goes to zero and keeps the
+/// result. An input stops sampling for good, also when it had stopped before.
+/// `[one thread at a time for one device; may wait]`
+pub type FinishFn = extern "C" fn(device: i64) -> i64;
+/// Closes a device; returns 0. Without [`FinishFn`] before, an output aborts: it goes to zero at
+/// once, and an unfinished file is removed. `[one thread at a time for one device]`
+pub type CloseFn = extern "C" fn(device: i64) -> i64;
+/// Returns 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
+/// present, else 0. `[any thread]`
+pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
+/// Writes as JSON what an output with these settings can do. Returns the length. Opens nothing.
 /// `[any thread; may wait]`
 pub type CapabilitiesJson = unsafe extern "C" fn(
     settings: *const u8,
@@ -109,46 +143,46 @@ pub type CapabilitiesJson = unsafe extern "C" fn(
     out: *mut u8,
     capacity: usize,
 ) -> i64;
-/// Opens a device for blocks of `block_frames`, silent and with its output at zero. Returns its
-/// handle, greater than zero. `[any thread; may wait]`
-pub type OpenFn = unsafe extern "C" fn(
-    settings: *const u8,
-    settings_len: usize,
-    rate_hz: f64,
-    block_frames: u32,
-) -> i64;
 /// Takes as many samples as fit within `timeout_ms` (0: those that fit now) and returns their
-/// number. The first samples start the device. `[one thread at a time for one device; may wait]`
+/// number. The first samples start the output. `[one thread at a time for one device; may wait]`
 pub type WriteFn =
     unsafe extern "C" fn(device: i64, samples: *const f32, frames: usize, timeout_ms: u32) -> i64;
-/// Writes the status numbers at the indices `STATUS_…`, at most `capacity` of them. Returns how
-/// many the device has. `[one thread at a time for one device]`
+/// Writes the status numbers of an output at the indices `STATUS_…`, at most `capacity` of them.
+/// Returns how many the device has. `[one thread at a time for one device]`
 pub type StatusFn = unsafe extern "C" fn(device: i64, out: *mut f64, capacity: usize) -> i64;
-/// Plays all written samples, goes to zero and keeps the result; returns 0.
+/// Writes the rate and the channels of an open input as JSON. Returns the length, which is the
+/// same at each call. `[one thread at a time for one device]`
+pub type StreamJson = unsafe extern "C" fn(device: i64, out: *mut u8, capacity: usize) -> i64;
+/// Starts the sampling of an input; returns 0. `[one thread at a time for one device; may wait]`
+pub type StartFn = extern "C" fn(device: i64) -> i64;
+/// Writes the available frames of an input to `samples[0..len]` and returns their number. Waits up
+/// to `timeout_ms` for the first frame. `len` is a multiple of the number of channels.
 /// `[one thread at a time for one device; may wait]`
-pub type FinishFn = extern "C" fn(device: i64) -> i64;
-/// Closes a device; returns 0. Without [`FinishFn`] before, it aborts: the output goes to zero at
-/// once, and an unfinished file is removed. `[one thread at a time for one device]`
-pub type CloseFn = extern "C" fn(device: i64) -> i64;
-/// Returns 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
-/// present, else 0. `[any thread]`
-pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
+pub type ReadFn =
+    unsafe extern "C" fn(device: i64, samples: *mut f64, len: usize, timeout_ms: u32) -> i64;
 
-/// The table of all functions that a native device exports. It is filled from symbols of the same
-/// names (`htex_device_…`).
+/// The table of a device's functions. Those of the other direction may be null.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // Each type says what its function does.
 pub struct DeviceTable {
-    pub abi_version: AbiVersion,
-    pub descriptor: DescriptorJson,
-    pub last_error: LastError,
-    pub endpoints: EndpointsJson,
-    pub capabilities: CapabilitiesJson,
-    pub open: OpenFn,
-    pub write: WriteFn,
-    pub status: StatusFn,
-    pub finish: FinishFn,
-    pub close: CloseFn,
-    pub extension: ExtensionFn,
+    /// [`ABI_MARKER`].
+    pub marker: u32,
+    /// Size of the table in bytes, which grows with the minor version.
+    pub size: u32,
+    pub descriptor: Option<DescriptorJson>,
+    pub last_error: Option<LastError>,
+    pub endpoints: Option<EndpointsJson>,
+    pub open: Option<OpenFn>,
+    pub finish: Option<FinishFn>,
+    pub close: Option<CloseFn>,
+    pub extension: Option<ExtensionFn>,
+    /// Output only, as the next two.
+    pub capabilities: Option<CapabilitiesJson>,
+    pub write: Option<WriteFn>,
+    pub status: Option<StatusFn>,
+    /// Input only, as the next two.
+    pub stream: Option<StreamJson>,
+    pub start: Option<StartFn>,
+    pub read: Option<ReadFn>,
 }

@@ -1,4 +1,4 @@
-//! The traits of output devices.
+//! The traits of devices.
 
 use std::time::Duration;
 
@@ -6,11 +6,19 @@ use crate::abi::{
     STATUS_FRAMES_PLAYED, STATUS_FRAMES_WRITTEN, STATUS_LATENCY_S, STATUS_NUMBERS, STATUS_PEAK,
     STATUS_UNDERRUNS,
 };
-use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
+use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStream, Settings};
 
-/// A family of output devices, such as all sound cards. Implement this trait to add a device.
+/// A family of devices, such as all sound cards. Implement this trait to add a device.
 ///
-/// An adapter describes its devices and opens them. The open [`Device`] then takes the samples.
+/// An adapter describes its devices and opens them. [`Descriptor::direction`] says whether they are
+/// outputs, which play samples, or inputs, which record them. An adapter has one direction and
+/// implements the methods of that direction. The others return [`DeviceError::Direction`] by
+/// default.
+///
+/// | direction | implement, besides [`Self::descriptor`] and [`Self::endpoints`] |
+/// |---|---|
+/// | output | [`Self::capabilities`] and [`Self::open_output`], which returns an [`Output`] |
+/// | input | [`Self::open_input`], which returns an [`Input`] |
 ///
 /// # How the host calls it
 ///
@@ -18,19 +26,21 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 ///   and may run at the same time.
 /// - [`Self::descriptor`] is called first: the settings of all other calls follow from it.
 /// - [`Self::endpoints`] is called to list the hardware, e.g. by `htex device list`.
-/// - [`Self::capabilities`] is called before every opening: the host chooses the rate and the block
-///   size from it.
-/// - [`Self::open`] is called last. The device that it returns may move to another thread.
+/// - [`Self::capabilities`] is called before every opening of an output: the host chooses the rate
+///   and the block size from it.
+/// - [`Self::open_output`] or [`Self::open_input`] is called last. The open device may move to
+///   another thread.
 ///
 /// The [`Settings`] are complete when they arrive: profile and defaults are applied, and each value
 /// is allowed by its [`SettingKind`](crate::SettingKind). An adapter checks only what depends on
-/// several settings or on the hardware.
+/// several settings or on the hardware. `NAME:TARGET` on the command line (e.g. `daq:Dev1/ai0`)
+/// gives the setting that [`Descriptor::target`] names the value `TARGET`.
 ///
 /// To build a native library from an adapter, derive `Default` and call
 /// [`export_device!`](crate::export_device). The macro turns errors into status codes and catches
 /// panics.
 ///
-/// # Example
+/// # Example: an output
 ///
 /// A meter that plays nothing and keeps the largest force:
 ///
@@ -39,7 +49,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 /// use std::sync::LazyLock;
 /// use std::time::Duration;
 /// use htex_device::{
-///     Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Quantity, Rates, Settings,
+///     Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Output, Quantity, Rates, Settings,
 ///     Status, StreamFormat,
 /// };
 ///
@@ -48,9 +58,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 ///     name: "Meter".to_owned(),
 ///     version: "1.0.0".to_owned(),
 ///     summary: "Keeps the largest force.".to_owned(),
-///     settings: vec![],
-///     profiles: vec![],
-///     mapping: None,
+///     ..Descriptor::default()
 /// });
 ///
 /// struct Meter;
@@ -77,11 +85,11 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 ///         })
 ///     }
 ///
-///     fn open(
+///     fn open_output(
 ///         &self,
 ///         settings: &Settings,
 ///         format: &StreamFormat,
-///     ) -> Result<Box<dyn Device>, DeviceError> {
+///     ) -> Result<Box<dyn Output>, DeviceError> {
 ///         let capabilities = self.capabilities(settings)?;
 ///         if !capabilities.has_rate(format.rate_hz) {
 ///             return Err(DeviceError::Rate {
@@ -106,7 +114,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 ///     }
 /// }
 ///
-/// impl Device for OpenMeter {
+/// impl Output for OpenMeter {
 ///     fn write(&mut self, samples: &[f32], _: Duration) -> Result<usize, DeviceError> {
 ///         self.check_open()?;
 ///         // All samples are checked before any is taken. After an error the device stays closed.
@@ -134,25 +142,114 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 ///
 /// let settings = Settings::resolve(&DESCRIPTOR, None, &BTreeMap::new())?;
 /// let format = StreamFormat { rate_hz: 20_000.0, block_frames: 256 };
-/// let mut device = Meter.open(&settings, &format)?;
-/// assert_eq!(device.write(&[0.5, -1.5], Duration::ZERO)?, 2);
-/// assert!(device.write(&[2.5], Duration::ZERO).is_err());
-/// assert_eq!(device.status().peak, 1.5);
+/// let mut output = Meter.open_output(&settings, &format)?;
+/// assert_eq!(output.write(&[0.5, -1.5], Duration::ZERO)?, 2);
+/// assert!(output.write(&[2.5], Duration::ZERO).is_err());
+/// assert_eq!(output.status().peak, 1.5);
+/// # Ok::<(), DeviceError>(())
+/// ```
+///
+/// # Example: an input
+///
+/// A counter, with a setting for the first number:
+///
+/// ```
+/// use std::collections::BTreeMap;
+/// use std::sync::LazyLock;
+/// use std::time::Duration;
+/// use htex_device::{
+///     Adapter, Channel, Descriptor, DeviceError, Direction, Endpoint, Input, InputFrames,
+///     InputStream, Setting, SettingKind, Settings,
+/// };
+///
+/// static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
+///     let numbers = SettingKind::Number { min: 0.0, max: 1_000.0 };
+///     Descriptor {
+///         id: "org.example.counter".to_owned(),
+///         name: "Counter".to_owned(),
+///         version: "1.0.0".to_owned(),
+///         summary: "Counts up from a number.".to_owned(),
+///         direction: Direction::Input,
+///         target: Some("first".to_owned()),
+///         settings: vec![Setting::new("first", numbers, "The first number.").with_default("0")],
+///         ..Descriptor::default()
+///     }
+/// });
+///
+/// struct Counter;
+///
+/// impl Adapter for Counter {
+///     fn descriptor(&self) -> &Descriptor {
+///         &DESCRIPTOR
+///     }
+///
+///     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+///         Ok(vec![])
+///     }
+///
+///     fn open_input(&self, settings: &Settings) -> Result<Box<dyn Input>, DeviceError> {
+///         let stream = InputStream { rate_hz: 1_000.0, channels: vec![Channel::new("count", "")] };
+///         let next = settings.number("first");
+///         Ok(Box::new(OpenCounter { stream, next, is_started: false }))
+///     }
+/// }
+///
+/// struct OpenCounter {
+///     stream: InputStream,
+///     next: f64,
+///     is_started: bool,
+/// }
+///
+/// impl Input for OpenCounter {
+///     fn stream(&self) -> &InputStream {
+///         &self.stream
+///     }
+///
+///     fn start(&mut self) -> Result<(), DeviceError> {
+///         self.is_started = true;
+///         Ok(())
+///     }
+///
+///     fn read(&mut self, samples: &mut [f64], _: Duration) -> Result<InputFrames, DeviceError> {
+///         if !self.is_started {
+///             return Err(DeviceError::Closed("counter".to_owned()));
+///         }
+///         for sample in samples.iter_mut() {
+///             *sample = self.next;
+///             self.next += 1.0;
+///         }
+///         Ok(InputFrames::Count(samples.len()))
+///     }
+///
+///     fn finish(&mut self) -> Result<(), DeviceError> {
+///         self.is_started = false;
+///         Ok(())
+///     }
+/// }
+///
+/// let given = BTreeMap::from([("first".to_owned(), "5".to_owned())]);
+/// let mut input = Counter.open_input(&Settings::resolve(&DESCRIPTOR, None, &given)?)?;
+/// input.start()?;
+/// let mut samples = [0.0; 2];
+/// assert_eq!(input.read(&mut samples, Duration::ZERO)?, InputFrames::Count(2));
+/// assert_eq!(samples, [5.0, 6.0]);
 /// # Ok::<(), DeviceError>(())
 /// ```
 ///
 /// # Limits
 ///
-/// - A device has one stream of samples of one quantity at one rate. Devices with several channels
+/// - An output has one stream of samples of one quantity at one rate. Devices with several channels
 ///   choose what each channel plays by a setting of their own.
-/// - A paced device of display voltage must keep its mean voltage within
+/// - A paced output of display voltage must keep its mean voltage within
 ///   [`DirectVoltage`](crate::DirectVoltage). The host checks this for native libraries; a built-in
 ///   adapter checks it itself.
+/// - The host checks the rate, channels, counts and samples of an input from a native library
+///   ([`NativeInput`](crate::NativeInput)). It trusts a built-in input.
 /// - Everything else is checked by the adapter: `htex device check` tests each guarantee of the ABI
 ///   on a native library or a built-in adapter.
 pub trait Adapter: Send + Sync {
-    /// Describes the adapter: id, name, settings and profiles. Returns the same at each call.
-    /// `[any thread]`
+    /// Describes the adapter: id, name, direction, settings and profiles. Returns the same at each
+    /// call. `[any thread]`
     fn descriptor(&self) -> &Descriptor;
 
     /// Lists the devices that are connected now. An empty list is not an error. `[any thread]`
@@ -161,47 +258,68 @@ pub trait Adapter: Send + Sync {
     /// When a driver is missing: the message says what to install.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError>;
 
-    /// Reports what a device with these settings can do, without opening it. `[any thread]`
+    /// Reports what an output with these settings can do, without opening it. `[any thread]`
     ///
     /// # Errors
-    /// When a setting is not usable, or the device is not connected.
-    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError>;
+    /// When a setting is not usable, or the device is not connected. [`DeviceError::Direction`] for
+    /// an input.
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        let _ = settings;
+        Err(is_not(self.descriptor(), Direction::Output))
+    }
 
-    /// Opens a device. Its output is silent and at zero until the first write. `[any thread]`
+    /// Opens an output. It is silent and at zero until the first write. `[any thread]`
     ///
     /// # Errors
     /// The errors of [`Self::capabilities`], and when the device does not support the rate.
-    fn open(
+    fn open_output(
         &self,
         settings: &Settings,
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError>;
+    ) -> Result<Box<dyn Output>, DeviceError> {
+        let _ = (settings, format);
+        Err(is_not(self.descriptor(), Direction::Output))
+    }
+
+    /// Opens an input. It does not sample before [`Input::start`]. `[any thread]`
+    ///
+    /// # Errors
+    /// When a setting is not usable, or the device is not connected. [`DeviceError::Direction`] for
+    /// an output.
+    fn open_input(&self, settings: &Settings) -> Result<Box<dyn Input>, DeviceError> {
+        let _ = settings;
+        Err(is_not(self.descriptor(), Direction::Input))
+    }
 }
 
-/// An open output device, which takes samples and plays them.
+fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
+    DeviceError::Direction { device: descriptor.name.clone(), wanted }
+}
+
+/// An open output, which takes samples and plays them.
 ///
 /// The host calls [`Self::write`] in a loop, usually with blocks of [`StreamFormat::block_frames`],
 /// and offers the rest again when the device takes only a part. It calls [`Self::finish`] at the
 /// end. Calls never overlap, but they may come from different threads.
 ///
-/// Dropping a device without [`Device::finish`] aborts: the output goes to zero at once, and an
-/// unfinished file is removed. The drop may happen at any time, also after an error.
+/// Dropping an output without [`Self::finish`] aborts: it goes to zero at once, and an unfinished
+/// file is removed. The drop may happen at any time, also after an error.
 ///
-/// A device with a clock needs a thread or a driver of its own, because its output must go to zero
-/// even if the host hangs and writes no more samples.
+/// An output with a clock needs a thread or a driver of its own, because it must go to zero even if
+/// the host hangs and writes no more samples.
 ///
 /// # Known doubts
 ///
 /// - [`Status::latency_s`] is the device's own estimate. The host does not measure it.
-/// - A device that runs dry returns [`DeviceError::Underflow`] and stays at zero, as the ABI
+/// - An output that runs dry returns [`DeviceError::Underflow`] and stays at zero, as the ABI
 ///   demands. The built-in sound card is an exception: it fades to silence, counts an underrun and
 ///   continues.
 ///
 /// [`Adapter`] has a complete example.
-pub trait Device: Send {
+pub trait Output: Send {
     /// Takes as many samples as fit within `timeout` and returns their number. With a timeout of
     /// zero, it takes what fits now and does not wait. Any number of samples may be offered,
-    /// including none. The first samples start the device. `[one thread at a time; may wait]`
+    /// including none. The first samples start the output. `[one thread at a time; may wait]`
     ///
     /// # Errors
     /// When a sample is over the limit or not a number, and when the device ran dry or is gone. The
@@ -220,7 +338,52 @@ pub trait Device: Send {
     fn finish(&mut self) -> Result<(), DeviceError>;
 }
 
-/// The format of the stream that a device is opened for. It has one channel: a device with several
+/// An open input, which delivers frames of samples. Dropping it stops it.
+///
+/// The host asks for the [`Self::stream`] and calls [`Self::start`] once. It then calls
+/// [`Self::read`] in a loop until it has enough or gets [`InputFrames::End`], and calls
+/// [`Self::finish`] or drops the input. Calls never overlap, but they may come from different
+/// threads.
+///
+/// [`Adapter`] has a complete example.
+pub trait Input: Send {
+    /// Returns the rate and the channels, in the order of the samples within a frame. They never
+    /// change. `[one thread at a time]`
+    fn stream(&self) -> &InputStream;
+
+    /// Starts sampling. `[one thread at a time; may wait]`
+    ///
+    /// # Errors
+    /// When the device is in use or gone, or was finished before.
+    fn start(&mut self) -> Result<(), DeviceError>;
+
+    /// Writes the available frames to `samples`, interleaved: one sample of each channel in turn.
+    /// Waits up to `timeout` for the first frame. The length of `samples` is a multiple of the
+    /// number of channels. No frame is lost between two calls. `[one thread at a time; may wait]`
+    ///
+    /// # Errors
+    /// [`DeviceError::Overrun`] when frames were lost because they were read too late. Also when
+    /// the device is gone, was not started, or has been finished. After an error it delivers
+    /// nothing more.
+    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError>;
+
+    /// Stops sampling for good, also when it had stopped before. `[one thread at a time; may wait]`
+    ///
+    /// # Errors
+    /// When stopping failed. The input delivers nothing more even then.
+    fn finish(&mut self) -> Result<(), DeviceError>;
+}
+
+/// The result of reading from an input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputFrames {
+    /// The number of frames written to the buffer; 0 if none arrived within the timeout.
+    Count(usize),
+    /// The input has ended, as a file does; there are no more frames.
+    End,
+}
+
+/// The format of the stream that an output is opened for. It has one channel: a device with several
 /// channels plays it on all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamFormat {
@@ -230,7 +393,7 @@ pub struct StreamFormat {
     pub block_frames: u32,
 }
 
-/// Counts since a device was opened.
+/// Counts since an output was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Status {
     /// Number of frames the device took.

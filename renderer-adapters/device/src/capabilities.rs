@@ -1,4 +1,4 @@
-//! Capabilities of a device.
+//! Capabilities of an output.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 /// carrier would become a slow or direct voltage.
 pub const RATE_PER_CARRIER: f64 = 2.5;
 
-/// Capabilities of a device. They cross the ABI as JSON.
+/// Capabilities of an output. They cross the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Capabilities {
@@ -41,56 +41,44 @@ pub struct Capabilities {
     pub block_frames: u32,
 }
 
-/// Error: capabilities are out of range or do not agree with each other.
-#[allow(missing_docs)] // The message says what a field is.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CapabilitiesError {
-    /// There is no rate, or the rates do not ascend within their range.
-    #[error("rates must ascend, from {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz, and there must be one")]
-    Rates,
-    /// The default rate is not one of the rates.
-    #[error("the default rate of {rate_hz} Hz is not one of its rates")]
-    DefaultRate { rate_hz: f64 },
-    /// A voltage at a display has no limit.
-    #[error("a voltage without a limit")]
-    NoLimit,
-    /// A number is not finite or not positive.
-    #[error("`{name}` must be finite and greater than 0")]
-    Number { name: &'static str },
-    /// The preferred block is empty or too long.
-    #[error("`block_frames` must be 1 to {MAX_BLOCK_FRAMES}")]
-    BlockFrames,
-}
-
 impl Capabilities {
     /// Checks that the numbers are in range and agree with each other.
     ///
     /// # Errors
-    /// The first fault.
-    pub fn check(&self) -> Result<(), CapabilitiesError> {
-        self.rates.check()?;
-        if !self.rates.has(self.default_rate_hz) {
-            let rate_hz = self.default_rate_hz;
-            return Err(CapabilitiesError::DefaultRate { rate_hz });
+    /// [`DeviceError::Invalid`] with the first fault.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        self.first_fault()
+            .map_or(Ok(()), |what| Err(DeviceError::Invalid { document: "capabilities", what }))
+    }
+
+    fn first_fault(&self) -> Option<String> {
+        let Self { rates, default_rate_hz, .. } = self;
+        if !rates.are_sane() {
+            return Some(format!(
+                "rates must ascend, from {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz, and there must be one"
+            ));
+        }
+        if !rates.has(*default_rate_hz) {
+            return Some(format!(
+                "the default rate of {default_rate_hz} Hz is not one of its rates"
+            ));
         }
         if self.quantity == Quantity::DisplayVoltage && self.limit.is_none() {
-            return Err(CapabilitiesError::NoLimit);
+            return Some("a voltage without a limit".to_owned());
         }
         let numbers = [("limit", self.limit), ("step", self.step), ("carrier_hz", self.carrier_hz)];
-        for (name, number) in numbers {
-            if number.is_some_and(|x| !(x.is_finite() && x > 0.0)) {
-                return Err(CapabilitiesError::Number { name });
-            }
+        let is_bad = |number: Option<f64>| number.is_some_and(|x| !(x.is_finite() && x > 0.0));
+        if let Some((name, _)) = numbers.into_iter().find(|(_, number)| is_bad(*number)) {
+            return Some(format!("`{name}` must be finite and greater than 0"));
         }
         if !(1..=MAX_BLOCK_FRAMES).contains(&self.block_frames) {
-            return Err(CapabilitiesError::BlockFrames);
+            return Some(format!("`block_frames` must be 1 to {MAX_BLOCK_FRAMES}"));
         }
-        Ok(())
+        None
     }
 
     /// Returns the lowest rate that can represent the carrier, hertz; 0 without a carrier.
-    pub fn lowest_with_carrier_hz(&self) -> f64 {
+    pub(crate) fn lowest_with_carrier_hz(&self) -> f64 {
         self.carrier_hz.map_or(0.0, |hz| RATE_PER_CARRIER * hz)
     }
 
@@ -233,16 +221,13 @@ impl Rates {
         }
     }
 
-    fn check(&self) -> Result<(), CapabilitiesError> {
+    fn are_sane(&self) -> bool {
         let (all, ascending) = match self {
             Self::List(all) => (all.clone(), all.is_sorted_by(|a, b| a < b)),
             Self::Range { min_hz, max_hz } => (vec![*min_hz, *max_hz], min_hz <= max_hz),
         };
         let sane = |hz: &f64| (MIN_RATE_HZ..=MAX_RATE_HZ).contains(hz);
-        if all.is_empty() || !ascending || !all.iter().all(sane) {
-            return Err(CapabilitiesError::Rates);
-        }
-        Ok(())
+        !all.is_empty() && ascending && all.iter().all(sane)
     }
 }
 

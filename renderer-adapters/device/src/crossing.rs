@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::abi::Code;
-use crate::{AbiFault, DeviceError};
+use crate::{DeviceError, LibraryFault};
 
 /// Longest wait of one call, milliseconds: one day.
 const MAX_WAIT_MS: u32 = 86_400_000;
@@ -15,7 +15,7 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     // crosses.
     let text = match error {
         E::Setting { name, what } => format!("{name}: {what}"),
-        E::Underflow { advice, .. } => advice.clone(),
+        E::Underflow { advice, .. } | E::Overrun { advice, .. } => advice.clone(),
         E::File { path, what } => format!("{path}: {what}"),
         E::Failed { what, .. } => what.clone(),
         other => other.to_string(),
@@ -29,17 +29,18 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
         E::Underflow { .. } => Code::Underflow,
         E::Closed(_) => Code::Closed,
         E::File { .. } => Code::File,
+        E::Overrun { .. } => Code::Overrun,
         E::Failed { .. }
-        | E::Told(_)
-        | E::Overrun { .. }
+        | E::Message(_)
         | E::Unknown { .. }
-        | E::UnknownSource { .. }
-        | E::Abi { .. } => Code::Failed,
+        | E::Direction { .. }
+        | E::Invalid { .. }
+        | E::Library { .. } => Code::Failed,
     };
     (code, text)
 }
 
-/// Converts a code and a text to an error. `OverLimit`, `Underflow` and `InvalidRate` become
+/// Converts a code and a text to an error. `OverLimit`, `Underflow`, `Overrun` and `End` become
 /// failures here, because only the caller knows their details.
 pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) -> DeviceError {
     match code {
@@ -51,11 +52,14 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
             let (path, what) = parted(text);
             DeviceError::File { path, what }
         }
+        // A sentence with the rates that there are.
+        Code::InvalidRate => DeviceError::Message(text),
         Code::Missing => DeviceError::Missing(text),
         Code::Busy => DeviceError::Busy(text),
         Code::Closed | Code::BadHandle => DeviceError::Closed(device.to_owned()),
         Code::InvalidArgument => {
-            DeviceError::Abi { library: library.to_owned(), fault: AbiFault::Call(text) }
+            let library = library.to_owned();
+            DeviceError::Library { library, fault: LibraryFault::Answer, what: text }
         }
         _ => DeviceError::Failed { device: device.to_owned(), what: text },
     }

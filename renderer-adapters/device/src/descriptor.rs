@@ -1,4 +1,4 @@
-//! Descriptors of device and source adapters.
+//! Descriptors of adapters.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::abi::MAX_SETTINGS;
 use crate::{DeviceError, Settings};
 
-/// An adapter's description. It crosses the ABI as JSON.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// An adapter's description. It crosses the ABI as JSON. The default is an output without settings.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Descriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.file`; never changes.
@@ -17,17 +17,44 @@ pub struct Descriptor {
     pub name: String,
     /// Semantic version.
     pub version: String,
-    /// One sentence that says what the adapter drives.
+    /// One sentence that says what the adapter drives or reads.
     pub summary: String,
+    /// Whether its devices play or record.
+    pub direction: Direction,
+    /// Name of the setting that selects one of the adapter's devices. On a command line,
+    /// `NAME:TARGET` gives that setting the value `TARGET`. An input must have one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<String>,
     /// Settings, each with its default.
     pub settings: Vec<Setting>,
     /// Named groups of settings, e.g. for one rig.
     #[serde(default)]
     pub profiles: Vec<Profile>,
-    /// How the device transforms the samples and what is lost. Absent: it plays the samples
+    /// How an output transforms the samples and what is lost. Absent: it plays the samples
     /// themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mapping: Option<Mapping>,
+}
+
+/// Whether a device takes samples or delivers them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// It plays samples.
+    #[default]
+    Output,
+    /// It records samples.
+    Input,
+}
+
+impl std::fmt::Display for Direction {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Output => "output",
+            Self::Input => "input",
+        })
+    }
 }
 
 /// How a device that cannot play samples transforms them.
@@ -114,6 +141,13 @@ pub enum SettingKind {
     Text,
 }
 
+impl SettingKind {
+    /// Creates the kind of one of several values.
+    pub fn choice(values: &[&str]) -> Self {
+        Self::Choice { values: values.iter().map(ToString::to_string).collect() }
+    }
+}
+
 /// A named group of settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -126,7 +160,7 @@ pub struct Profile {
     pub settings: BTreeMap<String, String>,
 }
 
-/// A connected device or source.
+/// A connected device.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Endpoint {
@@ -138,99 +172,65 @@ pub struct Endpoint {
     pub summary: String,
 }
 
-/// Error: the descriptor of a device or source is invalid.
-#[allow(missing_docs)] // The message says what a field is.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DescriptorError {
-    /// The id is not in reverse-DNS form.
-    #[error("`{id}` is not a reverse-DNS id")]
-    Id { id: String },
-    /// The version is not a semantic version.
-    #[error("`{version}` is not a semantic version")]
-    Version { version: String },
-    /// The name or the summary is empty.
-    #[error("`name` and `summary` must not be empty")]
-    Empty,
-    /// There are too many settings or profiles.
-    #[error("at most {MAX_SETTINGS} settings and profiles are allowed")]
-    TooMany,
-    /// Two settings or two profiles have the same name.
-    #[error("two {kind} are named `{name}`")]
-    Twice {
-        /// `settings` or `profiles`.
-        kind: &'static str,
-        name: String,
-    },
-    /// A setting is invalid.
-    #[error("setting `{name}`{fault}")]
-    Setting { name: String, fault: SettingFault },
-    /// The default is not an allowed value of its setting.
-    #[error("the default: {0}")]
-    Default(DeviceError),
-    /// The target of a source is not one of its settings.
-    #[error("the target `{target}` is not one of the settings")]
-    Target { target: String },
-    /// A profile has a setting that is unknown, or a value that is not allowed.
-    #[error("profile `{profile}`: {error}")]
-    Profile { profile: String, error: DeviceError },
-}
-
-/// A fault of a setting in a descriptor.
-#[allow(missing_docs)] // The message says what a field is.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SettingFault {
-    /// The name contains other characters.
-    #[error(": names are of a-z, 0-9 and _")]
-    Name,
-    /// The range is empty or not finite.
-    #[error(" has the range {min} to {max}")]
-    Range { min: f64, max: f64 },
-    /// The list of choices is empty.
-    #[error(" has nothing to choose from")]
-    NoChoice,
-    /// It has a default for live motions but no general default.
-    #[error(" has a `live_default` and no `default`")]
-    LiveDefault,
-}
-
 impl Descriptor {
     /// Returns the last part of the id, which is the name used on command lines and in scenes.
     pub fn short_name(&self) -> &str {
         self.id.rsplit('.').next().unwrap_or(&self.id)
     }
 
-    /// Checks names, ranges, defaults and profiles.
+    /// Checks names, ranges, defaults, profiles and the target.
     ///
     /// # Errors
-    /// The first fault.
-    pub fn check(&self) -> Result<(), DescriptorError> {
-        check_id(&self.id)?;
-        let version = &self.version;
-        semver::Version::parse(version)
-            .map_err(|_| DescriptorError::Version { version: version.clone() })?;
-        if self.name.trim().is_empty() || self.summary.trim().is_empty() {
-            return Err(DescriptorError::Empty);
-        }
-        if self.settings.len().max(self.profiles.len()) > MAX_SETTINGS {
-            return Err(DescriptorError::TooMany);
-        }
-        self.settings.iter().try_for_each(Setting::check)?;
-        let profiles = self.profiles.iter().map(|p| p.name.as_str());
-        no_two_alike("settings", self.settings.iter().map(|s| s.name.as_str()))?;
-        no_two_alike("profiles", profiles)?;
-        self.profiles.iter().try_for_each(|p| self.check_profile(p))
+    /// [`DeviceError::Invalid`] with the first fault.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        self.first_fault()
+            .map_or(Ok(()), |what| Err(DeviceError::Invalid { document: "descriptor", what }))
     }
 
-    /// Checks that the values a profile fixes are allowed.
-    fn check_profile(&self, profile: &Profile) -> Result<(), DescriptorError> {
-        let wrong = |error| DescriptorError::Profile { profile: profile.name.clone(), error };
-        for (name, value) in &profile.settings {
-            let setting = crate::settings::known(self, name).map_err(wrong)?;
-            crate::settings::check(setting, value).map_err(wrong)?;
+    fn first_fault(&self) -> Option<String> {
+        let Self { id, version, settings, profiles, .. } = self;
+        if !is_reverse_dns(id) {
+            return Some(format!("`{id}` is not a reverse-DNS id"));
         }
-        Ok(())
+        if semver::Version::parse(version).is_err() {
+            return Some(format!("`{version}` is not a semantic version"));
+        }
+        if self.name.trim().is_empty() || self.summary.trim().is_empty() {
+            return Some("`name` and `summary` must not be empty".to_owned());
+        }
+        if settings.len().max(profiles.len()) > MAX_SETTINGS {
+            return Some(format!("at most {MAX_SETTINGS} settings and profiles are allowed"));
+        }
+        let twice = |kind: &str, name: &str| format!("two {kind} are named `{name}`");
+        let fault = settings.iter().find_map(Setting::fault);
+        let fault = fault.or_else(|| {
+            let name = first_twice(settings.iter().map(|s| &s.name[..]))?;
+            Some(twice("settings", name))
+        });
+        let fault = fault.or_else(|| {
+            let name = first_twice(profiles.iter().map(|p| &p.name[..]))?;
+            Some(twice("profiles", name))
+        });
+        let fault = fault.or_else(|| profiles.iter().find_map(|p| self.profile_fault(p)));
+        fault.or_else(|| match &self.target {
+            Some(target) if !settings.iter().any(|s| s.name == *target) => {
+                Some(format!("the target `{target}` is not one of the settings"))
+            }
+            None if self.direction == Direction::Input => {
+                Some("an input has a `target`, which names one of its settings".to_owned())
+            }
+            _ => None,
+        })
+    }
+
+    /// Finds a value of a profile that is not allowed.
+    fn profile_fault(&self, profile: &Profile) -> Option<String> {
+        let mut values = profile.settings.iter();
+        let error = values.find_map(|(name, value)| {
+            let setting = crate::settings::find(self, name);
+            setting.and_then(|setting| crate::settings::check(setting, value)).err()
+        })?;
+        Some(format!("profile `{}`: {error}", profile.name))
     }
 
     /// Returns the settings with a profile, or without one. `None` if some setting has no default
@@ -241,57 +241,82 @@ impl Descriptor {
 }
 
 impl Setting {
-    fn check(&self) -> Result<(), DescriptorError> {
-        let Self { name, kind, .. } = self;
-        let wrong = |fault| {
-            let name = name.clone();
-            Err(DescriptorError::Setting { name, fault })
-        };
-        let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
-        if name.is_empty() || !name.bytes().all(plain) {
-            return wrong(SettingFault::Name);
+    /// Creates a setting without a default, which a scene may change.
+    pub fn new(name: &str, kind: SettingKind, description: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            default: None,
+            live_default: None,
+            from_scene: FromScene::Any,
+            description: description.to_owned(),
         }
-        match kind {
+    }
+
+    /// Creates a setting that describes the hardware and has a default. No scene can change it.
+    pub fn hardware(name: &str, kind: SettingKind, default: &str, description: &str) -> Self {
+        let setting = Self::new(name, kind, description);
+        setting.with_default(default).with_from_scene(FromScene::Never)
+    }
+
+    /// Sets the default value.
+    #[must_use]
+    pub fn with_default(mut self, default: &str) -> Self {
+        self.default = Some(default.to_owned());
+        self
+    }
+
+    /// Sets the default value for a live motion.
+    #[must_use]
+    pub fn with_live_default(mut self, default: &str) -> Self {
+        self.live_default = Some(default.to_owned());
+        self
+    }
+
+    /// Sets how a scene may change the setting.
+    #[must_use]
+    pub fn with_from_scene(mut self, from_scene: FromScene) -> Self {
+        self.from_scene = from_scene;
+        self
+    }
+
+    fn fault(&self) -> Option<String> {
+        let name = &self.name;
+        let is_plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
+        if name.is_empty() || !name.bytes().all(is_plain) {
+            return Some(format!("setting `{name}`: names are of a-z, 0-9 and _"));
+        }
+        match &self.kind {
             SettingKind::Number { min, max }
                 if !(min.is_finite() && max.is_finite() && min <= max) =>
             {
-                return wrong(SettingFault::Range { min: *min, max: *max });
+                return Some(format!("setting `{name}` has the range {min} to {max}"));
             }
             SettingKind::Choice { values } if values.is_empty() => {
-                return wrong(SettingFault::NoChoice);
+                return Some(format!("setting `{name}` has nothing to choose from"));
             }
             _ => {}
         }
         if self.default.is_none() && self.live_default.is_some() {
-            return wrong(SettingFault::LiveDefault);
+            return Some(format!("setting `{name}` has a `live_default` and no `default`"));
         }
         let mut defaults = self.default.iter().chain(&self.live_default);
-        defaults
-            .try_for_each(|value| crate::settings::check(self, value))
-            .map_err(DescriptorError::Default)
+        let error = defaults.find_map(|value| crate::settings::check(self, value).err())?;
+        Some(format!("the default: {error}"))
     }
 }
 
-fn check_id(id: &str) -> Result<(), DescriptorError> {
-    let part = |part: &str| {
-        let allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'_' || b == b'-';
-        !part.is_empty() && part.bytes().all(allowed)
+fn is_reverse_dns(id: &str) -> bool {
+    let is_part = |part: &str| {
+        let is_allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'_' || b == b'-';
+        !part.is_empty() && part.bytes().all(is_allowed)
     };
-    if id.split('.').count() >= 3 && id.split('.').all(part) {
-        return Ok(());
-    }
-    let id = id.to_owned();
-    Err(DescriptorError::Id { id })
+    id.split('.').count() >= 3 && id.split('.').all(is_part)
 }
 
-fn no_two_alike<'a>(
-    kind: &'static str,
-    names: impl Iterator<Item = &'a str>,
-) -> Result<(), DescriptorError> {
+/// Returns a name that occurs more than once.
+pub(crate) fn first_twice<'a>(names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let mut names: Vec<&str> = names.collect();
     names.sort_unstable();
-    match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(DescriptorError::Twice { kind, name: pair[0].to_owned() }),
-        None => Ok(()),
-    }
+    names.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }

@@ -9,7 +9,7 @@
 use crate::Settings;
 
 /// Length of the window whose mean is the direct voltage, seconds.
-pub const DIRECT_WINDOW_S: f64 = 0.1;
+const DIRECT_WINDOW_S: f64 = 0.1;
 /// Limit of the direct voltage for a display that states none, volts.
 pub const DIRECT_LIMIT_V: f64 = 1.0;
 /// Name of the setting in which a display states its limit.
@@ -49,7 +49,7 @@ impl DirectVoltage {
     }
 
     /// Takes the limit from a display's settings, or [`DIRECT_LIMIT_V`] if they have none.
-    pub fn of(settings: &Settings, rate_hz: f64) -> Self {
+    pub(crate) fn from_settings(settings: &Settings, rate_hz: f64) -> Self {
         Self::new(settings.number(DIRECT_SETTING), rate_hz)
     }
 
@@ -75,7 +75,7 @@ impl DirectVoltage {
     }
 
     /// Records samples that the device took.
-    pub fn take<T: Copy + Into<f64>>(&mut self, samples: &[T]) {
+    pub fn push<T: Copy + Into<f64>>(&mut self, samples: &[T]) {
         for sample in samples {
             let sample: f64 = (*sample).into();
             self.sum_v += sample - self.last_v[self.oldest];
@@ -147,7 +147,7 @@ mod tests {
                 let mut direct = DirectVoltage::new(limit_v, rate_hz);
                 let found = samples.chunks(block).enumerate().find_map(|(i, part)| {
                     let excess = direct.excess(part);
-                    direct.take(part);
+                    direct.push(part);
                     excess.map(|excess| i * block + excess.at)
                 });
                 assert_eq!(found, expected, "{limit_v} V, blocks of {block}");
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn the_past_is_read_backwards() {
         let mut direct = DirectVoltage::new(1.0, 40.0);
-        direct.take(&[9.0, 9.0, 1.0, 2.0, 3.0, 4.0]);
+        direct.push(&[9.0, 9.0, 1.0, 2.0, 3.0, 4.0]);
         let past: Vec<f64> = direct.mirrored().take(9).collect();
         assert_eq!(past, [3.0, 2.0, 1.0, 2.0, 3.0, 4.0, 3.0, 2.0, 1.0]);
     }

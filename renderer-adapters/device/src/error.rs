@@ -1,4 +1,6 @@
-//! Errors of devices and sources.
+//! Errors of devices.
+
+use crate::Direction;
 
 /// An error of an adapter or an open device.
 #[allow(missing_docs)] // The message says what a field is.
@@ -52,17 +54,17 @@ pub enum DeviceError {
         frames: u64,
         advice: String,
     },
-    /// A source lost frames because they were read too late. It delivers nothing more.
-    #[error("{source_name} lost samples after {frames} frames, which were read too late; {advice}")]
+    /// An input lost frames because they were read too late. It delivers nothing more.
+    #[error("{device} lost samples after {frames} frames, which were read too late; {advice}")]
     Overrun {
-        source_name: String,
+        device: String,
         /// Frames that were delivered before.
         frames: u64,
         advice: String,
     },
     /// A complete message from a library, or from another process that holds the device.
     #[error("{0}")]
-    Told(String),
+    Message(String),
     /// The device was removed, or its driver failed.
     #[error("{device} failed: {what}")]
     Failed {
@@ -70,51 +72,59 @@ pub enum DeviceError {
         /// The driver's message.
         what: String,
     },
-    /// A call came after `finish` or `stop`, or after an error.
+    /// A call came before `start`, after `finish`, or after an error.
     #[error("{0} is closed")]
     Closed(String),
     /// A file could not be written or read.
     #[error("{path}: {what}")]
     File { path: String, what: String },
-    /// No device of this name is known.
-    #[error("no device `{wanted}`; there are {known}")]
-    Unknown { wanted: String, known: String },
-    /// No source of this name is known.
-    #[error("no source `{wanted}`; there are {known}")]
-    UnknownSource { wanted: String, known: String },
-    /// A library is not a device or source of this ABI, or violates the ABI.
-    #[error("{library}: {fault}")]
-    Abi { library: String, fault: AbiFault },
+    /// No device of this name and direction is known.
+    #[error("no {} `{wanted}`; there are {known}", noun(.direction))]
+    Unknown { direction: Direction, wanted: String, known: String },
+    /// The device has the other direction: it is an input and was asked to play, or an output and
+    /// was asked to record.
+    #[error("{device} is not an {wanted}; choose another device")]
+    Direction { device: String, wanted: Direction },
+    /// A descriptor, capabilities or a stream that an adapter stated is invalid.
+    #[error("{document}: {what}")]
+    Invalid {
+        /// `descriptor`, `capabilities` or `stream`.
+        document: &'static str,
+        what: String,
+    },
+    /// A library is not a device of this ABI, or violates the ABI.
+    #[error("{library}: {what}")]
+    Library { library: String, fault: LibraryFault, what: String },
 }
 
-/// How a library fails to be a device or source of this ABI.
-#[allow(missing_docs)] // The message says what a field is.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+/// How a library fails to be a device of this ABI.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum AbiFault {
-    /// The system cannot load the file. Contains the system's reason.
-    #[error("{0}")]
-    NotLoaded(String),
-    /// The marker belongs to another major version of the ABI, or to another ABI.
-    #[error("the marker {marker:#x} is not of {kind} ABI {major}.x, which this host loads")]
-    Marker {
-        marker: u32,
-        /// `device` or `source`.
-        kind: &'static str,
-        /// The major version that this host loads.
-        major: u32,
-    },
-    /// A function of the ABI is missing.
-    #[error("the library has no `{symbol}`; it is not an htex {kind}")]
-    Symbol {
-        symbol: &'static str,
-        /// `device` or `source`.
-        kind: &'static str,
-    },
+pub enum LibraryFault {
+    /// The system cannot load the file.
+    Load,
+    /// The library has no table, or one of another major version of the ABI.
+    Marker,
+    /// The table lacks a function that a device of its direction needs.
+    Function,
     /// The descriptor cannot be read, or is invalid.
-    #[error("descriptor: {0}")]
-    Descriptor(String),
+    Descriptor,
     /// A call returned a result that the ABI forbids, or refused arguments that the ABI allows.
-    #[error("{0}")]
-    Call(String),
+    Answer,
+}
+
+impl DeviceError {
+    /// Creates the error of a setting that is not known, missing, or not usable. `what` says what
+    /// is wrong, and which values are allowed.
+    pub fn setting(name: impl Into<String>, what: impl Into<String>) -> Self {
+        Self::Setting { name: name.into(), what: what.into() }
+    }
+}
+
+/// What a device that is not found is called in a message.
+fn noun(direction: &Direction) -> &'static str {
+    match direction {
+        Direction::Output => "device",
+        Direction::Input => "input",
+    }
 }

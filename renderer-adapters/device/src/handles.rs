@@ -1,29 +1,29 @@
-//! Open devices or sources behind handles. A handle is never used twice.
+//! Open devices behind handles. A handle is never used twice.
 //!
-//! A lock protects each open device or source, because opening and writing may block. The voices of
+//! A lock protects each open device, because opening and writing may block. The voices of
 //! a model must not block, so they use slots and generations instead (`sdk/model/src/voices.rs`).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-type Shared<T> = Arc<Mutex<Box<T>>>;
+type Shared<T> = Arc<Mutex<T>>;
 
-/// The open devices or sources of one adapter.
-pub(crate) struct Handles<T: ?Sized>(Mutex<Open<T>>);
+/// The open devices of one adapter.
+pub(crate) struct Handles<T>(Mutex<Open<T>>);
 
-struct Open<T: ?Sized> {
+struct Open<T> {
     last: i64,
     shared: BTreeMap<i64, Shared<T>>,
 }
 
-impl<T: ?Sized> Handles<T> {
+impl<T> Handles<T> {
     /// Creates an empty table.
     pub(crate) const fn new() -> Self {
         Self(Mutex::new(Open { last: 0, shared: BTreeMap::new() }))
     }
 
-    /// Adds an open device or source and returns its handle.
-    pub(crate) fn insert(&self, one: Box<T>) -> i64 {
+    /// Adds an open device and returns its handle.
+    pub(crate) fn insert(&self, one: T) -> i64 {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.last += 1;
         let handle = open.last;
@@ -31,7 +31,7 @@ impl<T: ?Sized> Handles<T> {
         handle
     }
 
-    /// Calls a function with the device or source behind a handle. Returns `None` if the handle was
+    /// Calls a function with the device behind a handle. Returns `None` if the handle was
     /// closed or never existed.
     pub(crate) fn with<R>(&self, handle: i64, call: impl FnOnce(&mut T) -> R) -> Option<R> {
         // The table's lock is released before the call, so that a call that blocks does not block
@@ -41,7 +41,7 @@ impl<T: ?Sized> Handles<T> {
             open.shared.get(&handle).cloned()?
         };
         let mut one = shared.lock().unwrap_or_else(PoisonError::into_inner);
-        Some(call(&mut **one))
+        Some(call(&mut one))
     }
 
     pub(crate) fn remove(&self, handle: i64) -> Option<Shared<T>> {

@@ -1,24 +1,25 @@
-//! Output devices and input sources: a device plays samples of one quantity at one rate, a source
-//! delivers samples of several channels.
+//! Devices: an output plays samples of one quantity at one rate, an input records samples of several
+//! channels.
 //!
-//! An [`Adapter`] stands for a family of devices, such as all sound cards. [`Adapter::open`]
-//! returns an open [`Device`]. A device reports its [`Capabilities`] and enforces its limits on
-//! every sample. This crate does not depend on textures.
-//!
-//! A [`Source`] is the opposite, an input. A [`SourceAdapter`] stands for a family of sources.
+//! An [`Adapter`] stands for a family of devices of one [`Direction`], such as all outputs of sound
+//! cards. [`Adapter::open_output`] returns an open [`Output`], [`Adapter::open_input`] an open
+//! [`Input`]. An output reports its [`Capabilities`] and enforces its limits on every sample. This
+//! crate does not depend on textures.
 //!
 //! An adapter is either built into the program or a native library behind the plain C functions of
-//! [`abi`] or [`source::abi`] ([`NativeAdapter`], [`NativeSourceAdapter`]). [`Devices`] and
-//! [`Sources`] find both kinds. To write an adapter in Rust, implement the traits and call
-//! [`export_device!`] or [`export_source!`].
+//! [`abi`] ([`NativeAdapter`]). [`Devices`] finds both kinds. To write an adapter in Rust, implement
+//! the traits and call [`export_device!`].
+//!
+//! Outputs and inputs have one ABI, whose table holds the functions of both. They differ only in the
+//! calls of an open stream: `write` and `status`, or `start` and `read`.
 //!
 //! Models run in a sandbox. Devices do not, for two reasons: a device need not produce the same
 //! bits everywhere, and a WASM sandbox without imports cannot reach any hardware. Built-in adapters
 //! are therefore called directly. Their errors have the same types as the errors of a library.
 //!
-//! A device checks all samples of a call against its limits before it outputs any of them. A
-//! voltage device that states no limit is not loaded. After an error the output is at zero and
-//! stays there. The mean voltage of a display is limited as well ([`DirectVoltage`]).
+//! An output checks all samples of a call against its limits before it plays any of them. A voltage
+//! that states no limit is not loaded. After an error the output is at zero and stays there. The
+//! mean voltage of a display is limited as well ([`DirectVoltage`]).
 #![warn(missing_docs)]
 
 pub mod abi;
@@ -26,15 +27,11 @@ mod adapter;
 mod capabilities;
 mod crossing;
 mod descriptor;
-mod devices;
 mod direct;
 mod error;
 mod export;
-mod exported;
 pub mod guardian;
 mod handles;
-mod library;
-mod loaded;
 mod native;
 mod probe;
 mod registry;
@@ -42,24 +39,18 @@ mod registry;
 mod schemas;
 mod settings;
 pub mod shim;
-pub mod source;
+mod stream;
 
-pub use adapter::{Adapter, Device, Status, StreamFormat};
-pub use capabilities::{Capabilities, CapabilitiesError, Quantity, RATE_PER_CARRIER, Rates};
+pub use adapter::{Adapter, Input, InputFrames, Output, Status, StreamFormat};
+pub use capabilities::{Capabilities, Quantity, RATE_PER_CARRIER, Rates};
 pub use descriptor::{
-    Descriptor, DescriptorError, Endpoint, FromScene, Mapping, Profile, Setting, SettingFault,
-    SettingKind,
+    Descriptor, Direction, Endpoint, FromScene, Mapping, Profile, Setting, SettingKind,
 };
-pub use devices::{Devices, KnownDevice};
-pub use direct::{DIRECT_LIMIT_V, DIRECT_SETTING, DIRECT_WINDOW_S, DirectVoltage, Excess};
-pub use error::{AbiFault, DeviceError};
-pub use loaded::Native;
-pub use native::{NativeAdapter, NativeDevice};
-pub use registry::{AdapterKind, Known, Note, Origin, Registry, Search};
+pub use direct::{DIRECT_LIMIT_V, DIRECT_SETTING, DirectVoltage, Excess};
+pub use error::{DeviceError, LibraryFault};
+pub use native::{NativeAdapter, NativeInput, NativeOutput};
+pub use registry::{AdapterEntry, Devices, Note, Origin, Search};
 #[cfg(feature = "schemars")]
-pub use schemas::{schemas, source_schemas};
-pub use settings::{Ignored, Settings, Stated};
-pub use source::{
-    Channel, Delivered, KnownSource, NativeSource, NativeSourceAdapter, Source, SourceAdapter,
-    SourceDescriptor, SourceStream, SourceStreamError, Sources,
-};
+pub use schemas::schemas;
+pub use settings::{IgnoredSetting, SettingRequests, Settings};
+pub use stream::{Channel, InputStream};

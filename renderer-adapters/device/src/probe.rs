@@ -1,25 +1,27 @@
 //! For checkers: calls with arguments that a host never passes. Apps do not need them.
 
-use crate::abi::{Code, DeviceTable, STATUS_NUMBERS};
-use crate::library::{Library, Table};
-use crate::loaded::{Native, Opened};
-use crate::source::abi::SourceTable;
-use crate::{DeviceError, Settings, StreamFormat};
+use std::ptr::{null, null_mut};
+
+use crate::abi::{Code, STATUS_NUMBERS};
+use crate::native::{NativeAdapter, OpenHandle, function};
+use crate::{DeviceError, Direction, Input, Settings, StreamFormat};
 
 /// Minimum number of guard values behind a buffer.
 const GUARDS: usize = 64;
 /// Number of values in a buffer of samples.
 const SAMPLES: usize = 8;
+/// A number that no device writes, so that every write into guard values shows.
+const UNUSUAL: f64 = -1234.5;
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
 /// A buffer of `len` values with guard values behind it.
-struct Guarded<T> {
+struct GuardedBuffer<T> {
     all: Vec<T>,
     len: usize,
     guard: T,
 }
 
-impl<T: Copy + PartialEq> Guarded<T> {
+impl<T: Copy + PartialEq> GuardedBuffer<T> {
     fn new(len: usize, guard: T) -> Self {
         Self::before(len, GUARDS, guard)
     }
@@ -41,185 +43,171 @@ impl<T: Copy + PartialEq> Guarded<T> {
         self.pointer().cast::<u8>().wrapping_add(1).cast()
     }
 
-    fn check(&self, call: &str, bound: &str) -> Result<(), String> {
-        let behind = self.all[self.len..].iter();
-        match behind.filter(|x| **x != self.guard).count() {
-            0 => Ok(()),
-            _ => Err(format!("`{call}` wrote beyond `{bound}`, which was {}", self.len)),
-        }
+    fn has_overflow(&self) -> bool {
+        self.all[self.len..].iter().any(|x| *x != self.guard)
     }
 }
 
-/// Fails unless the call refused the unusable array.
-fn refused(call: &str, array: &str, answer: i64) -> Result<(), String> {
-    if answer == INVALID_ARGUMENT {
-        return Ok(());
-    }
-    Err(format!(
-        "`{call}` with {array} and a length above 0 answers {answer}; it must refuse it with {INVALID_ARGUMENT}"
-    ))
-}
-
-/// Tests a function that writes a text, with buffers of every kind. `call` gets a pointer and a
-/// capacity.
-fn check_text(name: &str, call: impl Fn(*mut u8, usize) -> i64) -> Result<(), String> {
-    // Null is allowed with a capacity of 0: the call then only answers the length of its text.
-    let len = call(std::ptr::null_mut(), 0);
-    refused(name, "a null `out`", call(std::ptr::null_mut(), 16))?;
-    let whole = usize::try_from(len).unwrap_or(0);
-    for capacity in [0, 1, whole / 2, whole.saturating_sub(1)] {
-        let mut buffer = Guarded::before(capacity, whole, 0xA5u8);
-        call(buffer.pointer(), capacity);
-        buffer.check(name, "capacity")?;
-    }
-    Ok(())
-}
-
-impl<T: Table> Library<T> {
-    fn check_texts(&self) -> Result<(), String> {
-        let common = self.table.common();
-        // SAFETY: a null pointer, or a live buffer of more than this length, by `check_text`.
-        check_text("descriptor", |out, len| unsafe { (common.descriptor)(out, len) })?;
-        // SAFETY: as above.
-        check_text("endpoints", |out, len| unsafe { (common.endpoints)(out, len) })?;
-        // SAFETY: as above.
-        check_text("last_error", |out, len| unsafe { (common.last_error)(out, len) })
-    }
-}
-
-impl Native<DeviceTable> {
+impl NativeAdapter {
     /// Returns the status and the text with which `open` refuses these lines, rate and block. If it
-    /// opens a device instead, closes it and returns `None`.
+    /// opens a device instead, closes it and returns `None`. For an input, rate and block are 0.
     pub fn refusal_of_open(
         &self,
         lines: &str,
         rate_hz: f64,
         block_frames: u32,
     ) -> Option<(i64, String)> {
-        let table = self.library.table;
+        let open = self.library.table.open?;
         // SAFETY: a live text.
-        let answer = unsafe { (table.open)(lines.as_ptr(), lines.len(), rate_hz, block_frames) };
-        self.refusal(answer)
-    }
-
-    /// Fails unless every call refuses null and misaligned arrays and writes only within the given
-    /// length.
-    ///
-    /// # Errors
-    /// Names the call that is at fault, and how.
-    pub fn check_arrays(&self, settings: &Settings, format: &StreamFormat) -> Result<(), String> {
-        let (table, lines) = (self.library.table, self.lines(settings));
-        let (text, null) = (lines.as_bytes(), std::ptr::null());
-        self.library.check_texts()?;
-        // SAFETY: null, which must be refused.
-        let open = unsafe { (table.open)(null, 16, format.rate_hz, format.block_frames) };
-        refused("open", "null `settings`", open)?;
-        let mut out = Guarded::new(SAMPLES, 0xA5u8);
-        // SAFETY: null, which must be refused, and a live buffer.
-        let can = unsafe { (table.capabilities)(null, 16, out.pointer(), SAMPLES) };
-        refused("capabilities", "null `settings`", can)?;
-        // SAFETY: a live text, and a buffer by `check_text`.
-        check_text("capabilities", |out, len| unsafe {
-            (table.capabilities)(text.as_ptr(), text.len(), out, len)
-        })?;
-        self.check_write(&lines, format)?;
-        self.check_status(&lines, format)
-    }
-
-    fn opened_by(&self, lines: &str, format: &StreamFormat) -> Result<Opened<DeviceTable>, String> {
-        let (table, text) = (self.library.table, lines.as_bytes());
-        let (rate_hz, block) = (format.rate_hz, format.block_frames);
-        // SAFETY: a live text.
-        let handle = unsafe { (table.open)(text.as_ptr(), text.len(), rate_hz, block) };
-        self.opened(handle).map_err(|trouble| self.error("open", trouble).to_string())
-    }
-
-    /// Uses a new device for each array, because a refusal may close the device.
-    fn check_write(&self, lines: &str, format: &StreamFormat) -> Result<(), String> {
-        // Zeros do no harm if a faulty device plays them.
-        let (write, mut samples) = (self.library.table.write, Guarded::new(SAMPLES, 0.0f32));
-        for (array, pointer) in [
-            ("null `samples`", std::ptr::null_mut()),
-            ("misaligned `samples`", samples.misaligned()),
-        ] {
-            let device = self.opened_by(lines, format)?;
-            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
-            // it.
-            let answer = unsafe { write(device.handle, pointer, SAMPLES, 0) };
-            refused("write", array, answer)?;
-        }
-        Ok(())
-    }
-
-    fn check_status(&self, lines: &str, format: &StreamFormat) -> Result<(), String> {
-        let device = self.opened_by(lines, format)?;
-        let (status, handle) = (self.library.table.status, device.handle);
-        // No device reports this number, so every write into the guard values shows.
-        let mut out = Guarded::new(STATUS_NUMBERS, -1234.5f64);
-        // SAFETY: null, which must be refused.
-        let null = unsafe { status(handle, std::ptr::null_mut(), STATUS_NUMBERS) };
-        refused("status", "a null `out`", null)?;
-        // SAFETY: a pointer that must be refused, with a live buffer behind it.
-        let misaligned = unsafe { status(handle, out.misaligned(), STATUS_NUMBERS) };
-        refused("status", "a misaligned `out`", misaligned)?;
-        for capacity in [0, 1, STATUS_NUMBERS - 1] {
-            let mut out = Guarded::new(capacity, -1234.5f64);
-            // SAFETY: a live buffer of this length and more.
-            unsafe { status(handle, out.pointer(), capacity) };
-            out.check("status", "capacity")?;
-        }
-        Ok(())
-    }
-}
-
-impl Native<SourceTable> {
-    /// [`Native::refusal_of_open`] for a source.
-    pub fn refusal_of_lines(&self, lines: &str) -> Option<(i64, String)> {
-        // SAFETY: a live text.
-        let answer = unsafe { (self.library.table.open)(lines.as_ptr(), lines.len()) };
-        self.refusal(answer)
-    }
-
-    /// [`Native::check_arrays`] for a source.
-    ///
-    /// # Errors
-    /// Names the call that is at fault, and how.
-    pub fn check_source_arrays(&self, settings: &Settings) -> Result<(), String> {
-        let (table, told) = (self.library.table, |e: DeviceError| e.to_string());
-        self.library.check_texts()?;
-        // SAFETY: null, which must be refused.
-        let open = unsafe { (table.open)(std::ptr::null(), 16) };
-        refused("open", "null `settings`", open)?;
-        let source = self.open_native(settings).map_err(told)?;
-        let handle = source.handle();
-        // SAFETY: a buffer by `check_text`.
-        check_text("stream", |out, len| unsafe { (table.stream)(handle, out, len) })?;
-        source.begin().map_err(told)?;
-        let width = source.width();
-        let mut samples = Guarded::new(width, -1234.5f64);
-        // SAFETY: a live buffer of this length and more.
-        unsafe { (table.read)(handle, samples.pointer(), width, 100) };
-        samples.check("read", "len")?;
-        for (array, pointer) in [
-            ("null `samples`", std::ptr::null_mut()),
-            ("misaligned `samples`", samples.misaligned()),
-        ] {
-            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
-            // it.
-            refused("read", array, unsafe { (table.read)(handle, pointer, width, 0) })?;
-        }
-        Ok(())
-    }
-}
-
-impl<T: Table> Native<T> {
-    /// Returns the number and the text if `open` gave a negative answer. Otherwise closes what it
-    /// opened.
-    fn refusal(&self, answer: i64) -> Option<(i64, String)> {
+        let answer = unsafe { open(lines.as_ptr(), lines.len(), rate_hz, block_frames) };
         if answer > 0 {
-            (self.library.table.common().close)(answer);
+            let close = self.library.table.close?;
+            close(answer);
             return None;
         }
         Some((answer, self.library.last_error()))
+    }
+
+    /// Fails unless every call refuses null and misaligned arrays and writes only within the given
+    /// length. For an input, the numbers of `format` are 0.
+    ///
+    /// # Errors
+    /// Names the call that is at fault, and how.
+    pub fn check_arrays(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<(), DeviceError> {
+        let library = &self.library;
+        let descriptor = function!(library, descriptor);
+        // SAFETY: a null pointer, or a live buffer of more than this length, by `check_text`.
+        self.check_text("descriptor", |out, len| unsafe { descriptor(out, len) })?;
+        let endpoints = function!(library, endpoints);
+        // SAFETY: as above.
+        self.check_text("endpoints", |out, len| unsafe { endpoints(out, len) })?;
+        let last_error = function!(library, last_error);
+        // SAFETY: as above.
+        self.check_text("last_error", |out, len| unsafe { last_error(out, len) })?;
+        let open = function!(library, open);
+        // SAFETY: null, which must be refused.
+        let answer = unsafe { open(null(), 16, format.rate_hz, format.block_frames) };
+        self.check_refused("open", "null `settings`", answer)?;
+        match crate::Adapter::descriptor(self).direction {
+            Direction::Output => self.check_output_arrays(&self.lines(settings), format),
+            Direction::Input => self.check_input_arrays(settings),
+        }
+    }
+
+    fn check_output_arrays(&self, lines: &str, format: &StreamFormat) -> Result<(), DeviceError> {
+        let capabilities = function!(self.library, capabilities);
+        let mut out = GuardedBuffer::new(SAMPLES, 0xA5u8);
+        // SAFETY: null, which must be refused, and a live buffer.
+        let answer = unsafe { capabilities(null(), 16, out.pointer(), SAMPLES) };
+        self.check_refused("capabilities", "null `settings`", answer)?;
+        // SAFETY: a live text, and a buffer by `check_text`.
+        self.check_text("capabilities", |out, len| unsafe {
+            capabilities(lines.as_ptr(), lines.len(), out, len)
+        })?;
+        // Zeros do no harm if a faulty device plays them.
+        let (write, mut samples) =
+            (function!(self.library, write), GuardedBuffer::new(SAMPLES, 0.0f32));
+        for (array, pointer) in
+            [("null `samples`", null_mut()), ("misaligned `samples`", samples.misaligned())]
+        {
+            // A new device for each array, because a refusal may close the device.
+            let device = self.open_lines(lines, format)?;
+            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
+            // it.
+            let answer = unsafe { write(device.handle, pointer, SAMPLES, 0) };
+            self.check_refused("write", array, answer)?;
+        }
+        self.check_status(&self.open_lines(lines, format)?)
+    }
+
+    fn open_lines(&self, lines: &str, format: &StreamFormat) -> Result<OpenHandle, DeviceError> {
+        let opened = self.open(lines, format.rate_hz, format.block_frames);
+        opened.map_err(|failure| self.library.error("open", failure))
+    }
+
+    fn check_status(&self, device: &OpenHandle) -> Result<(), DeviceError> {
+        let (status, handle) = (function!(self.library, status), device.handle);
+        let mut out = GuardedBuffer::new(STATUS_NUMBERS, UNUSUAL);
+        // SAFETY: null, which must be refused.
+        let answer = unsafe { status(handle, null_mut(), STATUS_NUMBERS) };
+        self.check_refused("status", "a null `out`", answer)?;
+        // SAFETY: a pointer that must be refused, with a live buffer behind it.
+        let answer = unsafe { status(handle, out.misaligned(), STATUS_NUMBERS) };
+        self.check_refused("status", "a misaligned `out`", answer)?;
+        for capacity in [0, 1, STATUS_NUMBERS - 1] {
+            let mut out = GuardedBuffer::new(capacity, UNUSUAL);
+            // SAFETY: a live buffer of this length and more.
+            unsafe { status(handle, out.pointer(), capacity) };
+            self.check_within("status", "capacity", &out)?;
+        }
+        Ok(())
+    }
+
+    fn check_input_arrays(&self, settings: &Settings) -> Result<(), DeviceError> {
+        let mut input = self.open_native_input(settings)?;
+        let handle = input.handle();
+        let stream = function!(self.library, stream);
+        // SAFETY: a buffer by `check_text`.
+        self.check_text("stream", |out, len| unsafe { stream(handle, out, len) })?;
+        input.start()?;
+        let (read, width) = (function!(self.library, read), input.stream().channels.len());
+        let mut samples = GuardedBuffer::new(width, UNUSUAL);
+        // SAFETY: a live buffer of this length and more.
+        unsafe { read(handle, samples.pointer(), width, 100) };
+        self.check_within("read", "len", &samples)?;
+        for (array, pointer) in
+            [("null `samples`", null_mut()), ("misaligned `samples`", samples.misaligned())]
+        {
+            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
+            // it.
+            self.check_refused("read", array, unsafe { read(handle, pointer, width, 0) })?;
+        }
+        Ok(())
+    }
+
+    /// Tests a function that writes a text, with buffers of every kind. `call` gets a pointer and a
+    /// capacity.
+    fn check_text(
+        &self,
+        name: &str,
+        call: impl Fn(*mut u8, usize) -> i64,
+    ) -> Result<(), DeviceError> {
+        // Null is allowed with a capacity of 0: the call then only answers the length of its text.
+        let len = call(null_mut(), 0);
+        self.check_refused(name, "a null `out`", call(null_mut(), 16))?;
+        let whole = usize::try_from(len).unwrap_or(0);
+        for capacity in [0, 1, whole / 2, whole.saturating_sub(1)] {
+            let mut buffer = GuardedBuffer::before(capacity, whole, 0xA5u8);
+            call(buffer.pointer(), capacity);
+            self.check_within(name, "capacity", &buffer)?;
+        }
+        Ok(())
+    }
+
+    /// Fails unless the call refused the unusable array.
+    fn check_refused(&self, call: &str, array: &str, answer: i64) -> Result<(), DeviceError> {
+        if answer == INVALID_ARGUMENT {
+            return Ok(());
+        }
+        Err(self.library.wrong(format!(
+            "`{call}` with {array} and a length above 0 answers {answer}; it must refuse it with {INVALID_ARGUMENT}"
+        )))
+    }
+
+    fn check_within<T: Copy + PartialEq>(
+        &self,
+        call: &str,
+        bound: &str,
+        buffer: &GuardedBuffer<T>,
+    ) -> Result<(), DeviceError> {
+        if buffer.has_overflow() {
+            let what = format!("`{call}` wrote beyond `{bound}`, which was {}", buffer.len);
+            return Err(self.library.wrong(what));
+        }
+        Ok(())
     }
 }

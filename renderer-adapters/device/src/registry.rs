@@ -1,17 +1,20 @@
-//! The adapters of devices or sources that a program can find.
+//! The adapters that a program can find.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use htex_base::native::folders::{data, libraries_in, listed};
 
-use crate::library::Table;
-use crate::loaded::Native;
-use crate::{Descriptor, DeviceError, Endpoint};
+use crate::{Adapter, Descriptor, DeviceError, Direction, Input, NativeAdapter, Settings};
 
-/// Where to search for native libraries of devices or sources. Earlier places take precedence over
-/// later ones: `files`, `dirs`, the environment variable (`HTEX_DEVICE_PATH`, `HTEX_SOURCE_PATH`),
-/// the user's folder, built in.
+/// Environment variable that lists folders of libraries, separated as in `PATH`.
+const VARIABLE: &str = "HTEX_DEVICE_PATH";
+/// The user's folder of libraries, relative to the data folder.
+const FOLDER: &str = "htex/devices";
+
+/// Where to search for native libraries of devices. Earlier places take precedence over later ones:
+/// `files`, `dirs`, the environment variable `HTEX_DEVICE_PATH`, the user's folder, built in.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// Library files to load. A file that cannot be loaded is an error.
@@ -21,8 +24,8 @@ pub struct Search {
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders that the environment variable names.
     pub env: bool,
-    /// Whether to search `htex/devices` or `htex/sources` in the user's data folder
-    /// (`$XDG_DATA_HOME`, else `~/.local/share`).
+    /// Whether to search `htex/devices` in the user's data folder (`$XDG_DATA_HOME`, else
+    /// `~/.local/share`).
     pub user_dir: bool,
 }
 
@@ -51,99 +54,53 @@ impl std::fmt::Display for Origin {
     }
 }
 
-/// A kind of adapter: for devices or for sources.
-pub trait AdapterKind: Send + Sync + 'static {
-    /// The C functions of a native library of this kind.
-    type Table: Table;
-    /// `device` or `source`.
-    const WORD: &'static str;
-    /// The environment variable that lists folders of libraries, separated as in `PATH`.
-    const VARIABLE: &'static str;
-    /// The user's folder of libraries, relative to the data folder.
-    const FOLDER: &'static str;
-
-    /// Returns the adapter's name, version, settings and profiles.
-    fn about(&self) -> &Descriptor;
-
-    /// Lists the devices or sources that are connected now.
-    ///
-    /// # Errors
-    /// When a driver is missing: the message says what to install.
-    fn connected(&self) -> Result<Vec<Endpoint>, DeviceError>;
-
-    /// Wraps the adapter of a native library.
-    fn of_native(native: Native<Self::Table>) -> Arc<Self>;
-
-    /// Returns the error that there is no adapter called `wanted`.
-    fn unknown(wanted: String, known: String) -> DeviceError;
-}
-
 /// An adapter that was found.
-pub struct Known<A: ?Sized> {
+#[derive(Clone)]
+pub struct AdapterEntry {
     /// The adapter.
-    pub adapter: Arc<A>,
+    pub adapter: Arc<dyn Adapter>,
     /// Where its code comes from.
     pub origin: Origin,
 }
 
-impl<A: AdapterKind + ?Sized> Known<A> {
+impl AdapterEntry {
     /// Loads the adapter of a native library, which runs with all the rights of this program.
     ///
     /// # Errors
-    /// When the file is not a library of this kind.
+    /// When the file is not a library of this ABI.
     pub fn load(path: &Path) -> Result<Self, DeviceError> {
-        Ok(Self {
-            adapter: A::of_native(Native::load(path)?),
-            origin: Origin::Library(path.to_owned()),
-        })
+        let adapter = Arc::new(NativeAdapter::load(path)?);
+        Ok(Self { adapter, origin: Origin::Library(path.to_owned()) })
     }
 
-    /// Returns the adapter's name, version, settings and profiles.
+    /// Returns the adapter's name, version, direction, settings and profiles.
     pub fn descriptor(&self) -> &Descriptor {
-        self.adapter.about()
+        self.adapter.descriptor()
     }
 
-    /// Lists the devices or sources that are connected now.
-    ///
-    /// # Errors
-    /// When a driver is missing: the message says what to install.
-    pub fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
-        self.adapter.connected()
-    }
-
-    fn id(&self) -> &str {
-        &self.descriptor().id
-    }
-
-    fn is_named(&self, name: &str) -> bool {
+    fn has_name(&self, name: &str) -> bool {
         self.descriptor().short_name().eq_ignore_ascii_case(name)
     }
 }
 
-impl<A: ?Sized> Clone for Known<A> {
-    fn clone(&self) -> Self {
-        Self { adapter: Arc::clone(&self.adapter), origin: self.origin.clone() }
-    }
-}
-
-impl<A: AdapterKind + ?Sized> std::fmt::Debug for Known<A> {
+impl std::fmt::Debug for AdapterEntry {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut tuple = f.debug_tuple("Known");
-        tuple.field(&self.id()).field(&self.origin).finish()
+        let Descriptor { id, direction, .. } = self.descriptor();
+        f.debug_tuple("AdapterEntry").field(id).field(direction).field(&self.origin).finish()
     }
 }
 
-/// Something found during the search that is not an error. `kind` is `device` or `source`.
+/// Something found during the search that is not an error.
 #[allow(missing_docs)] // The variants say what a field is.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Two adapters have the same id; the one found first is used.
-    Shadowed { kind: &'static str, id: String, used: Origin, shadowed: Origin },
-    /// Two adapters with different ids have the same short name. The short name means the one found
-    /// first.
+    /// Two adapters of one direction have the same id; the one found first is used.
+    Shadowed { direction: Direction, id: String, used: Origin, shadowed: Origin },
+    /// Two adapters of one direction with different ids have the same short name. The short name
+    /// means the one found first.
     SameName {
-        kind: &'static str,
+        direction: Direction,
         name: String,
         /// The id that the short name means.
         means: String,
@@ -151,82 +108,66 @@ pub enum Note {
         other: String,
     },
     /// A file or folder that the user did not name could not be loaded or read.
-    LeftOut { kind: &'static str, error: DeviceError },
+    LeftOut { error: DeviceError },
 }
 
 impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Shadowed { kind, id, used, shadowed } => {
-                write!(f, "{kind} {id} ({used}) is used in place of ({shadowed})")
+            Self::Shadowed { direction, id, used, shadowed } => {
+                write!(f, "{direction} {id} ({used}) is used in place of ({shadowed})")
             }
-            Self::SameName { kind, name, means, other } => write!(
+            Self::SameName { direction, name, means, other } => write!(
                 f,
-                "{kind} `{name}` means {means}; write `{other}` in full for the other one"
+                "{direction} `{name}` means {means}; write `{other}` in full for the other one"
             ),
-            Self::LeftOut { kind, error } => write!(f, "a {kind} is left out: {error}"),
+            Self::LeftOut { error } => write!(f, "a device is left out: {error}"),
         }
     }
 }
 
-/// Adapters of one kind, by id and by short name.
-pub struct Registry<A: ?Sized> {
-    known: Vec<Known<A>>,
+/// The adapters of a program. An output and an input may share an id and a short name, e.g. the two
+/// sides of a sound card.
+#[derive(Debug, Clone, Default)]
+pub struct Devices {
+    entries: Vec<AdapterEntry>,
     notes: Vec<Note>,
 }
 
-impl<A: ?Sized> Default for Registry<A> {
-    fn default() -> Self {
-        Self { known: Vec::new(), notes: Vec::new() }
-    }
-}
-
-impl<A: ?Sized> Clone for Registry<A> {
-    fn clone(&self) -> Self {
-        Self { known: self.known.clone(), notes: self.notes.clone() }
-    }
-}
-
-impl<A: AdapterKind + ?Sized> std::fmt::Debug for Registry<A> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_list().entries(&self.known).finish()
-    }
-}
-
-impl<A: AdapterKind + ?Sized> Registry<A> {
-    /// Creates a registry of only the adapters linked into a program.
-    pub fn new(builtin: Vec<Arc<A>>) -> Self {
-        let mut found = Self::default();
-        found.add_builtin(builtin);
-        found
+impl Devices {
+    /// Returns only the adapters linked into a program.
+    pub fn new(builtin: Vec<Arc<dyn Adapter>>) -> Self {
+        let mut devices = Self::default();
+        devices.add_builtin(builtin);
+        devices
     }
 
-    /// Creates a registry of the adapters that a search finds, followed by those linked into the
-    /// program.
+    /// Returns the adapters that a search finds, followed by those linked into the program.
     ///
     /// # Errors
     /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
-    pub fn search(builtin: Vec<Arc<A>>, search: &Search) -> Result<Self, DeviceError> {
-        let mut found = Self::default();
+    pub fn search(builtin: Vec<Arc<dyn Adapter>>, search: &Search) -> Result<Self, DeviceError> {
+        let mut devices = Self::default();
         for path in &search.files {
-            found.add_file(path)?;
+            devices.add(AdapterEntry::load(path)?);
         }
         for dir in &search.dirs {
-            found.add_folder(dir)?;
+            devices.add_folder(dir)?;
         }
-        for dir in unnamed_folders::<A>(search) {
-            if let Err(error) = found.add_folder(&dir) {
-                found.notes.push(Note::LeftOut { kind: A::WORD, error });
+        let listed = search.env.then(|| listed(VARIABLE)).into_iter().flatten();
+        for dir in listed.chain(data(FOLDER).filter(|_| search.user_dir)) {
+            if let Err(error) = devices.add_folder(&dir) {
+                devices.notes.push(Note::LeftOut { error });
             }
         }
         // Last, so that a library can replace a built-in adapter of the same id.
-        found.add_builtin(builtin);
-        Ok(found)
+        devices.add_builtin(builtin);
+        Ok(devices)
     }
 
-    /// Returns all adapters in use, each id once.
-    pub fn all(&self) -> &[Known<A>] {
-        &self.known
+    /// Returns all adapters in use, each id once in each direction.
+    pub fn all(&self) -> &[AdapterEntry] {
+        &self.entries
     }
 
     /// Returns notes for the user about adapters that shadow others and libraries that could not be
@@ -235,29 +176,65 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
         &self.notes
     }
 
-    /// Finds an adapter by its id or its short name (`org.htex.file` or `file`, case-insensitive).
+    /// Finds an output by its id or its short name (`org.htex.file` or `file`, case-insensitive).
     ///
     /// # Errors
-    /// [`DeviceError::Unknown`] or [`DeviceError::UnknownSource`] with the known names.
-    pub fn find(&self, name: &str) -> Result<&Known<A>, DeviceError> {
-        let by_id = self.known.iter().find(|known| known.id() == name);
-        let by_name = || self.known.iter().find(|known| known.is_named(name));
+    /// [`DeviceError::Unknown`] with the known names.
+    pub fn find_output(&self, name: &str) -> Result<&AdapterEntry, DeviceError> {
+        self.find(Direction::Output, name)
+    }
+
+    /// Finds an input as [`Self::find_output`] finds an output.
+    ///
+    /// # Errors
+    /// [`DeviceError::Unknown`] with the known names.
+    pub fn find_input(&self, name: &str) -> Result<&AdapterEntry, DeviceError> {
+        self.find(Direction::Input, name)
+    }
+
+    /// Opens the input named by a text `NAME:TARGET`, e.g. `file:rec.csv` or `daq:Dev1/ai0:5`, with
+    /// a profile and further settings. The part after the first colon becomes the value of the
+    /// setting that [`Descriptor::target`] names.
+    ///
+    /// # Errors
+    /// When the name is not known, a setting is not usable, or the input cannot be opened.
+    pub fn open_input(
+        &self,
+        text: &str,
+        profile: Option<&str>,
+        given: &BTreeMap<String, String>,
+    ) -> Result<Box<dyn Input>, DeviceError> {
+        let (name, value) = match text.split_once(':') {
+            Some((name, value)) => (name, Some(value)),
+            None => (text, None),
+        };
+        let adapter = &self.find_input(name)?.adapter;
+        let mut given = given.clone();
+        if let (Some(target), Some(value)) = (&adapter.descriptor().target, value) {
+            given.insert(target.clone(), value.to_owned());
+        }
+        adapter.open_input(&Settings::resolve(adapter.descriptor(), profile, &given)?)
+    }
+
+    fn find(&self, direction: Direction, name: &str) -> Result<&AdapterEntry, DeviceError> {
+        let by_id = self.of_direction(direction).find(|entry| entry.descriptor().id == name);
+        let by_name = || self.of_direction(direction).find(|entry| entry.has_name(name));
         by_id.or_else(by_name).ok_or_else(|| {
-            let names = self.known.iter().map(|k| k.descriptor().short_name());
-            A::unknown(name.to_owned(), names.collect::<Vec<_>>().join(", "))
+            let names = self.of_direction(direction).map(|entry| entry.descriptor().short_name());
+            let known = names.collect::<Vec<_>>().join(", ");
+            DeviceError::Unknown { direction, wanted: name.to_owned(), known }
         })
     }
 
-    fn add_builtin(&mut self, builtin: Vec<Arc<A>>) {
-        for adapter in builtin {
-            let origin = Origin::Builtin;
-            self.add(Known { adapter, origin });
-        }
+    /// Returns the adapters in use of a direction.
+    pub fn of_direction(&self, direction: Direction) -> impl Iterator<Item = &AdapterEntry> {
+        self.entries.iter().filter(move |entry| entry.descriptor().direction == direction)
     }
 
-    fn add_file(&mut self, path: &Path) -> Result<(), DeviceError> {
-        self.add(Known::load(path)?);
-        Ok(())
+    fn add_builtin(&mut self, builtin: Vec<Arc<dyn Adapter>>) {
+        for adapter in builtin {
+            self.add(AdapterEntry { adapter, origin: Origin::Builtin });
+        }
     }
 
     fn add_folder(&mut self, dir: &Path) -> Result<(), DeviceError> {
@@ -266,40 +243,30 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
             what: error.to_string(),
         })?;
         for file in files {
-            if let Err(error) = self.add_file(&file) {
-                self.notes.push(Note::LeftOut { kind: A::WORD, error });
+            match AdapterEntry::load(&file) {
+                Ok(entry) => self.add(entry),
+                Err(error) => self.notes.push(Note::LeftOut { error }),
             }
         }
         Ok(())
     }
 
-    /// Appends an adapter, unless its id is already present.
-    fn add(&mut self, one: Known<A>) {
-        if let Some(used) = self.known.iter().find(|known| known.id() == one.id()) {
-            self.notes.push(Note::Shadowed {
-                kind: A::WORD,
-                id: one.id().to_owned(),
-                used: used.origin.clone(),
-                shadowed: one.origin,
-            });
+    /// Appends an adapter, unless its id is already present in its direction.
+    fn add(&mut self, entry: AdapterEntry) {
+        let Descriptor { direction, id, .. } = entry.descriptor().clone();
+        let used = self.of_direction(direction).find(|other| other.descriptor().id == id);
+        let used = used.map(|used| used.origin.clone());
+        if let Some(used) = used {
+            self.notes.push(Note::Shadowed { direction, id, used, shadowed: entry.origin });
             return;
         }
-        let name = one.descriptor().short_name();
-        if let Some(first) = self.known.iter().find(|known| known.is_named(name)) {
-            self.notes.push(Note::SameName {
-                kind: A::WORD,
-                name: name.to_owned(),
-                means: first.id().to_owned(),
-                other: one.id().to_owned(),
-            });
+        let name = entry.descriptor().short_name();
+        let first = self.of_direction(direction).find(|other| other.has_name(name));
+        let means = first.map(|first| first.descriptor().id.clone());
+        if let Some(means) = means {
+            let name = name.to_owned();
+            self.notes.push(Note::SameName { direction, name, means, other: id });
         }
-        self.known.push(one);
+        self.entries.push(entry);
     }
-}
-
-/// Returns the folders of the environment variable and of the user, which nobody named explicitly.
-fn unnamed_folders<A: AdapterKind + ?Sized>(search: &Search) -> impl Iterator<Item = PathBuf> {
-    let listed = search.env.then(|| listed(A::VARIABLE));
-    let own = search.user_dir.then(|| data(A::FOLDER)).flatten();
-    listed.into_iter().flatten().chain(own)
 }

@@ -17,7 +17,7 @@ pub struct Settings(BTreeMap<String, String>);
 
 /// Requested settings of a device, grouped by who states them.
 #[derive(Debug, Clone, Copy)]
-pub struct Stated<'a> {
+pub struct SettingRequests<'a> {
     /// Name of the profile that the user chose.
     pub profile: Option<&'a str>,
     /// Settings that the user gave one by one.
@@ -30,7 +30,7 @@ pub struct Stated<'a> {
 
 /// A setting that a scene asked for without success.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Ignored {
+pub struct IgnoredSetting {
     /// Name of a setting of the descriptor.
     pub name: String,
     /// The reason, as a sentence.
@@ -49,8 +49,8 @@ impl Settings {
         profile: Option<&str>,
         given: &BTreeMap<String, String>,
     ) -> Result<Self, DeviceError> {
-        let stated = Stated { profile, given, asked: &BTreeMap::new(), live: false };
-        Ok(Self::settle(descriptor, &stated)?.0)
+        let requests = SettingRequests { profile, given, asked: &BTreeMap::new(), live: false };
+        Ok(Self::settle(descriptor, &requests)?.0)
     }
 
     /// Combines the settings as [`Self::resolve`] does, and adds the settings of a scene. Returns
@@ -60,14 +60,14 @@ impl Settings {
     /// The errors of [`Self::resolve`].
     pub fn settle(
         descriptor: &Descriptor,
-        stated: &Stated<'_>,
-    ) -> Result<(Self, Vec<Ignored>), DeviceError> {
-        let mut values = match stated.profile {
+        requests: &SettingRequests<'_>,
+    ) -> Result<(Self, Vec<IgnoredSetting>), DeviceError> {
+        let mut values = match requests.profile {
             Some(name) => profile_settings(descriptor, name)?,
             None => BTreeMap::new(),
         };
-        for (name, value) in stated.given {
-            let setting = known(descriptor, name)?;
+        for (name, value) in requests.given {
+            let setting = find(descriptor, name)?;
             check(setting, value)?;
             // A limit of a profile protects its rig, so the user may only lower it.
             let holds = setting.from_scene == FromScene::Less
@@ -77,7 +77,7 @@ impl Settings {
             }
         }
         for setting in &descriptor.settings {
-            let live = setting.live_default.as_ref().filter(|_| stated.live);
+            let live = setting.live_default.as_ref().filter(|_| requests.live);
             let default = live.or(setting.default.as_ref());
             if let (false, Some(default)) = (values.contains_key(&setting.name), default) {
                 values.insert(setting.name.clone(), default.clone());
@@ -85,23 +85,25 @@ impl Settings {
         }
         // After the defaults, because a scene may only lower or raise what holds without it.
         let mut ignored = Vec::new();
-        for (name, value) in stated.asked {
-            let setting = known(descriptor, name)?;
+        for (name, value) in requests.asked {
+            let setting = find(descriptor, name)?;
             check(setting, value)?;
-            let is_given = stated.given.contains_key(name);
-            match asked(setting, value, values.get(name), is_given) {
-                Asked::Used => {
+            let is_given = requests.given.contains_key(name);
+            match scene_request(setting, value, values.get(name), is_given) {
+                SceneRequest::Used => {
                     values.insert(name.clone(), value.clone());
                 }
-                Asked::Given => {}
-                Asked::Ignored(what) => ignored.push(Ignored { name: name.clone(), what }),
+                SceneRequest::Given => {}
+                SceneRequest::Ignored(what) => {
+                    ignored.push(IgnoredSetting { name: name.clone(), what })
+                }
             }
         }
         // The values of a profile and the defaults are checked only here.
         for setting in &descriptor.settings {
             match values.get(&setting.name) {
                 Some(value) => check(setting, value)?,
-                None => return Err(error(&setting.name, missing(setting))),
+                None => return Err(DeviceError::setting(&setting.name, missing(setting))),
             }
         }
         Ok((Self(values), ignored))
@@ -140,25 +142,22 @@ impl Settings {
         let mut given = BTreeMap::new();
         for line in lines.lines() {
             let Some((name, value)) = line.split_once('=') else {
-                return Err(error(line, "a line is NAME=VALUE".to_owned()));
+                return Err(DeviceError::setting(line, "a line is NAME=VALUE"));
             };
             if given.insert(name.to_owned(), value.to_owned()).is_some() {
-                return Err(error(name, "it is given twice".to_owned()));
+                return Err(DeviceError::setting(name, "it is given twice"));
             }
         }
         Self::resolve(descriptor, None, &given)
     }
 }
 
-pub(crate) fn known<'a>(
-    descriptor: &'a Descriptor,
-    name: &str,
-) -> Result<&'a Setting, DeviceError> {
+pub(crate) fn find<'a>(descriptor: &'a Descriptor, name: &str) -> Result<&'a Setting, DeviceError> {
     let mut settings = descriptor.settings.iter();
     settings.find(|s| s.name == name).ok_or_else(|| {
         let known: Vec<&str> = descriptor.settings.iter().map(|s| &s.name[..]).collect();
         let what = format!("{} has none; it has {}", descriptor.id, known.join(", "));
-        error(name, what)
+        DeviceError::setting(name, what)
     })
 }
 
@@ -179,7 +178,7 @@ fn number(text: &str) -> f64 {
 }
 
 /// What happens to a setting that a scene asks for.
-enum Asked {
+enum SceneRequest {
     Used,
     /// The user gave another value, which holds.
     Given,
@@ -187,22 +186,27 @@ enum Asked {
     Ignored(String),
 }
 
-fn asked(setting: &Setting, value: &str, held: Option<&String>, is_given: bool) -> Asked {
+fn scene_request(
+    setting: &Setting,
+    value: &str,
+    held: Option<&String>,
+    is_given: bool,
+) -> SceneRequest {
     let held = held.map(String::as_str);
     match (setting.from_scene, held) {
-        (FromScene::Any, _) if is_given => Asked::Given,
-        (FromScene::Any, _) => Asked::Used,
+        (FromScene::Any, _) if is_given => SceneRequest::Given,
+        (FromScene::Any, _) => SceneRequest::Used,
         (FromScene::Never, _) | (FromScene::Less | FromScene::More, None) => {
-            Asked::Ignored(format!(
+            SceneRequest::Ignored(format!(
                 "the scene's {value} is not used: it describes the hardware, which the user does"
             ))
         }
-        (FromScene::Less, Some(held)) if number(value) <= number(held) => Asked::Used,
-        (FromScene::More, Some(held)) if number(value) >= number(held) => Asked::Used,
-        (FromScene::Less, Some(held)) => Asked::Ignored(format!(
+        (FromScene::Less, Some(held)) if number(value) <= number(held) => SceneRequest::Used,
+        (FromScene::More, Some(held)) if number(value) >= number(held) => SceneRequest::Used,
+        (FromScene::Less, Some(held)) => SceneRequest::Ignored(format!(
             "the scene's {value} is not used: {held} holds, and a scene can only lower it"
         )),
-        (FromScene::More, Some(held)) => Asked::Ignored(format!(
+        (FromScene::More, Some(held)) => SceneRequest::Ignored(format!(
             "the scene's {value} is not used: {held} holds, and a scene can only raise it"
         )),
     }
@@ -216,13 +220,13 @@ fn profile_settings(
     found.map(|p| p.settings.clone()).ok_or_else(|| {
         let names: Vec<&str> = descriptor.profiles.iter().map(|p| &p.name[..]).collect();
         let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        error("profile", format!("there is no `{name}`; there is {there}"))
+        DeviceError::setting("profile", format!("there is no `{name}`; there is {there}"))
     })
 }
 
 /// Checks that a setting may have this value.
 pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
-    let refuse = |what: String| Err(error(&setting.name, what));
+    let refuse = |what: String| Err(DeviceError::setting(&setting.name, what));
     // Settings cross the ABI as lines.
     if value.contains(['\n', '\r']) {
         return refuse("a value is one line".to_owned());
@@ -240,24 +244,14 @@ pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
     }
 }
 
-fn error(name: &str, what: String) -> DeviceError {
-    DeviceError::Setting { name: name.to_owned(), what }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Profile;
 
     fn setting(name: &str, kind: &SettingKind, from_scene: FromScene) -> Setting {
-        Setting {
-            name: name.to_owned(),
-            kind: kind.clone(),
-            default: Some("100".to_owned()),
-            live_default: None,
-            from_scene,
-            description: "A number.".to_owned(),
-        }
+        let setting = Setting::new(name, kind.clone(), "A number.");
+        setting.with_default("100").with_from_scene(from_scene)
     }
 
     fn descriptor() -> Descriptor {
@@ -278,7 +272,7 @@ mod tests {
                 summary: "A small one.".to_owned(),
                 settings: BTreeMap::from([("limit_v".to_owned(), "20".to_owned())]),
             }],
-            mapping: None,
+            ..Descriptor::default()
         }
     }
 
@@ -320,8 +314,8 @@ mod tests {
             ("tone_hz", "15", &map("tone_hz", "50"), 50.0),
         ] {
             let asked = map(name, value);
-            let stated = Stated { profile: None, given, asked: &asked, live: false };
-            let (settings, ignored) = Settings::settle(&descriptor(), &stated)?;
+            let requests = SettingRequests { profile: None, given, asked: &asked, live: false };
+            let (settings, ignored) = Settings::settle(&descriptor(), &requests)?;
             assert_eq!(settings.number(name), holds, "{name} {value}");
             let gets = holds == value.parse().unwrap_or(f64::NAN);
             assert_eq!(ignored.is_empty(), gets || name == "tone_hz", "{name} {value}");

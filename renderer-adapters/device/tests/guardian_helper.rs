@@ -8,9 +8,9 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use htex_device::guardian::{Guarded, hold, is_unconfirmed, is_wanted};
+use htex_device::guardian::{GuardedOutput, hold, is_unconfirmed, is_wanted};
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Devices, Endpoint, FromScene, Quantity,
+    Adapter, Capabilities, Descriptor, DeviceError, Devices, Endpoint, FromScene, Output, Quantity,
     Rates, Setting, SettingKind, Settings, Status, StreamFormat,
 };
 
@@ -45,22 +45,15 @@ impl Drop for Open {
 
 impl Bench {
     fn devices() -> Devices {
-        let setting = Setting {
-            name: "log".to_owned(),
-            kind: SettingKind::Text,
-            default: None,
-            live_default: None,
-            from_scene: FromScene::Never,
-            description: "The file.".to_owned(),
-        };
+        let setting = Setting::new("log", SettingKind::Text, "The file.");
+        let setting = setting.with_from_scene(FromScene::Never);
         Devices::new(vec![Arc::new(Self(Descriptor {
             id: "org.example.bench".to_owned(),
             name: "Bench".to_owned(),
             version: "1.0.0".to_owned(),
             summary: "A display of the test.".to_owned(),
             settings: vec![setting],
-            profiles: vec![],
-            mapping: None,
+            ..Descriptor::default()
         }))])
     }
 }
@@ -87,7 +80,11 @@ impl Adapter for Bench {
         })
     }
 
-    fn open(&self, s: &Settings, format: &StreamFormat) -> Result<Box<dyn Device>, DeviceError> {
+    fn open_output(
+        &self,
+        s: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Output>, DeviceError> {
         if *format != FORMAT {
             return Err(DeviceError::Missing("no such clock".to_owned()));
         }
@@ -97,7 +94,7 @@ impl Adapter for Bench {
     }
 }
 
-impl Device for Open {
+impl Output for Open {
     fn write(&mut self, samples: &[f32], _: Duration) -> Result<usize, DeviceError> {
         if samples == [HANGS] {
             std::thread::sleep(LONG);
@@ -130,13 +127,13 @@ fn this(part: &str) -> Command {
     command
 }
 
-fn guarded(log: &str, format: &StreamFormat, helper: &str) -> Result<Guarded, DeviceError> {
+fn guarded(log: &str, format: &StreamFormat, helper: &str) -> Result<GuardedOutput, DeviceError> {
     let devices = Bench::devices();
-    let known = devices.find("bench").unwrap();
+    let known = devices.find_output("bench").unwrap();
     let given = [("log".to_owned(), log.to_owned())].into();
     let settings = Settings::resolve(known.descriptor(), None, &given).unwrap();
     assert!(is_wanted(&known.adapter.capabilities(&settings).unwrap()));
-    Guarded::open(known, &settings, format, this(helper))
+    GuardedOutput::open(known, &settings, format, this(helper))
 }
 
 fn lines(log: &Path) -> Vec<String> {
@@ -218,7 +215,7 @@ fn main() {
         Some("helper") => {
             let devices = Bench::devices();
             let (from, to) = (std::io::stdin().lock(), std::io::stdout().lock());
-            hold(|id| devices.find(id).cloned(), from, to);
+            hold(|id| devices.find_output(id).cloned(), from, to);
         }
         Some("app") => {
             let mut device = guarded(&arguments[1], &FORMAT, "helper").unwrap();

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use htex_device::{
-    Capabilities, Device as Opened, DeviceError, Devices, Quantity, Search, Settings, StreamFormat,
+    Capabilities, DeviceError, Devices, Direction, Output, Quantity, Search, Settings, StreamFormat,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ pub(crate) struct Device {
     name: String,
     /// `None` when it is closed. The lock only satisfies the interpreter: each call has the object
     /// to itself.
-    device: Mutex<Option<Box<dyn Opened>>>,
+    device: Mutex<Option<Box<dyn Output>>>,
     can: Capabilities,
     rate_hz: f64,
 }
@@ -44,7 +44,7 @@ impl Device {
         }
         py.detach(|| {
             let devices = devices(installed).map_err(raised)?;
-            let known = devices.find(&name).map_err(raised)?;
+            let known = devices.find_output(&name).map_err(raised)?;
             let settings = Settings::resolve(known.descriptor(), profile, &given).map_err(raised)?;
             let can = known.adapter.capabilities(&settings).map_err(raised)?;
             if can.quantity == Quantity::DisplayVoltage && can.paced {
@@ -58,7 +58,7 @@ impl Device {
                 rate_hz,
                 block_frames: can.block_frames,
             };
-            let device = known.adapter.open(&settings, &format).map_err(raised)?;
+            let device = known.adapter.open_output(&settings, &format).map_err(raised)?;
             Ok(Self {
                 name,
                 device: Mutex::new(Some(device)),
@@ -150,25 +150,25 @@ impl Device {
 }
 
 impl Device {
-    fn slot(&mut self) -> &mut Option<Box<dyn Opened>> {
+    fn slot(&mut self) -> &mut Option<Box<dyn Output>> {
         self.device.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn open(&mut self) -> PyResult<&mut Box<dyn Opened>> {
+    fn open(&mut self) -> PyResult<&mut Box<dyn Output>> {
         let closed = Failed::new_err(format!("{} is closed", self.name));
         self.slot().as_mut().ok_or(closed)
     }
 }
 
-/// The devices, as in `htex device list --json`: a description of each, its settings, and what is
+/// The outputs, as in `htex device list --json`: a description of each, its settings, and what is
 /// connected.
 #[pyfunction(name = "devices")]
 #[pyo3(signature = (*, installed=false))]
 pub(crate) fn listed(py: Python<'_>, installed: bool) -> PyResult<Bound<'_, PyAny>> {
     let all: Vec<_> = py.detach(|| {
         let devices = devices(installed).map_err(raised)?;
-        let described = devices.all().iter().map(|known| {
-            let (endpoints, problem) = match known.endpoints() {
+        let described = devices.of_direction(Direction::Output).map(|known| {
+            let (endpoints, problem) = match known.adapter.endpoints() {
                 Ok(endpoints) => (endpoints, None),
                 Err(problem) => (Vec::new(), Some(problem.to_string())),
             };

@@ -62,7 +62,7 @@ impl Scene {
             let devices = devices(installed).map_err(raised)?;
             let around = Surroundings { models: &models, embedded, devices: Some(&devices) };
             let loaded = htex_scene::Scene::open_with(&path, &around, &device).map_err(raised)?;
-            let known = devices.find(&loaded.file.device.adapter).map_err(raised)?;
+            let known = devices.find_output(&loaded.file.device.adapter).map_err(raised)?;
             let able = known.adapter.capabilities(&loaded.settings).map_err(raised)?;
             Ok(Self { file: path, models, embedded, device, loaded, able, devices })
         })

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use htex_base::finding::{Findings, escape};
 use htex_device::{
-    Capabilities, Descriptor, DeviceError, Devices, FromScene, Ignored, Quantity, Setting,
-    SettingKind, Settings, Stated,
+    Capabilities, Descriptor, DeviceError, Devices, FromScene, IgnoredSetting, Quantity, Setting,
+    SettingKind, SettingRequests, Settings,
 };
 use htex_format::Quantity as Held;
 use serde_json::Value;
@@ -76,7 +76,7 @@ pub(crate) fn check_device(
     held: Option<Held>,
     findings: &mut Findings,
 ) -> Option<Settings> {
-    let adapter = match devices.find(&choice.adapter) {
+    let adapter = match devices.find_output(&choice.adapter) {
         Ok(known) => &known.adapter,
         Err(error) => {
             findings.add(rule::DEVICE_UNKNOWN, "/device/adapter", error.to_string());
@@ -135,10 +135,10 @@ fn settle(
                 .or_insert_with(|| change.output(stem, format.as_ref()));
         }
     }
-    let stated = Stated { profile, given: &given, asked: &asked, live: change.live };
-    let settled = Settings::settle(descriptor, &stated);
+    let requests = SettingRequests { profile, given: &given, asked: &asked, live: change.live };
+    let settled = Settings::settle(descriptor, &requests);
     let (settings, ignored) = settled.map_err(|error| add_error(error, findings)).ok()?;
-    for Ignored { name, what } in ignored {
+    for IgnoredSetting { name, what } in ignored {
         let pointer = format!("/device/settings/{}", escape(&name));
         findings.add(rule::DEVICE_HARDWARE, pointer, what);
     }

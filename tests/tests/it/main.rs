@@ -29,6 +29,5 @@ mod playing;
 mod probes;
 mod regressions;
 mod schemas;
-mod source_abi;
 mod third_party;
 mod voices;

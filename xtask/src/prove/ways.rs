@@ -196,7 +196,7 @@ fn run(block: &Block, folder: &Path) -> Result<String> {
     // No models, devices or settings of the person who runs this; cargo's and pip's folders stay.
     shell.env("HTEX_CONFIG_DIR", &home).env("XDG_DATA_HOME", &home);
     shell.env("LC_ALL", "C.UTF-8").env("MPLCONFIGDIR", &home);
-    for name in ["HTEX_PLUGIN_PATH", "HTEX_DEVICE_PATH", "HTEX_SOURCE_PATH", "CARGO_TARGET_DIR"] {
+    for name in ["HTEX_PLUGIN_PATH", "HTEX_DEVICE_PATH", "CARGO_TARGET_DIR"] {
         shell.env_remove(name);
     }
     let status = shell.status().context("sh")?;

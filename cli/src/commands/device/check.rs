@@ -1,21 +1,24 @@
 use clap::Args;
-use htex_device::Adapter;
+use htex_check::device::{Subject, check, run_one};
+use htex_check::harness::Finding;
+use htex_device::Origin;
 
-use crate::adapter_checks::Checked;
 use crate::checking::CheckArgs;
-use crate::devices::{DeviceArgs, SettingArgs};
+use crate::devices::OneDeviceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::hints::with_quoted;
+use crate::output::print_json;
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
 ///
 /// Each check runs in its own process, so that a crash or an endless loop ends only that check. The
-/// checks drive the device at a hundredth of its limit, and offer it samples beyond the limit,
-/// which it must refuse. Do not touch what is connected.
+/// checks drive an output at a hundredth of its limit, and offer it samples beyond the limit, which
+/// it must refuse. Do not touch what is connected.
 #[derive(Args)]
 pub(crate) struct Check {
     #[command(flatten)]
-    which: Which,
+    device: OneDeviceArgs,
 
     #[command(flatten)]
     checking: CheckArgs,
@@ -25,43 +28,51 @@ pub(crate) struct Check {
 #[derive(Args)]
 pub(crate) struct CheckOne {
     #[command(flatten)]
-    which: Which,
+    device: OneDeviceArgs,
     name: String,
-}
-
-/// A device, and how it is set.
-#[derive(Args)]
-struct Which {
-    /// The device, by short name, id or library file
-    #[arg(value_name = "FILE|ID")]
-    device: String,
-
-    #[command(flatten)]
-    devices: DeviceArgs,
-
-    #[command(flatten)]
-    settings: SettingArgs,
-}
-
-impl Which {
-    fn checked(&self) -> Result<Checked<'_, dyn Adapter>, Failure> {
-        Ok(Checked {
-            name: &self.device,
-            subject: self.devices.subject(&self.device)?,
-            places: self.devices.again(),
-            settings: &self.settings,
-        })
-    }
 }
 
 impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        self.which.checked()?.run(&self.checking)
+        let Self { device, checking } = self;
+        if let Some(name) = &checking.reproduce {
+            return checking.print_one(name, &finding(&device, name)?, with_quoted);
+        }
+        // A wrong setting is reported once, and not by each check. The same holds for a wrong name,
+        // which names nothing to check.
+        device.settings.given()?;
+        let subject = subject(&device)?;
+        let mut arguments = vec!["device".into(), "check-one".into()];
+        arguments.extend(device.again());
+        let report = check(&device.device, &subject, &checking.runner(arguments)?);
+        let again = |name: &str| format!("htex device check {} --reproduce {name}", device.shown());
+        checking.print_report(&report, with_quoted, again)
     }
 }
 
 impl CheckOne {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        self.which.checked()?.print_one(&self.name)
+        print_json(&finding(&self.device, &self.name)?)?;
+        Ok(Exit::SUCCESS)
     }
+}
+
+/// Finds the device. Unlike [`OneDeviceArgs::load`], does not load the library of a file that is
+/// named, because that may crash.
+fn subject(device: &OneDeviceArgs) -> Result<Subject, Failure> {
+    if let Some(file) = device.file() {
+        return Ok(Subject::Library(file.to_owned()));
+    }
+    let found = device.find(&device.devices.devices_quietly()?)?;
+    Ok(match found.origin {
+        Origin::Library(path) => Subject::Library(path),
+        Origin::Builtin => Subject::Builtin(found.adapter),
+    })
+}
+
+/// Runs one check in this process.
+fn finding(device: &OneDeviceArgs, name: &str) -> Result<Finding, Failure> {
+    let (profile, given) = (device.settings.profile(), device.settings.given()?);
+    run_one(&subject(device)?, name, profile, &given)
+        .map_err(|error| Failure::Usage(error.to_string()))
 }

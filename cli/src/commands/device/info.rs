@@ -1,26 +1,22 @@
 use clap::Args;
-use htex_device::{Capabilities, Mapping};
+use htex_device::{Capabilities, Channel, DeviceError, Direction, InputStream, Mapping, Settings};
 use serde_json::json;
 
-use crate::adapters::descriptor_text;
-use crate::devices::{DeviceArgs, SettingArgs};
+use crate::devices::OneDeviceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 
-/// Show a device's settings and profiles, what it makes of the samples, and its capabilities with
-/// these settings.
+use super::list::descriptor_text;
+
+/// Show a device's settings and profiles, and what it can do with these settings: the capabilities
+/// of an output, or the rate and the channels of an input.
+///
+/// An input is opened to read its rate and channels. It does not sample.
 #[derive(Args)]
 pub(crate) struct Info {
-    /// The device, by short name, id or library file
-    #[arg(value_name = "FILE|ID")]
-    device: String,
-
     #[command(flatten)]
-    devices: DeviceArgs,
-
-    #[command(flatten)]
-    settings: SettingArgs,
+    device: OneDeviceArgs,
 
     /// Print JSON
     #[arg(long)]
@@ -29,29 +25,52 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let known = self.devices.named(&self.device)?;
-        let descriptor = known.descriptor();
-        let resolved = self.settings.resolve(known.adapter.as_ref());
-        let capabilities = resolved.and_then(|s| Ok(known.adapter.capabilities(&s)?));
+        let entry = self.device.load()?;
+        let (descriptor, adapter) = (entry.descriptor(), entry.adapter.as_ref());
+        let given = self.device.settings.given()?;
+        let settings = Settings::resolve(descriptor, self.device.settings.profile(), &given);
+        let shown = &tamed(descriptor);
+        let (key, value, text, problem) = match descriptor.direction {
+            Direction::Output => {
+                let can = settings.and_then(|settings| adapter.capabilities(&settings));
+                let maps = mapping_text(shown.mapping.as_ref());
+                let text = format!("mapping\n{maps}\ncan do\n{}", known_text(&can, can_text));
+                ("capabilities", json!(can.as_ref().ok()), text, can.err())
+            }
+            Direction::Input => {
+                let input = settings.and_then(|settings| adapter.open_input(&settings));
+                let stream = input.map(|input| input.stream().clone());
+                let target = shown.target.as_deref().unwrap_or_default();
+                let delivers = known_text(&stream, |stream| stream_text(&tamed(stream)));
+                let text = format!("target: {target}\ndelivers\n{delivers}");
+                ("stream", json!(stream.as_ref().ok()), text, stream.err())
+            }
+        };
         if self.json {
-            let (can, problem) = match capabilities {
-                Ok(capabilities) => (Some(capabilities), None),
-                Err(problem) => (None, Some(problem.to_string())),
-            };
-            let origin = known.origin.to_string();
-            print_json(&json!({ "descriptor": descriptor, "origin": origin,
-                "capabilities": can, "problem": problem }))?;
+            print_json(&json!({ "descriptor": descriptor, "origin": entry.origin.to_string(),
+                key: value, "problem": problem.map(|error| error.to_string()) }))?;
         } else {
-            let can = match capabilities {
-                Ok(capabilities) => can_text(&capabilities),
-                Err(problem) => format!("  not known, set so: {problem}\n"),
-            };
-            let descriptor = tamed(descriptor);
-            let maps = mapping_text(descriptor.mapping.as_ref());
-            print(&format!("{}\nmapping\n{maps}\ncan do\n{can}", descriptor_text(&descriptor)))?;
+            print(&format!("{}\n{text}", descriptor_text(shown)))?;
         }
         Ok(Exit::SUCCESS)
     }
+}
+
+fn known_text<T>(known: &Result<T, DeviceError>, text: impl Fn(&T) -> String) -> String {
+    match known {
+        Ok(known) => text(known),
+        Err(problem) => format!("  not known, set so: {problem}\n"),
+    }
+}
+
+fn stream_text(stream: &InputStream) -> String {
+    let channel = |channel: &Channel| match &channel.unit[..] {
+        "" => channel.name.clone(),
+        unit => format!("{} in {unit}", channel.name),
+    };
+    let channels: Vec<String> = stream.channels.iter().map(channel).collect();
+    let (rate_hz, channels) = (stream.rate_hz, channels.join(", "));
+    format!("  rate: {rate_hz} Hz\n  channels: {channels}\n")
 }
 
 /// Describes how the device transforms the samples.

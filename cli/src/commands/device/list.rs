@@ -1,28 +1,23 @@
 use clap::Args;
-use htex_device::{Note, Registry};
-use serde_json::json;
+use htex_base::finding::plain;
+use htex_device::{AdapterEntry, Descriptor, Direction, Profile, Setting, SettingKind};
+use serde_json::{Value, json};
 
-use crate::adapters::{listed_json, listed_text};
 use crate::devices::DeviceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::invocation;
-use crate::output::{print, print_json};
-use crate::sources::{SourceArgs, source_json};
+use crate::output::{print, print_json, tamed};
 
-/// List all devices and sources: their adapters, what is connected, and what was found but is not
-/// used.
+/// List all devices, outputs and inputs: their adapters, what is connected, and what was found but
+/// is not used.
 ///
 /// Search order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the user's folder,
-/// built in; for sources --source-file, --source-dir, HTEX_SOURCE_PATH and so on. If two adapters
-/// have the same id, the first one found is used.
+/// built in. If two outputs or two inputs have the same id, the first one found is used.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]
     devices: DeviceArgs,
-
-    #[command(flatten)]
-    sources: SourceArgs,
 
     /// Print JSON
     #[arg(long)]
@@ -43,16 +38,22 @@ impl List {
 
     fn list(&self) -> Result<Exit, Failure> {
         let devices = self.devices.devices_quietly()?;
-        let sources = self.sources.sources_quietly()?;
+        let notes = devices.notes().iter().map(ToString::to_string);
+        let directions = [Direction::Output, Direction::Input].into_iter();
         if self.json {
-            let notes = texts(&devices).chain(texts(&sources));
+            let entries = directions.flat_map(|direction| devices.of_direction(direction));
             print_json(&json!({
-                "devices": devices.all().iter().map(listed_json).collect::<Vec<_>>(),
-                "sources": sources.all().iter().map(source_json).collect::<Vec<_>>(),
+                "devices": entries.map(listed_json).collect::<Vec<_>>(),
                 "notes": notes.collect::<Vec<_>>(),
             }))?;
         } else {
-            print(&(listed_text(&devices) + &listed_text(&sources)))?;
+            let section = |direction| {
+                let entries: String = devices.of_direction(direction).map(listed_text).collect();
+                format!("{direction}s\n{entries}")
+            };
+            let mut text: String = directions.map(section).collect();
+            text.extend(notes.map(|note| format!("note: {}\n", plain(&note))));
+            print(&text)?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -75,6 +76,86 @@ fn listed_quietly() -> Option<Exit> {
     })
 }
 
-fn texts<A: htex_device::AdapterKind + ?Sized>(all: &Registry<A>) -> impl Iterator<Item = String> {
-    all.notes().iter().map(Note::to_string)
+/// Describes an adapter and the connected devices as JSON. A missing driver is reported with the
+/// adapter and is not an error.
+fn listed_json(entry: &AdapterEntry) -> Value {
+    let descriptor = entry.descriptor();
+    let (endpoints, problem) = match entry.adapter.endpoints() {
+        Ok(endpoints) => (endpoints, None),
+        Err(error) => (Vec::new(), Some(error.to_string())),
+    };
+    let mut listed = json!({
+        "id": descriptor.id,
+        "name": descriptor.name,
+        "version": descriptor.version,
+        "summary": descriptor.summary,
+        "direction": descriptor.direction,
+        "target": descriptor.target,
+        "origin": entry.origin.to_string(),
+        "settings": descriptor.settings,
+        "profiles": descriptor.profiles,
+        "mapping": descriptor.mapping,
+        "endpoints": endpoints,
+    });
+    if let (Some(problem), Some(listed)) = (problem, listed.as_object_mut()) {
+        listed.insert("problem".to_owned(), problem.into());
+    }
+    listed
+}
+
+/// Describes an adapter as text: settings and connected devices.
+fn listed_text(entry: &AdapterEntry) -> String {
+    // `print` keeps line breaks, so a text of a native library could add lines of its own.
+    let descriptor = &tamed(entry.descriptor());
+    let (name, version) = (descriptor.short_name(), &descriptor.version);
+    let mut text = format!("  {name:8} {version:8} {:20} {}\n", descriptor.id, entry.origin);
+    text += &format!("           {}\n", descriptor.summary);
+    let setting = |s: &Setting| format!("{}={}", s.name, s.default.as_deref().unwrap_or("…"));
+    let settings: Vec<String> = descriptor.settings.iter().map(setting).collect();
+    text += &format!("           settings: {}\n", settings.join(" "));
+    match entry.adapter.endpoints() {
+        Ok(endpoints) => {
+            for there in endpoints.iter().map(tamed) {
+                let choice = format!("{}={}", there.setting, there.name);
+                text += &format!("           {choice}  {}\n", there.summary);
+            }
+        }
+        Err(error) => text += &format!("           not usable here: {error}\n"),
+    }
+    text
+}
+
+/// Describes an adapter with all its settings and profiles as text.
+pub(super) fn descriptor_text(descriptor: &Descriptor) -> String {
+    let Descriptor { id, name, version, summary, .. } = descriptor;
+    let settings: String = descriptor.settings.iter().map(setting).collect();
+    let profiles: String = descriptor.profiles.iter().map(profile).collect();
+    let none = |text: String| if text.is_empty() { "  none\n".to_owned() } else { text };
+    let (settings, profiles) = (none(settings), none(profiles));
+    format!("{name} ({id} {version})\n{summary}\n\nsettings\n{settings}\nprofiles\n{profiles}")
+}
+
+fn setting(setting: &Setting) -> String {
+    let values = match &setting.kind {
+        SettingKind::Number { min, max } => format!("{min} to {max}"),
+        SettingKind::Choice { values } => values.join(" or "),
+        SettingKind::Path => "a file".to_owned(),
+        SettingKind::Text => "text".to_owned(),
+    };
+    let default = match &setting.default {
+        Some(default) => match &setting.live_default {
+            Some(live) => format!("[{default}; {live} with --motion]"),
+            None => format!("[{default}]"),
+        },
+        None => "(must be given)".to_owned(),
+    };
+    let (name, description) = (&setting.name, &setting.description);
+    format!("  {name}: {values} {default}\n      {description}\n")
+}
+
+fn profile(profile: &Profile) -> String {
+    let fixed = profile.settings.iter();
+    let fixed: Vec<String> = fixed.map(|(name, value)| format!("{name}={value}")).collect();
+    let (name, summary) = (&profile.name, &profile.summary);
+    format!("  {name}: {summary}\n      {}\n", fixed.join(" "))
 }

@@ -1,4 +1,4 @@
-//! The subcommand `htex device` for output devices.
+//! The subcommand `htex device`.
 
 mod check;
 mod info;

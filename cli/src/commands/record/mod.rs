@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use htex_author::Exploration;
 use htex_base::finding::plain;
-use htex_device::Source;
+use htex_device::Input;
 use htex_lab::record::{
     Moment, Next, Outcome, RecordError, Recorded, Required, Session, Setup, Tare, recover,
 };
 use serde_json::json;
 
-use crate::devices::SettingArgs;
+use crate::devices::{DeviceArgs, SettingArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::inputs::{InputArgs, paced};
@@ -46,6 +46,9 @@ pub(crate) struct Record {
     /// Replay files without waiting
     #[arg(long, help_heading = "Source")]
     fast: bool,
+
+    #[command(flatten)]
+    devices: DeviceArgs,
 
     #[command(flatten)]
     input: InputArgs,
@@ -131,7 +134,7 @@ impl Record {
             tell!("htex: recovered {}", said(take));
         }
         let source = self.open()?;
-        let rate_hz = source.rate_hz();
+        let rate_hz = source.stream().rate_hz;
         let signals = self.input.signals(&self.source, &*source)?;
         warn(signals.warnings());
         let tracker = self.input.tracker()?;
@@ -156,13 +159,13 @@ impl Record {
         Ok(Exit::SUCCESS)
     }
 
-    fn open(&self) -> Result<Box<dyn Source>, Failure> {
+    fn open(&self) -> Result<Box<dyn Input>, Failure> {
         if self.fast && !self.source.starts_with("file:") {
             let sentence = "--fast replays files; other sources come at their own pace";
             return Err(Failure::Usage(sentence.to_owned()));
         }
         let given = paced(&self.source, self.settings.given()?, self.fast);
-        self.input.sources.open(&self.source, self.settings.profile(), &given)
+        self.devices.open_input(&self.source, self.settings.profile(), &given)
     }
 
     fn setup(&self) -> Setup {

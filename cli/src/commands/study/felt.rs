@@ -9,7 +9,7 @@ use htex_lab::study::{Felt, FeltSetup, Study};
 use htex_scene::file::Motion;
 
 use super::asker::AskingArgs;
-use crate::devices::pairs;
+use crate::devices::{DeviceArgs, pairs};
 use crate::failure::Failure;
 use crate::inputs::{InputArgs, paced};
 use crate::models::tool;
@@ -56,6 +56,7 @@ impl FeltArgs {
         study: &Study,
         folder: &Path,
         participant: &str,
+        devices: &DeviceArgs,
         is_fast: bool,
     ) -> Result<Option<Felt>, Failure> {
         let Some(name) = self.source.clone() else {
@@ -63,12 +64,12 @@ impl FeltArgs {
         };
         let asked = pairs("--source-set", &self.source_settings)?;
         let given = paced(&name, asked.clone(), is_fast);
-        let sources = self.input.sources.sources()?;
+        let devices = devices.devices_quietly()?;
         // Opened once now, so that a wrong source or map is found before the session.
-        let source = sources.open(&name, None, &given)?;
+        let source = devices.open_input(&name, None, &given)?;
         let signals = self.input.signals(&name, &*source)?;
         warn(signals.warnings());
-        let rate_hz = source.rate_hz();
+        let rate_hz = source.stream().rate_hz;
         // Each trial opens it again.
         drop(source);
         let setup = FeltSetup {
@@ -83,7 +84,7 @@ impl FeltArgs {
             tool: tool(),
             is_fast,
         };
-        let open = Box::new(move || sources.open(&name, None, &given));
+        let open = Box::new(move || devices.open_input(&name, None, &given));
         let tracker = self.input.tracker()?;
         Ok(Some(Felt::new(setup, open, rate_hz, signals, tracker)?))
     }

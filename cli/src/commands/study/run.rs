@@ -132,7 +132,8 @@ impl Run {
         let Some(own) = plan.of(participant) else {
             return Err(Failure::Other(format!("{participant} has no plan")));
         };
-        rig.felt = self.felt.open(study, &self.output, participant, self.fast)?;
+        rig.felt =
+            self.felt.open(study, &self.output, participant, &self.with.devices, self.fast)?;
         let device = rig.device_used()?;
         let mut clock: Box<dyn Clock> =
             if self.fast { Box::new(FastClock::default()) } else { Box::new(WallClock::new()) };

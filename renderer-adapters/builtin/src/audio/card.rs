@@ -2,7 +2,7 @@
 
 use cpal::traits::{DeviceTrait, HostTrait};
 use cpal::{SampleFormat, StreamConfig, SupportedStreamConfigRange};
-use htex_device::{Capabilities, DeviceError, Endpoint, Quantity, Rates};
+use htex_device::{Capabilities, DeviceError, Direction, Endpoint, Quantity, Rates};
 
 /// Sample formats that a stream may use, best first.
 const FORMATS: [SampleFormat; 4] =
@@ -16,36 +16,29 @@ const MAX_RATE_HZ: f64 = 768_000.0;
 /// The name that stands for the system's preferred card.
 pub(crate) const DEFAULT: &str = "default";
 
-/// The side of a card: output or input.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Side {
-    Output,
-    Input,
-}
-
 pub(crate) struct Card {
     pub(crate) name: String,
     pub(crate) device: cpal::Device,
-    side: Side,
+    direction: Direction,
     configs: Vec<SupportedStreamConfigRange>,
 }
 
 impl Card {
-    /// Finds the card of this name, which must be connected and have this side.
-    pub(crate) fn find(name: &str, side: Side) -> Result<Self, DeviceError> {
+    /// Finds the card of this name, which must be connected and have this direction.
+    pub(crate) fn find(name: &str, direction: Direction) -> Result<Self, DeviceError> {
         let host = cpal::default_host();
-        let device = match (name, side) {
-            (DEFAULT, Side::Output) => host.default_output_device(),
-            (DEFAULT, Side::Input) => host.default_input_device(),
-            _ => cards(side)?.into_iter().find(|d| id(d) == name),
+        let device = match (name, direction) {
+            (DEFAULT, Direction::Output) => host.default_output_device(),
+            (DEFAULT, Direction::Input) => host.default_input_device(),
+            _ => cards(direction)?.into_iter().find(|d| id(d) == name),
         };
-        let missing = |what: &str| missing(side, name, what);
+        let missing = |what: &str| missing(direction, name, what);
         let device = device.ok_or_else(|| missing("there is no card of this name"))?;
-        let configs = configs(&device, side).map_err(|error| missing(&error.to_string()))?;
+        let configs = configs(&device, direction).map_err(|error| missing(&error.to_string()))?;
         if configs.is_empty() {
             Err(missing("it has no supported sample format"))
         } else {
-            Ok(Self { name: name.to_owned(), device, side, configs })
+            Ok(Self { name: name.to_owned(), device, direction, configs })
         }
     }
 
@@ -54,7 +47,7 @@ impl Card {
         self.configs.retain(|config| config.channels() == channels);
         if self.configs.is_empty() {
             let what = format!("it does not take {channels} channels");
-            Err(missing(self.side, &self.name, &what))
+            Err(missing(self.direction, &self.name, &what))
         } else {
             Ok(self)
         }
@@ -62,12 +55,12 @@ impl Card {
 
     /// Returns the rate (hertz) and number of channels that the card prefers.
     pub(crate) fn preferred(&self) -> Result<(f64, u16), DeviceError> {
-        let preferred = match self.side {
-            Side::Output => self.device.default_output_config(),
-            Side::Input => self.device.default_input_config(),
+        let preferred = match self.direction {
+            Direction::Output => self.device.default_output_config(),
+            Direction::Input => self.device.default_input_config(),
         };
         let preferred =
-            preferred.map_err(|error| missing(self.side, &self.name, &error.to_string()))?;
+            preferred.map_err(|error| missing(self.direction, &self.name, &error.to_string()))?;
         Ok((f64::from(preferred.sample_rate()), preferred.channels()))
     }
 
@@ -145,34 +138,34 @@ impl Card {
 /// Returns the configurations of a card that this crate can use.
 fn configs(
     device: &cpal::Device,
-    side: Side,
+    direction: Direction,
 ) -> Result<Vec<SupportedStreamConfigRange>, cpal::Error> {
-    let mut configs: Vec<_> = match side {
-        Side::Output => device.supported_output_configs()?.collect(),
-        Side::Input => device.supported_input_configs()?.collect(),
+    let mut configs: Vec<_> = match direction {
+        Direction::Output => device.supported_output_configs()?.collect(),
+        Direction::Input => device.supported_input_configs()?.collect(),
     };
     configs.retain(|config| FORMATS.contains(&config.sample_format()));
     Ok(configs)
 }
 
-/// Lists all connected cards that have this side.
-fn cards(side: Side) -> Result<Vec<cpal::Device>, DeviceError> {
+/// Lists all connected cards of this direction.
+fn cards(direction: Direction) -> Result<Vec<cpal::Device>, DeviceError> {
     let host = cpal::default_host();
-    let cards: Result<Vec<_>, _> = match side {
-        Side::Output => host.output_devices().map(Iterator::collect),
-        Side::Input => host.input_devices().map(Iterator::collect),
+    let cards: Result<Vec<_>, _> = match direction {
+        Direction::Output => host.output_devices().map(Iterator::collect),
+        Direction::Input => host.input_devices().map(Iterator::collect),
     };
-    cards.map_err(|error| missing(side, "sound", &error.to_string()))
+    cards.map_err(|error| missing(direction, "sound", &error.to_string()))
 }
 
-/// Lists all connected cards that have this side, and the one that the system prefers.
-pub(crate) fn endpoints(side: Side) -> Result<Vec<Endpoint>, DeviceError> {
+/// Lists all connected cards of this direction, and the one that the system prefers.
+pub(crate) fn endpoints(direction: Direction) -> Result<Vec<Endpoint>, DeviceError> {
     let endpoint =
         |name: String, summary: String| Endpoint { name, setting: "device".to_owned(), summary };
-    let default = Card::find(DEFAULT, side)
+    let default = Card::find(DEFAULT, direction)
         .ok()
         .map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
-    let named = cards(side)?.into_iter().map(|device| {
+    let named = cards(direction)?.into_iter().map(|device| {
         let description = device.description().map(|d| d.to_string());
         endpoint(id(&device), description.unwrap_or_default().replace('\n', ", "))
     });
@@ -184,15 +177,15 @@ fn id(device: &cpal::Device) -> String {
     device.id().map(|id| id.to_string()).unwrap_or_default()
 }
 
-fn missing(side: Side, name: &str, what: &str) -> DeviceError {
-    let (side, list) = match side {
-        Side::Output => ("output", "aplay"),
-        Side::Input => ("input", "arecord"),
+fn missing(direction: Direction, name: &str, what: &str) -> DeviceError {
+    let list = match direction {
+        Direction::Output => "aplay",
+        Direction::Input => "arecord",
     };
     let check = if cfg!(target_os = "linux") {
         format!("`{list} -l` lists the cards; a machine without one, or a container, has none")
     } else {
         "see the sound settings of the system".to_owned()
     };
-    DeviceError::Missing(format!("no sound {side} `{name}`: {what}; {check}"))
+    DeviceError::Missing(format!("no sound {direction} `{name}`: {what}; {check}"))
 }

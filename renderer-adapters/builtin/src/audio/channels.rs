@@ -1,8 +1,8 @@
 //! Sound cards whose channels play different signals, for devices that assign the channels.
 
-use htex_device::{Capabilities, Device, DeviceError, Endpoint, StreamFormat};
+use htex_device::{Capabilities, DeviceError, Direction, Endpoint, Output, StreamFormat};
 
-use crate::audio::card::{self, Card, Side};
+use crate::audio::card::{self, Card};
 use crate::audio::sound::{Channels, Sound};
 
 /// Lists the connected outputs. Each is selected by a setting called `device`.
@@ -10,7 +10,7 @@ use crate::audio::sound::{Channels, Sound};
 /// # Errors
 /// When the system's sound service does not respond.
 pub fn outputs() -> Result<Vec<Endpoint>, DeviceError> {
-    card::endpoints(Side::Output)
+    card::endpoints(Direction::Output)
 }
 
 /// Returns the capabilities of an output with this number of channels.
@@ -18,7 +18,7 @@ pub fn outputs() -> Result<Vec<Endpoint>, DeviceError> {
 /// # Errors
 /// When the output is not connected, or does not support this number of channels.
 pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilities, DeviceError> {
-    Card::find(device, Side::Output)?.with_channels(channels)?.capabilities()
+    Card::find(device, Direction::Output)?.with_channels(channels)?.capabilities()
 }
 
 /// Opens an output with one channel for each factor. A channel plays each sample times its factor.
@@ -30,8 +30,8 @@ pub fn open_channels(
     factors: &[f32],
     buffer_s: f64,
     format: &StreamFormat,
-) -> Result<Box<dyn Device>, DeviceError> {
-    let card = Card::find(device, Side::Output)?.with_channels(factors.len() as u16)?;
+) -> Result<Box<dyn Output>, DeviceError> {
+    let card = Card::find(device, Direction::Output)?.with_channels(factors.len() as u16)?;
     let sound = Sound::open(&card, buffer_s, format, Channels::Factors(factors))?;
     Ok(Box::new(sound))
 }

@@ -16,7 +16,7 @@ impl Failure {
     }
 
     /// Returns the error and removes it.
-    pub(crate) fn take(&self) -> Option<String> {
+    pub(crate) fn remove(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }

@@ -7,7 +7,7 @@ use rtrb::Producer;
 
 /// State shared by the sound card's thread and the reader.
 #[derive(Debug, Default)]
-pub(crate) struct Heard {
+pub(crate) struct InputState {
     /// Frames were lost. No frames come after them.
     pub(crate) lost: AtomicBool,
     /// How often the card has delivered samples.
@@ -17,17 +17,17 @@ pub(crate) struct Heard {
 /// Puts samples into the ring buffer. Does not allocate or wait.
 pub(crate) struct Listener {
     ring: Producer<f64>,
-    heard: Arc<Heard>,
+    heard: Arc<InputState>,
 }
 
 impl Listener {
-    pub(crate) fn new(ring: Producer<f64>, heard: Arc<Heard>) -> Self {
+    pub(crate) fn new(ring: Producer<f64>, heard: Arc<InputState>) -> Self {
         Self { ring, heard }
     }
 
     /// Takes all of these interleaved frames. From the first time that they do not fit, takes no
     /// more.
-    pub(crate) fn take<T: Copy>(&mut self, samples: &[T], convert: impl Fn(T) -> f64) {
+    pub(crate) fn push<T: Copy>(&mut self, samples: &[T], convert: impl Fn(T) -> f64) {
         if self.ring.slots() < samples.len() {
             self.heard.lost.store(true, Ordering::Release);
         }
@@ -49,15 +49,15 @@ mod tests {
     #[test]
     fn nothing_comes_after_a_gap() {
         let (writer, mut ring) = RingBuffer::new(6);
-        let heard = Arc::new(Heard::default());
+        let heard = Arc::new(InputState::default());
         let mut listener = Listener::new(writer, Arc::clone(&heard));
-        listener.take(&[1i16, 2, 3, 4], f64::from);
+        listener.push(&[1i16, 2, 3, 4], f64::from);
         assert!(!heard.lost.load(Ordering::Relaxed));
         // Only two places are free, so these four samples and all later ones are lost.
-        listener.take(&[5i16, 6, 7, 8], f64::from);
+        listener.push(&[5i16, 6, 7, 8], f64::from);
         assert!(heard.lost.load(Ordering::Relaxed));
         let mut read: Vec<f64> = (0..4).map(|_| ring.pop().unwrap()).collect();
-        listener.take(&[9i16, 10], f64::from);
+        listener.push(&[9i16, 10], f64::from);
         read.extend(ring.pop().ok());
         assert_eq!(read, [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(heard.calls.load(Ordering::Relaxed), 3);

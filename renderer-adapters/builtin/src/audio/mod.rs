@@ -1,4 +1,4 @@
-//! Sound cards as devices and sources: outputs play texture as sound, inputs are recorded. 1 is
+//! Sound cards: outputs play texture as sound, inputs are recorded. 1 is
 //! full scale.
 //!
 //! The adapters need the feature `audio`, which on Linux is built against ALSA (`libasound2-dev`).

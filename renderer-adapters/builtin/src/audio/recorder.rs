@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use cpal::traits::{DeviceTrait, StreamTrait};
 use cpal::{FromSample, InputCallbackInfo, Sample, SampleFormat, SizedSample, StreamConfig};
-use htex_device::{Channel, Delivered, DeviceError, Source};
+use htex_device::{Channel, DeviceError, Input, InputFrames, InputStream};
 use rtrb::{Consumer, RingBuffer};
 
 use crate::audio::card::Card;
 use crate::audio::failure::{Failure, failed, reporter};
-use crate::audio::listener::{Heard, Listener};
+use crate::audio::listener::{InputState, Listener};
 
 /// Polling interval for samples.
 const LOOK: Duration = Duration::from_millis(2);
@@ -21,12 +21,11 @@ const STILL: Duration = Duration::from_secs(2);
 
 pub(crate) struct Recorder {
     name: String,
-    channels: Vec<Channel>,
-    rate_hz: f64,
+    format: InputStream,
     ring: Consumer<f64>,
-    heard: Arc<Heard>,
+    heard: Arc<InputState>,
     failure: Failure,
-    /// `None` after the source has ended.
+    /// `None` after the end.
     stream: Option<cpal::Stream>,
     is_running: bool,
     delivered: u64,
@@ -43,7 +42,7 @@ impl Recorder {
         buffered: usize,
     ) -> Result<Self, DeviceError> {
         let (writer, ring) = RingBuffer::new(buffered);
-        let heard = Arc::new(Heard::default());
+        let heard = Arc::new(InputState::default());
         let listener = Listener::new(writer, Arc::clone(&heard));
         let (failure, lost) = (Failure::default(), Arc::clone(&heard));
         let report = reporter(failure.clone(), move || {
@@ -59,8 +58,10 @@ impl Recorder {
         let channel = |number: u16| Channel::new(format!("ch{number}"), "");
         Ok(Self {
             name: card.name.clone(),
-            channels: (1..=config.channels).map(channel).collect(),
-            rate_hz: f64::from(config.sample_rate),
+            format: InputStream {
+                rate_hz: f64::from(config.sample_rate),
+                channels: (1..=config.channels).map(channel).collect(),
+            },
             ring,
             heard,
             failure,
@@ -73,7 +74,7 @@ impl Recorder {
 
     /// Reads the whole frames that are available now.
     fn read_now(&mut self, samples: &mut [f64]) -> usize {
-        let width = self.channels.len();
+        let width = self.format.channels.len();
         let frames = (self.ring.slots() / width).min(samples.len() / width);
         for sample in &mut samples[..frames * width] {
             // Cannot fail: that many samples are in the ring buffer.
@@ -89,7 +90,7 @@ impl Recorder {
         }
         if self.heard.lost.load(Ordering::Acquire) {
             return Some(DeviceError::Overrun {
-                source_name: self.name.clone(),
+                device: self.name.clone(),
                 frames: self.delivered,
                 advice: "close other programs, lower `rate_hz`, or raise `buffer_s`".to_owned(),
             });
@@ -104,13 +105,9 @@ impl Recorder {
     }
 }
 
-impl Source for Recorder {
-    fn channels(&self) -> &[Channel] {
-        &self.channels
-    }
-
-    fn rate_hz(&self) -> f64 {
-        self.rate_hz
+impl Input for Recorder {
+    fn stream(&self) -> &InputStream {
+        &self.format
     }
 
     fn start(&mut self) -> Result<(), DeviceError> {
@@ -127,7 +124,7 @@ impl Source for Recorder {
         Ok(())
     }
 
-    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {
+    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError> {
         if self.stream.is_none() || !self.is_running {
             return Err(DeviceError::Closed(self.name.clone()));
         }
@@ -139,22 +136,22 @@ impl Source for Recorder {
             let frames = self.read_now(samples);
             if frames > 0 {
                 self.delivered += frames as u64;
-                return Ok(Delivered::Frames(frames));
+                return Ok(InputFrames::Count(frames));
             }
-            // A read of no samples must not end the source, because some may still wait in the
+            // A read of no samples must not end the input, because some may still wait in the
             // ring.
             if let (Some(fault), false) = (fault, samples.is_empty()) {
                 self.stream = None;
                 return Err(fault);
             }
             if since.elapsed() >= timeout {
-                return Ok(Delivered::Frames(0));
+                return Ok(InputFrames::Count(0));
             }
             sleep(LOOK.min(timeout.saturating_sub(since.elapsed())));
         }
     }
 
-    fn stop(&mut self) -> Result<(), DeviceError> {
+    fn finish(&mut self) -> Result<(), DeviceError> {
         self.stream = None;
         Ok(())
     }
@@ -170,7 +167,7 @@ where
     f64: FromSample<T>,
 {
     let take = move |samples: &[T], _: &InputCallbackInfo| {
-        listener.take(samples, f64::from_sample);
+        listener.push(samples, f64::from_sample);
     };
     device.build_input_stream(config, take, report, None)
 }

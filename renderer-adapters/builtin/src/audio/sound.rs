@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use cpal::traits::{DeviceTrait, StreamTrait};
 use cpal::{FromSample, OutputCallbackInfo, SampleFormat, SizedSample, StreamConfig};
-use htex_device::{Capabilities, Device, DeviceError, Status, StreamFormat};
+use htex_device::{Capabilities, DeviceError, Output, Status, StreamFormat};
 use rtrb::{Producer, RingBuffer};
 
 use crate::audio::card::Card;
@@ -105,7 +105,7 @@ impl Sound {
     }
 
     fn usable(&self) -> Result<(), DeviceError> {
-        match self.failure.take() {
+        match self.failure.remove() {
             Some(what) => Err(failed(&self.name, what)),
             None if self.stream.is_none() => Err(DeviceError::Closed(self.name.clone())),
             None => Ok(()),
@@ -144,7 +144,7 @@ impl Sound {
     }
 }
 
-impl Device for Sound {
+impl Output for Sound {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let since = Instant::now();
         self.usable()?;

@@ -10,35 +10,23 @@ mod nowhere;
 mod plays;
 mod to;
 
-use crate::motor::{buffer_setting, setting};
+use std::sync::LazyLock;
+
+use crate::motor::buffer_setting;
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Mapping, Setting,
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, FromScene, Mapping, Output, Setting,
     SettingKind, Settings, StreamFormat,
 };
 
 use to::To;
 
 /// The multi-channel adapter. See the crate's documentation.
-pub struct Channels {
-    descriptor: Descriptor,
-}
-
-impl Channels {
-    /// Creates the adapter. Opens nothing.
-    pub fn new() -> Self {
-        Self { descriptor: descriptor() }
-    }
-}
-
-impl Default for Channels {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Channels;
 
 impl Adapter for Channels {
     fn descriptor(&self) -> &Descriptor {
-        &self.descriptor
+        &DESCRIPTOR
     }
 
     /// Lists the outputs. Sound cards are those that the system names. Their number of channels is
@@ -57,41 +45,37 @@ impl Adapter for Channels {
         To::new(settings)?.capabilities(&plays::factors(settings.text("plays"))?)
     }
 
-    fn open(
+    fn open_output(
         &self,
         settings: &Settings,
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let factors = plays::factors(settings.text("plays"))?;
         To::new(settings)?.open(&factors, format)
     }
 }
 
-fn descriptor() -> Descriptor {
-    let to = SettingKind::Choice { values: to::NAMES.map(str::to_owned).to_vec() };
+static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
     let settings = vec![
-        Setting {
-            default: None,
-            ..setting(
-                "to",
-                to,
-                "",
-                "Where the frames go: a sound card, a WAV file of 32-bit floats, or nothing.",
-            )
-        },
-        setting(
+        Setting::new(
+            "to",
+            SettingKind::choice(&to::NAMES),
+            "Where the frames go: a sound card, a WAV file of 32-bit floats, or nothing.",
+        )
+        .with_from_scene(FromScene::Never),
+        Setting::hardware(
             "plays",
             SettingKind::Text,
             plays::DUALSENSE,
             "What each channel plays, with commas between: `off`, `texture`, or a factor of it from -1 to 1. The default is that of a DualSense.",
         ),
-        setting(
+        Setting::hardware(
             "device",
             SettingKind::Text,
             to::DEFAULT_CARD,
             "Of to=sound: the sound output, as the list of devices names it.",
         ),
-        setting(
+        Setting::hardware(
             "path",
             SettingKind::Text,
             "",
@@ -105,10 +89,10 @@ fn descriptor() -> Descriptor {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         summary: "Chosen channels of a sound card or a WAV file, such as the actuators of a DualSense.".to_owned(),
         settings,
-        profiles: Vec::new(),
         mapping: Some(Mapping {
             plays: "the samples, times the factor of each channel".to_owned(),
             loses: "nothing on the way; an actuator has its own response, and the actuators of a DualSense are one texture, not two".to_owned(),
         }),
+        ..Descriptor::default()
     }
-}
+});

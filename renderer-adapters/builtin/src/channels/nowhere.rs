@@ -1,7 +1,7 @@
 //! An output that discards the samples in real time, for trying settings without hardware.
 
-use crate::motor::{Block, Motor, Paced, Plan};
-use htex_device::{Capabilities, Device, DeviceError, StreamFormat};
+use crate::motor::{Block, Motor, PacedOutput, Plan};
+use htex_device::{Capabilities, DeviceError, Output, StreamFormat};
 
 /// Duration of a block, seconds.
 const BLOCK_S: f64 = 0.01;
@@ -26,8 +26,8 @@ pub(crate) fn open(
     buffer_s: f64,
     can: Capabilities,
     format: &StreamFormat,
-) -> Result<Box<dyn Device>, DeviceError> {
+) -> Result<Box<dyn Output>, DeviceError> {
     let plan = Plan { gain: 1.0, block_s: BLOCK_S, buffer_s };
-    let paced = Paced::open("Channels", Box::new(Nowhere), &plan, can, format)?;
+    let paced = PacedOutput::open("Channels", Box::new(Nowhere), &plan, can, format)?;
     Ok(Box::new(paced))
 }

@@ -39,7 +39,7 @@ fn factor(item: &str) -> Result<f32, DeviceError> {
 }
 
 fn refused(what: String) -> DeviceError {
-    DeviceError::Setting { name: "plays".to_owned(), what }
+    DeviceError::setting("plays", what)
 }
 
 #[cfg(test)]

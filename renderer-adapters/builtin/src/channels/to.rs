@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::motor::{has_usual_buffer, rate_error};
 use htex_device::{
-    Capabilities, Device, DeviceError, Endpoint, Quantity, Rates, Settings, StreamFormat,
+    Capabilities, DeviceError, Endpoint, Output, Quantity, Rates, Settings, StreamFormat,
 };
 
 use crate::channels::nowhere;
@@ -67,7 +67,7 @@ impl To {
         &self,
         factors: &[f32],
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let can = self.capabilities(factors)?;
         if !can.has_rate(format.rate_hz) {
             return Err(rate_error("Channels", format.rate_hz, &can));
@@ -100,7 +100,7 @@ pub(crate) fn cards() -> Vec<Endpoint> {
 }
 
 fn refuse<T>(name: &str, what: String) -> Result<T, DeviceError> {
-    Err(DeviceError::Setting { name: name.to_owned(), what })
+    Err(DeviceError::setting(name, what))
 }
 
 #[cfg(feature = "audio")]
@@ -116,7 +116,7 @@ mod sound {
 
 #[cfg(not(feature = "audio"))]
 mod sound {
-    use htex_device::{Capabilities, Device, DeviceError, Endpoint, StreamFormat};
+    use htex_device::{Capabilities, DeviceError, Endpoint, Output, StreamFormat};
 
     fn absent<T>() -> Result<T, DeviceError> {
         Err(DeviceError::Missing(
@@ -138,7 +138,7 @@ mod sound {
         _factors: &[f32],
         _buffer_s: f64,
         _format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         absent()
     }
 }

@@ -16,7 +16,7 @@ pub(crate) fn descriptor() -> Descriptor {
             .to_owned(),
         settings: settings(),
         profiles: vec![paper(), generic()],
-        mapping: None,
+        ..Descriptor::default()
     }
 }
 
@@ -24,98 +24,72 @@ fn settings() -> Vec<Setting> {
     let text = SettingKind::Text;
     let number = |min, max| SettingKind::Number { min, max };
     vec![
-        setting(
+        Setting::hardware(
             "device",
             text.clone(),
-            FromScene::Never,
-            Some("Dev1/ao0"),
+            "Dev1/ao0",
             "Analog output, as NI MAX names it.",
         ),
-        setting(
+        Setting::new(
             "amplifier_gain",
             number(0.001, 10_000.0),
-            FromScene::Never,
-            None,
             "Volts at the display for one volt of the card. Measure it at the carrier's frequency.",
-        ),
-        setting(
+        )
+        .with_from_scene(FromScene::Never),
+        Setting::new(
             "limit_v",
             number(0.0, 1_000.0),
-            FromScene::Less,
-            None,
             "Largest voltage at the display, volts either way; no sample beyond it is put out.",
-        ),
-        setting(
+        )
+        .with_from_scene(FromScene::Less),
+        Setting::hardware(
             "dac_full_scale_v",
             number(0.1, 100.0),
-            FromScene::Never,
-            Some("10"),
+            "10",
             "Largest voltage of the card's output, volts either way.",
         ),
-        setting(
+        Setting::hardware(
             "dac_bits",
             number(1.0, 32.0),
-            FromScene::Never,
-            Some("16"),
+            "16",
             "Resolution of the card's output, bits.",
         ),
-        setting(
+        Setting::hardware(
             "dc_limit_v",
             number(0.01, 1_000.0),
-            FromScene::Less,
-            Some("1"),
+            "1",
             "Largest direct voltage at the display, volts either way: the mean over any 100 ms. What exceeds it is not put out, \
              and the output goes to zero.",
-        ),
-        setting(
+        )
+        .with_from_scene(FromScene::Less),
+        Setting::hardware(
             "carrier_hz",
             number(0.0, 100_000.0),
-            FromScene::Never,
-            Some("7000"),
+            "7000",
             "Carrier that the signal is to have, hertz, at most the rate over 2.5; 0: none, and then `dc_limit_v` is to be said.",
         ),
-        Setting {
-            live_default: Some("20".to_owned()),
-            ..setting(
-                "buffer_ms",
-                number(10.0, MOST_TO_ZERO_MS),
-                FromScene::Less,
-                Some("200"),
-                "Samples kept ready for the card, milliseconds: more is safer, less is quicker. With the ramp at most 400.",
-            )
-        },
-        setting(
+        Setting::hardware(
+            "buffer_ms",
+            number(10.0, MOST_TO_ZERO_MS),
+            "200",
+            "Samples kept ready for the card, milliseconds: more is safer, less is quicker. With the ramp at most 400.",
+        )
+        .with_live_default("20")
+        .with_from_scene(FromScene::Less),
+        Setting::hardware(
             "ramp_ms",
             number(1.0, MOST_TO_ZERO_MS),
-            FromScene::More,
-            Some("20"),
+            "20",
             "Ramp before a first, and after a last sample that is not zero, milliseconds. With the buffer at most 400.",
-        ),
-        setting(
+        )
+        .with_from_scene(FromScene::More),
+        Setting::hardware(
             "driver",
             text,
-            FromScene::Never,
-            Some(""),
+            "",
             "File of the NI-DAQmx library; empty: the one that is installed.",
         ),
     ]
-}
-
-fn setting(
-    name: &str,
-    kind: SettingKind,
-    from_scene: FromScene,
-    default: Option<&str>,
-    description: &str,
-) -> Setting {
-    Setting {
-        name: name.to_owned(),
-        kind,
-        default: default.map(str::to_owned),
-        live_default: None,
-        from_scene,
-        description: description.to_owned(),
-    }
 }
 
 fn paper() -> Profile {

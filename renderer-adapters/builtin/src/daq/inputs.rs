@@ -1,10 +1,10 @@
-//! The channels and the clock that a source's settings name.
+//! The channels and the clock that the settings of an input name.
 
 use htex_device::{DeviceError, Settings};
 
 use crate::daq::driver::{Driver, Terminals};
 
-/// Maximum number of channels of a source.
+/// Maximum number of channels of an input.
 const MOST_CHANNELS: usize = 256;
 
 /// Channels and clock, read from the settings.
@@ -77,11 +77,9 @@ impl Inputs {
 /// Expands a list such as `Dev1/ai0:2, Dev1/ai5` to the full name of each channel. All must be of
 /// one card.
 fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
-    let refuse = |what: String| DeviceError::Setting {
-        name: "channels".to_owned(),
-        what: format!(
-            "{what}; it looks like Dev1/ai0:5 or Dev1/ai0,Dev1/ai3, all of one card and each once"
-        ),
+    let refuse = |what: String| {
+        let form = "it looks like Dev1/ai0:5 or Dev1/ai0,Dev1/ai3, all of one card and each once";
+        DeviceError::setting("channels", format!("{what}; {form}"))
     };
     let mut channels: Vec<String> = Vec::new();
     for part in text.split(',').map(str::trim) {

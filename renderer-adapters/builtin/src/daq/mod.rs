@@ -1,5 +1,5 @@
-//! National Instruments cards: their analog outputs as electrovibration devices behind an
-//! amplifier, and their analog inputs as sources.
+//! National Instruments cards: their analog outputs as electrovibration displays behind an
+//! amplifier, and their analog inputs.
 //!
 //! Samples are volts *at the display*, including the carrier. This adapter divides them by the
 //! amplifier's gain and streams them through NI-DAQmx, which is loaded at run time and not linked.
@@ -16,25 +16,25 @@
 //!   carrier stays a carrier. The samples themselves are never changed.
 //! - Buffer and ramp together last at most 400 ms.
 //!
-//! [`DaqInput`] works the other way round: it provides the analog inputs of a card as a source, in
-//! volts.
+//! [`DaqInput`] works the other way round: it records the analog inputs of a card, in volts.
 #![deny(unsafe_code)]
 
-mod claim;
 mod descriptor;
 mod driver;
 mod fault;
 mod input;
-mod input_stream;
 mod inputs;
 mod rig;
+mod sampler;
 mod session;
 mod stream;
 mod watchdog;
 mod zero;
 
+use std::sync::LazyLock;
+
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, StreamFormat,
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Output, Settings, StreamFormat,
 };
 
 pub use input::DaqInput;
@@ -43,26 +43,14 @@ use driver::Driver;
 use rig::Rig;
 
 /// The analog output adapter. See the crate's documentation.
-pub struct Daq {
-    descriptor: Descriptor,
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Daq;
 
-impl Daq {
-    /// Creates the adapter. The driver is loaded on first use.
-    pub fn new() -> Self {
-        Self { descriptor: descriptor::descriptor() }
-    }
-}
-
-impl Default for Daq {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(descriptor::descriptor);
 
 impl Adapter for Daq {
     fn descriptor(&self) -> &Descriptor {
-        &self.descriptor
+        &DESCRIPTOR
     }
 
     /// Lists the analog outputs of all cards that the installed driver knows.
@@ -82,11 +70,11 @@ impl Adapter for Daq {
         rig.capabilities(Driver::load(&rig.driver)?)
     }
 
-    fn open(
+    fn open_output(
         &self,
         settings: &Settings,
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let rig = Rig::new(settings)?;
         let driver = Driver::load(&rig.driver)?;
         let able = rig.capabilities(driver)?;

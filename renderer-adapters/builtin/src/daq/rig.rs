@@ -57,17 +57,18 @@ impl Rig {
         };
         let to_zero_ms = 1e3 * (rig.buffer_s + rig.ramp_s);
         match rig.limit_v > 0.0 {
-            _ if to_zero_ms > MOST_TO_ZERO_MS * (1.0 + ROUNDING) => Err(refuse(
+            _ if to_zero_ms > MOST_TO_ZERO_MS * (1.0 + ROUNDING) => Err(DeviceError::setting(
                 "buffer_ms",
-                &format!(
+                format!(
                     "buffer_ms and ramp_ms have at most {MOST_TO_ZERO_MS} ms together, and not {to_zero_ms}: the output must be at \
                      zero within half a second"
                 ),
             )),
-            _ if !rig.device.contains('/') => {
-                Err(refuse("device", "it must name an analog output, such as `Dev1/ao0`"))
-            }
-            false => Err(refuse("limit_v", "it must be above zero")),
+            _ if !rig.device.contains('/') => Err(DeviceError::setting(
+                "device",
+                "it must name an analog output, such as `Dev1/ao0`",
+            )),
+            false => Err(DeviceError::setting("limit_v", "it must be above zero")),
             true => Ok(rig),
         }
     }
@@ -88,7 +89,7 @@ impl Rig {
                 "a carrier of {} Hz takes a rate of {carried_hz} Hz or more, and the card has {max_hz} Hz at most",
                 self.carrier_hz
             );
-            return Err(refuse("carrier_hz", &what));
+            return Err(DeviceError::setting("carrier_hz", what));
         }
         // A slow card may not reach the lowest useful rate.
         let min_hz = min_hz.max(LOWEST_RATE_HZ).max(carried_hz).min(max_hz);
@@ -129,8 +130,4 @@ fn not_there(device: &str, there: &[&str]) -> String {
     } else {
         format!("`{device}` is not connected; connected is {}", there.join(", "))
     }
-}
-
-fn refuse(name: &str, what: &str) -> DeviceError {
-    DeviceError::Setting { name: name.to_owned(), what: what.to_owned() }
 }

@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 
 use htex_device::{DeviceError, DirectVoltage, Excess, Status, StreamFormat};
 
-use crate::daq::claim::Claim;
 use crate::daq::driver::{Driver, Task};
 use crate::daq::fault::Fault;
 use crate::daq::rig::{MOST_TO_ZERO_MS, Rig};
 use crate::daq::zero::{Emergency, Zero};
+use crate::driver::Claim;
 
 /// If nothing is output for this long, the clock is considered stopped. The last voltage would then
 /// stay.
@@ -69,7 +69,7 @@ impl Session {
         let ahead =
             frames(rig.buffer_s).max(2 * format.block_frames as usize).clamp(2, most.max(2));
         let session = Self {
-            claim: Some(Claim::take(&rig)?),
+            claim: Some(Claim::reserve(["daq", &rig.driver, &rig.device], &rig.device)?),
             capacity: ahead.max(frames(rig.ramp_s)),
             ahead,
             rate_hz: format.rate_hz,
@@ -172,7 +172,7 @@ impl Session {
         // The call may have hung so long that the emergency has written zero in the meantime.
         self.still_holds()?;
         self.given += given as u64;
-        self.direct.take(&volts[..given]);
+        self.direct.push(&volts[..given]);
         Ok(given)
     }
 
@@ -287,7 +287,7 @@ impl Session {
         self.moved_at = Instant::now();
         self.lead = lead.len() as u64;
         self.given = self.lead;
-        self.direct.take(&lead);
+        self.direct.push(&lead);
         Ok(())
     }
 

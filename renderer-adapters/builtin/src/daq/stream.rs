@@ -9,7 +9,7 @@ use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use htex_device::{Device, DeviceError, Status, StreamFormat};
+use htex_device::{DeviceError, Output, Status, StreamFormat};
 
 use crate::daq::driver::Driver;
 use crate::daq::rig::Rig;
@@ -74,7 +74,7 @@ impl Stream {
     }
 }
 
-impl Device for Stream {
+impl Output for Stream {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let since = Instant::now();
         let mut taken = 0;

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use htex_device::{Descriptor, FromScene, Quantity, Setting, SettingKind};
+use htex_device::{Descriptor, Quantity, Setting, SettingKind};
 
 /// Largest allowed limit (volts), and largest full scale in the quantity's unit.
 const MOST: f64 = 1_000.0;
@@ -13,69 +13,58 @@ pub(crate) static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor
     version: "1.0.0".to_owned(),
     summary: "Writes the samples to a file: WAV, CSV, NPY or raw, of any length.".to_owned(),
     settings: settings(),
-    profiles: Vec::new(),
-    mapping: None,
+    ..Descriptor::default()
 });
 
 fn settings() -> Vec<Setting> {
     let number = |min, max| SettingKind::Number { min, max };
-    let choice = |values: &[&str]| SettingKind::Choice {
-        values: values.iter().map(ToString::to_string).collect(),
+    let setting = |name, kind, default, description| {
+        Setting::new(name, kind, description).with_default(default)
     };
-    let all = [
-        (
+    vec![
+        Setting::new(
             "path",
             SettingKind::Path,
-            None,
             "The file; it appears, or is replaced, when the device is finished.",
         ),
-        (
+        setting(
             "format",
-            choice(&["auto", "wav", "csv", "npy", "raw"]),
-            Some("auto"),
+            SettingKind::choice(&["auto", "wav", "csv", "npy", "raw"]),
+            "auto",
             "auto: by the file's extension. wav: one channel, at most 4 GiB. csv: time in seconds \
              and the quantity, in its unit. npy: one dimension. raw: little-endian, no header.",
         ),
-        (
+        setting(
             "encoding",
-            choice(&["f32", "i24", "i16"]),
-            Some("f32"),
+            SettingKind::choice(&["f32", "i24", "i16"]),
+            "f32",
             "f32 holds the quantity in its unit. i24 and i16 hold steps of full_scale / 2^23 and \
              full_scale / 2^15; npy has no i24, csv no integers.",
         ),
-        (
+        setting(
             "full_scale",
             number(1e-6, MOST),
-            Some("1"),
+            "1",
             "What the full scale of i24 and i16 stands for, in the quantity's unit; 1 for f32.",
         ),
-        (
+        setting(
             "quantity",
-            choice(&Quantity::ALL.map(Quantity::name)),
-            Some("lateral_force"),
+            SettingKind::choice(&Quantity::ALL.map(Quantity::name)),
+            "lateral_force",
             "What the samples are: what a finger or tool meets, in N, m/s2, m/s or m; the volts an \
              electrovibration display is driven with; or sound.",
         ),
-        (
+        setting(
             "limit_v",
             number(0.0, MOST),
-            Some("0"),
+            "0",
             "Of a display_voltage, which must have one: the largest magnitude, volts. 0: none.",
         ),
-        (
+        setting(
             "carrier_hz",
             number(0.0, 500_000.0),
-            Some("0"),
+            "0",
             "Of a display_voltage: the carrier that the display wants, hertz. 0: none.",
         ),
-    ];
-    let setting = |(name, kind, default, description): (&str, _, Option<&str>, &str)| Setting {
-        name: name.to_owned(),
-        kind,
-        default: default.map(str::to_owned),
-        live_default: None,
-        from_scene: FromScene::Any,
-        description: description.to_owned(),
-    };
-    all.into_iter().map(setting).collect()
+    ]
 }

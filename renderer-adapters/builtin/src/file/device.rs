@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use htex_base::files::FileInProgress;
-use htex_device::{Capabilities, Device, DeviceError, Status};
+use htex_device::{Capabilities, DeviceError, Output, Status};
 
 use crate::file::plan::Plan;
 use crate::file::sink::Sink;
@@ -47,7 +47,7 @@ impl FileDevice {
     }
 }
 
-impl Device for FileDevice {
+impl Output for FileDevice {
     fn write(&mut self, samples: &[f32], _timeout: Duration) -> Result<usize, DeviceError> {
         let Some((sink, _)) = &mut self.open else {
             return Err(self.closed());

@@ -15,8 +15,9 @@ mod encoding;
 mod plan;
 mod sink;
 
-use htex_device::{Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint};
-use htex_device::{Settings, StreamFormat};
+use htex_device::{
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Output, Settings, StreamFormat,
+};
 
 use device::FileDevice;
 use plan::Plan;
@@ -40,11 +41,11 @@ impl Adapter for FileAdapter {
         Ok(Plan::new(settings)?.capabilities())
     }
 
-    fn open(
+    fn open_output(
         &self,
         settings: &Settings,
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let device = FileDevice::create(&Plan::new(settings)?, format.rate_hz)?;
         Ok(Box::new(device))
     }
@@ -59,7 +60,7 @@ pub fn open_channels(
     path: std::path::PathBuf,
     factors: &[f32],
     rate_hz: f64,
-) -> Result<Box<dyn Device>, DeviceError> {
+) -> Result<Box<dyn Output>, DeviceError> {
     let plan = Plan::channels(path, factors.to_vec());
     Ok(Box::new(FileDevice::create(&plan, rate_hz)?))
 }

@@ -153,5 +153,5 @@ fn of_voltage(
 }
 
 fn refuse<T>(name: &str, what: &str) -> Result<T, DeviceError> {
-    Err(DeviceError::Setting { name: name.to_owned(), what: what.to_owned() })
+    Err(DeviceError::setting(name, what))
 }

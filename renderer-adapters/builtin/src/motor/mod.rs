@@ -1,7 +1,7 @@
 //! Devices that cannot play samples: motors and interfaces that take a strength and a frequency
 //! some hundred times per second.
 //!
-//! An adapter implements [`Motor`], and [`Paced`] makes an open device from it. The device takes
+//! An adapter implements [`Motor`], and [`PacedOutput`] makes an open device from it. The device takes
 //! samples of sound and keeps them in a buffer. Its own thread passes them to the motor in blocks
 //! in real time, each with its level and mean frequency. [`htex_dsp::envelope`] measures them in
 //! the same way as for `Voice::envelope`, so a device needs no model.
@@ -16,10 +16,9 @@ mod paced;
 mod plan;
 mod worker;
 
-pub use paced::Paced;
+pub use paced::PacedOutput;
 pub use plan::{
-    DEFAULT_GAIN, Plan, buffer_setting, has_usual_buffer, number, rate_error, reducing_settings,
-    setting,
+    DEFAULT_GAIN, Plan, buffer_setting, has_usual_buffer, rate_error, reducing_settings,
 };
 
 use htex_dsp::envelope::Measurement;

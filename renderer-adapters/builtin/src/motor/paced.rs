@@ -4,13 +4,13 @@ use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
-use htex_device::{Capabilities, Device, DeviceError, Status, StreamFormat};
+use htex_device::{Capabilities, DeviceError, Output, Status, StreamFormat};
 
 use crate::motor::worker::{Shared, Wish, Worker};
 use crate::motor::{Motor, Plan};
 
 /// A device that passes its samples in blocks to a [`Motor`].
-pub struct Paced {
+pub struct PacedOutput {
     name: String,
     can: Capabilities,
     rate_hz: f64,
@@ -25,7 +25,7 @@ pub struct Paced {
     peak: f64,
 }
 
-impl Paced {
+impl PacedOutput {
     /// Opens a device called `name` on a motor that is at rest.
     ///
     /// # Errors
@@ -96,7 +96,7 @@ impl Paced {
     }
 
     /// Takes the samples that fit now. The motor starts when half of the buffer is full.
-    fn take(&mut self, samples: &[f32]) -> usize {
+    fn push(&mut self, samples: &[f32]) -> usize {
         let mut state = self.shared.lock();
         let fits = self.capacity.saturating_sub(state.waiting.len());
         let taken = samples.get(..fits).unwrap_or(samples);
@@ -116,7 +116,7 @@ impl Paced {
     }
 }
 
-impl Device for Paced {
+impl Output for PacedOutput {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let since = Instant::now();
         self.usable()?;
@@ -126,7 +126,7 @@ impl Device for Paced {
         }
         let mut left = samples;
         loop {
-            let taken = self.take(left);
+            let taken = self.push(left);
             left = left.get(taken..).unwrap_or_default();
             let time = timeout.saturating_sub(since.elapsed());
             if left.is_empty() || time.is_zero() {
@@ -163,7 +163,7 @@ impl Device for Paced {
     }
 }
 
-impl Drop for Paced {
+impl Drop for PacedOutput {
     fn drop(&mut self) {
         self.end(Wish::Stop);
     }

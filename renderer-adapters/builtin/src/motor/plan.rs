@@ -12,35 +12,18 @@ const DEFAULT_BUFFER_MS: [&str; 2] = ["100", "30"];
 /// Default of the setting `gain`.
 pub const DEFAULT_GAIN: &str = "3";
 
-/// Creates a setting that belongs to the user or the hardware: no scene can change it.
-pub fn setting(name: &str, kind: SettingKind, default: &str, description: &str) -> Setting {
-    Setting {
-        name: name.to_owned(),
-        kind,
-        default: Some(default.to_owned()),
-        live_default: None,
-        from_scene: FromScene::Never,
-        description: description.to_owned(),
-    }
-}
-
-/// Creates the kind of setting for a number in a range.
-pub fn number(min: f64, max: f64) -> SettingKind {
-    SettingKind::Number { min, max }
-}
-
 /// Returns the settings `gain`, `block_ms` and `buffer_ms`.
 pub fn reducing_settings() -> Vec<Setting> {
-    let gain = setting(
+    let gain = Setting::hardware(
         "gain",
-        number(0.0, 100.0),
+        SettingKind::Number { min: 0.0, max: 100.0 },
         DEFAULT_GAIN,
         "Strength of a level (RMS) of full scale, of which a motor has at most 1: a third of full scale is then all it has, about \
          what noise can reach without clipping.",
     );
-    let block = setting(
+    let block = Setting::hardware(
         "block_ms",
-        number(5.0, 100.0),
+        SettingKind::Number { min: 5.0, max: 100.0 },
         "10",
         "Length of a block, of which the motor has one strength and one frequency, milliseconds.",
     );
@@ -49,17 +32,15 @@ pub fn reducing_settings() -> Vec<Setting> {
 
 /// Returns the setting `buffer_ms`, which is shorter with a live motion.
 pub fn buffer_setting() -> Setting {
-    let buffer = setting(
+    let [usual, live] = DEFAULT_BUFFER_MS;
+    Setting::hardware(
         "buffer_ms",
-        number(10.0, 10_000.0),
-        DEFAULT_BUFFER_MS[0],
+        SettingKind::Number { min: 10.0, max: 10_000.0 },
+        usual,
         "Samples kept ready, milliseconds, at least two blocks: more is safer, less is quicker.",
-    );
-    Setting {
-        live_default: Some(DEFAULT_BUFFER_MS[1].to_owned()),
-        from_scene: FromScene::Less,
-        ..buffer
-    }
+    )
+    .with_live_default(live)
+    .with_from_scene(FromScene::Less)
 }
 
 /// Whether `buffer_ms` has one of its default values.

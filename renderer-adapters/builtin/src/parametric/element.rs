@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use htex_device::DeviceError;
 
-use crate::parametric::claim::Claim;
+use crate::driver::Claim;
 use crate::parametric::session::{Hand, Session};
 
 /// A reserved haptic element. Dropping it releases it.
@@ -15,9 +15,12 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    pub(crate) fn take(runtime: &str, hand: Hand) -> Result<Self, DeviceError> {
-        let session = Session::of(runtime)?;
-        let claim = Claim::take(runtime, &format!("{} hand", hand.name()))?;
+    pub(crate) fn reserve(runtime: &str, hand: Hand) -> Result<Self, DeviceError> {
+        let session = Session::shared(runtime)?;
+        let claim = Claim::reserve(
+            ["parametric", runtime, hand.name()],
+            &format!("the {} hand", hand.name()),
+        )?;
         Ok(Self { session, hand, _claim: claim })
     }
 

@@ -10,12 +10,11 @@
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::driver::Claim;
 use crate::motor::{Block, Motor, Plan};
 use htex_base::native::{Library, Symbols};
 use htex_device::DeviceError;
 use htex_dsp::reduced::Scale;
-
-use crate::parametric::claim::Claim;
 
 /// Duration of an effect, if the vibrator accepts that many points, seconds. Longer effects have
 /// fewer ramps, shorter ones less delay.
@@ -55,7 +54,7 @@ pub(crate) struct Vibrator {
 impl Vibrator {
     /// Loads the functions from the library at `path`.
     pub(crate) fn load(path: &str) -> Result<Self, DeviceError> {
-        let refused = |what: String| DeviceError::Setting { name: "runtime".to_owned(), what };
+        let refused = |what: String| DeviceError::setting("runtime", what);
         if path.is_empty() {
             return Err(refused(
                 "form=pwle wants the application's library, which has the vibrator; name it"
@@ -108,12 +107,12 @@ impl Vibrator {
         if (least_ms..=most_ms).contains(&block_ms) {
             Ok(())
         } else {
-            Err(DeviceError::Setting {
-                name: "block_ms".to_owned(),
-                what: format!(
+            Err(DeviceError::setting(
+                "block_ms",
+                format!(
                     "the vibrator takes points of {least_ms} to {most_ms} ms, and {block_ms} ms is asked for"
                 ),
-            })
+            ))
         }
     }
 }
@@ -153,7 +152,7 @@ impl Envelopes {
             waiting: Vec::new(),
             frequency_hz: f64::from(low_hz + high_hz) / 2.0,
             started: false,
-            _claim: Claim::take(path, "vibrator")?,
+            _claim: Claim::reserve(["parametric", path, "vibrator"], "the vibrator")?,
         })
     }
 

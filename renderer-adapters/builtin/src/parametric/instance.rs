@@ -38,7 +38,7 @@ impl Instance {
         let names: Vec<&CStr> =
             [HEADLESS, PARAMETRIC, PCM].into_iter().filter(|name| has(name)).collect();
         let handle = create(entry, &names)?;
-        let table = match Table::of(entry, handle) {
+        let table = match Table::from_entry(entry, handle) {
             Ok(table) => table,
             Err(error) => {
                 // SAFETY: the handle is that of the instance, which nobody else has.

@@ -14,7 +14,6 @@
 //! a stream of points after 50 ms, and a stream of samples when it has no more.
 #![deny(unsafe_code)]
 
-mod claim;
 mod element;
 mod envelopes;
 mod instance;
@@ -25,9 +24,11 @@ mod settings;
 mod structures;
 mod table;
 
-use crate::motor::{Motor, Paced, rate_error};
+use std::sync::LazyLock;
+
+use crate::motor::{Motor, PacedOutput, rate_error};
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Mapping, Rates, Settings,
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Mapping, Output, Rates, Settings,
     StreamFormat,
 };
 
@@ -36,34 +37,20 @@ use envelopes::{Envelopes, Vibrator, milliseconds};
 use points::Stream;
 use samples::Samples;
 use session::{Hand, Session};
-use settings::{Asked, Form};
+use settings::{Form, PlayRequest};
 
 /// The adapter for parametric haptics. See the crate's documentation.
-pub struct Parametric {
-    descriptor: Descriptor,
-}
-
-impl Parametric {
-    /// Creates the adapter. A runtime is loaded on first use.
-    pub fn new() -> Self {
-        Self { descriptor: descriptor() }
-    }
-}
-
-impl Default for Parametric {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Parametric;
 
 impl Adapter for Parametric {
     fn descriptor(&self) -> &Descriptor {
-        &self.descriptor
+        &DESCRIPTOR
     }
 
     /// Lists the hands on which the installed runtime can play.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
-        let session = Session::of("")?;
+        let session = Session::shared("")?;
         let plays = |hand: &Hand| {
             let points = session.properties(*hand).map(|_| "points");
             points.or_else(|_| session.pcm_rate_hz(*hand).map(|_| "samples (form=pcm)"))
@@ -80,19 +67,19 @@ impl Adapter for Parametric {
     }
 
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
-        let asked = Asked::new(settings)?;
+        let asked = PlayRequest::new(settings)?;
         match asked.form {
             Form::Pwle => asked.of_vibrator(),
-            Form::Points | Form::Pcm => asked.of_session(&*Session::of(&asked.runtime)?),
+            Form::Points | Form::Pcm => asked.of_session(&*Session::shared(&asked.runtime)?),
         }
     }
 
-    fn open(
+    fn open_output(
         &self,
         settings: &Settings,
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
-        let asked = Asked::new(settings)?;
+    ) -> Result<Box<dyn Output>, DeviceError> {
+        let asked = PlayRequest::new(settings)?;
         match asked.form {
             Form::Pwle => {
                 let can = asked.of_vibrator()?;
@@ -100,7 +87,7 @@ impl Adapter for Parametric {
                 asked.paced("Vibrator", can, format, motor)
             }
             Form::Points | Form::Pcm => {
-                let element = Element::take(&asked.runtime, asked.hand)?;
+                let element = Element::reserve(&asked.runtime, asked.hand)?;
                 let can = asked.of_session(&element.session)?;
                 let name = format!("OpenXR, {} hand", asked.hand.name());
                 let motor = |rate_hz| asked.motor(element, rate_hz);
@@ -110,7 +97,7 @@ impl Adapter for Parametric {
     }
 }
 
-impl Asked {
+impl PlayRequest {
     /// Returns the capabilities of a vibrator with these settings.
     fn of_vibrator(&self) -> Result<Capabilities, DeviceError> {
         Vibrator::load(&self.runtime)?.takes(milliseconds(&self.plan))?;
@@ -148,24 +135,23 @@ impl Asked {
         can: Capabilities,
         format: &StreamFormat,
         motor: impl FnOnce(f64) -> Result<Box<dyn Motor>, DeviceError>,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let rate_hz = format.rate_hz;
         if !can.has_rate(rate_hz) {
             return Err(rate_error(name, rate_hz, &can));
         }
-        let paced = Paced::open(name, motor(rate_hz)?, &self.plan, can, format)?;
+        let paced = PacedOutput::open(name, motor(rate_hz)?, &self.plan, can, format)?;
         Ok(Box::new(paced))
     }
 }
 
-fn descriptor() -> Descriptor {
+static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
     Descriptor {
         id: "org.htex.parametric".to_owned(),
         name: "OpenXR controller".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         summary: "Points or samples on a controller, through an OpenXR runtime.".to_owned(),
         settings: settings::all(),
-        profiles: Vec::new(),
         mapping: Some(Mapping {
             plays: "form=points: an amplitude and a frequency for each block of block_ms, between which the runtime interpolates, as frames of \
                     XR_EXT_haptic_parametric; form=pcm: the samples, at the controller's rate; form=pwle: effects of control points, one for each block"
@@ -175,5 +161,6 @@ fn descriptor() -> Descriptor {
                     begins with a ramp from rest"
                 .to_owned(),
         }),
-    }
+        ..Descriptor::default()
 }
+});

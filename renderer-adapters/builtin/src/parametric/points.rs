@@ -53,13 +53,13 @@ impl Stream {
         // One point for each block, and one more at the start and at the end.
         let most_s = (MOST_POINTS - 3) as f64 * block_s;
         if first_s > most_s {
-            return Err(DeviceError::Setting {
-                name: "block_ms".to_owned(),
-                what: format!(
+            return Err(DeviceError::setting(
+                "block_ms",
+                format!(
                     "the runtime asks for frames of {:.0} ms, and a frame has at most {MOST_POINTS} points; choose longer blocks",
                     1e3 * first_s
                 ),
-            });
+            ));
         }
         Ok(Self {
             element,

@@ -34,12 +34,12 @@ impl Samples {
     pub(crate) fn open(element: Element, plan: &Plan, rate_hz: f64) -> Result<Self, DeviceError> {
         let first = 2 * plan.block_frames(rate_hz);
         if first > MOST {
-            return Err(DeviceError::Setting {
-                name: "block_ms".to_owned(),
-                what: format!(
+            return Err(DeviceError::setting(
+                "block_ms",
+                format!(
                     "two blocks are {first} samples at {rate_hz} Hz, and a runtime keeps {MOST}; choose shorter blocks"
                 ),
-            });
+            ));
         }
         Ok(Self {
             element,

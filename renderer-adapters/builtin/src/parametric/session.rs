@@ -87,7 +87,7 @@ struct State {
 
 impl Session {
     /// Returns the session of the runtime that a setting names. Creates it if no device has it.
-    pub(crate) fn of(path: &str) -> Result<Arc<Self>, DeviceError> {
+    pub(crate) fn shared(path: &str) -> Result<Arc<Self>, DeviceError> {
         // The lock stays until the new session is in the map, so that two threads do not create
         // two.
         let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,6 +1,6 @@
 //! The settings in parsed form.
 
-use crate::motor::{DEFAULT_GAIN, Plan, number, reducing_settings, setting};
+use crate::motor::{DEFAULT_GAIN, Plan, reducing_settings};
 use htex_device::{DeviceError, Setting, SettingKind, Settings};
 
 use crate::parametric::session::Hand;
@@ -16,7 +16,7 @@ pub(crate) enum Form {
 
 /// Settings that have been checked against each other.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct PlayRequest {
     pub(crate) runtime: String,
     pub(crate) form: Form,
     pub(crate) hand: Hand,
@@ -26,31 +26,33 @@ pub(crate) struct Asked {
 }
 
 pub(crate) fn all() -> Vec<Setting> {
-    let choice = |values: &[&str]| SettingKind::Choice {
-        values: values.iter().map(ToString::to_string).collect(),
-    };
-    let hz = number(0.0, FREQUENCIES_HZ.1);
+    let hz = SettingKind::Number { min: 0.0, max: FREQUENCIES_HZ.1 };
     let mut all = vec![
-        setting(
+        Setting::hardware(
             "runtime",
             SettingKind::Text,
             "",
             "Library of an OpenXR runtime or loader, a file or a name that the system's loader finds; empty: the installed loader.",
         ),
-        setting(
+        Setting::hardware(
             "form",
-            choice(&["points", "pcm", "pwle"]),
+            SettingKind::choice(&["points", "pcm", "pwle"]),
             "points",
             "What is handed over: points, samples at the controller's rate, or envelopes of an application's vibrator (then `runtime` names its library).",
         ),
-        setting("hand", choice(&["left", "right"]), "right", "The controller that plays."),
-        setting(
+        Setting::hardware(
+            "hand",
+            SettingKind::choice(&["left", "right"]),
+            "right",
+            "The controller that plays.",
+        ),
+        Setting::hardware(
             "low_hz",
             hz.clone(),
             "0",
             "Of points: mean frequency that is the lowest one of the controller, 1 to 1000 Hz; 0: what the controller states, else 50.",
         ),
-        setting(
+        Setting::hardware(
             "high_hz",
             hz,
             "0",
@@ -61,7 +63,7 @@ pub(crate) fn all() -> Vec<Setting> {
     all
 }
 
-impl Asked {
+impl PlayRequest {
     /// Reads the settings.
     ///
     /// # Errors
@@ -112,5 +114,5 @@ fn range(settings: &Settings) -> Result<Option<(f64, f64)>, DeviceError> {
 }
 
 fn refuse<T>(name: &str, what: &str) -> Result<T, DeviceError> {
-    Err(DeviceError::Setting { name: name.to_owned(), what: what.to_owned() })
+    Err(DeviceError::setting(name, what))
 }

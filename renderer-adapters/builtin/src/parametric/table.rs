@@ -4,19 +4,27 @@
 use std::ffi::{CStr, CString};
 use std::mem::{size_of, transmute_copy};
 
-use htex_base::native::{Library, LoadError};
+use htex_base::native::Library;
 use htex_device::DeviceError;
 use openxr_sys::{self as xr, pfn};
 
+use crate::driver::DriverLibrary;
 use crate::parametric::structures::GetProperties;
 
-/// Names of the installed loader, which are tried in turn.
-#[cfg(windows)]
-const LOADERS: &[&str] = &["openxr_loader.dll"];
-#[cfg(target_os = "macos")]
-const LOADERS: &[&str] = &["libopenxr_loader.dylib"];
-#[cfg(not(any(windows, target_os = "macos")))]
-const LOADERS: &[&str] = &["libopenxr_loader.so.1", "libopenxr_loader.so"];
+const LIBRARY: DriverLibrary = DriverLibrary {
+    names: if cfg!(windows) {
+        &["openxr_loader.dll"]
+    } else if cfg!(target_os = "macos") {
+        &["libopenxr_loader.dylib"]
+    } else {
+        &["libopenxr_loader.so.1", "libopenxr_loader.so"]
+    },
+    loaded_as: "an OpenXR runtime",
+    setting: "runtime",
+    absent: "no OpenXR loader is installed",
+    remedy: "Install one (Debian, Ubuntu: `libopenxr-loader1`) and a runtime, or name a runtime's \
+             library by the setting `runtime`",
+};
 
 /// The requested version of OpenXR: the first one, which all runtimes support.
 pub(crate) const VERSION: xr::Version = xr::Version::new(1, 0, 0);
@@ -27,27 +35,11 @@ pub(crate) type Entry = pfn::GetInstanceProcAddr;
 /// Loads the entry function of the library at `path`, or of the installed loader if `path` is
 /// empty.
 pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
-    if path.is_empty() {
-        // SAFETY: the loader's own names.
-        let entry = of(unsafe { Library::installed(LOADERS) });
-        return entry.map_err(|reason| {
-            DeviceError::Missing(format!(
-                "no OpenXR loader is installed: {reason}. Install one (Debian, Ubuntu: `libopenxr-loader1`) and a runtime, or name a \
-                 runtime's library by the setting `runtime`"
-            ))
-        });
-    }
-    // SAFETY: the user named this library as a runtime.
-    let entry = of(unsafe { Library::from_name(path) });
-    entry.map_err(|reason| DeviceError::Setting {
-        name: "runtime".to_owned(),
-        what: format!("`{path}` cannot be loaded as an OpenXR runtime: {reason}"),
-    })
+    LIBRARY.load(path, entry_of)
 }
 
 /// Finds the entry function. A runtime exports the negotiation function, a loader the entry itself.
-fn of(library: Result<Library, LoadError>) -> Result<Entry, String> {
-    let library = library.map_err(|error| error.to_string())?;
+fn entry_of(library: Library) -> Result<Entry, String> {
     // SAFETY: the name is that of `openxr_loader_negotiation.h`, which states the type.
     let negotiate = unsafe {
         library.symbol::<pfn::NegotiateLoaderRuntimeInterface>("xrNegotiateLoaderRuntimeInterface")
@@ -125,7 +117,7 @@ macro_rules! table {
         }
 
         impl Table {
-            pub(crate) fn of(entry: Entry, instance: xr::Instance) -> Result<Self, String> {
+            pub(crate) fn from_entry(entry: Entry, instance: xr::Instance) -> Result<Self, String> {
                 // SAFETY: the names and types are those of the header.
                 unsafe {
                     Ok(Self {

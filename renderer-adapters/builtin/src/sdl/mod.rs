@@ -9,42 +9,29 @@
 //! SDL stays initialised, because an application may use it as well.
 #![deny(unsafe_code)]
 
-mod claim;
 mod driver;
 mod pads;
 mod rumble;
 mod table;
 
-use crate::motor::{Paced, Plan, reducing_settings, setting};
+use std::sync::LazyLock;
+
+use crate::motor::{PacedOutput, Plan, reducing_settings};
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Mapping, SettingKind,
-    Settings, StreamFormat,
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, Mapping, Output, Setting,
+    SettingKind, Settings, StreamFormat,
 };
 
 use driver::Driver;
 use rumble::Rumble;
 
 /// The gamepad adapter. See the crate's documentation.
-pub struct Sdl {
-    descriptor: Descriptor,
-}
-
-impl Sdl {
-    /// Creates the adapter. SDL is loaded on first use.
-    pub fn new() -> Self {
-        Self { descriptor: descriptor() }
-    }
-}
-
-impl Default for Sdl {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Sdl;
 
 impl Adapter for Sdl {
     fn descriptor(&self) -> &Descriptor {
-        &self.descriptor
+        &DESCRIPTOR
     }
 
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
@@ -62,11 +49,11 @@ impl Adapter for Sdl {
         Ok(Plan::new(settings).capabilities())
     }
 
-    fn open(
+    fn open_output(
         &self,
         settings: &Settings,
         format: &StreamFormat,
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let plan = Plan::new(settings);
         let can = plan.capabilities();
         let driver = Driver::load(settings.text("driver"))?;
@@ -75,19 +62,19 @@ impl Adapter for Sdl {
             return Err(crate::motor::rate_error(&pad.name, format.rate_hz, &can));
         }
         let rumble = Rumble::open(driver, &pad, &plan)?;
-        let paced = Paced::open(&pad.name, Box::new(rumble), &plan, can, format)?;
+        let paced = PacedOutput::open(&pad.name, Box::new(rumble), &plan, can, format)?;
         Ok(Box::new(paced))
     }
 }
 
-fn descriptor() -> Descriptor {
-    let device = setting(
+static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
+    let device = Setting::hardware(
         "device",
         SettingKind::Text,
         pads::FIRST,
         "Gamepad or joystick, as the list of devices names it; `first` is the first one.",
     );
-    let driver = setting(
+    let driver = Setting::hardware(
         "driver",
         SettingKind::Text,
         "",
@@ -101,7 +88,6 @@ fn descriptor() -> Descriptor {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         summary: "The two motors of a gamepad or joystick, through SDL 2.".to_owned(),
         settings,
-        profiles: Vec::new(),
         mapping: Some(Mapping {
             plays: "the level of blocks of block_ms, on a large and a small motor: all on the large one up to a mean frequency of 60 Hz, \
                     all on the small one from 420 Hz"
@@ -110,5 +96,6 @@ fn descriptor() -> Descriptor {
                     20 to 100 ms to turn"
                 .to_owned(),
         }),
+        ..Descriptor::default()
     }
-}
+});

@@ -5,7 +5,7 @@ use crate::motor::{Block, Motor, Plan};
 use htex_device::DeviceError;
 use htex_dsp::reduced::{Scale, two_motors};
 
-use crate::sdl::claim::Claim;
+use crate::driver::Claim;
 use crate::sdl::driver::Driver;
 use crate::sdl::pads::Pad;
 use crate::sdl::table::Handle;
@@ -32,7 +32,7 @@ impl Rumble {
         pad: &Pad,
         plan: &Plan,
     ) -> Result<Self, DeviceError> {
-        let claim = Claim::take(driver, pad)?;
+        let claim = Claim::reserve(["sdl", &driver.path, &pad.instance.to_string()], &pad.name)?;
         let sdl = &driver.table;
         // SAFETY: an index of the list; one that is not there any more is refused.
         let handle = unsafe { (sdl.open)(pad.index) };

@@ -4,52 +4,13 @@
 
 use std::ffi::{CStr, c_char, c_int, c_void};
 
-use htex_base::native::{Library, LoadError};
+use crate::driver::driver_table;
 
 /// A joystick that SDL has opened.
 pub(crate) type Handle = *mut c_void;
 
-/// Error: a library cannot be used as SDL 2.
-#[derive(Debug)]
-pub(crate) enum TableError {
-    Load(LoadError),
-    Missing(&'static str),
-}
-
-impl std::fmt::Display for TableError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Load(error) => error.fmt(f),
-            Self::Missing(name) => write!(f, "it has no `{name}`; SDL 2.0.18 or later is needed"),
-        }
-    }
-}
-
-macro_rules! table {
-    ($($name:ident = $symbol:literal : ($($argument:ty),*) $(-> $result:ty)?,)*) => {
-        pub(crate) struct Table {
-            $(pub(crate) $name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
-        }
-
-        impl Table {
-            /// Looks up the functions of a library.
-            ///
-            /// # Errors
-            /// When the library is not loaded, or lacks a function.
-            pub(crate) fn of(library: Result<Library, LoadError>) -> Result<Self, TableError> {
-                let library = library.map_err(TableError::Load)?;
-                $(
-                    // SAFETY: the name is SDL's, and its header states the type.
-                    let $name = unsafe { library.symbol($symbol) };
-                    let $name = $name.ok_or(TableError::Missing($symbol))?;
-                )*
-                Ok(Self { $($name,)* })
-            }
-        }
-    };
-}
-
-table! {
+driver_table! {
+    extern "C", hint: "; SDL 2.0.18 or later is needed";
     set_main_ready = "SDL_SetMainReady": (),
     set_hint = "SDL_SetHint": (*const c_char, *const c_char) -> c_int,
     init = "SDL_InitSubSystem": (u32) -> c_int,

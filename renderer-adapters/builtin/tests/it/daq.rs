@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use htex_device::{Adapter, Device, DeviceError, Quantity, Rates, Settings};
+use htex_device::{Adapter, DeviceError, Output, Quantity, Rates, Settings};
 use htex_device_builtin::daq::Daq;
 use simulated::{Card, GAIN, PAPER, RATE_HZ};
 
@@ -194,7 +194,7 @@ fn what_endangers_a_finger_is_refused() {
     let card = Card::new();
     let error = card.open(&[("buffer_ms", "390"), ("ramp_ms", "20")]);
     assert!(error.err().unwrap().to_string().contains("at most 400 ms together"));
-    let fast = Daq::new().capabilities(&card.settings(&[("carrier_hz", "100000")]));
+    let fast = Daq.capabilities(&card.settings(&[("carrier_hz", "100000")]));
     let Rates::Range { min_hz, .. } = fast.unwrap().rates else { unreachable!() };
     assert_eq!(min_hz, 250_000.0);
 }
@@ -278,7 +278,7 @@ fn a_card_pulled_out_is_an_error_that_says_so() {
 #[test]
 fn what_the_rig_can_do() {
     let card = Card::new();
-    let can = |given| Daq::new().capabilities(&card.settings(given));
+    let can = |given| Daq.capabilities(&card.settings(given));
     let paper = can(&[]).unwrap();
     paper.check().unwrap();
     assert_eq!(paper.quantity, Quantity::DisplayVoltage);
@@ -307,7 +307,7 @@ fn what_is_missing_is_named() {
         ),
         "{none}"
     );
-    if let Err(error) = Daq::new().endpoints() {
+    if let Err(error) = Daq.endpoints() {
         assert!(error.to_string().contains("ni.com"), "{error}");
     }
 }
@@ -315,7 +315,7 @@ fn what_is_missing_is_named() {
 #[test]
 fn gain_and_limit_have_no_default() {
     let none = BTreeMap::new();
-    let adapter = Daq::new();
+    let adapter = Daq;
     let descriptor = adapter.descriptor();
     descriptor.check().unwrap();
     assert!(Settings::resolve(descriptor, None, &none).is_err());
@@ -344,7 +344,7 @@ fn goes_to_zero(card: &Card) {
     assert_eq!(card.recorded().last(), Some(&0.0));
 }
 
-fn is_closed(device: &mut dyn Device) {
+fn is_closed(device: &mut dyn Output) {
     let closed = device.write(&[0.0], LONG).unwrap_err();
     assert!(matches!(closed, DeviceError::Closed(_)), "{closed}");
 }

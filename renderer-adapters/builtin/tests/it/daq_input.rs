@@ -5,7 +5,7 @@ use crate::daq_simulated as simulated;
 
 use std::time::Duration;
 
-use htex_device::{Channel, Delivered, DeviceError, Source, SourceAdapter};
+use htex_device::{Adapter, Channel, DeviceError, Input, InputFrames, InputStream};
 use htex_device_builtin::daq::DaqInput;
 use simulated::Card;
 
@@ -29,15 +29,15 @@ fn rows(count: usize) -> Vec<Vec<f64>> {
 }
 
 /// Reads `frames` frames in pieces of uneven length.
-fn read(source: &mut dyn Source, frames: usize) -> Result<Vec<f64>, DeviceError> {
-    let width = source.channels().len();
+fn read(source: &mut dyn Input, frames: usize) -> Result<Vec<f64>, DeviceError> {
+    let width = source.stream().channels.len();
     let mut all = Vec::new();
     for block in [1, 7, 300, 4_096].iter().cycle() {
         let most = (*block).min(frames - all.len() / width);
         let mut samples = vec![0.0; most * width];
         match source.read(&mut samples, LONG)? {
-            Delivered::Frames(got) => all.extend(&samples[..got * width]),
-            Delivered::End => break,
+            InputFrames::Count(got) => all.extend(&samples[..got * width]),
+            InputFrames::End => break,
         }
         if all.len() == frames * width {
             break;
@@ -53,13 +53,13 @@ fn every_sample_is_read_once_and_in_order() {
     card.put_in(&rows);
     let mut source = card.open_input(&[("channels", "Dev1/ai0:1,Dev1/ai4")]).unwrap();
     let names = ["ai0", "ai1", "ai4"].map(|name| Channel::new(name, "V"));
-    assert_eq!((source.channels(), source.rate_hz()), (&names[..], 20_000.0));
+    assert_eq!(*source.stream(), InputStream { rate_hz: 20_000.0, channels: names.to_vec() });
     let closed = source.read(&mut [0.0; 3], LONG).unwrap_err();
     assert!(matches!(closed, DeviceError::Closed(_)), "before the start: {closed}");
     source.start().unwrap();
     let expected: Vec<f64> = rows.iter().flat_map(|row| [row[0], row[1], row[4]]).collect();
     assert!(read(&mut *source, 5_000).unwrap() == expected);
-    source.stop().unwrap();
+    source.finish().unwrap();
     let closed = source.read(&mut [0.0; 3], LONG).unwrap_err();
     assert!(matches!(closed, DeviceError::Closed(_)), "{closed}");
 }
@@ -92,7 +92,7 @@ fn samples_that_are_read_too_late_are_an_overrun() {
     );
     let closed = read(&mut *source, 1).unwrap_err();
     assert!(matches!(closed, DeviceError::Closed(_)), "{closed}");
-    source.stop().unwrap();
+    source.finish().unwrap();
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn every_fault_at_every_call_is_an_error_or_harms_no_sample() {
         let mut source = card.open_input(&[])?;
         source.start()?;
         let samples = read(&mut *source, 400)?;
-        source.stop().map(|()| samples)
+        source.finish().map(|()| samples)
     };
     let card = Card::new();
     card.set("fault", "none:1:error=0");
@@ -186,5 +186,5 @@ fn every_fault_at_every_call_is_an_error_or_harms_no_sample() {
 
 #[test]
 fn the_descriptor_is_sound() {
-    DaqInput::new().descriptor().check().unwrap();
+    DaqInput.descriptor().check().unwrap();
 }

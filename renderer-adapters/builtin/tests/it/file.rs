@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use htex_device::{Adapter, Device, DeviceError, NativeAdapter, Quantity, Settings, StreamFormat};
+use htex_device::{Adapter, DeviceError, NativeAdapter, Output, Quantity, Settings, StreamFormat};
 use htex_device_builtin::file::{FileAdapter, TABLE};
 
 type Given<'a> = &'a [(&'a str, &'a str)];
@@ -22,9 +22,9 @@ fn open(
     path: &Path,
     given: Given<'_>,
     rate_hz: f64,
-) -> Result<Box<dyn Device>, DeviceError> {
+) -> Result<Box<dyn Output>, DeviceError> {
     let format = StreamFormat { rate_hz, block_frames: 64 };
-    adapter.open(&settings(path, given)?, &format)
+    adapter.open_output(&settings(path, given)?, &format)
 }
 
 /// Writes samples in uneven blocks and returns the file. The file must not exist before the device

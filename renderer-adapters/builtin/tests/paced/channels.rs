@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use htex_device::{Adapter, Device, DeviceError, Quantity, Settings, StreamFormat};
+use htex_device::{Adapter, DeviceError, Output, Quantity, Settings, StreamFormat};
 use htex_device_builtin::channels::Channels;
 
 const RATE_HZ: f64 = 48_000.0;
@@ -13,12 +13,12 @@ const LONG: Duration = Duration::from_secs(5);
 fn settings(given: &[(&str, &str)]) -> Result<Settings, DeviceError> {
     let given: BTreeMap<String, String> =
         given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Settings::resolve(Channels::new().descriptor(), None, &given)
+    Settings::resolve(Channels.descriptor(), None, &given)
 }
 
-fn open(given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
+fn open(given: &[(&str, &str)]) -> Result<Box<dyn Output>, DeviceError> {
     let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 480 };
-    Channels::new().open(&settings(given)?, &format)
+    Channels.open_output(&settings(given)?, &format)
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn nothing_takes_the_samples_at_the_pace_of_the_clock() {
 
 #[test]
 fn what_cannot_take_effect_is_refused() {
-    let channels = Channels::new();
+    let channels = Channels;
     channels.descriptor().check().unwrap();
     for (given, name) in [
         (&[("to", "null"), ("path", "a.wav")][..], "path"),
@@ -103,7 +103,7 @@ fn what_cannot_take_effect_is_refused() {
         (Quantity::Sound, Some(1.0), RATE_HZ)
     );
     let rate = StreamFormat { rate_hz: 48_001.0, block_frames: 480 };
-    let refused = channels.open(&settings(&[("to", "null")]).unwrap(), &rate);
+    let refused = channels.open_output(&settings(&[("to", "null")]).unwrap(), &rate);
     assert!(matches!(refused.err().unwrap(), DeviceError::Rate { .. }));
     assert_eq!(channels.endpoints().unwrap()[0].name, "null");
 }

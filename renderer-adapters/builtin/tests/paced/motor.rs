@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use htex_device::{Descriptor, Device, DeviceError, Settings, StreamFormat};
-use htex_device_builtin::motor::{Block, Motor, Paced, Plan, reducing_settings};
+use htex_device::{Descriptor, DeviceError, Output, Settings, StreamFormat};
+use htex_device_builtin::motor::{Block, Motor, PacedOutput, Plan, reducing_settings};
 
 const RATE_HZ: f64 = 8_000.0;
 const LONG: Duration = Duration::from_secs(5);
@@ -48,11 +48,11 @@ impl Log {
         self.all().ends_with(told)
     }
 
-    fn open(&self, settings: &[(&str, &str)]) -> Paced {
+    fn open(&self, settings: &[(&str, &str)]) -> PacedOutput {
         let plan = plan(settings);
         let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 64 };
         let motor = Box::new(Logged(self.clone()));
-        Paced::open("Motor", motor, &plan, plan.capabilities(), &format).unwrap()
+        PacedOutput::open("Motor", motor, &plan, plan.capabilities(), &format).unwrap()
     }
 }
 
@@ -96,8 +96,7 @@ fn plan(settings: &[(&str, &str)]) -> Plan {
         version: "1.0.0".to_owned(),
         summary: "A motor.".to_owned(),
         settings: reducing_settings(),
-        profiles: vec![],
-        mapping: None,
+        ..Descriptor::default()
     };
     descriptor.check().unwrap();
     let given: BTreeMap<String, String> =
@@ -105,7 +104,7 @@ fn plan(settings: &[(&str, &str)]) -> Plan {
     Plan::new(&Settings::resolve(&descriptor, None, &given).unwrap())
 }
 
-fn write_all(device: &mut Paced, samples: &[f32]) {
+fn write_all(device: &mut PacedOutput, samples: &[f32]) {
     assert_eq!(device.write(samples, LONG), Ok(samples.len()));
 }
 
@@ -225,6 +224,6 @@ fn a_rate_that_it_does_not_have_is_refused() {
     let plan = plan(&[]);
     let format = StreamFormat { rate_hz: 1_000.0, block_frames: 64 };
     let motor = Box::new(Logged(Log::new(0)));
-    let refused = Paced::open("Motor", motor, &plan, plan.capabilities(), &format);
+    let refused = PacedOutput::open("Motor", motor, &plan, plan.capabilities(), &format);
     assert!(matches!(refused.err().unwrap(), DeviceError::Rate { .. }));
 }

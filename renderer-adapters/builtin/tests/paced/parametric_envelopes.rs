@@ -95,7 +95,7 @@ fn what_the_vibrator_does_not_take_is_refused() {
     let Some(mock) = Mock::of("vibrator.c") else {
         return;
     };
-    let adapter = Parametric::new();
+    let adapter = Parametric;
     let asked = |given: &[(&str, &str)]| {
         let given = [&[("form", "pwle")], given].concat();
         adapter.capabilities(&mock.settings(&given)).unwrap_err()

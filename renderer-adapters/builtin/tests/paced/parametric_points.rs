@@ -4,7 +4,7 @@ use crate::parametric_mock as mock;
 
 use std::time::Instant;
 
-use htex_device::{Adapter, Device, DeviceError, Quantity, Rates};
+use htex_device::{Adapter, DeviceError, Output, Quantity, Rates};
 use htex_device_builtin::parametric::Parametric;
 use mock::{Frame, LONG, Mock, RATE_HZ, settings, sine, write_all};
 
@@ -136,7 +136,7 @@ fn samples_are_played_as_they_are_at_the_rate_of_the_controller() {
         mock.set("pcm_rate", 2_000.0);
         mock.set("pcm_most", most);
         let given = [("form", "pcm"), ("hand", "left"), ("block_ms", "20")];
-        let can = Parametric::new().capabilities(&mock.settings(&given)).unwrap();
+        let can = Parametric.capabilities(&mock.settings(&given)).unwrap();
         can.check().unwrap();
         assert_eq!(can.rates, Rates::List(vec![2_000.0]));
         let mut device = mock.open(&given).unwrap();
@@ -190,7 +190,7 @@ fn both_hands_share_a_session_and_each_has_one_device() {
 #[test]
 fn whatever_ends_it_the_hand_is_at_rest() {
     let Some(mock) = Mock::new() else { return };
-    let play = |mock: &Mock| -> Box<dyn Device> {
+    let play = |mock: &Mock| -> Box<dyn Output> {
         let mut device = mock.open(&[("buffer_ms", "1000")]).unwrap();
         write_all(device.as_mut(), &sine(200.0, 0.5, 0.9, RATE_HZ));
         let since = Instant::now();
@@ -201,7 +201,7 @@ fn whatever_ends_it_the_hand_is_at_rest() {
         }
         device
     };
-    let until_it_fails = |device: &mut dyn Device| {
+    let until_it_fails = |device: &mut dyn Output| {
         let samples = sine(200.0, 0.5, 0.01, RATE_HZ);
         loop {
             if let Err(error) = device.write(&samples, LONG) {
@@ -236,7 +236,7 @@ fn whatever_ends_it_the_hand_is_at_rest() {
 #[test]
 fn what_cannot_take_effect_is_refused() {
     let Some(mock) = Mock::new() else { return };
-    let adapter = Parametric::new();
+    let adapter = Parametric;
     adapter.descriptor().check().unwrap();
     let can = adapter.capabilities(&mock.settings(&[])).unwrap();
     can.check().unwrap();

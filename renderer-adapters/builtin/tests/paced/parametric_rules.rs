@@ -206,7 +206,7 @@ fn each_rule_bites() {
 fn each_rule_of_samples_bites() {
     let Some(mock) = Mock::new() else { return };
     let device = mock.open(&[]).unwrap();
-    htex_device_builtin::parametric::Parametric::new().descriptor().check().unwrap();
+    htex_device_builtin::parametric::Parametric.descriptor().check().unwrap();
     let caller = Caller::new(&mock);
     let (samples, mut taken) = ([0.5_f32, -1.0, 1.0], 0_u32);
     let sound = xr::HapticPcmVibrationFB {

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use htex_device::{Adapter, Device, DeviceError, Quantity, Settings, StreamFormat};
+use htex_device::{Adapter, DeviceError, Output, Quantity, Settings, StreamFormat};
 use htex_device_builtin::sdl::Sdl;
 
 const RATE_HZ: f64 = 8_000.0;
@@ -46,7 +46,7 @@ impl Pad {
         let library = unsafe { libloading::Library::new(path).unwrap() };
         let mut pad = Self { library, path, since: 0, _alone: alone };
         // The gamepad is attached when the adapter initialises SDL.
-        Sdl::new().capabilities(&pad.settings(&[])).unwrap();
+        Sdl.capabilities(&pad.settings(&[])).unwrap();
         pad.since = pad.call("pad_count");
         Some(pad)
     }
@@ -91,12 +91,12 @@ impl Pad {
             .iter()
             .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
             .collect();
-        Settings::resolve(Sdl::new().descriptor(), None, &given).unwrap()
+        Settings::resolve(Sdl.descriptor(), None, &given).unwrap()
     }
 
-    fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
+    fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Output>, DeviceError> {
         let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 80 };
-        Sdl::new().open(&self.settings(given), &format)
+        Sdl.open_output(&self.settings(given), &format)
     }
 
     fn is_at_rest(&self) -> bool {
@@ -110,7 +110,7 @@ fn sine(hz: f32, peak: f32, seconds: f32) -> Vec<f32> {
     (0..count).map(|n| peak * (turn * n as f32).sin()).collect()
 }
 
-fn write_all(device: &mut dyn Device, samples: &[f32]) {
+fn write_all(device: &mut dyn Output, samples: &[f32]) {
     assert_eq!(device.write(samples, LONG), Ok(samples.len()));
 }
 
@@ -173,7 +173,7 @@ fn dropped_or_dry_it_rests() {
 #[test]
 fn a_pad_that_fails_or_is_pulled_out_says_so_and_rests() {
     let Some(pad) = Pad::take() else { return };
-    let until_it_fails = |device: &mut dyn Device| loop {
+    let until_it_fails = |device: &mut dyn Output| loop {
         if let Err(error) = device.write(&sine(100.0, 0.5, 0.01), LONG) {
             break error.to_string();
         }
@@ -216,7 +216,7 @@ fn one_program_drives_a_pad_once() {
 #[test]
 fn settings_that_name_nothing_are_refused() {
     let Some(pad) = Pad::take() else { return };
-    let sdl = Sdl::new();
+    let sdl = Sdl;
     sdl.descriptor().check().unwrap();
     let can = sdl.capabilities(&pad.settings(&[])).unwrap();
     can.check().unwrap();

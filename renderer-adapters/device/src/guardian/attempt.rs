@@ -4,7 +4,7 @@
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::{KnownDevice, Origin, Settings, StreamFormat};
+use crate::{AdapterEntry, Origin, Settings, StreamFormat};
 
 use crate::guardian::decision::By;
 use crate::guardian::message::{Answer, OPEN, Opening};
@@ -13,7 +13,7 @@ use crate::guardian::worker::{converse, thread};
 /// A display, and the helper program that can hold it.
 pub(crate) struct Display {
     helper: Mutex<Command>,
-    known: KnownDevice,
+    known: AdapterEntry,
     settings: Settings,
     format: StreamFormat,
 }
@@ -21,7 +21,7 @@ pub(crate) struct Display {
 impl Display {
     pub(crate) fn new(
         helper: Command,
-        known: &KnownDevice,
+        known: &AdapterEntry,
         settings: &Settings,
         format: &StreamFormat,
     ) -> Self {
@@ -52,7 +52,7 @@ impl Display {
 }
 
 /// Prepares the helper program for a device, out of reach of the terminal's keys.
-fn prepared(mut command: Command, known: &KnownDevice) -> Command {
+fn prepared(mut command: Command, known: &AdapterEntry) -> Command {
     if let Origin::Library(path) = &known.origin {
         command.arg("--device-file").arg(path);
     }
@@ -120,6 +120,6 @@ fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), Str
 
 /// Attempts zero by opening the device in this process.
 fn by_player(display: &Display) -> Result<(), String> {
-    let opened = display.known.adapter.open(&display.settings, &display.format);
+    let opened = display.known.adapter.open_output(&display.settings, &display.format);
     opened.map(drop).map_err(|error| error.to_string())
 }

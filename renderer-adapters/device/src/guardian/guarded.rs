@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::{
-    Capabilities, Device, DeviceError, KnownDevice, Quantity, Settings, Status, StreamFormat,
+    AdapterEntry, Capabilities, DeviceError, Output, Quantity, Settings, Status, StreamFormat,
 };
 
 use crate::guardian::attempt::Display;
@@ -37,7 +37,7 @@ pub fn htex() -> Command {
 
 /// Returns the error that no helper program could be started.
 pub fn not_started(error: impl Show) -> DeviceError {
-    DeviceError::Told(format!("no process to hold the output can be started: {error}"))
+    DeviceError::Message(format!("no process to hold the output can be started: {error}"))
 }
 
 /// A device held by another process, the guardian.
@@ -47,21 +47,21 @@ pub fn not_started(error: impl Show) -> DeviceError {
 /// the guardian is killed, and a second process sets the output to zero. If that is not confirmed
 /// 0.5 s later, the call returns an error that says so. A thread then prints every second that the
 /// amplifier must be switched off, until zero is confirmed ([`crate::guardian::is_unconfirmed`]).
-pub struct Guarded {
+pub struct GuardedOutput {
     worker: Mutex<Sender<Message>>,
     name: String,
     waits: Waits,
     ended: bool,
 }
 
-impl Guarded {
+impl GuardedOutput {
     /// Starts the helper program, which opens the device. If the device comes from a library, the
     /// program's last arguments are `--device-file` and the library's file.
     ///
     /// # Errors
     /// When the program cannot be started or does not answer, or when it cannot open the device.
     pub fn open(
-        known: &KnownDevice,
+        known: &AdapterEntry,
         settings: &Settings,
         format: &StreamFormat,
         helper: Command,
@@ -94,7 +94,7 @@ impl Guarded {
             Err(_) => Reply::Closed,
         };
         match replied {
-            Reply::Answer(Answer::Failed(text)) => Err(DeviceError::Told(text)),
+            Reply::Answer(Answer::Failed(text)) => Err(DeviceError::Message(text)),
             Reply::Answer(Answer::Dry { device, frames, advice }) => {
                 Err(DeviceError::Underflow { device, frames, advice })
             }
@@ -135,7 +135,7 @@ fn waits(settings: &Settings) -> Waits {
     Waits { to_zero: to_zero.reduce(|a, b| a + b).unwrap_or(USUAL_TO_ZERO) }
 }
 
-impl Device for Guarded {
+impl Output for GuardedOutput {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
         let (begun, mut taken) = (Instant::now(), 0);
         loop {
@@ -160,7 +160,7 @@ impl Device for Guarded {
     }
 }
 
-impl Drop for Guarded {
+impl Drop for GuardedOutput {
     fn drop(&mut self) {
         let begun = Instant::now();
         if !self.ended {

@@ -3,21 +3,21 @@
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::time::Duration;
 
-use crate::{Device, DeviceError, KnownDevice, Settings, StreamFormat};
+use crate::{AdapterEntry, DeviceError, Output, Settings, StreamFormat};
 
-use crate::guardian::message::{Answer, FINISH, Opening, STATUS, WRITE, put, take};
+use crate::guardian::message::{Answer, FINISH, Opening, STATUS, WRITE, put, read_message};
 
 /// Holds a device for the app at the other end of the pipes, which are the standard input and
 /// output of a helper program. Returns when the pipes end.
 ///
 /// The program ignores signals. Only the end of the pipe ends it.
 pub fn hold(
-    find: impl FnOnce(&str) -> Result<KnownDevice, DeviceError>,
+    find: impl FnOnce(&str) -> Result<AdapterEntry, DeviceError>,
     from: impl Read,
     to: impl Write,
 ) {
     let (mut from, mut to) = (BufReader::new(from), BufWriter::new(to));
-    let opened = take(&mut from).ok().map(|(_, body)| open(find, &body));
+    let opened = read_message(&mut from).ok().map(|(_, body)| open(find, &body));
     let mut device = match opened {
         None => return,
         Some(Err(error)) => {
@@ -28,7 +28,7 @@ pub fn hold(
     };
     let mut heard = answer(&mut to, &Answer::Done(0));
     while heard.is_ok() {
-        let Ok((tag, body)) = take(&mut from) else {
+        let Ok((tag, body)) = read_message(&mut from) else {
             break;
         };
         let said = match tag {
@@ -52,18 +52,18 @@ pub fn hold(
 }
 
 fn open(
-    find: impl FnOnce(&str) -> Result<KnownDevice, DeviceError>,
+    find: impl FnOnce(&str) -> Result<AdapterEntry, DeviceError>,
     body: &[u8],
-) -> Result<Box<dyn Device>, DeviceError> {
+) -> Result<Box<dyn Output>, DeviceError> {
     let opening: Opening = serde_json::from_slice(body)
-        .map_err(|error| DeviceError::Told(format!("invalid first message: {error}")))?;
+        .map_err(|error| DeviceError::Message(format!("invalid first message: {error}")))?;
     let known = find(&opening.device)?;
     let settings = Settings::from_lines(known.descriptor(), &opening.settings)?;
     let format = StreamFormat { rate_hz: opening.rate_hz, block_frames: opening.block_frames };
-    known.adapter.open(&settings, &format)
+    known.adapter.open_output(&settings, &format)
 }
 
-fn write(device: &mut dyn Device, body: &[u8]) -> Result<Answer, DeviceError> {
+fn write(device: &mut dyn Output, body: &[u8]) -> Result<Answer, DeviceError> {
     let (words, _) = body.as_chunks::<4>();
     let Some((timeout_ms, samples)) = words.split_first() else {
         return Ok(Answer::Done(0));

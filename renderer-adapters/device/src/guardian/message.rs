@@ -61,7 +61,7 @@ pub(crate) fn put(to: &mut impl Write, tag: u8, body: &[u8]) -> std::io::Result<
     to.flush()
 }
 
-pub(crate) fn take(from: &mut impl Read) -> std::io::Result<(u8, Vec<u8>)> {
+pub(crate) fn read_message(from: &mut impl Read) -> std::io::Result<(u8, Vec<u8>)> {
     let mut head = [0; 5];
     from.read_exact(&mut head)?;
     let [tag, a, b, c, d] = head;

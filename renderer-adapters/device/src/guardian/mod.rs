@@ -9,19 +9,19 @@
 //! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper
 //! process, which sets the output to zero. [`decision`] decides when and how.
 //!
-//! An app opens a device as [`Guarded`] if [`is_wanted`] says so. The helper program is [`htex`] or
+//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] says so. The helper program is [`htex`] or
 //! the app's own, which calls [`hold`]. An app needs its own for devices that `htex` does not have.
 //!
 //! ```no_run
 //! use std::time::Duration;
-//! use htex_device::{Device, DeviceError, KnownDevice, Settings, StreamFormat};
-//! use htex_device::guardian::{Guarded, htex, is_wanted};
+//! use htex_device::{AdapterEntry, DeviceError, Output, Settings, StreamFormat};
+//! use htex_device::guardian::{GuardedOutput, htex, is_wanted};
 //!
-//! fn open(known: &KnownDevice, settings: &Settings) -> Result<Box<dyn Device>, DeviceError> {
+//! fn open(known: &AdapterEntry, settings: &Settings) -> Result<Box<dyn Output>, DeviceError> {
 //!     let format = StreamFormat { rate_hz: 20_000.0, block_frames: 256 };
 //!     Ok(match is_wanted(&known.adapter.capabilities(settings)?) {
-//!         true => Box::new(Guarded::open(known, settings, &format, htex())?),
-//!         false => known.adapter.open(settings, &format)?,
+//!         true => Box::new(GuardedOutput::open(known, settings, &format, htex())?),
+//!         false => known.adapter.open_output(settings, &format)?,
 //!     })
 //! }
 //! ```
@@ -34,6 +34,6 @@ mod hold;
 mod message;
 mod worker;
 
-pub use guarded::{Guarded, htex, is_wanted, not_started};
+pub use guarded::{GuardedOutput, htex, is_wanted, not_started};
 pub use hold::hold;
 pub use worker::{NOT_ZERO, is_unconfirmed};

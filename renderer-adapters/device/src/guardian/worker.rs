@@ -15,7 +15,7 @@ use crate::DeviceError;
 
 use crate::guardian::attempt::{Attempt, Display};
 use crate::guardian::decision::{Action, Event, Player, Why};
-use crate::guardian::message::{Answer, put, take};
+use crate::guardian::message::{Answer, put, read_message};
 
 /// The warning about a voltage that may remain at the display.
 pub const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
@@ -233,7 +233,7 @@ impl Worker {
         };
         let failure = self.failure.as_ref().filter(|_| !self.player.is_over());
         let failure = failure.map_or(String::new(), |failure| format!(" ({failure})"));
-        let error = DeviceError::Told(format!("{why}{end}{failure}"));
+        let error = DeviceError::Message(format!("{why}{end}{failure}"));
         self.reply(Reply::Failed(error));
     }
 
@@ -277,6 +277,6 @@ pub(crate) fn converse(
     body: &[u8],
 ) -> std::io::Result<Answer> {
     put(to, tag, body)?;
-    let (_, body) = take(from)?;
+    let (_, body) = read_message(from)?;
     Ok(serde_json::from_slice(&body)?)
 }

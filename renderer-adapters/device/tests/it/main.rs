@@ -7,6 +7,6 @@
     reason = "a failed test may panic"
 )]
 
-mod crossing;
 mod guardian_zero;
-mod source_crossing;
+mod input_crossing;
+mod output_crossing;

@@ -37,8 +37,8 @@ pub fn relative() -> Vec<(&'static str, PathBuf)> {
     VARIABLES.into_iter().filter_map(path).collect()
 }
 
-/// Returns a folder in the user's data folder, if it exists, e.g. `htex/plugins`, `htex/devices` or
-/// `htex/sources`.
+/// Returns a folder in the user's data folder, if it exists, e.g. `htex/plugins` or
+/// `htex/devices`.
 pub fn data(folder: &str) -> Option<PathBuf> {
     let data = base("XDG_DATA_HOME", ".local/share")?.join(folder);
     data.exists().then_some(data)

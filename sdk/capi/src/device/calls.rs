@@ -3,7 +3,9 @@
 use std::ffi::c_char;
 use std::time::Duration;
 
-use htex::device::{Device, DeviceError, Devices, KnownDevice, Quantity, Settings, StreamFormat};
+use htex::device::{
+    AdapterEntry, DeviceError, Devices, Direction, Output, Quantity, Settings, StreamFormat,
+};
 use serde_json::json;
 
 use super::{htex_device, htex_device_counts};
@@ -13,7 +15,7 @@ use crate::status::{Failure, guarded, htex_status};
 
 /// An open device, and its sample rate.
 struct OpenDevice {
-    device: Box<dyn Device>,
+    device: Box<dyn Output>,
     rate_hz: f64,
 }
 
@@ -62,9 +64,9 @@ pub(super) unsafe fn list_json(
 ) -> htex_status {
     guarded(|| {
         let devices = devices();
-        let all = devices.all().iter().map(|known| {
+        let all = devices.of_direction(Direction::Output).map(|known| {
             let descriptor = known.descriptor();
-            let (endpoints, problem) = match known.endpoints() {
+            let (endpoints, problem) = match known.adapter.endpoints() {
                 Ok(endpoints) => (endpoints, None),
                 Err(problem) => (Vec::new(), Some(problem.to_string())),
             };
@@ -83,10 +85,10 @@ unsafe fn device_and_settings(
     devices: &Devices,
     name: *const c_char,
     settings: *const c_char,
-) -> Result<(&KnownDevice, Settings), Failure> {
+) -> Result<(&AdapterEntry, Settings), Failure> {
     // SAFETY: as here.
     let (name, lines) = unsafe { (needed_text(name)?, text(settings)?) };
-    let known = devices.find(name)?;
+    let known = devices.find_output(name)?;
     let settings = Settings::from_lines(known.descriptor(), lines.unwrap_or_default())?;
     Ok((known, settings))
 }
@@ -135,7 +137,7 @@ pub(super) unsafe fn open(
         }
         let rate_hz = if rate_hz == 0.0 { can.default_rate_hz } else { rate_hz };
         let format = StreamFormat { rate_hz, block_frames: can.block_frames };
-        let device = known.adapter.open(&settings, &format)?;
+        let device = known.adapter.open_output(&settings, &format)?;
         out.id = DEVICES.insert(OpenDevice { device, rate_hz })?;
         Ok(())
     })

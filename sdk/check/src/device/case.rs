@@ -1,132 +1,91 @@
-//! The device or source under test, and how its checks run.
+//! The device under test, and operations on it that several checks share.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
-use crate::harness::{Check, Finding, Owner, Runner, UnknownCheck, run_all};
-use htex_device::{AbiFault, Adapter, AdapterKind, DeviceError, Native, Setting, Settings};
+use htex_device::{
+    Adapter, Capabilities, DeviceError, Direction, Input, InputFrames, NativeAdapter, Output,
+    Rates, Setting, SettingKind, Settings, StreamFormat,
+};
+use tempfile::TempDir;
 
-use crate::device::report::{AdapterName, Report};
+use crate::harness::Finding;
 
-/// A kind of adapter that can be checked: for devices or for sources.
-pub trait CheckedKind: CaseKind {
-    /// The checks, in the order in which they run.
-    const CHECKS: &'static [Check<Case<Self>>];
-}
+/// Level of the test tone: a hundredth of the limit, or of the unit if there is no limit.
+const QUIET: f64 = 0.01;
+/// Frequency of the test tone, hertz.
+const TONE_HZ: f64 = 100.0;
+/// Maximum number of consecutive writes or reads that may take or deliver nothing, each waiting
+/// [`PATIENCE`].
+const EMPTY_CALLS: u32 = 5;
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Block size of an output that is opened only to test its arguments, frames.
+const BLOCK: u32 = 256;
 
-/// The part of a case that depends on its kind.
-pub trait CaseKind: AdapterKind {
-    /// The files that the checks write.
-    type Files;
-
-    /// Creates a place for these files.
-    ///
-    /// # Errors
-    /// When it cannot be created.
-    fn files() -> Result<Self::Files, DeviceError>;
-}
-
-/// The device or source under test.
+/// The device under test.
 #[derive(Clone)]
-pub enum Subject<A: ?Sized = dyn Adapter> {
+pub enum Subject {
     /// A native library.
     Library(PathBuf),
     /// An adapter that is built into this program.
-    Builtin(Arc<A>),
+    Builtin(Arc<dyn Adapter>),
 }
 
 /// A loaded adapter and its settings.
-pub struct Case<A: CaseKind + ?Sized> {
-    pub(crate) adapter: Arc<A>,
+pub struct Case {
+    pub(crate) adapter: Arc<dyn Adapter>,
     /// The same adapter, if it is a native library.
-    native: Option<Native<A::Table>>,
+    native: Option<NativeAdapter>,
     profile: Option<String>,
     given: BTreeMap<String, String>,
-    pub(crate) files: A::Files,
+    /// The folder for the files that an output writes, and a counter for their names.
+    pub(crate) folder: TempDir,
+    files: AtomicU32,
 }
 
-/// Runs all checks of an adapter, given by its file or id, each check in its own process. `runner`
-/// is a program that calls [`run_one`]. Its arguments are the ones it was given, which name the
-/// adapter and its settings, followed by the name of the check.
-pub fn check<A: CheckedKind + ?Sized>(adapter: &str, runner: &Runner) -> Report {
-    let checks = run_all(A::CHECKS, runner, |command, name| {
-        command.arg(name);
-    });
-    let subject = AdapterName { kind: A::WORD, name: adapter.to_owned() };
-    Report::new(subject, checks)
-}
-
-/// Runs one check in this process. A crash ends the process.
-///
-/// # Errors
-/// When no check has this name.
-pub fn run_one<A: CheckedKind + ?Sized>(
-    subject: &Subject<A>,
-    name: &str,
-    profile: Option<&str>,
-    given: &BTreeMap<String, String>,
-) -> Result<Finding, UnknownCheck> {
-    let load = || Case::load(subject, profile, given);
-    crate::harness::run_one(A::CHECKS, name, load, owner)
-}
-
-/// Returns the check to which a loading error belongs.
-fn owner(error: &DeviceError) -> Owner {
-    let DeviceError::Abi { fault, .. } = error else {
-        return Owner::not_reached("exports");
-    };
-    match fault {
-        AbiFault::Marker { .. } => Owner::reached("marker"),
-        AbiFault::Descriptor(_) => Owner::reached("descriptor"),
-        AbiFault::Symbol { symbol, .. } if symbol.ends_with("_abi_version") => {
-            Owner::reached("marker")
-        }
-        AbiFault::Symbol { .. } => Owner::reached("exports"),
-        // A file that cannot be loaded has no marker to check.
-        _ => Owner::not_reached("exports"),
-    }
-}
-
-impl<A: CaseKind + ?Sized> Case<A> {
-    fn load(
-        subject: &Subject<A>,
+impl Case {
+    pub(crate) fn load(
+        subject: &Subject,
         profile: Option<&str>,
         given: &BTreeMap<String, String>,
     ) -> Result<Self, DeviceError> {
-        let (adapter, native) = match subject {
+        let (adapter, native): (Arc<dyn Adapter>, _) = match subject {
             Subject::Builtin(adapter) => (adapter.clone(), None),
             Subject::Library(path) => {
-                let native = Native::load(path)?;
-                (A::of_native(native.clone()), Some(native))
+                let native = NativeAdapter::load(path)?;
+                (Arc::new(native.clone()), Some(native))
             }
         };
-        Ok(Self {
-            adapter,
-            native,
-            profile: profile.map(str::to_owned),
-            given: given.clone(),
-            files: A::files()?,
-        })
+        let folder = TempDir::new().map_err(|error| DeviceError::File {
+            path: std::env::temp_dir().display().to_string(),
+            what: error.to_string(),
+        })?;
+        let profile = profile.map(str::to_owned);
+        let files = AtomicU32::new(0);
+        Ok(Self { adapter, native, profile, given: given.clone(), folder, files })
+    }
+
+    pub(crate) fn direction(&self) -> Direction {
+        self.adapter.descriptor().direction
     }
 
     /// Returns the adapter's library. For a built-in adapter, the check is skipped.
-    pub(crate) fn native(&self) -> Result<&Native<A::Table>, Finding> {
+    pub(crate) fn native(&self) -> Result<&NativeAdapter, Finding> {
         let built_in = || Finding::skipped("it is built in and has no library");
         self.native.as_ref().ok_or_else(built_in)
     }
 
-    pub(crate) fn profile(&self) -> Option<&str> {
-        self.profile.as_deref()
+    /// Returns the given settings. A missing required setting becomes a new file of an output, or
+    /// the first endpoint.
+    pub(crate) fn settings(&self) -> Result<Settings, Finding> {
+        self.settings_of(self.profile.as_deref())
     }
 
-    /// Returns the given settings. `value` provides required settings that are missing.
-    pub(crate) fn filled(
-        &self,
-        profile: Option<&str>,
-        value: impl Fn(&Setting) -> Option<String>,
-    ) -> Result<Settings, Finding> {
-        let descriptor = self.adapter.about();
+    pub(crate) fn settings_of(&self, profile: Option<&str>) -> Result<Settings, Finding> {
+        let descriptor = self.adapter.descriptor();
         let mut given = self.given.clone();
         let fixed = descriptor.profiles.iter().find(|p| Some(&p.name[..]) == profile);
         for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
@@ -135,18 +94,155 @@ impl<A: CaseKind + ?Sized> Case<A> {
                 continue;
             }
             let missing = || Finding::skipped(format!("give `setting {name}=…`"));
-            given.insert(name.clone(), value(setting).ok_or_else(missing)?);
+            given.insert(name.clone(), self.value(setting).ok_or_else(missing)?);
         }
         Ok(Settings::resolve(descriptor, profile, &given)?)
     }
 
-    /// Returns the first endpoint that belongs to this setting.
-    pub(crate) fn first_endpoint(&self, setting: &str) -> Option<String> {
+    fn value(&self, setting: &Setting) -> Option<String> {
+        if setting.kind == SettingKind::Path && self.direction() == Direction::Output {
+            let count = self.files.fetch_add(1, Ordering::Relaxed);
+            let path = self.folder.path().join(format!("check-{count}.wav"));
+            return Some(path.display().to_string());
+        }
         // Errors of listing are the subject of another check.
-        let all = self.adapter.connected().unwrap_or_default();
-        let first = all.into_iter().find(|endpoint| endpoint.setting == setting);
+        let all = self.adapter.endpoints().unwrap_or_default();
+        let first = all.into_iter().find(|endpoint| endpoint.setting == setting.name);
         first.map(|endpoint| endpoint.name)
     }
+
+    /// Returns the output's capabilities. If the driver or the device is missing, the check is
+    /// skipped.
+    pub(crate) fn capabilities(&self) -> Result<Capabilities, Finding> {
+        let can = self.adapter.capabilities(&self.settings()?);
+        can.map_err(skip_missing)
+    }
+
+    /// Returns the default rate and a block size for opening a library; zeros for an input.
+    pub(crate) fn format(&self) -> Result<StreamFormat, Finding> {
+        Ok(match self.direction() {
+            Direction::Input => StreamFormat { rate_hz: 0.0, block_frames: 0 },
+            Direction::Output => {
+                let rate_hz = self.capabilities()?.default_rate_hz;
+                StreamFormat { rate_hz, block_frames: BLOCK }
+            }
+        })
+    }
+
+    /// Opens an output at its default rate. Also returns its settings.
+    pub(crate) fn open_output(&self) -> Result<(Box<dyn Output>, Settings), Finding> {
+        let settings = self.settings()?;
+        let rate_hz = self.capabilities()?.default_rate_hz;
+        let output = self.open_at(&settings, rate_hz)?;
+        Ok((output, settings))
+    }
+
+    pub(crate) fn open_at(
+        &self,
+        settings: &Settings,
+        rate_hz: f64,
+    ) -> Result<Box<dyn Output>, DeviceError> {
+        let block_frames = self.adapter.capabilities(settings)?.block_frames;
+        let format = StreamFormat { rate_hz, block_frames };
+        self.adapter.open_output(settings, &format)
+    }
+
+    /// Opens an input. If the driver or the device is missing, the check is skipped.
+    pub(crate) fn open_input(&self) -> Result<Box<dyn Input>, Finding> {
+        self.adapter.open_input(&self.settings()?).map_err(skip_missing)
+    }
+
+    /// Opens an input and starts sampling.
+    pub(crate) fn started(&self) -> Result<Box<dyn Input>, Finding> {
+        let mut input = self.open_input()?;
+        input.start()?;
+        Ok(input)
+    }
+
+    /// Generates a quiet tone at the default rate.
+    pub(crate) fn tone(&self, frames: usize) -> Result<Vec<f32>, Finding> {
+        let can = self.capabilities()?;
+        let amplitude = QUIET * can.limit.unwrap_or(1.0);
+        let turn = std::f64::consts::TAU * TONE_HZ / can.default_rate_hz;
+        let sample = |i| (amplitude * (turn * i as f64).sin()) as f32;
+        Ok((0..frames).map(sample).collect())
+    }
+}
+
+/// Writes all samples, and waits if the device has a clock.
+pub(crate) fn write_all(output: &mut dyn Output, samples: &[f32]) -> Result<(), Finding> {
+    let (mut left, mut empty) = (samples, 0);
+    while !left.is_empty() {
+        let taken = output.write(left, PATIENCE)?;
+        empty = if taken == 0 { empty + 1 } else { 0 };
+        if empty == EMPTY_CALLS {
+            let seconds = PATIENCE.as_secs() * u64::from(EMPTY_CALLS);
+            return Err(Finding::failed(format!("it takes no samples for {seconds} s")));
+        }
+        let Some(rest) = left.get(taken..) else {
+            return Err(Finding::failed("it takes more samples than it was offered"));
+        };
+        left = rest;
+    }
+    Ok(())
+}
+
+/// Returns the rates to try: all of a list, or both ends of a range, and the default.
+pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
+    let mut rates = match &can.rates {
+        Rates::List(all) => all.clone(),
+        Rates::Range { min_hz, max_hz } => vec![*min_hz, *max_hz],
+    };
+    rates.push(can.default_rate_hz);
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    rates
+}
+
+/// Reads `frames` frames in blocks of various sizes, or fewer if the input ends. Returns their
+/// number.
+pub(crate) fn read_all(input: &mut dyn Input, frames: usize) -> Result<usize, Finding> {
+    let width = input.stream().channels.len();
+    let mut samples = vec![0.0; frames * width];
+    let (mut read, mut empty) = (0, 0);
+    while read < frames {
+        let there = match input.read(&mut samples[read * width..], PATIENCE)? {
+            InputFrames::Count(there) => there,
+            InputFrames::End => return Ok(read),
+        };
+        let Some(new) = samples.get(read * width..(read + there) * width) else {
+            return Err(Finding::failed(format!(
+                "it delivers {there} frames into space for {}",
+                frames - read
+            )));
+        };
+        if !new.iter().all(|sample| sample.is_finite()) {
+            return Err(Finding::failed("a sample is not a finite number"));
+        }
+        empty = if there == 0 { empty + 1 } else { 0 };
+        if empty == EMPTY_CALLS {
+            let seconds = PATIENCE.as_secs() * u64::from(EMPTY_CALLS);
+            return Err(Finding::failed(format!("it delivers nothing for {seconds} s")));
+        }
+        read += there;
+    }
+    Ok(read)
+}
+
+/// Checks that calls were refused as closed.
+pub(crate) fn check_closed<const N: usize>(
+    calls: [(&str, Result<(), DeviceError>); N],
+) -> Result<(), Finding> {
+    for (call, answer) in calls {
+        match answer {
+            Err(DeviceError::Closed(_)) => {}
+            Err(error) => {
+                return Err(Finding::failed(format!("{call}: another error: {error}")));
+            }
+            Ok(()) => return Err(Finding::failed(format!("{call} is not refused as closed"))),
+        }
+    }
+    Ok(())
 }
 
 /// Converts an error to a finding. If a driver or the hardware is missing, the check is skipped.

@@ -1,13 +1,13 @@
 //! Checks that models and devices have in common.
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 
 /// Allowed growth of the resident memory, bytes.
 const ALLOWED: f64 = 2.0 * 1024.0 * 1024.0;
 
 /// Growth of the process's resident memory over a number of repetitions.
 #[derive(Debug, Clone, Copy)]
-pub struct Growth {
+pub(crate) struct Growth {
     count: usize,
     of: &'static str,
     bytes: f64,
@@ -19,7 +19,7 @@ impl Growth {
     ///
     /// # Errors
     /// The errors of `repeat`.
-    pub fn measure(
+    pub(crate) fn measure(
         count: usize,
         of: &'static str,
         mut repeat: impl FnMut(usize) -> Result<(), Finding>,
@@ -38,7 +38,7 @@ impl Growth {
 /// # Errors
 /// A failed finding if memory grows by more than 2 MiB in either case, and the errors of `measure`.
 /// A skipped finding if resident memory cannot be read.
-pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
+pub(crate) fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> CheckResult {
     if resident_bytes().is_none() {
         return Err(Finding::skipped("resident memory is read on Linux only"));
     }
@@ -65,7 +65,7 @@ pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
 
 /// Returns the resident memory of this process, bytes (`VmRSS` in `/proc/self/status`). `None` if
 /// the file does not exist.
-pub fn resident_bytes() -> Option<f64> {
+fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     let kib: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
@@ -76,7 +76,9 @@ pub fn resident_bytes() -> Option<f64> {
 ///
 /// # Errors
 /// A failed finding that names an extension that `has` reports, and the errors of `has`.
-pub fn made_up_extensions<E: Into<Finding>>(has: impl Fn(&str) -> Result<bool, E>) -> Found {
+pub(crate) fn made_up_extensions<E: Into<Finding>>(
+    has: impl Fn(&str) -> Result<bool, E>,
+) -> CheckResult {
     let long = "x".repeat(100_000);
     let ids = ["htex.no-such-thing/1", "com.example.unheard-of/7", "", "\u{1f}é", &long];
     for id in ids {

@@ -56,7 +56,7 @@ pub struct Finding {
 }
 
 /// The result of a check. Both variants are findings, so that `?` ends a check.
-pub type Found = Result<Finding, Finding>;
+pub type CheckResult = Result<Finding, Finding>;
 
 impl Finding {
     /// Creates a finding without numbers.

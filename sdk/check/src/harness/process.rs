@@ -17,7 +17,7 @@ const AFTER_THE_END: Duration = Duration::from_secs(1);
 
 /// Runs a program that writes one [`Finding`] as a line of JSON. If the program crashes or exceeds
 /// `timeout`, the finding says so.
-pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
+pub(crate) fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = match command.spawn() {
         Ok(child) => child,
@@ -52,17 +52,17 @@ fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
 }
 
 /// The last [`MOST_OUTPUT`] bytes of a child's output.
-struct Drained {
+struct ChildOutput {
     kept: Arc<Mutex<VecDeque<u8>>>,
     /// Is closed at the end of the pipe.
     end: Receiver<()>,
 }
 
 /// Reads a pipe to its end, so that the child never blocks on it.
-fn drain(pipe: Option<impl Read + Send + 'static>) -> Drained {
+fn drain(pipe: Option<impl Read + Send + 'static>) -> ChildOutput {
     let (open, end) = channel();
     let kept = Arc::new(Mutex::new(VecDeque::new()));
-    let drained = Drained { kept: Arc::clone(&kept), end };
+    let drained = ChildOutput { kept: Arc::clone(&kept), end };
     std::thread::spawn(move || {
         let _open: Sender<()> = open;
         let mut part = vec![0; 65_536];
@@ -80,7 +80,7 @@ fn drain(pipe: Option<impl Read + Send + 'static>) -> Drained {
     drained
 }
 
-fn text(drained: &Drained) -> String {
+fn text(drained: &ChildOutput) -> String {
     // A process that the child has started may hold the pipe open for ever.
     let _ = drained.end.recv_timeout(AFTER_THE_END);
     let mut kept = drained.kept.lock().unwrap_or_else(PoisonError::into_inner);

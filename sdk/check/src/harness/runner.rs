@@ -7,8 +7,8 @@ use std::process::Command;
 use std::time::Duration;
 
 use crate::harness::process::run_process;
-use crate::harness::table::{Check, UnknownCheck, find};
-use crate::harness::{CheckReport, Finding};
+use crate::harness::table::{Check, find};
+use crate::harness::{CheckError, CheckReport, Finding};
 
 /// The steps of loading, in order. Each has a check with the same name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
@@ -29,7 +29,7 @@ impl Owner {
     }
 
     /// The error belongs to this check, and it is unknown whether the steps before it passed.
-    pub fn not_reached(check: &'static str) -> Self {
+    pub(crate) fn not_reached(check: &'static str) -> Self {
         let reached = false;
         Self { check, reached }
     }
@@ -48,7 +48,7 @@ pub struct Runner {
 /// Runs each check in a separate process. `add_arguments` appends the arguments that name the
 /// check. A check is skipped if one that it needs failed, or was skipped for this reason. A check
 /// that does not apply does not cause others to be skipped.
-pub fn run_all<'a, Case: 'a>(
+pub(crate) fn run_all<'a, Case: 'a>(
     checks: impl IntoIterator<Item = &'a Check<Case>>,
     runner: &Runner,
     add_arguments: impl Fn(&mut Command, &'static str),
@@ -84,7 +84,7 @@ pub fn run_one<Case, Error: Display>(
     name: &str,
     load: impl FnOnce() -> Result<Case, Error>,
     owner: impl FnOnce(&Error) -> Owner,
-) -> Result<Finding, UnknownCheck> {
+) -> Result<Finding, CheckError> {
     let check = find(checks, name)?;
     let error = match load() {
         Ok(case) => return Ok((check.run)(&case).unwrap_or_else(|finding| finding)),

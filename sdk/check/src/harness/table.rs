@@ -1,8 +1,8 @@
 //! Tables of checks.
 
-use thiserror::Error;
+use htex_device::Direction;
 
-use crate::harness::Found;
+use crate::harness::{CheckError, CheckResult};
 
 /// One check. `Case` is a loaded model or device with the checker's settings.
 pub struct Check<Case> {
@@ -12,31 +12,26 @@ pub struct Check<Case> {
     pub summary: &'static str,
     /// The test method with its tolerances; empty if the summary is sufficient.
     pub method: &'static str,
+    /// The only direction of devices to which it applies; empty: it applies to all.
+    pub only: &'static [Direction],
     /// Checks that must not fail for this one to be meaningful.
     pub needs: &'static [&'static str],
-    pub run: fn(&Case) -> Found,
-}
-
-/// Error: the table has no check of this name.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("there is no check `{name}`; there are {}", known.join(", "))]
-pub struct UnknownCheck {
-    pub name: String,
-    /// The names in the table.
-    pub known: Vec<&'static str>,
+    pub run: fn(&Case) -> CheckResult,
 }
 
 /// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check must come after
 /// the ones that it needs. A row is
-/// `"name" needs ["name", …] path::of::function: "summary", "method";`. The method is optional.
+/// `"name" needs ["name", …] path::of::function: "summary", "method";`. The method is optional. A
+/// check of devices of one direction is `"name" for Output needs …`.
 #[macro_export]
 macro_rules! checks {
-    ($case:ty; $($name:literal needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
+    ($case:ty; $($name:literal $(for $direction:ident)? needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
         /// All checks, in the order in which they run. A check comes after the ones that it needs.
         pub const CHECKS: &[$crate::harness::Check<$case>] = &[$($crate::harness::Check {
             name: $name,
             summary: $summary,
             method: concat!($($method)?),
+            only: &[$($crate::device::Direction::$direction)?],
             needs: &[$($need),*],
             run: $run,
         }),*];
@@ -46,9 +41,9 @@ macro_rules! checks {
 pub(crate) fn find<'a, Case>(
     checks: &'a [Check<Case>],
     name: &str,
-) -> Result<&'a Check<Case>, UnknownCheck> {
+) -> Result<&'a Check<Case>, CheckError> {
     let found = checks.iter().find(|check| check.name == name);
-    found.ok_or_else(|| UnknownCheck {
+    found.ok_or_else(|| CheckError::Unknown {
         name: name.to_owned(),
         known: checks.iter().map(|check| check.name).collect(),
     })
@@ -58,10 +53,10 @@ pub(crate) fn find<'a, Case>(
 ///
 /// # Errors
 /// When a name is not in the table.
-pub fn select<'a, Case>(
+pub(crate) fn select<'a, Case>(
     checks: &'a [Check<Case>],
     names: &[String],
-) -> Result<Vec<&'a Check<Case>>, UnknownCheck> {
+) -> Result<Vec<&'a Check<Case>>, CheckError> {
     let mut chosen = Vec::new();
     let mut open: Vec<&str> = names.iter().map(String::as_str).collect();
     while let Some(name) = open.pop() {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use htex_host::{Band, HostError, LoadedModel, ModelVoice};
 use serde::Serialize;
 
-use crate::harness::Finding;
+use crate::harness::{CheckError, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::start::{Start, start};
 
@@ -73,24 +73,12 @@ struct Runner {
     rounds: [Vec<f64>; 5],
 }
 
-/// Error: a model cannot be fitted, or fails to render.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{model} ({way}): {what}")]
-#[non_exhaustive]
-pub struct BenchError {
-    /// The model's short name.
-    pub model: String,
-    /// How the model was loaded.
-    pub way: String,
-    pub what: String,
-}
-
 /// Measures models in one interleaved run, so that other load on the machine affects all equally.
 /// Each model plays parameters fitted to a reference spectrum.
 ///
 /// # Errors
-/// [`BenchError`] when a model cannot be fitted or fails to render.
-pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, BenchError> {
+/// [`CheckError::Model`] when a model cannot be fitted or fails to render.
+pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, CheckError> {
     let mut runners = Vec::new();
     for subject in subjects {
         let runner =
@@ -114,8 +102,12 @@ pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, BenchError> {
 }
 
 impl Subject {
-    fn failed(&self, what: impl std::fmt::Display) -> BenchError {
-        BenchError { model: self.model.clone(), way: self.way.clone(), what: what.to_string() }
+    fn failed(&self, what: impl std::fmt::Display) -> CheckError {
+        CheckError::Model {
+            model: self.model.clone(),
+            way: self.way.clone(),
+            what: what.to_string(),
+        }
     }
 }
 

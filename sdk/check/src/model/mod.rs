@@ -36,11 +36,11 @@ pub mod templates;
 #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
 mod vector;
 
-pub use crate::harness::{Finding, Outcome, Runner, UnknownCheck};
-pub use bench::{BLOCKS, BenchError, BlockCost, Cost, Subject, Timing, bench};
+pub use crate::harness::{CheckError, Finding, Outcome, Runner};
+pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
 pub use case::Settings;
 pub use page::model_checks_page;
 pub use report::{ModelFile, Report};
-pub use runner::{CheckError, Options, check, run_one};
+pub use runner::{Options, check, run_one};
 pub use start::Start;
 pub use table::CHECKS;

@@ -11,7 +11,7 @@
 //!
 //! From a finger to a recording:
 //!
-//! 1. A [`htex_device::Source`] delivers frames of its channels: a card, a sound card, a library,
+//! 1. A [`htex_device::Input`] delivers frames of its channels: a card, a sound card, a library,
 //!    or a file ([`Replay`]).
 //! 2. `signals` applies the six-axis calibration, the column map and the tare. A tracker
 //!    ([`TrackerRows`]) has its own clock.

@@ -50,7 +50,7 @@ pub(crate) struct Phases {
 
 impl Phases {
     pub(crate) fn new(reader: Reader) -> Self {
-        let frames = (FORCE_S * reader.source.rate_hz()).round().max(1.0) as usize;
+        let frames = (FORCE_S * reader.source.stream().rate_hz).round().max(1.0) as usize;
         Self {
             texture: texture_axes(&reader.inputs.signals.list()),
             force: RunningMean::new(frames),
@@ -67,7 +67,7 @@ impl Phases {
         take: &mut Take<'_>,
     ) -> Result<(), RecordError> {
         let Span { phase, number, of_s } = span;
-        let rate_hz = self.reader.source.rate_hz();
+        let rate_hz = self.reader.source.stream().rate_hz;
         let frames = (of_s * rate_hz).round() as u64;
         let mut done = 0;
         while done < frames {

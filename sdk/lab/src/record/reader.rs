@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use htex_device::{Delivered, Source};
+use htex_device::{Input, InputFrames};
 
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
@@ -24,7 +24,7 @@ pub(crate) struct Inputs {
 
 /// Reads a source.
 pub(crate) struct Reader {
-    pub(crate) source: Box<dyn Source>,
+    pub(crate) source: Box<dyn Input>,
     pub(crate) inputs: Inputs,
     /// Length of a take in seconds, for messages.
     seconds: f64,
@@ -53,13 +53,13 @@ impl Inputs {
 }
 
 impl Reader {
-    pub(crate) fn new(source: Box<dyn Source>, inputs: Inputs, seconds: f64) -> Self {
+    pub(crate) fn new(source: Box<dyn Input>, inputs: Inputs, seconds: f64) -> Self {
         Self { source, inputs, seconds, read: 0, samples: Vec::new(), since: None }
     }
 
     /// Returns the time of the next sample since the source was started, seconds.
     pub(crate) fn now_s(&self) -> f64 {
-        self.read as f64 / self.source.rate_hz()
+        self.read as f64 / self.source.stream().rate_hz
     }
 
     /// Reads the next block of at most `most` frames; `None` if nothing arrived for a short time.
@@ -68,19 +68,19 @@ impl Reader {
     /// The errors of the source and of the tracker, [`RecordError::Silent`], and
     /// [`RecordError::Ended`].
     pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, RecordError> {
-        let (rate_hz, width) = (self.source.rate_hz(), self.source.channels().len());
+        let (rate_hz, width) = (self.source.stream().rate_hz, self.source.stream().channels.len());
         // At least one frame, because a block of a rate below 50 Hz would have none.
         let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
         self.samples.resize(block * width, 0.0);
         let since = *self.since.get_or_insert_with(Instant::now);
         let frames = match self.source.read(&mut self.samples, WAIT)? {
-            Delivered::Frames(0) if since.elapsed() > SILENT => {
+            InputFrames::Count(0) if since.elapsed() > SILENT => {
                 let seconds = SILENT.as_secs();
                 return Err(RecordError::Silent { seconds });
             }
-            Delivered::Frames(0) => return Ok(None),
-            Delivered::Frames(frames) => frames,
-            Delivered::End => {
+            InputFrames::Count(0) => return Ok(None),
+            InputFrames::Count(frames) => frames,
+            InputFrames::End => {
                 return Err(RecordError::Ended { after_s: 0.0, seconds: self.seconds, kept: None });
             }
         };

@@ -1,4 +1,4 @@
-//! Replays a recording file as a source.
+//! Replays a recording file as an input.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use htex_author::recording::{ReadOptions, read_channels};
 use htex_device::{
-    Channel, Delivered, Descriptor, DeviceError, Endpoint, FromScene, Setting, SettingKind,
-    Settings, Source, SourceAdapter,
+    Adapter, Channel, Descriptor, DeviceError, Direction, Endpoint, FromScene, Input, InputFrames,
+    InputStream, Setting, SettingKind, Settings,
 };
 
-/// The source adapter for files: every file that [`read_channels`] reads. Its channels are all
+/// The input adapter for files: every file that [`read_channels`] reads. Its channels are all
 /// columns except the time.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Replay;
@@ -21,50 +21,36 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
     name: "File".to_owned(),
     version: env!("CARGO_PKG_VERSION").to_owned(),
     summary: "Replays a recording: CSV, WAV, FLAC, NPY, MATLAB, TDMS.".to_owned(),
+    direction: Direction::Input,
+    target: Some("path".to_owned()),
     settings: vec![
-        setting("path", SettingKind::Path, None, "The file."),
-        setting(
+        Setting::new("path", SettingKind::Path, "The file.").with_from_scene(FromScene::Never),
+        Setting::hardware(
             "rate_hz",
             SettingKind::Number { min: 0.0, max: 1e7 },
-            Some("0"),
+            "0",
             "Sample rate, hertz; 0: that of the file.",
         ),
-        setting(
+        Setting::hardware(
             "pace",
-            SettingKind::Choice { values: vec!["real".to_owned(), "fast".to_owned()] },
-            Some("real"),
+            SettingKind::choice(&["real", "fast"]),
+            "real",
             "Whether samples come at their rate, or as fast as they are read.",
         ),
     ],
-    profiles: Vec::new(),
-    mapping: None,
+    ..Descriptor::default()
 });
 
-fn setting(name: &str, kind: SettingKind, default: Option<&str>, description: &str) -> Setting {
-    Setting {
-        name: name.to_owned(),
-        kind,
-        default: default.map(str::to_owned),
-        live_default: None,
-        from_scene: FromScene::Never,
-        description: description.to_owned(),
-    }
-}
-
-impl SourceAdapter for Replay {
+impl Adapter for Replay {
     fn descriptor(&self) -> &Descriptor {
         &DESCRIPTOR
-    }
-
-    fn target(&self) -> &str {
-        "path"
     }
 
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         Ok(Vec::new())
     }
 
-    fn open(&self, settings: &Settings) -> Result<Box<dyn Source>, DeviceError> {
+    fn open_input(&self, settings: &Settings) -> Result<Box<dyn Input>, DeviceError> {
         let path = settings.text("path");
         let rate_hz = Some(settings.number("rate_hz")).filter(|rate_hz| *rate_hz > 0.0);
         let options = ReadOptions::default().with_rate_hz(rate_hz);
@@ -73,9 +59,8 @@ impl SourceAdapter for Replay {
         let channels = table.names.iter().map(|name| Channel::new(name, ""));
         Ok(Box::new(Player {
             name: path.to_owned(),
-            channels: channels.collect(),
+            stream: InputStream { rate_hz: table.rate_hz, channels: channels.collect() },
             samples: table.channels,
-            rate_hz: table.rate_hz,
             is_paced: settings.text("pace") == "real",
             begun: None,
             next: 0,
@@ -88,21 +73,20 @@ impl Replay {
     /// Opens a file. With `fast`, it is replayed without waiting.
     ///
     /// # Errors
-    /// The errors of [`SourceAdapter::open`].
-    pub fn file(path: &str, fast: bool) -> Result<Box<dyn Source>, DeviceError> {
+    /// The errors of [`Adapter::open_input`].
+    pub fn file(path: &str, fast: bool) -> Result<Box<dyn Input>, DeviceError> {
         let pace = if fast { "fast" } else { "real" };
         let given = [("path", path), ("pace", pace)]
             .map(|(name, value)| (name.to_owned(), value.to_owned()));
-        Self.open(&Settings::resolve(&DESCRIPTOR, None, &BTreeMap::from(given))?)
+        Self.open_input(&Settings::resolve(&DESCRIPTOR, None, &BTreeMap::from(given))?)
     }
 }
 
 /// An open file.
 struct Player {
     name: String,
-    channels: Vec<Channel>,
+    stream: InputStream,
     samples: Vec<Vec<f64>>,
-    rate_hz: f64,
     is_paced: bool,
     begun: Option<Instant>,
     next: usize,
@@ -115,22 +99,18 @@ impl Player {
         if !self.is_paced {
             return most;
         }
-        let there = || (begun.elapsed().as_secs_f64() * self.rate_hz) as usize;
+        let there = || (begun.elapsed().as_secs_f64() * self.stream.rate_hz) as usize;
         // A frame is due only at the end of its period.
-        let first_s = (self.next + 1) as f64 / self.rate_hz;
+        let first_s = (self.next + 1) as f64 / self.stream.rate_hz;
         let wait = Duration::from_secs_f64(first_s).saturating_sub(begun.elapsed());
         std::thread::sleep(wait.min(timeout));
         there().saturating_sub(self.next).min(most)
     }
 }
 
-impl Source for Player {
-    fn channels(&self) -> &[Channel] {
-        &self.channels
-    }
-
-    fn rate_hz(&self) -> f64 {
-        self.rate_hz
+impl Input for Player {
+    fn stream(&self) -> &InputStream {
+        &self.stream
     }
 
     fn start(&mut self) -> Result<(), DeviceError> {
@@ -142,15 +122,15 @@ impl Source for Player {
         }
     }
 
-    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {
+    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError> {
         let Some(begun) = self.begun.filter(|_| !self.is_stopped) else {
             return Err(DeviceError::Closed(self.name.clone()));
         };
         let left = self.samples.first().map_or(0, Vec::len) - self.next;
         if left == 0 {
-            return Ok(Delivered::End);
+            return Ok(InputFrames::End);
         }
-        let width = self.channels.len();
+        let width = self.stream.channels.len();
         let frames = self.due(begun, left.min(samples.len() / width), timeout);
         for (row, frame) in samples.chunks_exact_mut(width).take(frames).enumerate() {
             for (sample, channel) in frame.iter_mut().zip(&self.samples) {
@@ -158,10 +138,10 @@ impl Source for Player {
             }
         }
         self.next += frames;
-        Ok(Delivered::Frames(frames))
+        Ok(InputFrames::Count(frames))
     }
 
-    fn stop(&mut self) -> Result<(), DeviceError> {
+    fn finish(&mut self) -> Result<(), DeviceError> {
         self.is_stopped = true;
         Ok(())
     }

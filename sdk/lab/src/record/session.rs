@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use htex_author::recording::Role;
-use htex_device::Source;
+use htex_device::Input;
 
 use htex_base::files::{AtFile, ContentError, OwnFolder};
 
@@ -36,11 +36,11 @@ impl Session {
     /// If the setup is out of range, or a target is given for something that is not measured.
     pub fn new(
         setup: Setup,
-        source: Box<dyn Source>,
+        source: Box<dyn Input>,
         signals: Signals,
         tracker: Option<Box<dyn TrackerRows>>,
     ) -> Result<Self, RecordError> {
-        check(&setup, source.rate_hz())?;
+        check(&setup, source.stream().rate_hz)?;
         let moves = |roles: &[(String, String)]| {
             roles.iter().any(|(role, _)| matches!(&role[..], "x" | "y" | "speed"))
         };
@@ -93,12 +93,12 @@ impl Session {
             let take = self.take(watch)?;
             told(&take);
             if take.outcome == Outcome::Kept {
-                self.phases.reader.source.stop()?;
+                self.phases.reader.source.finish()?;
                 return Ok(take);
             }
             reasons = take.verdict.reasons.join("; ");
         }
-        self.phases.reader.source.stop()?;
+        self.phases.reader.source.finish()?;
         Err(RecordError::OffTarget {
             attempts: self.setup.attempts,
             reasons,
@@ -168,7 +168,7 @@ impl Session {
             map: setup.map.clone(),
             calibrations: reader.inputs.signals.calibrations(),
             quantity: setup.quantity,
-            rate_hz: reader.source.rate_hz(),
+            rate_hz: reader.source.stream().rate_hz,
             seconds: setup.seconds,
             signals: reader.inputs.signals.list(),
             tare: reader.inputs.signals.offsets().to_vec(),

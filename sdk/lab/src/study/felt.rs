@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 use htex_author::Exploration;
 use htex_author::recording::Role;
 use htex_base::files::{AtFile, OwnFolder};
-use htex_device::{DeviceError, Source};
+use htex_device::{DeviceError, Input};
 use htex_format::Quantity;
 use serde_json::json;
 
@@ -34,7 +34,7 @@ const FOLDER: &str = "felt";
 /// recording.
 const TOLERANCE: f64 = 0.1;
 
-pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Source>, DeviceError>>;
+pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Input>, DeviceError>>;
 
 /// What is recorded and where.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,10 +133,10 @@ impl Felt {
         // A recording that was not finished may still run.
         self.abort();
         let mut source = (self.open)()?;
-        if source.rate_hz() != self.rate_hz {
+        if source.stream().rate_hz != self.rate_hz {
             return Err(RecordError::Setup {
                 what: "the sample rate of the source",
-                value: source.rate_hz().to_string(),
+                value: source.stream().rate_hz.to_string(),
                 allowed: "it is the one that it had at the beginning of the session",
             });
         }
@@ -300,7 +300,7 @@ fn read(
 ) -> (Inputs, Result<TakeData, RecordError>) {
     let mut data = TakeData::empty(header);
     let taken = take(&mut reader, &mut data, shared);
-    let stopped = reader.source.stop();
+    let stopped = reader.source.finish();
     let result = taken.and(stopped.map_err(RecordError::from));
     shared.failed.store(result.is_err(), Ordering::Release);
     (reader.inputs, result.map(|()| data))

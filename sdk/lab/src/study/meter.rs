@@ -47,7 +47,7 @@ impl Meter {
             self.peak = self.peak.max(value.abs());
             self.energy += value * value;
             // One sample at a time, because the largest mean may lie inside a block.
-            self.last.take(std::slice::from_ref(sample));
+            self.last.push(std::slice::from_ref(sample));
             self.direct = self.direct.max(self.last.mean_v().abs());
         }
         self.frames += samples.len() as u64;

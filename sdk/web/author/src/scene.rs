@@ -93,7 +93,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     let files = FilesByPath(named.collect());
     let around = Surroundings { models: &models, embedded, devices: Some(&devices) };
     let loaded = Scene::from_files(scene, &files, &around, &device)?;
-    let known = devices.find(&loaded.file.device.adapter);
+    let known = devices.find_output(&loaded.file.device.adapter);
     let able = known
         .and_then(|known| known.adapter.capabilities(&loaded.settings))
         .map_err(Refusal::scene)?;

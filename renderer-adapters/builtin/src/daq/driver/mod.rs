@@ -1,26 +1,33 @@
 //! The NI-DAQmx driver, loaded on first use.
 
 mod clocked;
-mod found;
 mod input_task;
 mod table;
 mod task;
 
-use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
-
 use htex_device::DeviceError;
 
 use crate::daq::fault::Fault;
+use crate::driver::{DriverCache, DriverLibrary};
 use table::Table;
 
 pub(crate) use clocked::Stopper;
 pub(crate) use input_task::{InputTask, Terminals};
 pub(crate) use task::Task;
 
-/// Loaded libraries, by the setting that named them. They are never unloaded, because a driver has
-/// threads of its own.
-static LOADED: Mutex<BTreeMap<String, &'static Driver>> = Mutex::new(BTreeMap::new());
+const LIBRARY: DriverLibrary = DriverLibrary {
+    names: if cfg!(windows) { &["nicaiu.dll"] } else { &["libnidaqmx.so.1", "libnidaqmx.so"] },
+    loaded_as: "the NI-DAQmx library",
+    setting: "driver",
+    absent: "NI-DAQmx is not installed",
+    remedy: if cfg!(target_os = "linux") {
+        "Install the package `ni-daqmx` from ni.com/linux, or name the library by the setting `driver`"
+    } else {
+        "Install NI-DAQmx from ni.com/downloads, or name the library by the setting `driver`"
+    },
+};
+
+static LOADED: DriverCache<Driver> = DriverCache::new();
 
 pub(crate) struct Driver {
     table: Table,
@@ -29,51 +36,45 @@ pub(crate) struct Driver {
 impl Driver {
     /// Loads the library at `path`, or the installed one if `path` is empty.
     pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
-        // Locked while the library is loaded, so that it is loaded only once.
-        let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(driver) = loaded.get(path) {
-            return Ok(driver);
-        }
-        let table = match path {
-            "" => found::installed()?,
-            _ => found::named(path)?,
-        };
-        let driver: &'static Self = Box::leak(Box::new(Self { table }));
-        loaded.insert(path.to_owned(), driver);
-        Ok(driver)
+        LOADED.get_or_load(path, || Ok(Self { table: LIBRARY.load(path, Table::from_library)? }))
     }
 
     /// Lists every analog output with the product it belongs to.
     pub(crate) fn outputs(&self) -> Result<Vec<(String, String)>, Fault> {
-        let mut outputs = Vec::new();
-        for card in list(&self.table.device_names()?) {
-            let product = self.table.product(card)?;
-            let channels = self.table.outputs(card)?;
-            outputs.extend(list(&channels).map(|c| (c.to_owned(), product.clone())));
-        }
-        Ok(outputs)
+        self.channels(|card| self.table.card_text(self.table.get_outputs, card))
     }
 
     /// Lists every analog input with the product it belongs to.
     pub(crate) fn inputs(&self) -> Result<Vec<(String, String)>, Fault> {
-        let mut inputs = Vec::new();
+        self.channels(|card| self.table.card_text(self.table.get_inputs, card))
+    }
+
+    fn channels(
+        &self,
+        of_card: impl Fn(&str) -> Result<String, Fault>,
+    ) -> Result<Vec<(String, String)>, Fault> {
+        let mut all = Vec::new();
         for card in list(&self.table.device_names()?) {
-            let product = self.table.product(card)?;
-            let channels = self.table.inputs(card)?;
-            inputs.extend(list(&channels).map(|c| (c.to_owned(), product.clone())));
+            let product = self.table.card_text(self.table.get_product, card)?;
+            all.extend(list(&of_card(card)?).map(|name| (name.to_owned(), product.clone())));
         }
-        Ok(inputs)
+        Ok(all)
     }
 
     /// Returns the lowest rate of a card's analog inputs (at least 1 Hz) and the highest total rate
     /// of all channels together, hertz.
     pub(crate) fn input_rates(&self, card: &str) -> Result<(f64, f64), Fault> {
-        Ok((self.table.min_input_rate(card)?.max(1.0), self.table.max_input_rate(card)?))
+        let number = |function| self.table.card_number(function, card);
+        Ok((
+            number(self.table.get_min_input_rate)?.max(1.0),
+            number(self.table.get_max_input_rate)?,
+        ))
     }
 
     /// Returns the lowest (at least 1 Hz) and highest rate of a card's analog output, hertz.
     pub(crate) fn rates(&self, card: &str) -> Result<(f64, f64), Fault> {
-        Ok((self.table.min_rate(card)?.max(1.0), self.table.max_rate(card)?))
+        let number = |function| self.table.card_number(function, card);
+        Ok((number(self.table.get_min_rate)?.max(1.0), number(self.table.get_max_rate)?))
     }
 }
 

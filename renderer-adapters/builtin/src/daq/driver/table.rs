@@ -4,77 +4,47 @@
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
 
-use htex_base::native::{Library, LoadError};
-
 use crate::daq::fault::Fault;
+use crate::driver::driver_table;
 
 pub(super) type Handle = *mut c_void;
+
+type CardText = unsafe extern "system" fn(*const c_char, *mut c_char, u32) -> i32;
+type CardNumber = unsafe extern "system" fn(*const c_char, *mut f64) -> i32;
 
 /// Size of the buffer for names and messages of the driver, bytes.
 const ROOM: usize = 8192;
 
-/// Error: a library cannot be used as NI-DAQmx.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum TableError {
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    #[error("it has no `{0}`")]
-    Missing(&'static str),
-}
-
-macro_rules! table {
-    ($($name:ident = $symbol:literal : ($($argument:ty),*),)*) => {
-        /// One function pointer for each symbol. Each function returns 0, a positive warning or a
-        /// negative error.
-        pub(super) struct Table {
-            $(pub(super) $name: unsafe extern "system" fn($($argument),*) -> i32,)*
-        }
-
-        impl Table {
-            /// Looks up the functions of a library.
-            ///
-            /// # Errors
-            /// Names the function that the library lacks.
-            pub(super) fn of(library: Library) -> Result<Self, TableError> {
-                $(
-                    // SAFETY: the name is NI-DAQmx's, and its header states the type.
-                    let $name = unsafe { library.symbol($symbol) };
-                    let $name = $name.ok_or(TableError::Missing($symbol))?;
-                )*
-                Ok(Self { $($name,)* })
-            }
-        }
-    };
-}
-
-table! {
-    get_device_names = "DAQmxGetSysDevNames": (*mut c_char, u32),
-    get_product = "DAQmxGetDevProductType": (*const c_char, *mut c_char, u32),
-    get_outputs = "DAQmxGetDevAOPhysicalChans": (*const c_char, *mut c_char, u32),
-    get_max_rate = "DAQmxGetDevAOMaxRate": (*const c_char, *mut f64),
-    get_min_rate = "DAQmxGetDevAOMinRate": (*const c_char, *mut f64),
-    get_inputs = "DAQmxGetDevAIPhysicalChans": (*const c_char, *mut c_char, u32),
-    get_max_input_rate = "DAQmxGetDevAIMaxMultiChanRate": (*const c_char, *mut f64),
-    get_min_input_rate = "DAQmxGetDevAIMinRate": (*const c_char, *mut f64),
-    create_input = "DAQmxCreateAIVoltageChan": (Handle, *const c_char, *const c_char, i32, f64, f64, i32, *const c_char),
-    set_input_buffer = "DAQmxCfgInputBuffer": (Handle, u32),
-    get_available = "DAQmxGetReadAvailSampPerChan": (Handle, *mut u32),
-    read_samples = "DAQmxReadAnalogF64": (Handle, i32, f64, u32, *mut f64, u32, *mut i32, *mut u32),
-    create_task = "DAQmxCreateTask": (*const c_char, *mut Handle),
-    create_voltage = "DAQmxCreateAOVoltageChan": (Handle, *const c_char, *const c_char, f64, f64, i32, *const c_char),
-    set_clock = "DAQmxCfgSampClkTiming": (Handle, *const c_char, f64, i32, i32, u64),
-    set_buffer = "DAQmxCfgOutputBuffer": (Handle, u32),
-    set_regeneration = "DAQmxSetWriteRegenMode": (Handle, i32),
-    start_task = "DAQmxStartTask": (Handle),
-    stop_task = "DAQmxStopTask": (Handle),
-    clear_task = "DAQmxClearTask": (Handle),
-    reset_device = "DAQmxResetDevice": (*const c_char),
-    is_done = "DAQmxIsTaskDone": (Handle, *mut u32),
-    get_space = "DAQmxGetWriteSpaceAvail": (Handle, *mut u32),
-    get_generated = "DAQmxGetWriteTotalSampPerChanGenerated": (Handle, *mut u64),
-    write_samples = "DAQmxWriteAnalogF64": (Handle, i32, u32, f64, u32, *const f64, *mut i32, *mut u32),
-    get_error_string = "DAQmxGetErrorString": (i32, *mut c_char, u32),
-    get_error_details = "DAQmxGetExtendedErrorInfo": (*mut c_char, u32),
+// Each function returns 0, a positive warning or a negative error.
+driver_table! {
+    extern "system", hint: "";
+    get_device_names = "DAQmxGetSysDevNames": (*mut c_char, u32) -> i32,
+    get_product = "DAQmxGetDevProductType": (*const c_char, *mut c_char, u32) -> i32,
+    get_outputs = "DAQmxGetDevAOPhysicalChans": (*const c_char, *mut c_char, u32) -> i32,
+    get_max_rate = "DAQmxGetDevAOMaxRate": (*const c_char, *mut f64) -> i32,
+    get_min_rate = "DAQmxGetDevAOMinRate": (*const c_char, *mut f64) -> i32,
+    get_inputs = "DAQmxGetDevAIPhysicalChans": (*const c_char, *mut c_char, u32) -> i32,
+    get_max_input_rate = "DAQmxGetDevAIMaxMultiChanRate": (*const c_char, *mut f64) -> i32,
+    get_min_input_rate = "DAQmxGetDevAIMinRate": (*const c_char, *mut f64) -> i32,
+    create_input = "DAQmxCreateAIVoltageChan": (Handle, *const c_char, *const c_char, i32, f64, f64, i32, *const c_char) -> i32,
+    set_input_buffer = "DAQmxCfgInputBuffer": (Handle, u32) -> i32,
+    get_available = "DAQmxGetReadAvailSampPerChan": (Handle, *mut u32) -> i32,
+    read_samples = "DAQmxReadAnalogF64": (Handle, i32, f64, u32, *mut f64, u32, *mut i32, *mut u32) -> i32,
+    create_task = "DAQmxCreateTask": (*const c_char, *mut Handle) -> i32,
+    create_voltage = "DAQmxCreateAOVoltageChan": (Handle, *const c_char, *const c_char, f64, f64, i32, *const c_char) -> i32,
+    set_clock = "DAQmxCfgSampClkTiming": (Handle, *const c_char, f64, i32, i32, u64) -> i32,
+    set_buffer = "DAQmxCfgOutputBuffer": (Handle, u32) -> i32,
+    set_regeneration = "DAQmxSetWriteRegenMode": (Handle, i32) -> i32,
+    start_task = "DAQmxStartTask": (Handle) -> i32,
+    stop_task = "DAQmxStopTask": (Handle) -> i32,
+    clear_task = "DAQmxClearTask": (Handle) -> i32,
+    reset_device = "DAQmxResetDevice": (*const c_char) -> i32,
+    is_done = "DAQmxIsTaskDone": (Handle, *mut u32) -> i32,
+    get_space = "DAQmxGetWriteSpaceAvail": (Handle, *mut u32) -> i32,
+    get_generated = "DAQmxGetWriteTotalSampPerChanGenerated": (Handle, *mut u64) -> i32,
+    write_samples = "DAQmxWriteAnalogF64": (Handle, i32, u32, f64, u32, *const f64, *mut i32, *mut u32) -> i32,
+    get_error_string = "DAQmxGetErrorString": (i32, *mut c_char, u32) -> i32,
+    get_error_details = "DAQmxGetExtendedErrorInfo": (*mut c_char, u32) -> i32,
 }
 
 impl Table {
@@ -98,51 +68,19 @@ impl Table {
         self.text(|to, space| unsafe { (self.get_device_names)(to, space) })
     }
 
-    pub(super) fn product(&self, card: &str) -> Result<String, Fault> {
+    /// Calls a function that writes a text about a card.
+    pub(super) fn card_text(&self, function: CardText, card: &str) -> Result<String, Fault> {
         let card = c_text(card);
         // SAFETY: a string that ends in zero, a buffer and its length.
-        self.text(|to, space| unsafe { (self.get_product)(card.as_ptr(), to, space) })
+        self.text(|to, space| unsafe { function(card.as_ptr(), to, space) })
     }
 
-    pub(super) fn outputs(&self, card: &str) -> Result<String, Fault> {
-        let card = c_text(card);
-        // SAFETY: as above.
-        self.text(|to, space| unsafe { (self.get_outputs)(card.as_ptr(), to, space) })
-    }
-
-    pub(super) fn inputs(&self, card: &str) -> Result<String, Fault> {
-        let card = c_text(card);
-        // SAFETY: as above.
-        self.text(|to, space| unsafe { (self.get_inputs)(card.as_ptr(), to, space) })
-    }
-
-    /// Returns the highest total rate of all channels together, hertz.
-    pub(super) fn max_input_rate(&self, card: &str) -> Result<f64, Fault> {
-        let (card, mut rate_hz) = (c_text(card), 0.0);
+    /// Calls a function that writes a number about a card.
+    pub(super) fn card_number(&self, function: CardNumber, card: &str) -> Result<f64, Fault> {
+        let (card, mut number) = (c_text(card), 0.0);
         // SAFETY: a string that ends in zero, and a place for one number.
-        self.check(unsafe { (self.get_max_input_rate)(card.as_ptr(), &mut rate_hz) })?;
-        Ok(rate_hz)
-    }
-
-    pub(super) fn min_input_rate(&self, card: &str) -> Result<f64, Fault> {
-        let (card, mut rate_hz) = (c_text(card), 0.0);
-        // SAFETY: as above.
-        self.check(unsafe { (self.get_min_input_rate)(card.as_ptr(), &mut rate_hz) })?;
-        Ok(rate_hz)
-    }
-
-    pub(super) fn max_rate(&self, card: &str) -> Result<f64, Fault> {
-        let (card, mut rate_hz) = (c_text(card), 0.0);
-        // SAFETY: a string that ends in zero, and a place for one number.
-        self.check(unsafe { (self.get_max_rate)(card.as_ptr(), &mut rate_hz) })?;
-        Ok(rate_hz)
-    }
-
-    pub(super) fn min_rate(&self, card: &str) -> Result<f64, Fault> {
-        let (card, mut rate_hz) = (c_text(card), 0.0);
-        // SAFETY: as above.
-        self.check(unsafe { (self.get_min_rate)(card.as_ptr(), &mut rate_hz) })?;
-        Ok(rate_hz)
+        self.check(unsafe { function(card.as_ptr(), &mut number) })?;
+        Ok(number)
     }
 
     pub(super) fn new_task(&self) -> Result<Handle, Fault> {

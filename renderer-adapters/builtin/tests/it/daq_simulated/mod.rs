@@ -7,7 +7,7 @@ use std::ffi::{CString, c_char};
 use std::fs;
 use std::path::PathBuf;
 
-use htex_device::{Adapter, Device, DeviceError, Settings, Source, SourceAdapter, StreamFormat};
+use htex_device::{Adapter, DeviceError, Input, Output, Settings, StreamFormat};
 use htex_device_builtin::daq::{Daq, DaqInput};
 use library::built;
 use tempfile::TempDir;
@@ -66,10 +66,10 @@ impl Card {
         let given = [&[driver, ("dc_limit_v", "150")], given].concat();
         let given: BTreeMap<String, String> =
             given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-        Settings::resolve(Daq::new().descriptor(), Some(PAPER), &given).unwrap()
+        Settings::resolve(Daq.descriptor(), Some(PAPER), &given).unwrap()
     }
 
-    pub fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
+    pub fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Output>, DeviceError> {
         self.open_at(RATE_HZ, given)
     }
 
@@ -77,7 +77,7 @@ impl Card {
         &self,
         rate_hz: f64,
         given: &[(&str, &str)],
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         self.open_as(rate_hz, 256, given)
     }
 
@@ -86,7 +86,7 @@ impl Card {
         &self,
         block_frames: u32,
         given: &[(&str, &str)],
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         self.open_as(RATE_HZ, block_frames, given)
     }
 
@@ -95,20 +95,20 @@ impl Card {
         rate_hz: f64,
         block_frames: u32,
         given: &[(&str, &str)],
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let format = StreamFormat { rate_hz, block_frames };
-        Daq::new().open(&self.settings(given), &format)
+        Daq.open_output(&self.settings(given), &format)
     }
 
-    pub fn open_input(&self, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
+    pub fn open_input(&self, given: &[(&str, &str)]) -> Result<Box<dyn Input>, DeviceError> {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver], given]
             .concat()
             .iter()
             .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
             .collect();
-        let adapter = DaqInput::new();
-        adapter.open(&Settings::resolve(adapter.descriptor(), None, &given)?)
+        let adapter = DaqInput;
+        adapter.open_input(&Settings::resolve(adapter.descriptor(), None, &given)?)
     }
 
     /// Puts voltages on the inputs: one row for each frame, one number for each input.

@@ -8,7 +8,7 @@ use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use htex_device::{Adapter, Device, DeviceError, Settings, StreamFormat};
+use htex_device::{Adapter, DeviceError, Output, Settings, StreamFormat};
 use htex_device_builtin::parametric::Parametric;
 use tempfile::TempDir;
 
@@ -90,8 +90,8 @@ impl Mock {
         settings(&[&[runtime], given].concat()).unwrap()
     }
 
-    pub(crate) fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
-        let adapter = Parametric::new();
+    pub(crate) fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Output>, DeviceError> {
+        let adapter = Parametric;
         let settings = self.settings(given);
         let rate_hz = adapter.capabilities(&settings)?.default_rate_hz;
         self.open_at(rate_hz, given)
@@ -101,16 +101,16 @@ impl Mock {
         &self,
         rate_hz: f64,
         given: &[(&str, &str)],
-    ) -> Result<Box<dyn Device>, DeviceError> {
+    ) -> Result<Box<dyn Output>, DeviceError> {
         let format = StreamFormat { rate_hz, block_frames: 80 };
-        Parametric::new().open(&self.settings(given), &format)
+        Parametric.open_output(&self.settings(given), &format)
     }
 }
 
 pub(crate) fn settings(given: &[(&str, &str)]) -> Result<Settings, DeviceError> {
     let given: BTreeMap<String, String> =
         given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Settings::resolve(Parametric::new().descriptor(), None, &given)
+    Settings::resolve(Parametric.descriptor(), None, &given)
 }
 
 pub(crate) fn sine(hz: f64, peak: f64, seconds: f64, rate_hz: f64) -> Vec<f32> {
@@ -120,7 +120,7 @@ pub(crate) fn sine(hz: f64, peak: f64, seconds: f64, rate_hz: f64) -> Vec<f32> {
     (0..count).map(sample).collect()
 }
 
-pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) {
+pub(crate) fn write_all(device: &mut dyn Output, samples: &[f32]) {
     assert_eq!(device.write(samples, LONG), Ok(samples.len()));
 }
 

@@ -1,53 +1,40 @@
-//! Checks of the marker, exports, descriptor, endpoints and capabilities. Checks that also apply to
-//! sources are generic over the kind of adapter.
+//! Checks of the marker, exports, descriptor, endpoints, capabilities, settings and arrays.
 
-use crate::harness::{Finding, Found, made_up_extensions};
+use crate::harness::{CheckResult, Finding, made_up_extensions};
 use htex_device::abi::Code;
-use htex_device::{Descriptor, DeviceError, Setting, SettingKind, Settings, StreamFormat};
+use htex_device::{Descriptor, DeviceError, Direction, Setting, SettingKind, Settings};
 
-use crate::device::adapter::Case;
-use crate::device::case::{self, CheckedKind};
+use crate::device::case::{Case, skip_missing};
 
 const INVALID_SETTING: i64 = Code::InvalidSetting as i64;
-/// Block size of a device that is opened only to test its settings, frames.
-const BLOCK: u32 = 256;
-
-/// The finding when arrays are used as the ABI demands.
-pub(crate) const KEPT: &str =
-    "null and misaligned arrays are refused, and nothing is written beyond an array";
 
 /// A library that could be loaded has the marker and the exports.
-pub(crate) fn loaded<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+pub(crate) fn loaded(case: &Case) -> CheckResult {
     case.native()?;
     Ok(Finding::passed("the library was loaded"))
 }
 
 /// Checks the descriptor of a built-in device. For a library, loading has already checked it.
-pub(crate) fn descriptor(case: &Case) -> Found {
+pub(crate) fn descriptor(case: &Case) -> CheckResult {
     let descriptor = case.adapter.descriptor();
     descriptor.check()?;
-    Ok(described(descriptor))
-}
-
-/// Reports a valid descriptor.
-pub(crate) fn described(descriptor: &Descriptor) -> Finding {
     let (id, version) = (&descriptor.id, &descriptor.version);
     let (settings, profiles) = (descriptor.settings.len(), descriptor.profiles.len());
     let message = format!("{id} {version}: {settings} settings, {profiles} profiles");
-    Finding::passed(message).with("settings", settings as f64)
+    Ok(Finding::passed(message).with("settings", settings as f64))
 }
 
 /// Made-up extensions must be reported as absent.
-pub(crate) fn extensions<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+pub(crate) fn extensions(case: &Case) -> CheckResult {
     let native = case.native()?;
     made_up_extensions(|id| native.has_extension(id))
 }
 
 /// Endpoints must choose settings of the descriptor. An empty list or a missing driver is valid.
-pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
-    let descriptor = case.adapter.about();
+pub(crate) fn endpoints(case: &Case) -> CheckResult {
+    let descriptor = case.adapter.descriptor();
     let known = |name: &str| descriptor.settings.iter().any(|setting| setting.name == name);
-    match case.adapter.connected() {
+    match case.adapter.endpoints() {
         Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
             Some(lost) => {
                 let (name, setting) = (&lost.name, &lost.setting);
@@ -62,7 +49,7 @@ pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found 
 }
 
 /// Checks the capabilities with the given settings and with each profile.
-pub(crate) fn capabilities(case: &Case) -> Found {
+pub(crate) fn capabilities(case: &Case) -> CheckResult {
     let can = case.capabilities()?;
     let checked = can.check();
     checked.map_err(|error| Finding::failed(error.to_string()))?;
@@ -81,11 +68,15 @@ pub(crate) fn capabilities(case: &Case) -> Found {
     Ok(Finding::passed(format!("{limit}, {}", can.rates)))
 }
 
-/// Unusable settings must be refused, both in `capabilities` and in `open`.
-pub(crate) fn bad_settings(case: &Case) -> Found {
+/// Unusable settings must be refused, in `capabilities` of an output and in `open`.
+pub(crate) fn bad_settings(case: &Case) -> CheckResult {
     let native = case.native()?;
     let (descriptor, settings) = (case.adapter.descriptor(), case.settings()?);
-    let rate_hz = case.capabilities()?.default_rate_hz;
+    if case.direction() == Direction::Input {
+        native.open_native_input(&settings).map_err(skip_missing)?;
+        return refused(descriptor, &settings, |lines| native.refusal_of_open(lines, 0.0, 0));
+    }
+    let format = case.format()?;
     let asked = refused(descriptor, &settings, |lines| {
         match native.capabilities_of(lines) {
             Ok(_) => None,
@@ -100,8 +91,8 @@ pub(crate) fn bad_settings(case: &Case) -> Found {
         }
     });
     let asked = asked.map_err(|finding| of_call("capabilities", finding))?;
-    refused(descriptor, &settings, |lines| native.refusal_of_open(lines, rate_hz, BLOCK))
-        .map_err(|finding| of_call("open", finding))?;
+    let refusal = |lines: &str| native.refusal_of_open(lines, format.rate_hz, format.block_frames);
+    refused(descriptor, &settings, refusal).map_err(|finding| of_call("open", finding))?;
     Ok(asked)
 }
 
@@ -119,11 +110,11 @@ struct WrongLines {
 
 /// Checks that unusable lines are refused with a text that begins with the setting's name.
 /// `refusal` returns the status and the text, or `None` if the adapter accepts the lines.
-pub(crate) fn refused(
+fn refused(
     descriptor: &Descriptor,
     settings: &Settings,
     refusal: impl Fn(&str) -> Option<(i64, String)>,
-) -> Found {
+) -> CheckResult {
     let wrong = wrong(descriptor, &settings.to_lines(descriptor));
     for WrongLines { what, lines, begins } in &wrong {
         let Some((status, text)) = refusal(lines) else {
@@ -194,11 +185,8 @@ fn wrong_lines(setting: &Setting) -> Vec<String> {
 }
 
 /// Unusable arrays must be refused, and no call may write beyond the arrays that it gets.
-pub(crate) fn arrays(case: &Case) -> Found {
-    let native = case.native()?;
-    let format =
-        StreamFormat { rate_hz: case.capabilities()?.default_rate_hz, block_frames: BLOCK };
-    let checked = native.check_arrays(&case.settings()?, &format);
-    checked.map_err(Finding::failed)?;
-    Ok(Finding::passed(KEPT))
+pub(crate) fn arrays(case: &Case) -> CheckResult {
+    case.native()?.check_arrays(&case.settings()?, &case.format()?)?;
+    let kept = "null and misaligned arrays are refused, and nothing is written beyond an array";
+    Ok(Finding::passed(kept))
 }

@@ -2,14 +2,33 @@
 
 use std::time::Duration;
 
-use crate::harness::{Finding, Found};
-use htex_device::{Adapter, Device, DeviceError, StreamFormat};
+use htex_device::{Direction, Input, Output};
 
-use crate::device::adapter::{Case, write_all};
+use crate::device::case::{Case, check_closed, read_all, write_all};
+use crate::harness::{CheckResult, Finding, Growth};
+
+/// Maximum number of blocks over which memory must not grow.
+const BLOCKS: usize = 10_000;
+/// Block sizes of writes and reads in the check of memory, frames.
+const WRITE_BLOCK: usize = 256;
+const READ_BLOCK: usize = 64;
+/// Longest total duration of the samples of an output with a clock, and of an input, seconds.
+const PACED_S: f64 = 10.0;
+const READ_S: f64 = 5.0;
+/// Number of devices that are opened and closed.
+const OPENED: usize = 100;
+
+/// After its end, a device must do nothing more.
+pub(crate) fn finishes(case: &Case) -> CheckResult {
+    match case.direction() {
+        Direction::Output => finishes_output(case),
+        Direction::Input => finishes_input(case),
+    }
+}
 
 /// All frames must be played, and nothing can be written afterwards.
-pub(crate) fn finishes(case: &Case) -> Found {
-    let (mut device, _) = case.open()?;
+fn finishes_output(case: &Case) -> CheckResult {
+    let (mut device, _) = case.open_output()?;
     let tone = case.tone(1_000)?;
     write_all(device.as_mut(), &tone)?;
     let files = files(case);
@@ -20,13 +39,10 @@ pub(crate) fn finishes(case: &Case) -> Found {
         let message = format!("1000 frames were written, and {played} came out");
         return Err(Finding::failed(message));
     }
-    let after =
-        [("a write", device.write(&tone, Duration::ZERO).map(drop)), ("finish", device.finish())];
-    for (call, answer) in after {
-        let Err(DeviceError::Closed(_)) = answer else {
-            return Err(Finding::failed(format!("{call} after the end is not refused as closed")));
-        };
-    }
+    check_closed([
+        ("a write after the end", device.write(&tone, Duration::ZERO).map(drop)),
+        ("finish after the end", device.finish()),
+    ])?;
     drop(device);
     // Only the numbers of files are compared, because finishing may rename them.
     if self::files(case).len() < files.len() {
@@ -35,10 +51,24 @@ pub(crate) fn finishes(case: &Case) -> Found {
     Ok(Finding::passed("all frames came out, and writes afterwards are refused"))
 }
 
+/// After its end, the input can be neither read nor started. A second end changes nothing.
+fn finishes_input(case: &Case) -> CheckResult {
+    let mut input = case.started()?;
+    read_all(input.as_mut(), 3)?;
+    input.finish()?;
+    input.finish()?;
+    let mut samples = vec![0.0; input.stream().channels.len()];
+    check_closed([
+        ("a start after the end", input.start()),
+        ("a read after the end", input.read(&mut samples, Duration::ZERO).map(drop)),
+    ])?;
+    Ok(Finding::passed("nothing is delivered after the end"))
+}
+
 /// Closing without `finish` must leave nothing behind.
-pub(crate) fn aborts(case: &Case) -> Found {
+pub(crate) fn aborts(case: &Case) -> CheckResult {
     let before = files(case);
-    let (mut device, _) = case.open()?;
+    let (mut device, _) = case.open_output()?;
     write_all(device.as_mut(), &case.tone(1_000)?)?;
     drop(device);
     let after = files(case);
@@ -49,33 +79,81 @@ pub(crate) fn aborts(case: &Case) -> Found {
 }
 
 fn files(case: &Case) -> Vec<String> {
-    let entries = std::fs::read_dir(case.files.folder.path()).into_iter().flatten();
+    let entries = std::fs::read_dir(case.folder.path()).into_iter().flatten();
     let names = entries.flatten().map(|entry| entry.file_name());
     names.map(|name| name.to_string_lossy().into_owned()).collect()
 }
 
 /// A closed handle must be refused, even after another device was opened.
-pub(crate) fn handles(case: &Case) -> Found {
+pub(crate) fn handles(case: &Case) -> CheckResult {
     let native = case.native()?;
-    let can = case.capabilities()?;
-    let format = StreamFormat { rate_hz: can.default_rate_hz, block_frames: can.block_frames };
-    let mut closed = native.open_native(&case.settings()?, &format)?;
-    closed.close_and_keep_handle()?;
-    for another in [false, true] {
-        let open = || Ok::<_, Finding>(native.open(&case.settings()?, &format)?);
-        let _open = another.then(open).transpose()?;
-        let calls = [
-            ("write", closed.write(&[0.0], Duration::ZERO).map(drop)),
-            ("status", closed.checked_status().map(drop)),
-            ("finish", closed.finish()),
-            ("close", closed.close_and_keep_handle()),
-        ];
-        for (call, answer) in calls {
-            let Err(DeviceError::Closed(_)) = answer else {
-                let message = format!("`{call}` takes a handle that was closed");
-                return Err(Finding::failed(message));
-            };
+    let (settings, format) = (case.settings()?, case.format()?);
+    match case.direction() {
+        Direction::Output => {
+            let mut closed = native.open_native_output(&settings, &format)?;
+            closed.close_and_keep_handle()?;
+            for another in [false, true] {
+                let _open = another.then(|| case.open_output()).transpose()?;
+                check_closed([
+                    ("`write` of a closed handle", closed.write(&[0.0], Duration::ZERO).map(drop)),
+                    ("`status` of a closed handle", closed.checked_status().map(drop)),
+                    ("`finish` of a closed handle", closed.finish()),
+                    ("`close` of a closed handle", closed.close_and_keep_handle()),
+                ])?;
+            }
+        }
+        Direction::Input => {
+            let mut closed = native.open_native_input(&settings)?;
+            closed.close_and_keep_handle()?;
+            let mut samples = vec![0.0; closed.stream().channels.len()];
+            for another in [false, true] {
+                let _open = another.then(|| case.open_input()).transpose()?;
+                check_closed([
+                    ("`start` of a closed handle", closed.start()),
+                    (
+                        "`read` of a closed handle",
+                        closed.read(&mut samples, Duration::ZERO).map(drop),
+                    ),
+                    ("`stream` of a closed handle", closed.stream_again().map(drop)),
+                    ("`finish` of a closed handle", closed.finish()),
+                    ("`close` of a closed handle", closed.close_and_keep_handle()),
+                ])?;
+            }
         }
     }
     Ok(Finding::passed("a closed handle is refused"))
+}
+
+/// The process must not grow with the samples written or read, or as devices are opened and closed.
+pub(crate) fn memory(case: &Case) -> CheckResult {
+    crate::harness::memory(|| match case.direction() {
+        Direction::Output => memory_of_output(case),
+        Direction::Input => memory_of_input(case),
+    })
+}
+
+fn memory_of_output(case: &Case) -> Result<[Growth; 2], Finding> {
+    let can = case.capabilities()?;
+    let most = (PACED_S * can.default_rate_hz / WRITE_BLOCK as f64) as usize;
+    let blocks = if can.paced { BLOCKS.min(most) } else { BLOCKS };
+    let tone = case.tone(WRITE_BLOCK)?;
+    let (mut device, _) = case.open_output()?;
+    let write = |count: usize| (0..count).try_for_each(|_| write_all(device.as_mut(), &tone));
+    let written = Growth::measure(blocks, "blocks", write)?;
+    drop(device);
+    // Opening and closing a device with a clock takes longer.
+    let opened = if can.paced { OPENED / 20 } else { OPENED };
+    let open = |count: usize| (0..count).try_for_each(|_| case.open_output().map(drop));
+    Ok([written, Growth::measure(opened, "openings", open)?])
+}
+
+fn memory_of_input(case: &Case) -> Result<[Growth; 2], Finding> {
+    let mut input = case.started()?;
+    let most = (READ_S * input.stream().rate_hz / READ_BLOCK as f64) as usize;
+    let read =
+        |count: usize| (0..count).try_for_each(|_| read_all(input.as_mut(), READ_BLOCK).map(drop));
+    let read = Growth::measure(BLOCKS.min(most.max(1)), "blocks", read)?;
+    drop(input);
+    let open = |count: usize| (0..count).try_for_each(|_| case.started().map(drop));
+    Ok([read, Growth::measure(OPENED, "openings", open)?])
 }

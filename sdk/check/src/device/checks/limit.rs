@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use htex_device::DeviceError;
 
-use crate::device::adapter::{Case, write_all};
+use crate::device::case::{Case, check_closed, write_all};
 
 /// Samples beyond the limit must be refused, both positive and negative.
-pub(crate) fn over(case: &Case) -> Found {
+pub(crate) fn over(case: &Case) -> CheckResult {
     let Some(limit) = case.capabilities()?.limit else {
         return Ok(Finding::skipped("it has no limit"));
     };
@@ -20,7 +20,7 @@ pub(crate) fn over(case: &Case) -> Found {
 }
 
 /// NaN and infinities must be refused.
-pub(crate) fn no_number(case: &Case) -> Found {
+pub(crate) fn no_number(case: &Case) -> CheckResult {
     for sample in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         refuses(case, sample)?;
     }
@@ -30,7 +30,7 @@ pub(crate) fn no_number(case: &Case) -> Found {
 /// Writes one invalid sample among valid ones. The device must refuse it and be closed afterwards.
 fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
     let wrong = |what: String| Err(Finding::failed(format!("a sample of {bad}: {what}")));
-    let (mut device, _) = case.open()?;
+    let (mut device, _) = case.open_output()?;
     let tone = case.tone(64)?;
     write_all(device.as_mut(), &tone)?;
     match device.write(&[tone[1], bad, tone[2]], Duration::ZERO) {
@@ -44,14 +44,8 @@ fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
         let counted = status.frames_written;
         return wrong(format!("64 frames were taken before, and it counts {counted}"));
     }
-    let after =
-        [("a write", device.write(&tone, Duration::ZERO).map(drop)), ("finish", device.finish())];
-    for (call, answer) in after {
-        match answer {
-            Err(DeviceError::Closed(_)) => {}
-            Err(error) => return wrong(format!("{call} afterwards: {error}")),
-            Ok(()) => return wrong(format!("{call} afterwards succeeds")),
-        }
-    }
-    Ok(())
+    check_closed([
+        ("a write afterwards", device.write(&tone, Duration::ZERO).map(drop)),
+        ("finish afterwards", device.finish()),
+    ])
 }

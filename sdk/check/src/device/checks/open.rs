@@ -1,15 +1,43 @@
 //! Checks of opening.
 
-use crate::harness::{Finding, Found};
-use htex_device::DeviceError;
 use htex_device::abi::{Code, MAX_BLOCK_FRAMES};
+use htex_device::{DeviceError, Direction, InputStream};
 
-use crate::device::adapter::{Case, rates, write_all};
+use crate::device::case::{Case, rates, read_all, write_all};
+use crate::harness::{CheckResult, Finding};
 
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
-/// The device must open at each of its rates, and accept silence.
-pub(crate) fn opens(case: &Case) -> Found {
+/// The device must open.
+pub(crate) fn opens(case: &Case) -> CheckResult {
+    match case.direction() {
+        Direction::Output => opens_output(case),
+        Direction::Input => opens_input(case),
+    }
+}
+
+/// Rate and channels must be valid and the same at each opening. For a library, they must also be
+/// the same at each call.
+fn opens_input(case: &Case) -> CheckResult {
+    let stream = || Ok::<InputStream, Finding>(case.open_input()?.stream().clone());
+    let first = stream()?;
+    first.check()?;
+    let mut others = vec![stream()?];
+    if let Ok(native) = case.native() {
+        let input = native.open_native_input(&case.settings()?)?;
+        others.push(input.stream_again()?);
+        others.push(input.stream_again()?);
+    }
+    if let Some(other) = others.iter().find(|other| **other != first) {
+        let message = format!("rate and channels change: {first:?}, then {other:?}");
+        return Err(Finding::failed(message));
+    }
+    let (count, rate_hz) = (first.channels.len(), first.rate_hz);
+    Ok(Finding::passed(format!("{count} channels at {rate_hz} Hz")).with("rate_hz", rate_hz))
+}
+
+/// The output must open at each of its rates, and accept silence.
+fn opens_output(case: &Case) -> CheckResult {
     let rates = rates(&case.capabilities()?);
     for rate_hz in &rates {
         let opened = case.open_at(&case.settings()?, *rate_hz);
@@ -21,7 +49,7 @@ pub(crate) fn opens(case: &Case) -> Found {
 }
 
 /// Rates that the device does not support must be refused.
-pub(crate) fn bad_rate(case: &Case) -> Found {
+pub(crate) fn bad_rate(case: &Case) -> CheckResult {
     let can = case.capabilities()?;
     let (lowest, highest) = match rates(&can)[..] {
         [first, .., last] => (first, last),
@@ -45,7 +73,7 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
 }
 
 /// Block sizes outside the ABI's range must be refused.
-pub(crate) fn bad_block(case: &Case) -> Found {
+pub(crate) fn bad_block(case: &Case) -> CheckResult {
     let native = case.native()?;
     let rate_hz = case.capabilities()?.default_rate_hz;
     let wrong = [0, MAX_BLOCK_FRAMES + 1, u32::MAX];
@@ -69,16 +97,21 @@ pub(crate) fn bad_block(case: &Case) -> Found {
     Ok(Finding::passed(format!("{count} wrong block sizes are refused")))
 }
 
-/// Two devices must open at the same time, or the second must be refused as busy.
-pub(crate) fn two(case: &Case) -> Found {
-    let (mut first, settings) = case.open()?;
+/// Two devices must work at the same time, or the second must be refused as busy.
+pub(crate) fn two(case: &Case) -> CheckResult {
+    match case.direction() {
+        Direction::Output => two_outputs(case),
+        Direction::Input => two_inputs(case),
+    }
+}
+
+fn two_outputs(case: &Case) -> CheckResult {
+    let (mut first, settings) = case.open_output()?;
     let rate_hz = case.adapter.capabilities(&settings)?.default_rate_hz;
     let tone = case.tone(64)?;
     let mut second = match case.open_at(&case.settings()?, rate_hz) {
-        Err(DeviceError::Busy(why)) => {
-            return Ok(Finding::passed(format!("one at a time: {why}")));
-        }
-        other => other?,
+        Ok(second) => second,
+        Err(error) => return one_at_a_time(error),
     };
     write_all(first.as_mut(), &tone)?;
     write_all(second.as_mut(), &tone[..10])?;
@@ -88,4 +121,26 @@ pub(crate) fn two(case: &Case) -> Found {
     }
     let message = format!("64 and 10 frames were written, and it counts {counts:?}");
     Err(Finding::failed(message))
+}
+
+fn two_inputs(case: &Case) -> CheckResult {
+    let mut first = case.started()?;
+    let second = case.adapter.open_input(&case.settings()?);
+    let mut second = match second.and_then(|mut second| second.start().map(|()| second)) {
+        Ok(second) => second,
+        Err(error) => return one_at_a_time(error),
+    };
+    let wanted = read_all(first.as_mut(), 64)?;
+    for input in [second.as_mut(), first.as_mut()] {
+        read_all(input, wanted)?;
+    }
+    Ok(Finding::passed("two deliver at the same time"))
+}
+
+/// The second device may be refused, but only as busy.
+fn one_at_a_time(error: DeviceError) -> CheckResult {
+    match error {
+        DeviceError::Busy(why) => Ok(Finding::passed(format!("one at a time: {why}"))),
+        error => Err(error.into()),
+    }
 }

@@ -2,7 +2,7 @@
 
 use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Scale, Store};
 
-use crate::harness::{Finding, Found, Owner, made_up_extensions};
+use crate::harness::{CheckResult, Finding, Owner, made_up_extensions};
 use crate::model::case::Case;
 
 /// Returns the check to which a loading error belongs, and whether the checks before it passed.
@@ -24,13 +24,13 @@ pub(crate) fn owner(error: &HostError) -> Owner {
 }
 
 /// Always passes, because a model that could be loaded has the marker and the exports.
-pub(crate) fn loaded(case: &Case) -> Found {
+pub(crate) fn loaded(case: &Case) -> CheckResult {
     let file = case.file.display();
     Ok(Finding::passed(format!("{file} was loaded")))
 }
 
 /// Checks the parts of the descriptor that loading does not check.
-pub(crate) fn descriptor(case: &Case) -> Found {
+pub(crate) fn descriptor(case: &Case) -> CheckResult {
     let descriptor = case.model.descriptor();
     if let Some(wrong) = wrong_in(descriptor) {
         return Err(Finding::failed(wrong));
@@ -142,6 +142,6 @@ fn wrong_default(option: &FitOption) -> Option<String> {
 }
 
 /// Checks that made-up extensions are absent.
-pub(crate) fn extensions(case: &Case) -> Found {
+pub(crate) fn extensions(case: &Case) -> CheckResult {
     made_up_extensions(|id| case.model.has_extension(id))
 }

@@ -2,7 +2,7 @@
 
 use htex_host::ModelVoice;
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, Fitted};
 
 /// Number of warm-up blocks, in which a voice may allocate.
@@ -13,7 +13,7 @@ const FRAMES: [usize; 4] = [1, 64, 256, 1_000];
 const BETWEEN: usize = 4;
 
 /// Checks that rendering and retuning do not allocate.
-pub(crate) fn none(case: &Case) -> Found {
+pub(crate) fn none(case: &Case) -> CheckResult {
     let sets = case.fitted()?;
     let mut voice = case.voice(&sets[0].parameters, case.seed)?;
     let mut out = vec![0.0; FRAMES[FRAMES.len() - 1]];
@@ -89,7 +89,7 @@ fn counted<T>(run: impl FnOnce() -> T) -> (T, u64) {
 }
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
-fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32]) -> Found {
+fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32]) -> CheckResult {
     let allocator = crate::model::allocator::AllocatorCalls::watch();
     if allocator.places() == 0 {
         return Ok(Finding::skipped(
@@ -114,6 +114,6 @@ fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32])
 }
 
 #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
-fn native(_: &Case, _: &[Fitted], _: &mut ModelVoice, _: &mut [f32]) -> Found {
+fn native(_: &Case, _: &[Fitted], _: &mut ModelVoice, _: &mut [f32]) -> CheckResult {
     Ok(Finding::skipped("calls of the allocator are counted on 64-bit Linux only"))
 }

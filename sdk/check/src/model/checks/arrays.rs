@@ -2,7 +2,7 @@
 
 use htex_host::{Band, FitCondition, FitInput, HostError, ModelVoice, Origin, ProbeArguments};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ, is_cannot_fit};
 use crate::model::fence::{self, Fenced, Number};
 use crate::model::signal::first_difference;
@@ -13,7 +13,7 @@ const SAMPLES: usize = 2_000;
 
 /// Checks how far texts and parameters are written, what is read, and that no array is kept after
 /// the call.
-pub(crate) fn kept_to(case: &Case) -> Found {
+pub(crate) fn kept_to(case: &Case) -> CheckResult {
     watch(case);
     let parameters = fits(case)?;
     descriptors(case)?;

@@ -1,6 +1,6 @@
 //! Checks of changing from one parameter set to another.
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::checks::sound::{SECONDS, SPECTRUM_DB, spectrum_distance_db};
 use crate::model::signal::{distance_db, sharpest_bend};
@@ -19,7 +19,7 @@ const LOUDEST: f32 = 100.0;
 
 /// Checks that second differences at retunes are not much larger than in the sounds without
 /// retunes.
-pub(crate) fn retune(case: &Case) -> Found {
+pub(crate) fn retune(case: &Case) -> CheckResult {
     let Some((a, b)) = case.two_sets()? else {
         return Ok(Finding::skipped("all reference spectra have the same parameters"));
     };
@@ -52,7 +52,7 @@ pub(crate) fn retune(case: &Case) -> Found {
 }
 
 /// Checks that after a retune, the sound has the spectrum of the new parameters.
-pub(crate) fn follows(case: &Case) -> Found {
+pub(crate) fn follows(case: &Case) -> CheckResult {
     let sets = case.fitted()?;
     let magnitudes =
         sets.iter().map(|set| case.magnitude(&set.parameters)).collect::<Result<Vec<_>, _>>()?;
@@ -94,7 +94,7 @@ pub(crate) fn follows(case: &Case) -> Found {
 }
 
 /// Checks that interpolation reproduces the sets at its ends, and that all results can be played.
-pub(crate) fn interpolate(case: &Case) -> Found {
+pub(crate) fn interpolate(case: &Case) -> CheckResult {
     let sets = case.fitted()?;
     if sets.len() < 2 {
         return Ok(Finding::skipped("there is only one parameter set"));

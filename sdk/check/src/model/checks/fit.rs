@@ -3,7 +3,7 @@
 use htex_host::{Band, HostError, Status};
 use htex_model::{Values, flatten};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, is_cannot_fit};
 use crate::model::sets::stored;
 use crate::model::signal::distance_db;
@@ -13,7 +13,7 @@ use crate::model::spectra::{HARD, REFERENCES};
 const STORED_DB: f64 = 0.5;
 
 /// Fits the five reference spectra.
-pub(crate) fn reference(case: &Case) -> Found {
+pub(crate) fn reference(case: &Case) -> CheckResult {
     let mut fitted = 0;
     for reference in REFERENCES {
         let grid = Band::TACTILE.grid_hz();
@@ -43,7 +43,7 @@ pub(crate) fn reference(case: &Case) -> Found {
 }
 
 /// Fits degenerate spectra.
-pub(crate) fn hard(case: &Case) -> Found {
+pub(crate) fn hard(case: &Case) -> CheckResult {
     let (mut fitted, mut refused) = (0.0, 0.0);
     let wide = Band::TACTILE.grid_hz();
     let two = Band { low_hz: 100.0, high_hz: 105.0 };
@@ -75,7 +75,7 @@ pub(crate) fn hard(case: &Case) -> Found {
 }
 
 /// Checks that parameters survive conversion to fields and back, and storage.
-pub(crate) fn round_trip(case: &Case) -> Found {
+pub(crate) fn round_trip(case: &Case) -> CheckResult {
     let descriptor = case.model.descriptor();
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
@@ -106,7 +106,7 @@ pub(crate) fn round_trip(case: &Case) -> Found {
 }
 
 /// Fits spectra together with their signals.
-pub(crate) fn with_signals(case: &Case) -> Found {
+pub(crate) fn with_signals(case: &Case) -> CheckResult {
     let sets = case.fitted_to_signals()?;
     for set in &sets {
         let magnitude = case.magnitude(&set.parameters);

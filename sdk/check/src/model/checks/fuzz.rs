@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use htex_host::{Band, ModelVoice, Motion};
 
-use crate::harness::{Finding, Found, Outcome};
+use crate::harness::{CheckResult, Finding, Outcome};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::random::Random;
 use crate::model::sets::describes_nothing;
@@ -36,7 +36,7 @@ enum Step {
 }
 
 /// Plays the sequences of consecutive seeds.
-pub(crate) fn plays(case: &Case) -> Found {
+pub(crate) fn plays(case: &Case) -> CheckResult {
     let begun = Instant::now();
     let fitted: Vec<Vec<f64>> = case.fitted()?.into_iter().map(|f| f.parameters).collect();
     let (mut played, mut seed) = (0u64, case.seed);

@@ -2,7 +2,7 @@
 
 use htex_host::Band;
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, Fitted};
 use crate::model::checks::arrays;
 
@@ -19,7 +19,7 @@ pub(crate) fn fine_grid() -> Vec<f64> {
 }
 
 /// Checks that magnitudes are finite, not negative, and zero outside the band.
-pub(crate) fn sane(case: &Case) -> Found {
+pub(crate) fn sane(case: &Case) -> CheckResult {
     let band = Band::TACTILE;
     let outside = [0.0, 1.0, 19.0, 1001.0, 5_000.0, 1e5];
     let mut asked = 0;
@@ -53,7 +53,7 @@ pub(crate) fn sane(case: &Case) -> Found {
 }
 
 /// Checks that a magnitude does not depend on the other frequencies in the call.
-pub(crate) fn grid(case: &Case) -> Found {
+pub(crate) fn grid(case: &Case) -> CheckResult {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
     let mut worst: f64 = 0.0;

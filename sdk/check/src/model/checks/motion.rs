@@ -2,7 +2,7 @@
 
 use htex_host::{FitCondition, MOTION_EXTENSION, ModelVoice, Motion, Status};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, is_cannot_fit};
 use crate::model::checks::allocation;
 use crate::model::signal::first_difference;
@@ -16,7 +16,7 @@ const MOTION: Motion =
     Motion { speed_mm_s: 80.0, force_n: 0.5, position_mm: 3.0, x_mm: 2.0, y_mm: -1.0 };
 
 /// Checks the guarantees of `htex.motion/1`.
-pub(crate) fn keeps_its_promises(case: &Case) -> Found {
+pub(crate) fn keeps_its_promises(case: &Case) -> CheckResult {
     if !case.model.follows_motion() {
         return Ok(Finding::passed(format!("the model has no extension `{MOTION_EXTENSION}`")));
     }

@@ -1,6 +1,6 @@
 //! Checks of retunes at every block.
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::checks::sound::spectrum_distance_db;
 use crate::model::signal::{rms, rms_spread};
@@ -18,7 +18,7 @@ const FURTHER_DB: f64 = 1.0;
 
 /// Checks that retuning to the same parameters at every block changes neither the level nor the
 /// spectrum.
-pub(crate) fn keeps_sounding(case: &Case) -> Found {
+pub(crate) fn keeps_sounding(case: &Case) -> CheckResult {
     let (mut worst_db, mut worst_further_db) = (0.0f64, 0.0f64);
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;

@@ -2,7 +2,7 @@
 
 use htex_host::{Band, Stream};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::checks::magnitude::{FINE_HZ, fine_grid};
 use crate::model::sets::{SEEDED, Set, describes_nothing, stored};
@@ -30,7 +30,7 @@ fn about(set: &Set, what: &str) -> Finding {
 }
 
 /// Checks both ends of every field's range.
-pub(crate) fn bounds(case: &Case) -> Found {
+pub(crate) fn bounds(case: &Case) -> CheckResult {
     let base = case.parameters()?;
     let (mut played, mut refused, mut accepted) = (0, 0, Vec::new());
     for at in case.at_bounds(&base)? {
@@ -52,7 +52,7 @@ pub(crate) fn bounds(case: &Case) -> Found {
 }
 
 /// Checks seeded sets within the ranges, and fits of spectra with their signals.
-pub(crate) fn seeded(case: &Case) -> Found {
+pub(crate) fn seeded(case: &Case) -> CheckResult {
     let fitted = case.fitted()?;
     let mut sets = case.fitted_to_signals()?;
     let (mut refused, wanted) = (0, sets.len() + SEEDED);

@@ -3,7 +3,7 @@
 use htex_host::{Band, FitCondition, FitInput, HostError, Kind, Status};
 use htex_model::{Values, flatten};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, RATE_HZ};
 use crate::model::signal::first_difference;
 use crate::model::spectra::REFERENCES;
@@ -34,7 +34,7 @@ fn refused<T>(
 }
 
 /// Checks that parameters that do not match the descriptor are refused.
-pub(crate) fn parameters(case: &Case) -> Found {
+pub(crate) fn parameters(case: &Case) -> CheckResult {
     let (model, band) = (&case.model, Band::TACTILE);
     let status = Status::InvalidParameters;
     let good = case.parameters()?;
@@ -102,7 +102,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
 }
 
 /// Checks that invalid bands are refused.
-pub(crate) fn band(case: &Case) -> Found {
+pub(crate) fn band(case: &Case) -> CheckResult {
     let good = case.parameters()?;
     let status = Status::InvalidArgument;
     let spectrum = [0.01, 0.02, 0.03, 0.02, 0.01];
@@ -129,7 +129,7 @@ pub(crate) fn band(case: &Case) -> Found {
 }
 
 /// Checks that invalid rates are refused.
-pub(crate) fn rate(case: &Case) -> Found {
+pub(crate) fn rate(case: &Case) -> CheckResult {
     let good = case.parameters()?;
     let status = Status::InvalidArgument;
     let rates = [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12];
@@ -143,7 +143,7 @@ pub(crate) fn rate(case: &Case) -> Found {
 }
 
 /// Checks that unusable spectra, signals and options are refused.
-pub(crate) fn inputs(case: &Case) -> Found {
+pub(crate) fn inputs(case: &Case) -> CheckResult {
     let grid = Band::TACTILE.grid_hz();
     let magnitude: Vec<f64> = grid.iter().map(|&hz| (REFERENCES[0].curve)(hz)).collect();
     let options = case.model.descriptor().default_options();
@@ -231,7 +231,7 @@ fn wrong_options(case: &Case, good: &[f64]) -> Vec<(Vec<f64>, String)> {
 }
 
 /// Checks that unusable weights are refused.
-pub(crate) fn weights(case: &Case) -> Found {
+pub(crate) fn weights(case: &Case) -> CheckResult {
     let good = case.parameters()?;
     let wrong: [&[f64]; 7] = [
         &[0.5, 0.6],

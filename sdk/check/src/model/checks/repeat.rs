@@ -2,7 +2,7 @@
 
 use htex_host::{Band, HostError, Status};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::Case;
 use crate::model::checks::magnitude::fine_grid;
 use crate::model::signal::{first_difference, is_line_spectrum};
@@ -15,7 +15,7 @@ fn differ(what: &str, at: usize) -> Finding {
 }
 
 /// Checks that the same seed gives the same samples.
-pub(crate) fn reproducible(case: &Case) -> Found {
+pub(crate) fn reproducible(case: &Case) -> CheckResult {
     for fitted in case.fitted()? {
         let render = || case.samples(&fitted.parameters, case.seed, SAMPLES, 256);
         if let Some(at) = first_difference(&render()?, &render()?) {
@@ -27,7 +27,7 @@ pub(crate) fn reproducible(case: &Case) -> Found {
 }
 
 /// Checks that samples do not depend on the block size.
-pub(crate) fn blocks(case: &Case) -> Found {
+pub(crate) fn blocks(case: &Case) -> CheckResult {
     let parameters = case.parameters()?;
     let whole = case.samples(&parameters, case.seed, SAMPLES, SAMPLES)?;
     for block in [1, 7, 64, 1_000] {
@@ -50,7 +50,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
 }
 
 /// Checks that different seeds give different samples.
-pub(crate) fn seeds(case: &Case) -> Found {
+pub(crate) fn seeds(case: &Case) -> CheckResult {
     let parameters = case.parameters()?;
     let render = |seed| case.samples(&parameters, seed, SAMPLES, 256);
     let same = first_difference(&render(case.seed)?, &render(case.seed.wrapping_add(1))?).is_none();
@@ -67,7 +67,7 @@ pub(crate) fn seeds(case: &Case) -> Found {
 }
 
 /// Checks that voices that play at the same time have the same samples as each voice alone.
-pub(crate) fn voices_apart(case: &Case) -> Found {
+pub(crate) fn voices_apart(case: &Case) -> CheckResult {
     let sets = case.two_sets()?;
     let (a, b) = match sets {
         Some(sets) => sets,
@@ -105,7 +105,7 @@ pub(crate) fn voices_apart(case: &Case) -> Found {
 }
 
 /// Checks that a freed handle is refused.
-pub(crate) fn handles(case: &Case) -> Found {
+pub(crate) fn handles(case: &Case) -> CheckResult {
     let parameters = case.parameters()?;
     let mut voice = case.voice(&parameters, case.seed)?;
     voice.render(&mut [0.0; 64])?;

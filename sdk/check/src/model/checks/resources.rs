@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use htex_host::Band;
 
-use crate::harness::{Finding, Found, Growth};
+use crate::harness::{CheckResult, Finding, Growth};
 use crate::model::case::{Case, RATE_HZ};
 
 const BLOCK: usize = 256;
@@ -14,7 +14,7 @@ const VOICES: usize = 2_000;
 const BUDGET: f64 = 0.1;
 
 /// Checks that memory does not grow while a voice plays, or while voices are created and freed.
-pub(crate) fn memory(case: &Case) -> Found {
+pub(crate) fn memory(case: &Case) -> CheckResult {
     crate::harness::memory(|| {
         let sets = case.fitted()?;
         let mut voice = case.voice(&sets[0].parameters, case.seed)?;
@@ -40,7 +40,7 @@ pub(crate) fn memory(case: &Case) -> Found {
 }
 
 /// Measures the rendering time in nanoseconds per sample.
-pub(crate) fn cost(case: &Case) -> Found {
+pub(crate) fn cost(case: &Case) -> CheckResult {
     let parameters = case.parameters()?;
     let rate_hz = case.model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)?;
     let mut voice = case.voice(&parameters, case.seed)?;

@@ -3,7 +3,7 @@
 use htex_dsp::grid::level_rms;
 use htex_host::{Band, Stream};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, Fitted, RATE_HZ, is_refusal};
 use crate::model::checks::arrays;
 use crate::model::checks::magnitude::fine_grid;
@@ -35,7 +35,7 @@ const NARROW: Band = Band { low_hz: 150.0, high_hz: 700.0 };
 const NARROW_DB: f64 = 1.5;
 
 /// Renders one second of every reference.
-pub(crate) fn renders(case: &Case) -> Found {
+pub(crate) fn renders(case: &Case) -> CheckResult {
     arrays::blocks(case, &case.parameters()?)?;
     let mut voices = 0.0;
     for fitted in case.fitted()? {
@@ -53,7 +53,7 @@ pub(crate) fn renders(case: &Case) -> Found {
 }
 
 /// Checks that no sample is infinite, NaN or subnormal, even after retunes.
-pub(crate) fn clean(case: &Case) -> Found {
+pub(crate) fn clean(case: &Case) -> CheckResult {
     let sets = case.fitted()?;
     let mut samples = 0.0;
     for fitted in &sets {
@@ -83,7 +83,7 @@ fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
 }
 
 /// Checks the unit RMS of the magnitude and of the sound, in total or in the band's bins.
-pub(crate) fn level(case: &Case) -> Found {
+pub(crate) fn level(case: &Case) -> CheckResult {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
@@ -121,7 +121,7 @@ pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
 }
 
 /// Compares the sound's spectrum with the magnitude.
-pub(crate) fn spectrum(case: &Case) -> Found {
+pub(crate) fn spectrum(case: &Case) -> CheckResult {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
@@ -140,7 +140,7 @@ pub(crate) fn spectrum(case: &Case) -> Found {
 }
 
 /// Checks unit RMS in a band narrower than the band of the fit, and silence outside it.
-pub(crate) fn narrow_band(case: &Case) -> Found {
+pub(crate) fn narrow_band(case: &Case) -> CheckResult {
     let grid = NARROW.grid_hz();
     let (mut worst, mut voices) = (0.0f64, 0.0);
     for fitted in case.fitted()? {

@@ -2,7 +2,7 @@
 
 use htex_host::{ModelVoice, Status, VOICES_EXTENSION, render_together};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::Case;
 use crate::model::signal::first_difference;
 
@@ -47,7 +47,7 @@ fn unusable_handles(case: &Case) -> Result<(), Finding> {
 }
 
 /// Checks that one common call gives the same samples as separate calls.
-pub(crate) fn agrees(case: &Case) -> Found {
+pub(crate) fn agrees(case: &Case) -> CheckResult {
     if !case.model.has_extension(VOICES_EXTENSION)? {
         return Ok(Finding::passed(format!("the model has no extension `{VOICES_EXTENSION}`")));
     }

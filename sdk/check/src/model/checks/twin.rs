@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::{Case, Settings};
 
 /// Allowed relative difference of parameters.
@@ -11,7 +11,7 @@ const PARAMETERS: f64 = 1e-6;
 const SAMPLES: f64 = 1e-4;
 
 /// Compares the fits and the samples of both files.
-pub(crate) fn agrees(case: &Case) -> Found {
+pub(crate) fn agrees(case: &Case) -> CheckResult {
     let Some(file) = other_file(case) else {
         return Ok(Finding::skipped(
             "there is no other file of this model to compare with; name one",

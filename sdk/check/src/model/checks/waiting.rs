@@ -2,7 +2,7 @@
 
 use htex_host::{ModelVoice, Motion};
 
-use crate::harness::{Finding, Found};
+use crate::harness::{CheckResult, Finding};
 use crate::model::case::Case;
 
 const BLOCKS: usize = 2_000;
@@ -18,7 +18,7 @@ struct Counts {
 }
 
 /// Checks that rendering, retunes and motions do not wait, read or write.
-pub(crate) fn none(case: &Case) -> Found {
+pub(crate) fn none(case: &Case) -> CheckResult {
     if Counts::now().is_none() {
         return Ok(Finding::skipped("waits of a thread are counted on Linux only"));
     }

@@ -86,8 +86,8 @@ pub fn session(
     tracker: Option<Box<dyn TrackerRows>>,
 ) -> Result<Session, RecordError> {
     let source = open(source);
-    let signals =
-        Signals::new("source.csv", source.channels(), Vec::new(), None, Quantity::LateralForce)?;
+    let channels = &source.stream().channels;
+    let signals = Signals::new("source.csv", channels, Vec::new(), None, Quantity::LateralForce)?;
     let setup = Setup {
         folder: folder.to_owned(),
         name: settings.name.to_owned(),
@@ -124,10 +124,10 @@ pub fn record_with(
 }
 
 /// Opens a file as a source. A CSV without times gets the sample rate of the tests.
-fn open(path: &Path) -> Box<dyn htex_device::Source> {
-    use htex_device::{Settings, SourceAdapter};
+fn open(path: &Path) -> Box<dyn htex_device::Input> {
+    use htex_device::{Adapter, Settings};
     let given = [("path", path.to_str().unwrap()), ("pace", "fast"), ("rate_hz", "2000")]
         .map(|(name, value)| (name.to_owned(), value.to_owned()));
     let settings = Settings::resolve(Replay.descriptor(), None, &given.into()).unwrap();
-    Replay.open(&settings).unwrap()
+    Replay.open_input(&settings).unwrap()
 }

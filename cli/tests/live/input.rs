@@ -1,14 +1,14 @@
-//! Sources of third parties on the command line, recorded as a user does it, and the checker of
-//! sources: a valid one passes, and each faulty one fails the right check.
+//! Inputs of third parties on the command line, recorded as a user does it, and the checker of
+//! devices: a valid input passes, and each faulty one fails the right check.
 
 use std::path::{Path, PathBuf};
 
 use crate::common::Place;
 use crate::common::native::{self, complaints, count};
-use htex_check::device::source::CHECKS;
+use htex_check::device::{Direction, checks_of};
 use serde_json::Value;
 
-/// A fault of `tests/bad-sources/bad.c`, the check that must fail, and its outcome.
+/// A fault of `tests/bad-devices/input.c`, the check that must fail, and its outcome.
 const FAULTS: &[(&str, &str, &str)] = &[
     ("MARKER", "marker", "failed"),
     ("EXPORT_MISSING", "exports", "failed"),
@@ -28,7 +28,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("READ_LOOPS", "read", "timed-out"),
     ("NAN", "read", "failed"),
     ("LATE", "timeout", "failed"),
-    ("AFTER_STOP", "stop", "failed"),
+    ("AFTER_STOP", "finish", "failed"),
     ("CLOSED_HANDLE", "handles", "failed"),
     ("ACCEPTS_NULL", "arrays", "failed"),
     ("STREAM_BEYOND", "arrays", "failed"),
@@ -39,30 +39,35 @@ const FAULTS: &[(&str, &str, &str)] = &[
 
 /// The ridges of `examples`.
 fn ridges(place: &Place) -> PathBuf {
-    native::example(place, "source-c-ridges", "ridges.c")
+    native::example(place, "device-c-ridges", "ridges.c")
 }
 
 fn bad(place: &Place, good: &Path, fault: &str) -> String {
-    native::bad(place, "bad-sources/bad.c", good, fault)
+    native::bad(place, "bad-devices/input.c", good, fault)
+}
+
+/// Number of checks of an input.
+fn all() -> usize {
+    checks_of(Some(Direction::Input)).count()
 }
 
 fn checked(place: &Place, arguments: &[&str]) -> Value {
-    native::checked(place, "source", arguments)
+    native::checked(place, arguments)
 }
 
 #[test]
-fn sound_sources_pass() {
+fn sound_inputs_pass() {
     let place = Place::new();
     let ridges = ridges(&place);
     let report = checked(&place, &[ridges.to_str().unwrap()]);
-    assert_eq!(count(&report, "passed"), CHECKS.len(), "{report:#}");
+    assert_eq!(count(&report, "passed"), all(), "{report:#}");
     let name = ridges.file_name().unwrap().to_str().unwrap();
     let fast = checked(&place, &[name, "--set", "pace=fast"]);
     assert_eq!(complaints(&fast), []);
     #[cfg(feature = "lab")]
     {
         let path = format!("path={}", place.recording("vinyl"));
-        let file = checked(&place, &["file", "--set", &path, "--set", "pace=fast"]);
+        let file = checked(&place, &["file", "--input", "--set", &path, "--set", "pace=fast"]);
         assert_eq!(complaints(&file), []);
         // Checks of a library: marker, exports, extensions, settings as lines, handles, arrays.
         assert_eq!(count(&file, "skipped"), 6, "{file:#}");
@@ -74,7 +79,7 @@ fn each_fault_is_found_by_its_own_check() {
     let place = Place::new();
     let good = ridges(&place);
     let sound = checked(&place, &[&bad(&place, &good, "NONE")]);
-    assert_eq!(count(&sound, "passed"), CHECKS.len(), "{sound:#}");
+    assert_eq!(count(&sound, "passed"), all(), "{sound:#}");
     // Most of the time is spent waiting for a source that keeps to the clock, or for one that has
     // stopped.
     for faults in FAULTS.chunks(8) {
@@ -84,7 +89,7 @@ fn each_fault_is_found_by_its_own_check() {
             }
         });
     }
-    for check in CHECKS {
+    for check in checks_of(Some(Direction::Input)) {
         let is_held = FAULTS.iter().any(|(_, name, _)| *name == check.name);
         assert!(is_held, "no fault breaks `{}`", check.name);
     }
@@ -105,13 +110,6 @@ fn is_found_by_its_own_check(
     let report = checked(place, &arguments);
     let expected = [(name.to_string(), outcome.to_string())];
     assert_eq!(complaints(&report), expected, "{fault}: {report:#}");
-}
-
-/// The table of the specification lists the checks, in their order and in their words.
-#[test]
-fn the_guarantees_of_the_specification_are_those_that_are_checked() {
-    let checks = CHECKS.iter().map(|check| (check.name, check.summary, check.needs));
-    native::guarantees_are_checked("spec/source-abi-1.md", checks);
 }
 
 /// A third party's source is recorded, every sample as the library made it, and the recording is
@@ -145,7 +143,7 @@ fn the_ridges_are_recorded_and_fitted() {
         ];
         place.command(&[&base, more].concat())
     };
-    let named = record(&["--source-file", library.to_str().unwrap(), "--json"]);
+    let named = record(&["--device-file", library.to_str().unwrap(), "--json"]);
     let output = { named }.output().unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{error}");
@@ -176,7 +174,7 @@ fn the_ridges_are_recorded_and_fitted() {
     // By the environment; and the end of a source is the end of its take.
     let folder = library.parent().unwrap();
     let mut short = record(&["--set", "seconds=1"]);
-    let output = short.env("HTEX_SOURCE_PATH", folder).output().unwrap();
+    let output = short.env("HTEX_DEVICE_PATH", folder).output().unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(error.contains("incomplete/ridges-002.csv"), "{error}");
     let csv = std::fs::read_to_string(place.path("takes/incomplete/ridges-002.csv")).unwrap();
@@ -185,7 +183,7 @@ fn the_ridges_are_recorded_and_fitted() {
 
 #[cfg(feature = "lab")]
 #[test]
-fn what_is_no_source_is_refused_with_its_reason() {
+fn what_is_no_input_is_refused_with_its_reason() {
     let place = Place::new();
     let strip = native::example(&place, "device-c-strip", "strip.c");
     let good = ridges(&place);
@@ -194,10 +192,10 @@ fn what_is_no_source_is_refused_with_its_reason() {
     let rate = bad(&place, &good, "RATE_NAN");
     let good = good.to_str().unwrap();
     let cases = [
-        (strip.to_str().unwrap(), "ridges", 1, "it is not an htex source"),
+        (strip.to_str().unwrap(), "ridges", 2, "no input `ridges`; there are file, daq"),
         ("no-such.so", "ridges", 1, "no-such.so"),
         (good, "ridges:0", 2, "`0` is not a number from 0.01 to 10"),
-        (good, "rigdes:1", 2, "no source `rigdes`; there are ridges, file, daq"),
+        (good, "rigdes:1", 2, "no input `rigdes`; there are ridges, file, daq"),
         (&nan, "ridges:1", 1, "of channel `speed` is NaN"),
         (&many, "ridges:1", 1, "it delivered"),
         (&rate, "ridges:1", 1, "stream: "),
@@ -205,7 +203,7 @@ fn what_is_no_source_is_refused_with_its_reason() {
     for (library, source, code, words) in cases {
         let run = place.run(&[
             "record",
-            "--source-file",
+            "--device-file",
             library,
             "--source",
             source,
@@ -224,46 +222,47 @@ fn what_is_no_source_is_refused_with_its_reason() {
 }
 
 #[test]
-fn sources_are_listed_and_shown() {
+fn inputs_are_listed_and_shown() {
     let place = Place::new();
     let library = ridges(&place);
     let named = library.to_str().unwrap();
     let folder = library.parent().unwrap().to_str().unwrap();
-    let twice = ["--source-file", named, "--source-dir", folder];
+    let twice = ["--device-file", named, "--device-dir", folder];
     let list = place.json(&[&["device", "list", "--json"], &twice[..]].concat());
-    let first = &list["sources"][0];
+    let mut inputs = list["devices"].as_array().unwrap().iter();
+    let first = inputs.find(|device| device["direction"] == "input").unwrap();
     assert_eq!(
         (&first["id"], &first["target"]),
         (&"org.example.ridges".into(), &"spacing_mm".into())
     );
     assert_eq!(first["endpoints"][0]["setting"], "spacing_mm");
     assert_eq!(first["settings"][3]["name"], "rate_hz");
-    assert!(list["notes"][0].as_str().unwrap().starts_with("source org.example.ridges ("));
+    assert!(list["notes"][0].as_str().unwrap().starts_with("input org.example.ridges ("));
     let ids: Vec<&Value> = list["devices"].as_array().unwrap().iter().map(|d| &d["id"]).collect();
     assert!(ids.contains(&&"org.htex.file".into()));
     let text = place.run(&[&["device", "list"], &twice[..]].concat()).text();
     for words in [
-        "devices\n  file ",
-        "sources\n  ridges ",
+        "outputs\n  file ",
+        "inputs\n  ridges ",
         "spacing_mm=1  coarse ridges",
         "settings: spacing_mm=1 speed_mm_s=80",
         "terminals=default",
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }
-    let info = place.json(&["source", "info", "--json", named, "--set", "rate_hz=800"]);
+    let info = place.json(&["device", "info", "--json", named, "--set", "rate_hz=800"]);
     assert_eq!(info["stream"]["rate_hz"], 800.0);
     assert_eq!(info["stream"]["channels"][1]["name"], "normal");
-    let text = place.run(&["source", "info", named]).text();
+    let text = place.run(&["device", "info", named]).text();
     assert!(
         text.contains("rate: 5000 Hz\n  channels: lateral_x in N, normal in N, speed in mm/s"),
         "{text}"
     );
     assert!(text.contains("pace: real or fast [real]"), "{text}");
     for (arguments, code) in [
-        (&["source", "info", "no-such-source"][..], 2),
-        (&["source", "check", "no-such-source"], 2),
-        (&["device", "list", "--source-file", "no-such.so"], 1),
+        (&["device", "info", "--input", "no-such-input"][..], 2),
+        (&["device", "check", "--input", "no-such-input"], 2),
+        (&["device", "list", "--device-file", "no-such.so"], 1),
     ] {
         assert_eq!(place.run(arguments).code(), code, "{arguments:?}");
     }

@@ -1,8 +1,8 @@
-/* A valid device with one fault.
+/* A valid output with one fault.
  *
  * Every call is passed on to the library GOOD_LIBRARY (the strip chart of examples/device-c-strip), but
  * for what one -DFAULT_… changes. Only the check of this fault must fail; the
- * table of faults and checks stands in cli/tests/device.rs.
+ * table of faults and checks stands in cli/tests/live/device.rs.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -11,16 +11,13 @@
 
 #include "htex_device.h"
 
-static void *good_symbol(const char *name) {
+static const htex_device_table *good(void) {
     static void *library;
     if (!library) library = dlopen(GOOD_LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    void *symbol = library ? dlsym(library, name) : NULL;
+    void *symbol = library ? dlsym(library, "htex_device_adapter") : NULL;
     if (!symbol) abort();
-    return symbol;
+    return ((const htex_device_table *(*)(void))symbol)();
 }
-
-/* The good device's function of the same name and type. */
-#define GOOD(function) ((__typeof__(&function))good_symbol(#function))
 
 /* Where a leak points last, so that a compiler does not leave it out. */
 static void *volatile kept;
@@ -35,17 +32,10 @@ static int64_t give(const char *text, uint8_t *out, size_t capacity) {
 }
 #endif
 
-uint32_t htex_device_abi_version(void) {
-#ifdef FAULT_MARKER
-    return 0x48540100; /* a model's */
-#else
-    return GOOD(htex_device_abi_version)();
-#endif
-}
-
-int64_t htex_device_descriptor(uint8_t *out, size_t capacity) {
+static int64_t bad_descriptor(uint8_t *out, size_t capacity) {
 #define BAD(default_value, profile)                                                              \
     "{\"id\":\"org.example.bad\",\"name\":\"Bad\",\"version\":\"1.0.0\",\"summary\":\"Bad.\","   \
+    "\"direction\":\"output\","                                                            \
     "\"settings\":[{\"name\":\"a\",\"kind\":{\"type\":\"number\",\"min\":0,\"max\":1},"          \
     "\"default\":\"" default_value "\",\"description\":\"A.\"}],"                                \
     "\"profiles\":[{\"name\":\"p\",\"summary\":\"P.\",\"settings\":{" profile "}}]}"
@@ -56,47 +46,47 @@ int64_t htex_device_descriptor(uint8_t *out, size_t capacity) {
 #elif defined FAULT_PROFILE
     return give(BAD("1", "\"b\":\"1\""), out, capacity);
 #else
-    return GOOD(htex_device_descriptor)(out, capacity);
+    return good()->descriptor(out, capacity);
 #endif
 }
 
-int64_t htex_device_last_error(uint8_t *out, size_t capacity) {
+static int64_t bad_last_error(uint8_t *out, size_t capacity) {
 #ifdef FAULT_SETTING_UNNAMED
     static const char text[] = "one of the settings is not usable";
     for (size_t i = 0; out && i < sizeof text - 1 && i < capacity; i++) out[i] = (uint8_t)text[i];
     if (out || !capacity) return sizeof text - 1;
 #endif
-    return GOOD(htex_device_last_error)(out, capacity);
+    return good()->last_error(out, capacity);
 }
 
-int64_t htex_device_endpoints(uint8_t *out, size_t capacity) {
+static int64_t bad_endpoints(uint8_t *out, size_t capacity) {
 #ifdef FAULT_ENDPOINTS
     return give("[{\"name\":\"a\",\"setting\":\"no_such\",\"summary\":\"A.\"}]", out, capacity);
 #else
-    return GOOD(htex_device_endpoints)(out, capacity);
+    return good()->endpoints(out, capacity);
 #endif
 }
 
 /* Whether the last refusal was of a second line of the same setting. */
 static int was_twice(void) {
     char text[64] = "";
-    GOOD(htex_device_last_error)((uint8_t *)text, sizeof text - 1);
+    good()->last_error((uint8_t *)text, sizeof text - 1);
     return strstr(text, "twice") != NULL;
 }
 
 static const char usual[] = "path=usual.svg\n";
 
-int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, uint8_t *out,
+static int64_t bad_capabilities(const uint8_t *settings, size_t settings_len, uint8_t *out,
                                  size_t capacity) {
-    int64_t answer = GOOD(htex_device_capabilities)(settings, settings_len, out, capacity);
+    int64_t answer = good()->capabilities(settings, settings_len, out, capacity);
     if (answer < 0) {
 #ifdef FAULT_ACCEPTS_TWICE
         if (answer == HTEX_DEVICE_INVALID_SETTING && was_twice())
-            return GOOD(htex_device_capabilities)((const uint8_t *)usual, sizeof usual - 1, out, capacity);
+            return good()->capabilities((const uint8_t *)usual, sizeof usual - 1, out, capacity);
 #endif
 #ifdef FAULT_ACCEPTS_SETTING
         if (answer == HTEX_DEVICE_INVALID_SETTING)
-            return GOOD(htex_device_capabilities)((const uint8_t *)usual, sizeof usual - 1, out, capacity);
+            return good()->capabilities((const uint8_t *)usual, sizeof usual - 1, out, capacity);
 #endif
         return answer;
     }
@@ -109,7 +99,7 @@ int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, u
     return give(CAN("lateral_force", "9000"), out, capacity);
 #elif defined FAULT_TEXT_BEYOND
     uint8_t whole[1024];
-    GOOD(htex_device_capabilities)(settings, settings_len, whole, sizeof whole);
+    good()->capabilities(settings, settings_len, whole, sizeof whole);
     if (capacity) memcpy(out, whole, (size_t)answer);
     return answer;
 #else
@@ -119,7 +109,7 @@ int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, u
 
 static int64_t opened;
 
-int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double rate_hz,
+static int64_t bad_open(const uint8_t *settings, size_t settings_len, double rate_hz,
                          uint32_t block_frames) {
 #ifdef FAULT_OPEN_HIGH
     if (rate_hz > 50000) return HTEX_DEVICE_FAILED;
@@ -133,10 +123,10 @@ int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double ra
 #elif defined FAULT_ACCEPTS_BLOCK
     if (block_frames < 1) block_frames = 1;
 #endif
-    int64_t handle = GOOD(htex_device_open)(settings, settings_len, rate_hz, block_frames);
+    int64_t handle = good()->open(settings, settings_len, rate_hz, block_frames);
 #ifdef FAULT_OPEN_ACCEPTS_SETTING
     if (handle == HTEX_DEVICE_INVALID_SETTING)
-        handle = GOOD(htex_device_open)((const uint8_t *)usual, sizeof usual - 1, rate_hz, block_frames);
+        handle = good()->open((const uint8_t *)usual, sizeof usual - 1, rate_hz, block_frames);
 #endif
     if (handle > 0) opened++;
     return handle;
@@ -149,7 +139,7 @@ static int64_t refused; /* the device that refused a sample */
 static int64_t finished;
 #endif
 
-int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
+static int64_t bad_write(int64_t device, const float *samples, size_t frames,
                           uint32_t timeout_ms) {
 #if defined FAULT_WRITE_NOTHING
     return 0;
@@ -182,19 +172,19 @@ int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
     }
     if (frames == 3) samples = clipped;
 #endif
-    int64_t answer = GOOD(htex_device_write)(device, samples, frames, timeout_ms);
+    int64_t answer = good()->write(device, samples, frames, timeout_ms);
 #ifdef FAULT_CLOSED_GOES_ON
     if (answer == HTEX_DEVICE_OVER_LIMIT && isnan(samples[1])) refused = device;
 #endif
     return answer;
 }
 
-int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
-    int64_t answer = GOOD(htex_device_status)(device, out, capacity);
+static int64_t bad_status(int64_t device, double *out, size_t capacity) {
+    int64_t answer = good()->status(device, out, capacity);
 #ifdef FAULT_STATUS_BEYOND
     double whole[HTEX_DEVICE_STATUS_NUMBERS];
     if (answer > 0 && capacity) {
-        GOOD(htex_device_status)(device, whole, HTEX_DEVICE_STATUS_NUMBERS);
+        good()->status(device, whole, HTEX_DEVICE_STATUS_NUMBERS);
         memcpy(out, whole, sizeof whole);
     }
 #endif
@@ -208,29 +198,51 @@ int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
     return answer;
 }
 
-#ifndef FAULT_EXPORT_MISSING
-int64_t htex_device_finish(int64_t device) {
-    int64_t answer = GOOD(htex_device_finish)(device);
+static int64_t bad_finish(int64_t device) {
+    int64_t answer = good()->finish(device);
 #ifdef FAULT_WRITE_AFTER_FINISH
     if (answer == HTEX_DEVICE_OK) finished = device;
 #endif
     return answer;
 }
-#endif
 
-int64_t htex_device_close(int64_t device) {
+static int64_t bad_close(int64_t device) {
 #ifdef FAULT_LEFT_BEHIND
-    GOOD(htex_device_finish)(device);
+    good()->finish(device);
 #endif
-    int64_t answer = GOOD(htex_device_close)(device);
+    int64_t answer = good()->close(device);
     if (answer == 0) opened--;
     return answer;
 }
 
-int64_t htex_device_extension(const uint8_t *id, size_t id_len) {
+static int64_t bad_extension(const uint8_t *id, size_t id_len) {
 #ifdef FAULT_EXTENSIONS
     return 1;
 #else
-    return GOOD(htex_device_extension)(id, id_len);
+    return good()->extension(id, id_len);
 #endif
+}
+
+const htex_device_table *htex_device_adapter(void) {
+    static htex_device_table table = {
+#ifdef FAULT_MARKER
+        .marker = 0x48540100, /* a model's */
+#else
+        .marker = HTEX_DEVICE_ABI_MARKER,
+#endif
+        .size = sizeof(htex_device_table),
+        .descriptor = bad_descriptor,
+        .last_error = bad_last_error,
+        .endpoints = bad_endpoints,
+        .open = bad_open,
+#ifndef FAULT_EXPORT_MISSING
+        .finish = bad_finish,
+#endif
+        .close = bad_close,
+        .extension = bad_extension,
+        .capabilities = bad_capabilities,
+        .write = bad_write,
+        .status = bad_status,
+    };
+    return &table;
 }

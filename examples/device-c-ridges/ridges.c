@@ -11,9 +11,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "htex_source.h"
+#include "htex_device.h"
 
-enum { CHANNELS = 3, SOURCES = 16, KEPT_S = 10 };
+enum { CHANNELS = 3, INPUTS = 16, KEPT_S = 10 };
 
 static const double PI = 3.14159265358979323846;
 static const double STROKE_MM = 60, FRICTION = 0.5, RIPPLE = 0.2;
@@ -24,12 +24,12 @@ static const double STROKE_MM = 60, FRICTION = 0.5, RIPPLE = 0.2;
 
 static const char descriptor[] =
     "{\"id\":\"org.example.ridges\",\"name\":\"Ridges\",\"version\":\"1.0.0\","
-    "\"summary\":\"Simulates a finger on parallel ridges.\",\"target\":\"spacing_mm\",\"settings\":["
+    "\"summary\":\"Simulates a finger on parallel ridges.\",\"direction\":\"input\",\"target\":\"spacing_mm\",\"settings\":["
     NUMBER("spacing_mm", "0.01", "10", "1", "From ridge to ridge.") ","
     NUMBER("speed_mm_s", "1", "1000", "80", "Speed of the finger.") ","
     NUMBER("force_n", "0.01", "10", "0.4", "Force of the finger.") ","
     NUMBER("rate_hz", "100", "100000", "5000", "Frames a second.") ","
-    NUMBER("seconds", "0", "86400", "0", "Time after which the source ends; 0: never.") ","
+    NUMBER("seconds", "0", "86400", "0", "Time after which the input ends; 0: never.") ","
     "{\"name\":\"pace\",\"kind\":{\"type\":\"choice\",\"values\":[\"real\",\"fast\"]},"
     "\"default\":\"real\",\"description\":\"Whether frames come at their rate.\"}]}";
 
@@ -49,27 +49,25 @@ static int usable(const void *pointer, size_t len, size_t size) {
 
 static int64_t give(const char *text, uint8_t *out, size_t capacity) {
     size_t len = strlen(text);
-    if (!usable(out, capacity, 1)) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`out` is not usable");
+    if (!usable(out, capacity, 1)) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`out` is not usable");
     if (capacity) memcpy(out, text, len < capacity ? len : capacity);
     return (int64_t)len;
 }
 
-uint32_t htex_source_abi_version(void) { return HTEX_SOURCE_ABI_MARKER; }
-
-int64_t htex_source_descriptor(uint8_t *out, size_t capacity) {
+static int64_t device_descriptor(uint8_t *out, size_t capacity) {
     return give(descriptor, out, capacity);
 }
 
-int64_t htex_source_last_error(uint8_t *out, size_t capacity) {
+static int64_t device_last_error(uint8_t *out, size_t capacity) {
     return give(last_error, out, capacity);
 }
 
-int64_t htex_source_endpoints(uint8_t *out, size_t capacity) {
+static int64_t device_endpoints(uint8_t *out, size_t capacity) {
     return give("[{\"name\":\"1\",\"setting\":\"spacing_mm\",\"summary\":\"coarse ridges\"}]", out,
                 capacity);
 }
 
-int64_t htex_source_extension(const uint8_t *id, size_t id_len) {
+static int64_t device_extension(const uint8_t *id, size_t id_len) {
     (void)id, (void)id_len;
     return 0;
 }
@@ -101,7 +99,7 @@ static int64_t set(struct settings *all, const char *name, const char *value) {
         (!strcmp(name, "rate_hz") && number(value, 100, 100000, &all->rate_hz)) ||
         (!strcmp(name, "seconds") && number(value, 0, 86400, &all->seconds)))
         return 0;
-    return fail(HTEX_SOURCE_INVALID_SETTING, name, ": not known, or not usable");
+    return fail(HTEX_DEVICE_INVALID_SETTING, name, ": not known, or not usable");
 }
 
 /* The bit of a setting, by which a second line is found; 0 of an unknown one, which is refused anyway. */
@@ -115,20 +113,20 @@ static unsigned bit_of(const char *name) {
 
 static int64_t read_settings(struct settings *all, const uint8_t *text, size_t len) {
     *all = (struct settings){1, 80, 0.4, 5000, 0, 0};
-    if (!usable(text, len, 1)) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`settings` is not usable");
+    if (!usable(text, len, 1)) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`settings` is not usable");
     unsigned given = 0;
     for (size_t at = 0; at < len;) {
         char line[128];
         size_t n = 0;
         while (at + n < len && text[at + n] != '\n') n++;
-        if (n >= sizeof line) return fail(HTEX_SOURCE_INVALID_SETTING, "", "settings: too long");
+        if (n >= sizeof line) return fail(HTEX_DEVICE_INVALID_SETTING, "", "settings: too long");
         memcpy(line, text + at, n);
         line[n] = 0;
         char *value = strchr(line, '=');
-        if (!value) return fail(HTEX_SOURCE_INVALID_SETTING, line, ": a line is NAME=VALUE");
+        if (!value) return fail(HTEX_DEVICE_INVALID_SETTING, line, ": a line is NAME=VALUE");
         *value++ = 0;
         unsigned bit = bit_of(line);
-        if (given & bit) return fail(HTEX_SOURCE_INVALID_SETTING, line, ": it is given twice");
+        if (given & bit) return fail(HTEX_DEVICE_INVALID_SETTING, line, ": it is given twice");
         given |= bit;
         int64_t status = set(all, line, value);
         if (status) return status;
@@ -137,9 +135,9 @@ static int64_t read_settings(struct settings *all, const uint8_t *text, size_t l
     return 0;
 }
 
-/* ---- open sources ---- */
+/* ---- open inputs ---- */
 
-struct source {
+struct input {
     int64_t handle; /* 0: free */
     struct settings settings;
     enum { OPENED, SAMPLING, STOPPED } state;
@@ -147,39 +145,41 @@ struct source {
     uint64_t frames; /* that were read */
 };
 
-static struct source sources[SOURCES];
+static struct input inputs[INPUTS];
 static int64_t handles;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-static struct source *find(int64_t handle) {
-    struct source *found = NULL;
+static struct input *find(int64_t handle) {
+    struct input *found = NULL;
     pthread_mutex_lock(&lock);
-    for (int i = 0; i < SOURCES && handle > 0; i++)
-        if (sources[i].handle == handle) found = &sources[i];
+    for (int i = 0; i < INPUTS && handle > 0; i++)
+        if (inputs[i].handle == handle) found = &inputs[i];
     pthread_mutex_unlock(&lock);
-    if (!found) fail(HTEX_SOURCE_BAD_HANDLE, "", "no such source is open; it may have been closed");
+    if (!found) fail(HTEX_DEVICE_BAD_HANDLE, "", "no such device is open; it may have been closed");
     return found;
 }
 
-int64_t htex_source_open(const uint8_t *settings, size_t settings_len) {
-    struct source s = {0};
+static int64_t device_open(const uint8_t *settings, size_t settings_len, double rate_hz,
+                           uint32_t block_frames) {
+    (void)rate_hz, (void)block_frames; /* of outputs */
+    struct input s = {0};
     int64_t status = read_settings(&s.settings, settings, settings_len);
     if (status) return status;
     pthread_mutex_lock(&lock);
-    struct source *slot = NULL;
-    for (int i = 0; i < SOURCES; i++)
-        if (!sources[i].handle) slot = &sources[i];
+    struct input *slot = NULL;
+    for (int i = 0; i < INPUTS; i++)
+        if (!inputs[i].handle) slot = &inputs[i];
     if (slot) {
         s.handle = ++handles;
         *slot = s;
     }
     pthread_mutex_unlock(&lock);
-    return slot ? s.handle : fail(HTEX_SOURCE_BUSY, "", "sixteen are open; close one");
+    return slot ? s.handle : fail(HTEX_DEVICE_BUSY, "", "sixteen are open; close one");
 }
 
-int64_t htex_source_stream(int64_t source, uint8_t *out, size_t capacity) {
-    struct source *s = find(source);
-    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+static int64_t device_stream(int64_t device, uint8_t *out, size_t capacity) {
+    struct input *s = find(device);
+    if (!s) return HTEX_DEVICE_BAD_HANDLE;
     char text[256];
     snprintf(text, sizeof text,
              "{\"rate_hz\":%.17g,\"channels\":[{\"name\":\"lateral_x\",\"unit\":\"N\"},"
@@ -188,13 +188,13 @@ int64_t htex_source_stream(int64_t source, uint8_t *out, size_t capacity) {
     return give(text, out, capacity);
 }
 
-int64_t htex_source_start(int64_t source) {
-    struct source *s = find(source);
-    if (!s) return HTEX_SOURCE_BAD_HANDLE;
-    if (s->state == STOPPED) return fail(HTEX_SOURCE_CLOSED, "", "the finger has stopped");
+static int64_t device_start(int64_t device) {
+    struct input *s = find(device);
+    if (!s) return HTEX_DEVICE_BAD_HANDLE;
+    if (s->state == STOPPED) return fail(HTEX_DEVICE_CLOSED, "", "the finger has stopped");
     if (s->state == OPENED) clock_gettime(CLOCK_MONOTONIC, &s->begun);
     s->state = SAMPLING;
-    return HTEX_SOURCE_OK;
+    return HTEX_DEVICE_OK;
 }
 
 static double since_s(const struct timespec *then) {
@@ -209,7 +209,7 @@ static void sleep_s(double seconds) {
 }
 
 /* Frames that were sampled and not read; waits for the first. */
-static uint64_t waiting(const struct source *s, uint32_t timeout_ms) {
+static uint64_t waiting(const struct input *s, uint32_t timeout_ms) {
     double rate_hz = s->settings.rate_hz, now_s = since_s(&s->begun);
     double wait_s = (double)(s->frames + 1) / rate_hz - now_s;
     if (wait_s > 0) sleep_s(fmin(wait_s, timeout_ms / 1000.0));
@@ -227,24 +227,24 @@ static void sample(const struct settings *all, uint64_t frame, double *out) {
     out[2] = all->speed_mm_s;
 }
 
-int64_t htex_source_read(int64_t source, double *samples, size_t len, uint32_t timeout_ms) {
-    struct source *s = find(source);
-    if (!s) return HTEX_SOURCE_BAD_HANDLE;
-    if (len % CHANNELS) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "a frame has three samples");
+static int64_t device_read(int64_t device, double *samples, size_t len, uint32_t timeout_ms) {
+    struct input *s = find(device);
+    if (!s) return HTEX_DEVICE_BAD_HANDLE;
+    if (len % CHANNELS) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "a frame has three samples");
     if (!usable(samples, len, sizeof *samples))
-        return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`samples` is not usable");
-    if (s->state != SAMPLING) return fail(HTEX_SOURCE_CLOSED, "", "the finger does not move");
+        return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`samples` is not usable");
+    if (s->state != SAMPLING) return fail(HTEX_DEVICE_CLOSED, "", "the finger does not move");
     uint64_t frames = len / CHANNELS;
     if (s->settings.seconds > 0) {
         uint64_t all = (uint64_t)(s->settings.seconds * s->settings.rate_hz);
-        if (s->frames >= all) return fail(HTEX_SOURCE_END, "", "the time has passed");
+        if (s->frames >= all) return fail(HTEX_DEVICE_END, "", "the time has passed");
         if (frames > all - s->frames) frames = all - s->frames;
     }
     if (!s->settings.is_fast && frames) {
         uint64_t there = waiting(s, timeout_ms);
         if ((double)there > KEPT_S * s->settings.rate_hz) {
             s->state = STOPPED;
-            return fail(HTEX_SOURCE_OVERRUN, "", "read more often than every 10 s");
+            return fail(HTEX_DEVICE_OVERRUN, "", "read more often than every 10 s");
         }
         if (frames > there) frames = there;
     }
@@ -254,18 +254,38 @@ int64_t htex_source_read(int64_t source, double *samples, size_t len, uint32_t t
     return (int64_t)frames;
 }
 
-int64_t htex_source_stop(int64_t source) {
-    struct source *s = find(source);
-    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+static int64_t device_finish(int64_t device) {
+    struct input *s = find(device);
+    if (!s) return HTEX_DEVICE_BAD_HANDLE;
     s->state = STOPPED;
-    return HTEX_SOURCE_OK;
+    return HTEX_DEVICE_OK;
 }
 
-int64_t htex_source_close(int64_t source) {
-    struct source *s = find(source);
-    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+static int64_t device_close(int64_t device) {
+    struct input *s = find(device);
+    if (!s) return HTEX_DEVICE_BAD_HANDLE;
     pthread_mutex_lock(&lock);
     s->handle = 0;
     pthread_mutex_unlock(&lock);
-    return HTEX_SOURCE_OK;
+    return HTEX_DEVICE_OK;
+}
+
+/* ---- export ---- */
+
+const htex_device_table *htex_device_adapter(void) {
+    static const htex_device_table table = {
+        .marker = HTEX_DEVICE_ABI_MARKER,
+        .size = sizeof(htex_device_table),
+        .descriptor = device_descriptor,
+        .last_error = device_last_error,
+        .endpoints = device_endpoints,
+        .open = device_open,
+        .finish = device_finish,
+        .close = device_close,
+        .extension = device_extension,
+        .stream = device_stream,
+        .start = device_start,
+        .read = device_read,
+    };
+    return &table;
 }

@@ -1,9 +1,9 @@
-//! An open source, which waits for samples in the driver's buffer.
+//! An open input, which waits for samples in the driver's buffer.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use htex_device::{Channel, Delivered, DeviceError, Source};
+use htex_device::{Channel, DeviceError, Input, InputFrames, InputStream};
 
 use crate::daq::driver::{Driver, InputTask};
 use crate::daq::fault::Fault;
@@ -12,23 +12,23 @@ use crate::daq::inputs::Inputs;
 /// Polling interval for samples.
 const LOOK: Duration = Duration::from_millis(2);
 
-pub(crate) struct InputStream {
+pub(crate) struct Sampler {
     inputs: Inputs,
-    channels: Vec<Channel>,
-    /// `None` after the source has ended.
+    stream: InputStream,
+    /// `None` after the end.
     task: Option<InputTask>,
     is_running: bool,
     delivered: u64,
 }
 
-impl InputStream {
+impl Sampler {
     /// Creates the task, which does not run yet.
     pub(crate) fn open(inputs: Inputs, driver: &'static Driver) -> Result<Self, DeviceError> {
         let task = Self::task(&inputs, driver).map_err(|fault| fault.missing(&inputs.given))?;
         let name = |full: &String| full.rsplit('/').next().unwrap_or(full).to_owned();
         let channels = inputs.channels.iter().map(|full| Channel::new(name(full), "V"));
         Ok(Self {
-            channels: channels.collect(),
+            stream: InputStream { rate_hz: inputs.rate_hz, channels: channels.collect() },
             inputs,
             task: Some(task),
             is_running: false,
@@ -50,7 +50,7 @@ impl InputStream {
 
     /// Reads the available samples.
     fn read_now(&self, samples: &mut [f64]) -> Result<Result<usize, Fault>, DeviceError> {
-        let (task, width) = (self.running()?, self.channels.len());
+        let (task, width) = (self.running()?, self.stream.channels.len());
         let most = samples.len() / width;
         Ok(task.available().and_then(|there| match there.min(most) {
             0 => Ok(0),
@@ -64,7 +64,7 @@ impl InputStream {
         let Inputs { given, buffer_s, .. } = &self.inputs;
         if fault.is_overrun() {
             DeviceError::Overrun {
-                source_name: given.clone(),
+                device: given.clone(),
                 frames: self.delivered,
                 advice: format!(
                     "NI-DAQmx {}: close other programs, lower `rate_hz`, or raise `buffer_s` (now {buffer_s} s)",
@@ -77,13 +77,9 @@ impl InputStream {
     }
 }
 
-impl Source for InputStream {
-    fn channels(&self) -> &[Channel] {
-        &self.channels
-    }
-
-    fn rate_hz(&self) -> f64 {
-        self.inputs.rate_hz
+impl Input for Sampler {
+    fn stream(&self) -> &InputStream {
+        &self.stream
     }
 
     fn start(&mut self) -> Result<(), DeviceError> {
@@ -97,7 +93,7 @@ impl Source for InputStream {
         Ok(())
     }
 
-    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {
+    fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError> {
         let since = Instant::now();
         loop {
             // The time is checked after the read, so a timeout of 0 still takes what is there.
@@ -105,14 +101,14 @@ impl Source for InputStream {
                 Err(fault) => return Err(self.fail(&fault)),
                 Ok(frames) if frames > 0 || since.elapsed() >= timeout => {
                     self.delivered += frames as u64;
-                    return Ok(Delivered::Frames(frames));
+                    return Ok(InputFrames::Count(frames));
                 }
                 Ok(_) => sleep(LOOK.min(timeout.saturating_sub(since.elapsed()))),
             }
         }
     }
 
-    fn stop(&mut self) -> Result<(), DeviceError> {
+    fn finish(&mut self) -> Result<(), DeviceError> {
         // Taken even if it does not run, so that it is cleared and no start can follow.
         let Some(task) = self.task.take().filter(|_| self.is_running) else {
             return Ok(());

@@ -1,15 +1,15 @@
-//! Faults of an adapter in Rust, as a host sees them through the C functions.
+//! Faults of an output in Rust, as a host sees them through the C functions.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use std::time::Duration;
 
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, NativeAdapter, Quantity,
+    Adapter, Capabilities, Descriptor, DeviceError, Endpoint, NativeAdapter, Output, Quantity,
     Rates, Settings, Status, StreamFormat,
 };
 
-/// A faulty device: it panics at a sample of 0.5, runs dry at 0.25, and claims too many frames
+/// A faulty output: it panics at a sample of 0.5, runs dry at 0.25, and claims too many frames
 /// at 2.
 #[derive(Default)]
 struct Bad;
@@ -21,9 +21,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
     name: "Bad".to_owned(),
     version: "1.0.0".to_owned(),
     summary: "Fails.".to_owned(),
-    settings: Vec::new(),
-    profiles: Vec::new(),
-    mapping: None,
+    ..Descriptor::default()
 });
 
 impl Adapter for Bad {
@@ -48,12 +46,12 @@ impl Adapter for Bad {
         })
     }
 
-    fn open(&self, _: &Settings, _: &StreamFormat) -> Result<Box<dyn Device>, DeviceError> {
+    fn open_output(&self, _: &Settings, _: &StreamFormat) -> Result<Box<dyn Output>, DeviceError> {
         Ok(Box::new(Open(0)))
     }
 }
 
-impl Device for Open {
+impl Output for Open {
     fn write(&mut self, samples: &[f32], _: Duration) -> Result<usize, DeviceError> {
         assert!(!samples.contains(&0.5), "half a volt");
         if samples.contains(&0.25) {
@@ -79,11 +77,11 @@ impl Device for Open {
 
 htex_device::export_device!(Bad, symbols: "never");
 
-fn open() -> Box<dyn Device> {
+fn open() -> Box<dyn Output> {
     let adapter = NativeAdapter::from_table("bad", &TABLE).unwrap();
     let settings = Settings::resolve(&DESCRIPTOR, None, &BTreeMap::new()).unwrap();
     let format = StreamFormat { rate_hz: 1e4, block_frames: 16 };
-    adapter.open(&settings, &format).unwrap()
+    adapter.open_output(&settings, &format).unwrap()
 }
 
 #[test]
@@ -133,5 +131,5 @@ fn a_host_holds_direct_voltage_of_a_display() {
 #[test]
 fn more_than_was_offered_is_no_answer() {
     let taken = open().write(&[2.0], Duration::ZERO);
-    assert!(matches!(taken, Err(DeviceError::Abi { .. })), "{taken:?}");
+    assert!(matches!(taken, Err(DeviceError::Library { .. })), "{taken:?}");
 }

@@ -3,8 +3,6 @@
 use htex_author::AuthorError;
 use htex_base::files::FileError;
 use htex_base::finding::{Finding, Hint, listed, plain};
-#[cfg(feature = "lab")]
-use htex_lab::record::RecordError;
 
 use crate::exit::Exit;
 use crate::hints::{flags_of, with_flags, with_hint};
@@ -23,9 +21,6 @@ pub(crate) enum Failure {
     Device(#[from] htex_device::DeviceError),
     #[error(transparent)]
     Tradeoff(#[from] htex_author::tradeoff::TradeoffError),
-    #[cfg(feature = "lab")]
-    #[error(transparent)]
-    Response(#[from] htex_lab::response::ResponseError),
     #[error(transparent)]
     Storage(#[from] htex_base::storage::StorageError),
     #[error("{file}: {error}{}", flag_of(.error))]
@@ -46,10 +41,7 @@ pub(crate) enum Failure {
     Build { recipe: String, error: htex_build::BuildError },
     #[cfg(feature = "lab")]
     #[error(transparent)]
-    Study(#[from] htex_lab::study::StudyError),
-    #[cfg(feature = "lab")]
-    #[error(transparent)]
-    Record(#[from] htex_lab::record::RecordError),
+    Lab(#[from] htex_lab::LabError),
     #[error(transparent)]
     File(#[from] FileError),
     #[error("cannot write JSON: {0}")]
@@ -62,18 +54,6 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// Whether the error is a wrong argument of an experiment.
-    #[cfg(feature = "lab")]
-    fn is_wrong_use_of_lab(&self) -> bool {
-        use htex_lab::response::ResponseError::{Column, Option};
-        use htex_lab::study::StudyError::{Attribute, NoParticipant};
-        matches!(
-            self,
-            Self::Study(Attribute { .. } | NoParticipant { .. })
-                | Self::Response(Option { .. } | Column { .. })
-        )
-    }
-
     /// Whether the error is an unknown name of a device or source.
     pub(crate) fn is_unknown_name(&self) -> bool {
         use htex_device::DeviceError::{Unknown, UnknownSource};
@@ -88,15 +68,9 @@ impl Failure {
         };
         use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
         use htex_host::HostError::{Option, UnknownModel};
-        #[cfg(feature = "lab")]
-        if self.is_wrong_use_of_lab() {
-            return Exit::USAGE;
-        }
-        #[cfg(feature = "lab")]
-        if let Self::Record(RecordError::Setup { .. } | RecordError::NotMeasured { .. }) = self {
-            return Exit::USAGE;
-        }
         match self {
+            #[cfg(feature = "lab")]
+            Self::Lab(error) if error.is_usage() => Exit::USAGE,
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
             | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. } | UnknownSource { .. })
@@ -160,7 +134,7 @@ impl Failure {
             Self::Tradeoff(error) => error.hint(),
             Self::Recording(error) => error.hint(),
             #[cfg(feature = "lab")]
-            Self::Response(error) => error.hint(),
+            Self::Lab(error) => error.hint(),
             _ => Hint::NONE,
         });
         match self {

@@ -7,9 +7,9 @@ use htex_author::recording::{
     ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
 };
 use htex_base::finding::Notice;
+use htex_lab::LabError;
 use htex_lab::response::{
-    MeasuredResponse, Piece, Record, ResponseError, ResponseOptions, ResponseSettings, column_map,
-    measure, response_picture,
+    MeasuredResponse, Piece, Record, ResponseSettings, column_map, measure, response_picture,
 };
 use serde_json::{Value, json};
 
@@ -84,7 +84,7 @@ impl Response {
         let inputs = self.recordings.iter().map(PathBuf::as_path);
         check_outputs(outputs.map(PathBuf::as_path), inputs)?;
         let (records, remarks) = self.read()?;
-        let measured = measure(&records, &self.options())?;
+        let measured = measure(&records, &self.settings)?;
         if let Some(csv) = &self.csv {
             let response = measured.setup_response();
             let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
@@ -128,10 +128,6 @@ impl Response {
         Ok((records, remarks.into_iter().collect()))
     }
 
-    fn options(&self) -> ResponseOptions {
-        (&self.settings).into()
-    }
-
     fn title(&self) -> String {
         format!("{} over {}", self.output, self.input)
     }
@@ -142,7 +138,7 @@ impl Response {
         // Indexing inserts a key. It cannot panic, because a struct is always a JSON object.
         summary["input"] = json!(self.input);
         summary["output"] = json!(self.output);
-        summary["settings"] = serde_json::to_value(self.options())?;
+        summary["settings"] = self.settings.resolved();
         summary["notes"] = json!(remarks);
         Ok(summary)
     }
@@ -154,7 +150,7 @@ fn read_failure(error: ReadError) -> Failure {
     match error.problem {
         ReadProblem::Columns { .. } => {
             let problem = error.to_string();
-            ResponseError::Columns { problem }.into()
+            LabError::Columns { problem }.into()
         }
         _ => error.into(),
     }

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use clap::Args;
-use htex_lab::record::{Guidance, GuidePage, Moment, Next, RecordError, Recorded, Setup};
+use htex_lab::LabError;
+use htex_lab::record::{Guidance, GuidePage, Moment, Next, Setup, TakeReport};
 
 use super::screen::Screen;
 use crate::failure::Failure;
@@ -111,7 +112,7 @@ impl Guide {
     }
 
     /// Shows a complete take.
-    pub(super) fn told(&mut self, take: &Recorded) {
+    pub(super) fn told(&mut self, take: &TakeReport) {
         match self {
             Self::Screen(screen) => screen.end(),
             Self::Page(page) => page.told(take),
@@ -119,7 +120,7 @@ impl Guide {
     }
 
     /// Shows how the session ended.
-    pub(super) fn end(&mut self, recorded: &Result<Recorded, RecordError>) {
+    pub(super) fn end(&mut self, recorded: &Result<TakeReport, LabError>) {
         match self {
             Self::Screen(screen) => screen.end(),
             Self::Page(page) => page.end(recorded),

@@ -8,9 +8,10 @@ use htex_base::files::{AtFile, OwnFolder};
 use htex_base::finding::plain;
 use htex_device::{DeviceError, SettingKind};
 use htex_format::ErrorMeasure;
+use htex_lab::LabError;
 use htex_lab::study::{
-    DeviceUsed, Felt, Meter, OutputLevels, Played, Rig, Stimulus, Study, StudyError, full_drive,
-    scene_of, set_gain,
+    DeviceUsed, Felt, Meter, OutputLevels, Playback, Rig, Stimulus, Study, full_drive, scene_of,
+    set_gain,
 };
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
@@ -156,7 +157,7 @@ impl Rig for StudyRig<'_> {
         &mut self,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
-    ) -> Result<Played, Failure> {
+    ) -> Result<Playback, Failure> {
         // Taken out, because `play_with` borrows the whole rig.
         let mut felt = self.felt.take();
         self.playing = None;
@@ -208,7 +209,7 @@ impl StudyRig<'_> {
         mut felt: Option<&mut Felt>,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
-    ) -> Result<Played, Failure> {
+    ) -> Result<Playback, Failure> {
         let (ready, drive_v) = self.begin(stimulus)?;
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.path))?;
@@ -220,7 +221,7 @@ impl StudyRig<'_> {
         if let Some((felt, name)) = recorded {
             let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
             // Before the device plays, so that the beginning of the trial is recorded.
-            felt.begin(name, seconds).map_err(StudyError::from)?;
+            felt.begin(name, seconds).map_err(LabError::felt)?;
         }
         let mut output = Output::open(&ready, &plan)?;
         if !self.is_fast && !ready.capabilities.paced {
@@ -233,7 +234,7 @@ impl StudyRig<'_> {
             let goes_on = output.step(&mut renderer)?;
             if let Some((_, meter)) = &mut self.playing {
                 // Also for the last block, which may be shorter.
-                meter.take(output.last_block());
+                meter.push(output.last_block());
             }
             if let Some(felt) = felt.as_deref().filter(|felt| felt.waits()) {
                 felt.sounds(output.lead_s());
@@ -258,7 +259,7 @@ impl StudyRig<'_> {
             return Err(ran_dry(&ready).into());
         }
         let levels = self.playing.as_ref().map(|(_, meter)| meter.levels());
-        let mut played = Played {
+        let mut played = Playback {
             drive_v,
             output: levels.unwrap_or_default(),
             reference_rms: plan.reference_rms,

@@ -3,9 +3,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_base::files::{AtFile, OwnFolder};
 use htex_base::finding::Severity;
+use htex_lab::LabError;
 use htex_lab::study::{
-    Clock, Ended, Felt, Header, Plan, Session, SimulatedParticipant, Study, StudyError,
-    check_files, run,
+    Clock, Felt, Header, Plan, Session, SessionEnd, SimulatedParticipant, Study, check_files, run,
 };
 use htex_scene::file::Motion;
 use serde_json::{Value, json};
@@ -79,7 +79,7 @@ impl Run {
         for participant in &participants {
             let (ended, summary) = self.session(&study, &plan, participant)?;
             sessions.push(summary);
-            if ended == Ended::Left {
+            if ended == SessionEnd::Left {
                 break;
             }
         }
@@ -110,7 +110,7 @@ impl Run {
         match &self.participant {
             None => Ok(names),
             Some(name) if names.contains(name) => Ok(vec![name.clone()]),
-            Some(name) => Err(StudyError::NoParticipant {
+            Some(name) => Err(LabError::NoParticipant {
                 name: name.clone(),
                 known: match &names[..] {
                     [first, .., last] if names.len() > 20 => format!("{first} to {last}"),
@@ -126,20 +126,22 @@ impl Run {
         study: &Study,
         plan: &Plan,
         participant: &str,
-    ) -> Result<(Ended, Value), Failure> {
+    ) -> Result<(SessionEnd, Value), Failure> {
         let mut rig = self.rig(study, participant)?;
         let simulated = self.simulated.map(|seed| SimulatedParticipant::new(seed, participant));
-        let Some(own) = plan.of(participant) else {
+        let Some(own) = plan.participant(participant) else {
             return Err(Failure::Other(format!("{participant} has no plan")));
         };
         rig.felt = self.felt.open(study, &self.output, participant, self.fast)?;
         let device = rig.device_used()?;
         let mut clock: Box<dyn Clock> =
             if self.fast { Box::new(FastClock::default()) } else { Box::new(WallClock::new()) };
-        let header = Header::new(study, &self.study, own, device, tool())?
-            .with_begun(clock.date())
-            .with_source(rig.felt.as_ref().and_then(Felt::used))
-            .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
+        let header = Header {
+            begun: clock.date(),
+            source: rig.felt.as_ref().and_then(Felt::used),
+            simulated: simulated.as_ref().map(SimulatedParticipant::header),
+            ..Header::new(study, &self.study, own, device, tool())?
+        };
         let mut session = Session::open(study, own, &self.output, &header)?;
         // The page is opened only once the session is known to be the right one.
         let mut asking = match self.simulated {
@@ -186,7 +188,7 @@ impl Run {
     }
 
     /// Prints how a session ended.
-    fn told(&self, session: &Session<'_>, ended: Ended) -> Result<Value, Failure> {
+    fn told(&self, session: &Session<'_>, ended: SessionEnd) -> Result<Value, Failure> {
         let (done, all) = session.trials();
         let name = session.participant();
         let file = shown(session.file());
@@ -195,7 +197,7 @@ impl Run {
             let who = if simulated { " (simulated)" } else { "" };
             print(&format!("{name}{who}: {done} of {all} trials, {file}\n"))?;
         }
-        if ended == Ended::Left {
+        if ended == SessionEnd::Left {
             tell!("note: {name} is not done; run the same command to go on");
         }
         Ok(json!({
@@ -203,7 +205,7 @@ impl Run {
             "simulated": simulated,
             "trials": done,
             "of": all,
-            "done": ended == Ended::Done,
+            "done": ended == SessionEnd::Done,
             "file": shown(Path::new(&file)),
         }))
     }

@@ -68,7 +68,8 @@ impl SpectraArgs {
             })?;
             let file = Path::new(file);
             let take = self.reading.read_among(file)?;
-            let reference = Reference::of_recording(&take, file, &options, self.reading.strict())?;
+            let reference =
+                Reference::from_recording(&take, file, &options, self.reading.strict())?;
             recorded.insert(texture.to_owned(), reference);
         }
         let spectra = felt_spectra(folder, &recorded, &felt, self.off_target)?;
@@ -90,7 +91,8 @@ impl SpectraArgs {
         for texture in &study.textures {
             let name = texture.name();
             if !is_given(&name) {
-                let reference = Reference::of_asset(&folder.join(&texture.asset), target(&study))?;
+                let reference =
+                    Reference::from_asset(&folder.join(&texture.asset), target(&study))?;
                 recorded.insert(name, reference);
             }
         }

@@ -233,10 +233,12 @@ impl Scaling {
 }
 
 fn reach(recorded: Recorded, asked: f64, nearest: f64) -> Reach {
-    match recorded.is_known() {
-        false => Reach::Unknown,
-        true if Condition::is_same(asked, nearest) => Reach::Inside,
-        true => Reach::Outside { asked, recorded: nearest },
+    if !recorded.is_known() {
+        Reach::Unknown
+    } else if Condition::is_same(asked, nearest) {
+        Reach::Inside
+    } else {
+        Reach::Outside { asked, recorded: nearest }
     }
 }
 

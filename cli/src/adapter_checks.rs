@@ -6,9 +6,7 @@ use htex_check::device::{CheckedKind, Finding, Subject, check, run_one};
 
 use crate::checking::CheckArgs;
 use crate::devices::SettingArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::hints::with_quoted;
+use crate::failure::{Exit, Failure};
 use crate::output::print_json;
 
 /// A device or source to be checked.
@@ -25,7 +23,7 @@ impl<A: CheckedKind + ?Sized> Checked<'_, A> {
     /// Runs all checks, or a single one in this process.
     pub(crate) fn run(self, checking: &CheckArgs) -> Result<Exit, Failure> {
         if let Some(name) = &checking.reproduce {
-            return checking.print_one(name, &self.run_one(name)?, with_quoted);
+            return checking.print_one(name, &self.run_one(name)?);
         }
         // A wrong setting is reported once, and not by each check. The same holds for a wrong name,
         // which names nothing to check.
@@ -37,7 +35,7 @@ impl<A: CheckedKind + ?Sized> Checked<'_, A> {
         arguments.push(adapter.into());
         let report = check::<A>(adapter, &checking.runner(arguments)?);
         let again = |name: &str| format!("htex {kind} check {adapter} --reproduce {name}");
-        checking.print_report(&report, with_quoted, again)
+        checking.print_report(&report, again)
     }
 
     /// Runs one check and prints its finding as JSON.

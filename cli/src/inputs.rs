@@ -12,7 +12,7 @@ use htex_device::Source;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::sources::SourceArgs;
 
 /// The signals of a source, and an additional tracker.
@@ -83,7 +83,7 @@ impl InputArgs {
         self.tracker.as_deref() == Some("lines:-")
     }
 
-    pub(crate) fn signals(&self, name: &str, source: &dyn Source) -> Result<Signals, Failure> {
+    pub(crate) fn signals(&self, name: &str, source: &dyn Source) -> Result<Signals> {
         let map = parsed(self.map.as_deref())?;
         let calibrations = self
             .calibration
@@ -95,7 +95,7 @@ impl InputArgs {
         Ok(signals)
     }
 
-    pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>, Failure> {
+    pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>> {
         let Some(text) = &self.tracker else {
             return Ok(None);
         };
@@ -123,7 +123,7 @@ impl InputArgs {
     }
 }
 
-fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>, Failure> {
+fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>> {
     Ok(map.map(str::parse).transpose()?)
 }
 

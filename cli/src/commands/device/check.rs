@@ -4,8 +4,7 @@ use htex_device::Adapter;
 use crate::adapter_checks::Checked;
 use crate::checking::CheckArgs;
 use crate::devices::{DeviceArgs, SettingArgs};
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
 ///

@@ -4,8 +4,7 @@ use serde_json::json;
 
 use crate::adapters::descriptor_text;
 use crate::devices::{DeviceArgs, SettingArgs};
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 use crate::output::{print, print_json, tamed};
 
 /// Show a device's settings and profiles, what it makes of the samples, and its capabilities with

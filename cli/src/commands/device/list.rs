@@ -4,8 +4,7 @@ use serde_json::json;
 
 use crate::adapters::{listed_json, listed_text};
 use crate::devices::DeviceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 use crate::invocation;
 use crate::output::{print, print_json};
 use crate::sources::{SourceArgs, source_json};

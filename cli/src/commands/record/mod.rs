@@ -15,12 +15,10 @@ use htex_lab::record::{
 use serde_json::json;
 
 use crate::devices::SettingArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::inputs::{InputArgs, paced};
-use crate::models::tool;
-use crate::output::{print, print_json, tell, warn};
-use crate::shown::shown;
+use crate::invocation::tool;
+use crate::output::{print, print_json, shown, tell, warn};
 use crate::signals;
 
 use guide::{Guide, GuideArgs};
@@ -122,7 +120,7 @@ enum TareArg {
 }
 
 impl Record {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let mut setup = self.setup();
         let guidance = self.guide.guidance(&setup)?;
         setup.required.sweeps =
@@ -157,10 +155,11 @@ impl Record {
         Ok(Exit::SUCCESS)
     }
 
-    fn open(&self) -> Result<Box<dyn Source>, Failure> {
+    fn open(&self) -> Result<Box<dyn Source>> {
         if self.fast && !self.source.starts_with("file:") {
-            let sentence = "--fast replays files; other sources come at their own pace";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage(
+                "--fast replays files; other sources come at their own pace",
+            ));
         }
         let given = paced(&self.source, self.settings.given()?, self.fast);
         self.input.sources.open(&self.source, self.settings.profile(), &given)

@@ -4,8 +4,7 @@ use htex_device::SourceAdapter;
 use crate::adapter_checks::Checked;
 use crate::checking::CheckArgs;
 use crate::devices::SettingArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 use crate::sources::SourceArgs;
 
 /// Check that a source keeps every promise of the source ABI; exit status 1 if it does not.

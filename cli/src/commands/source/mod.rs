@@ -5,8 +5,7 @@ mod info;
 
 use clap::{Args, Subcommand};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 
 /// Inspect and check recording sources
 ///

@@ -95,8 +95,7 @@ impl LiveSignal {
 
 impl LiveSpectrum {
     /// Converts a texture's spectrum to decibels.
-    #[must_use]
-    pub fn from_texture(texture: &TextureSpectrum) -> Self {
+    pub(crate) fn from_texture(texture: &TextureSpectrum) -> Self {
         let bank = BandBank::new(BAND_COUNT, texture.band, &texture.frequency_hz);
         let energies = bank.energies(&texture.magnitude);
         let rms = energies.iter().map(|energy| (SQUARED_RMS * energy).sqrt());

@@ -59,7 +59,7 @@ pub use replay::Replay;
 pub use session::Session;
 pub use setup::{Setup, Tare};
 pub use signals::Signals;
-pub use stored::{KnownTake, kept_spectrum};
+pub use stored::KnownTake;
 pub(crate) use stored::{header as header_beside, settings as settings_of};
 pub use tracker::{LineTracker, TableTracker, TrackerRows};
 pub(crate) use write::write_signals;

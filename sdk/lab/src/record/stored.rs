@@ -123,8 +123,7 @@ struct Beside {
 /// Returns the texture spectrum of the newest accepted take with this name, as `htex fit` would
 /// read it. `None` if the folder has no such take of this quantity, or if its files can no longer
 /// be read.
-#[must_use]
-pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
+pub(crate) fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
     let number = files::kept_number(folder, name)?;
     let stem = files::stem(name, number);
     let beside = folder.join(format!("{stem}.json"));

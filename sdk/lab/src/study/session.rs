@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns the time of the last line, milliseconds; 0 before the first.
-    pub fn last_ms(&self) -> u64 {
+    pub(crate) fn last_ms(&self) -> u64 {
         self.progress.last_ms()
     }
 
@@ -133,7 +133,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns what plays while the level of a texture rises or its gain is matched.
-    pub fn matching_stimulus(
+    pub(crate) fn matching_stimulus(
         &self,
         phase: Phase,
         texture: &str,

@@ -1,156 +1,106 @@
-//! The summary of an asset, as JSON and as a table.
+//! The summary of an asset, as JSON and as a table, and the files of assets that commands read and
+//! write.
 
-use std::fmt::Write;
+use std::fmt::{Display, Formatter, Write as _};
+use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
 
-use htex_author::{FeltError, FeltShare, GridReport};
+use htex_author::settings::Metadata;
+use htex_author::{FeltError, GridReport};
+use htex_base::files::AtFile;
 use htex_base::finding::plain;
 use htex_format::{
-    AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality,
-    Quantity, Representation, StoredField, Triangle,
+    Asset, AtCondition, Condition, How, Ingredient, Law, LeftOut, Limits, Made, Manifest, Measure,
+    StoredField,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::columns::{Column, cells, columns, headings};
+use crate::failure::Result;
+use crate::grid::grid_text;
+use crate::output::{show, warn, write_file};
 
-/// The summary of an asset that `fit` and `info` print.
-///
-/// The manifest is not flattened into it, because its JSON differs. In the summary, `name` precedes
-/// `htex`, empty `tags` and a false `simulated` are written, the band is a list, and plugins and
-/// representations include their sizes and numbers.
+/// The summary of an asset that is printed by the commands that make or show one: its manifest, and
+/// what is computed.
 #[derive(Serialize)]
 pub(crate) struct AssetSummary {
-    pub(crate) asset: String,
+    asset: String,
     pub(crate) bytes: u64,
-    name: String,
-    htex: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    license: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    author: Option<String>,
-    tags: Vec<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    description: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    source: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    doi: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sensor: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    finger: Option<String>,
-    contact: Contact,
+    pub(crate) manifest: Manifest,
     /// The stated law, else the assumed one.
     law: Law,
-    simulated: bool,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    made: Option<Made>,
-    quantity: Quantity,
-    unit: &'static str,
-    band_hz: [f64; 2],
-    conditions: Vec<Condition>,
+    /// Sizes of the embedded models, bytes, in the manifest's order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    plugins: Vec<PluginSummary>,
+    plugin_bytes: Vec<usize>,
+    /// In the manifest's order.
     pub(crate) representations: Vec<RepresentationSummary>,
     /// After a fit: the grid in which the conditions were collected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) grid: Option<GridReport>,
-    pub(crate) repeatability_rms_db: Option<f64>,
+    /// Warnings that the manifest does not contain.
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
+    /// Whether the text leaves out the manifest's warnings.
+    #[serde(skip)]
+    pub(crate) is_warned: bool,
 }
 
-/// A model embedded in the asset.
-#[derive(Serialize)]
-struct PluginSummary {
-    model: String,
-    version: String,
-    bytes: usize,
-    blake3: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    signed_by: Option<String>,
-}
-
-/// One representation. The keys of its first condition are at the same level as its own keys.
+/// What is computed about a representation.
 #[derive(Serialize)]
 pub(crate) struct RepresentationSummary {
     pub(crate) model: String,
-    model_version: String,
     pub(crate) payload_bytes: usize,
+    /// After a fit: its time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fit_ms: Option<f64>,
-    /// The stored triangles, in which players interpolate.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    triangles: Vec<Triangle>,
-    #[serde(flatten)]
-    pub(crate) first: AtSummary,
-    /// All conditions, if there are several.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    at: Vec<AtSummary>,
+    /// In the order of the manifest's `at`.
+    pub(crate) at: Vec<AtSummary>,
 }
 
-/// A representation at one condition.
-#[derive(Clone, Serialize)]
+/// What is computed about a representation at one condition.
+#[derive(Serialize)]
 pub(crate) struct AtSummary {
-    condition: usize,
     parameters: Map<String, Value>,
-    level_rms: f64,
-    #[serde(flatten)]
-    pub(crate) quality: Option<Quality>,
     /// After a fit: the part of the difference that can be felt.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) felt: Option<FeltError>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    left_out: Option<LeftOut>,
 }
 
 impl AssetSummary {
-    pub(crate) fn new(file: &Path, bytes: u64, asset: &htex_format::Asset) -> Self {
-        let manifest = &asset.manifest;
-        let representations = manifest
-            .representations
-            .iter()
-            .zip(&asset.parameters)
-            .enumerate()
-            .filter_map(|(i, (r, sets))| {
-                RepresentationSummary::new(r, sets, asset.payload_bytes(i))
-            })
-            .collect();
+    pub(crate) fn new(file: &Path, bytes: u64, asset: &Asset) -> Self {
+        let manifest = asset.manifest.clone();
+        let all = manifest.representations.iter().zip(&asset.parameters).enumerate();
+        let representations = all.map(|(i, (representation, sets))| RepresentationSummary {
+            model: representation.model.clone(),
+            payload_bytes: asset.payload_bytes(i),
+            fit_ms: None,
+            at: sets
+                .iter()
+                .map(|set| AtSummary {
+                    parameters: parameters_by_name(&representation.fields, set),
+                    felt: None,
+                })
+                .collect(),
+        });
         Self {
             asset: file.display().to_string(),
             bytes,
-            name: manifest.name.clone(),
-            htex: manifest.htex.clone(),
-            license: manifest.license.clone(),
-            author: manifest.author.clone(),
-            tags: manifest.tags.clone(),
-            description: manifest.description.clone(),
-            source: manifest.source.clone(),
-            doi: manifest.doi.clone(),
-            sensor: manifest.sensor.clone(),
-            finger: manifest.finger.clone(),
-            contact: manifest.contact,
+            representations: representations.collect(),
             law: manifest.law(),
-            simulated: manifest.provenance.simulated,
-            made: manifest.provenance.made.clone(),
-            quantity: manifest.quantity,
-            unit: manifest.quantity.unit(),
-            band_hz: [manifest.band.low_hz, manifest.band.high_hz],
-            conditions: manifest.conditions.clone(),
-            plugins: plugins(asset),
-            representations,
+            manifest,
+            plugin_bytes: asset.plugins.iter().map(|module| module.len()).collect(),
             grid: None,
-            repeatability_rms_db: manifest.conditions.first().and_then(|c| c.repeatability_rms_db),
-            warnings: manifest.provenance.warnings.clone(),
+            warnings: Vec::new(),
             notes: asset.notes.iter().map(|note| note.message.clone()).collect(),
+            is_warned: false,
         }
     }
 
     /// Adds the felt part of the differences, by representation and condition.
     pub(crate) fn with_felt(mut self, felt: &[Vec<Option<FeltError>>]) -> Self {
         for (representation, felt) in self.representations.iter_mut().zip(felt) {
-            representation.first.felt = felt.first().copied().flatten();
             for (at, felt) in representation.at.iter_mut().zip(felt) {
                 at.felt = *felt;
             }
@@ -158,115 +108,138 @@ impl AssetSummary {
         self
     }
 
-    /// Adds a warning for the reader.
-    pub(crate) fn note(&mut self, note: String) {
-        self.notes.push(note);
+    /// Returns the summary of a representation with its conditions in the manifest.
+    pub(crate) fn conditions(
+        &self,
+        index: usize,
+    ) -> impl Iterator<Item = (&AtCondition, &AtSummary)> {
+        let (stated, computed) =
+            (&self.manifest.representations[index], &self.representations[index]);
+        stated.at.iter().zip(&computed.at)
     }
+}
 
-    /// Formats the summary as text.
-    pub(crate) fn to_text(&self) -> String {
-        let mut text = format!("{}: {} bytes\n", plain(&self.asset), self.bytes);
-        let kind = if self.simulated { " (simulated)" } else { "" };
-        let _ = writeln!(
-            text,
+impl Display for AssetSummary {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Manifest { quantity, provenance, band, .. } = &self.manifest;
+        writeln!(f, "{}: {} bytes", plain(&self.asset), self.bytes)?;
+        let kind = if provenance.simulated { " (simulated)" } else { "" };
+        let said = |words: &str, text: &Option<String>| {
+            text.as_ref().map(|text| format!(", {words} {}", plain(text))).unwrap_or_default()
+        };
+        writeln!(
+            f,
             "{}{kind}, {} in {}, {} to {} Hz{}{}",
-            plain(&self.name),
-            self.quantity.words(),
-            self.unit,
-            self.band_hz[0],
-            self.band_hz[1],
-            self.author.as_ref().map(|a| format!(", by {}", plain(a))).unwrap_or_default(),
-            self.license.as_ref().map(|l| format!(", licence {}", plain(l))).unwrap_or_default(),
-        );
-        text += &self.made.as_ref().map(made_text).unwrap_or_default();
-        text += &self.metadata_text();
-        for (i, condition) in self.conditions.iter().enumerate() {
-            let _ = writeln!(text, "condition {i}: {}", condition_text(condition));
+            plain(&self.manifest.name),
+            quantity.words(),
+            quantity.unit(),
+            band.low_hz,
+            band.high_hz,
+            said("by", &self.manifest.author),
+            said("licence", &self.manifest.license),
+        )?;
+        f.write_str(&provenance.made.as_ref().map(made_text).unwrap_or_default())?;
+        self.metadata(f)?;
+        for (i, condition) in self.manifest.conditions.iter().enumerate() {
+            writeln!(f, "condition {i}: {}", condition_text(condition))?;
         }
-        for plugin in &self.plugins {
-            let signer = plugin.signed_by.as_ref();
-            let _ = writeln!(
-                text,
-                "brings along {} {}, a sandboxed module of {} bytes, {}",
-                plugin.model,
-                plugin.version,
-                plugin.bytes,
-                signer.map_or("not signed".to_owned(), |key| format!("signed by {key}"))
-            );
+        for (plugin, bytes) in self.manifest.plugins.iter().zip(&self.plugin_bytes) {
+            let signer = plugin.signature.as_ref();
+            let signer = signer
+                .map_or("not signed".to_owned(), |key| format!("signed by {}", key.public_key));
+            let (model, version) = (&plugin.model, &plugin.version);
+            writeln!(
+                f,
+                "brings along {model} {version}, a sandboxed module of {bytes} bytes, {signer}"
+            )?;
         }
-        let columns = columns(Measure::of_both());
-        let measures = headings(&columns);
-        text += &format!("\n  model    cond.       level{measures}  bytes  parameters\n");
-        for r in &self.representations {
-            for at in r.all() {
-                text += &row(r, at, self.quantity, &columns);
+        self.table(f)?;
+        for (stated, r) in self.manifest.representations.iter().zip(&self.representations) {
+            if !stated.triangles.is_empty() {
+                let (name, count) = (short_name(&r.model), stated.triangles.len());
+                writeln!(f, "  {name}: interpolated in {count} stored triangles")?;
             }
         }
-        text += &self.triangles_text();
-        text += &self.left_out_text();
-        for line in self.warnings.iter().chain(&self.notes) {
-            let _ = writeln!(text, "note: {}", plain(line));
+        self.left_out(f)?;
+        let warnings = (!self.is_warned).then_some(&provenance.warnings).into_iter().flatten();
+        for line in warnings.chain(&self.warnings).chain(&self.notes) {
+            writeln!(f, "note: {}", plain(line))?;
         }
-        text
+        self.grid.as_ref().map_or(Ok(()), |grid| f.write_str(&grid_text(grid)))
     }
 }
 
 impl AssetSummary {
     /// Lists the metadata of the surface and its recording, one line each.
-    fn metadata_text(&self) -> String {
-        let tags = Some(self.tags.join(", ")).filter(|tags| !tags.is_empty());
+    fn metadata(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Manifest { description, tags, source, doi, sensor, finger, contact, .. } =
+            &self.manifest;
+        let tags = Some(tags.join(", ")).filter(|tags| !tags.is_empty());
         let lines = [
-            ("description", &self.description),
+            ("description", description),
             ("tags", &tags),
-            ("source", &self.source),
-            ("doi", &self.doi),
-            ("sensor", &self.sensor),
-            ("finger", &self.finger),
+            ("source", source),
+            ("doi", doi),
+            ("sensor", sensor),
+            ("finger", finger),
         ];
-        let said = lines.into_iter().filter_map(|(name, text)| Some((name, text.as_ref()?)));
-        let mut said: String =
-            said.map(|(name, text)| format!("{name}: {}\n", plain(text))).collect();
-        let _ = writeln!(said, "contact: {}", self.contact.name());
-        let _ = writeln!(said, "law outside the recorded motions: {}", self.law);
-        said
+        for (name, text) in lines {
+            if let Some(text) = text {
+                writeln!(f, "{name}: {}", plain(text))?;
+            }
+        }
+        writeln!(f, "contact: {}", contact.name())?;
+        writeln!(f, "law outside the recorded motions: {}", self.law)
     }
-}
 
-impl AssetSummary {
-    /// Says how many triangles each representation stores, for representations that store any.
-    fn triangles_text(&self) -> String {
-        let stored = self.representations.iter().filter(|r| !r.triangles.is_empty());
-        let line = |r: &RepresentationSummary| {
-            let count = r.triangles.len();
-            format!("  {}: interpolated in {count} stored triangles\n", short_name(&r.model))
-        };
-        stored.map(line).collect()
+    /// Lists the level, the measures and the parameters of each representation at each condition.
+    fn table(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let columns = columns(Measure::of_both());
+        let measures = headings(&columns);
+        writeln!(f, "\n  model    cond.       level{measures}  bytes  parameters")?;
+        for (i, r) in self.representations.iter().enumerate() {
+            for (stated, at) in self.conditions(i) {
+                let parameters = at.parameters.iter().map(|(k, v)| parameter_text(&plain(k), v));
+                writeln!(
+                    f,
+                    "  {:8} {:>5}  {:>10}{}  {:>5}  {}",
+                    short_name(&r.model),
+                    stated.condition,
+                    self.manifest.quantity.text(stated.level_rms),
+                    cells(&columns, |column| at.measured(stated, column)),
+                    r.payload_bytes,
+                    Vec::from_iter(parameters).join(" ")
+                )?;
+            }
+        }
+        Ok(())
     }
-}
 
-impl AssetSummary {
     /// Lists each model's error on held-out blocks of time, if known: RMS and largest value over
     /// the conditions.
-    fn left_out_text(&self) -> String {
-        let measures = LeftOut::measures().filter(|m| m.row().column.is_some());
-        let mut text = String::new();
-        for r in &self.representations {
+    fn left_out(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let measures: Vec<Measure> =
+            LeftOut::measures().filter(|m| m.row().column.is_some()).collect();
+        let mut has_heading = false;
+        for r in &self.manifest.representations {
             let all: Vec<LeftOut> = r.at.iter().filter_map(|at| at.left_out).collect();
-            if all.is_empty() {
+            // The error of one condition is the error of the whole.
+            if all.is_empty() || r.at.len() < 2 {
                 continue;
             }
-            if text.is_empty() {
-                let headings: String = measures.clone().map(left_out_heading).collect();
-                text += &format!("\n  model    left out{headings}\n");
+            if !has_heading {
+                let headings: String = measures.iter().map(|m| left_out_heading(*m)).collect();
+                writeln!(f, "\n  model    left out{headings}")?;
             }
-            let _ = write!(text, "  {:8} {:>8}", short_name(&r.model), all.len());
-            for measure in measures.clone() {
-                let of = all.iter().filter_map(|one| one.0.get(measure));
-                text += &spread_cells(measure, Spread::of(of));
+            has_heading = true;
+            write!(f, "  {:8} {:>8}", short_name(&r.model), all.len())?;
+            for measure in &measures {
+                let errors = all.iter().filter_map(|one| one.0.get(*measure));
+                f.write_str(&spread_cells(*measure, errors.collect()))?;
             }
-            text.push('\n');
+            writeln!(f)?;
         }
-        text
+        Ok(())
     }
 }
 
@@ -275,84 +248,17 @@ fn left_out_heading(measure: Measure) -> String {
     format!("  {column}: RMS  largest")
 }
 
-/// Returns the table cells under [`left_out_heading`].
-fn spread_cells(measure: Measure, spread: Option<Spread>) -> String {
+/// Returns the table cells under [`left_out_heading`]: the RMS and the largest of some errors.
+fn spread_cells(measure: Measure, errors: Vec<f64>) -> String {
     // Each cell has two spaces before it, and the second one is as wide as `largest`.
     let width = left_out_heading(measure).len() - "    largest".len();
-    match spread {
-        Some(Spread { rms, largest }) => format!("  {rms:>width$.2}  {largest:>7.2}"),
-        None => format!("  {:>width$}  {:>7}", "-", "-"),
+    if errors.is_empty() {
+        return format!("  {:>width$}  {:>7}", "-", "-");
     }
-}
-
-/// The RMS and the largest value of some errors.
-struct Spread {
-    rms: f64,
-    largest: f64,
-}
-
-impl Spread {
-    /// Computes them; `None` if there are no errors.
-    fn of(errors: impl Iterator<Item = f64>) -> Option<Self> {
-        let errors: Vec<f64> = errors.collect();
-        let squares: f64 = errors.iter().map(|error| error * error).sum();
-        (!errors.is_empty()).then(|| Self {
-            rms: (squares / errors.len() as f64).sqrt(),
-            largest: errors.iter().copied().fold(0.0, f64::max),
-        })
-    }
-}
-
-impl RepresentationSummary {
-    /// Returns the representation at all its conditions.
-    fn all(&self) -> &[AtSummary] {
-        if self.at.is_empty() { std::slice::from_ref(&self.first) } else { &self.at }
-    }
-
-    /// Counts the conditions whose difference is below the difference threshold, and those whose
-    /// difference is within the variation of their recording.
-    pub(crate) fn count(&self, share: &mut FeltShare) {
-        let felt = self.all().iter().filter_map(|at| at.felt.as_ref());
-        felt.for_each(|felt| share.count(felt));
-    }
-
-    pub(crate) fn at(&self, condition: usize) -> Option<&AtSummary> {
-        // `at` is empty if there is only one condition.
-        let all = self.at.iter().chain([&self.first]);
-        all.into_iter().find(|at| at.condition == condition)
-    }
-}
-
-/// Lists the models embedded in an asset. The signatures of a valid asset are valid.
-fn plugins(asset: &htex_format::Asset) -> Vec<PluginSummary> {
-    let both = asset.manifest.plugins.iter().zip(&asset.plugins);
-    both.map(|(plugin, module)| PluginSummary {
-        model: plugin.model.clone(),
-        version: plugin.version.clone(),
-        bytes: module.len(),
-        blake3: plugin.blake3.clone(),
-        signed_by: plugin.signature.as_ref().map(|s| s.public_key.clone()),
-    })
-    .collect()
-}
-
-fn row(
-    r: &RepresentationSummary,
-    at: &AtSummary,
-    quantity: Quantity,
-    columns: &[Column],
-) -> String {
-    let parameters: Vec<String> =
-        at.parameters.iter().map(|(k, v)| parameter_text(&plain(k), v)).collect();
-    format!(
-        "  {:8} {:>5}  {:>10}{}  {:>5}  {}\n",
-        short_name(&r.model),
-        at.condition,
-        quantity.text(at.level_rms),
-        cells(columns, |column| at.measured(column)),
-        r.payload_bytes,
-        parameters.join(" ")
-    )
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    let rms = (squares / errors.len() as f64).sqrt();
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    format!("  {rms:>width$.2}  {largest:>7.2}")
 }
 
 fn parameter_text(name: &str, value: &Value) -> String {
@@ -386,7 +292,7 @@ fn condition_text(condition: &Condition) -> String {
 
 /// Describes how an asset was made without a recording.
 fn made_text(made: &Made) -> String {
-    let part = |of: &Ingredient| format!("{} of {}", of.weight, plain(&of.name));
+    let part = |part: &Ingredient| format!("{} of {}", part.weight, plain(&part.name));
     let parts: Vec<String> = made.from.iter().map(part).collect();
     match made.how {
         How::Parameters => "made by hand of its parameters, of no recording\n".to_owned(),
@@ -408,39 +314,9 @@ pub(crate) fn short_name(id: &str) -> &str {
     id.rsplit('.').next().unwrap_or(id)
 }
 
-impl RepresentationSummary {
-    /// Summarises a representation; `None` if it has no conditions, which is invalid.
-    fn new(r: &Representation, sets: &[Vec<f64>], payload_bytes: usize) -> Option<Self> {
-        let at: Vec<AtSummary> =
-            r.at.iter().zip(sets).map(|(at, set)| AtSummary::new(at, &r.fields, set)).collect();
-        Some(Self {
-            model: r.model.clone(),
-            model_version: r.model_version.clone(),
-            payload_bytes,
-            fit_ms: None,
-            triangles: r.triangles.clone(),
-            first: at.first()?.clone(),
-            at: if at.len() > 1 { at } else { Vec::new() },
-        })
-    }
-}
-
-impl AtSummary {
-    fn new(at: &AtCondition, fields: &[StoredField], flat: &[f64]) -> Self {
-        Self {
-            condition: at.condition,
-            parameters: named_parameters(fields, flat),
-            level_rms: at.level_rms,
-            quality: at.quality.clone(),
-            felt: None,
-            left_out: at.left_out,
-        }
-    }
-}
-
 /// Groups a flat array of parameters by the names of its fields.
-pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<String, Value> {
-    let mut named = Map::new();
+fn parameters_by_name(fields: &[StoredField], mut flat: &[f64]) -> Map<String, Value> {
+    let mut parameters = Map::new();
     for field in fields {
         let value = if field.list {
             // In the flat array, a list begins with its length.
@@ -453,23 +329,53 @@ pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<
             flat = flat.get(1..).unwrap_or_default();
             Value::from(value)
         };
-        named.insert(field.name.clone(), value);
+        parameters.insert(field.name.clone(), value);
     }
-    named
+    parameters
 }
 
 impl AtSummary {
     /// Returns the value for a column of a table.
-    pub(crate) fn measured(&self, column: Column) -> Option<f64> {
-        column.of(self.quality.as_ref(), self.felt.as_ref())
+    pub(crate) fn measured(&self, stated: &AtCondition, column: Column) -> Option<f64> {
+        column.value(stated.quality.as_ref(), self.felt.as_ref())
     }
 
     /// Returns the lines of a model that is a sum of sines, as pairs of hertz and newtons.
-    pub(crate) fn lines(&self) -> Vec<(f64, f64)> {
+    pub(crate) fn lines(&self, level_rms: f64) -> Vec<(f64, f64)> {
         let list = |name: &str| {
             let values = self.parameters.get(name).and_then(Value::as_array);
             values.into_iter().flatten().filter_map(Value::as_f64)
         };
-        list("frequency_hz").zip(list("amplitude").map(|a| a * self.level_rms)).collect()
+        list("frequency_hz").zip(list("amplitude").map(|a| a * level_rms)).collect()
     }
+}
+
+/// Returns a file's bytes. If the file is larger than an asset may be, returns one byte more than
+/// is allowed.
+pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // The reader refuses the additional byte with its own finding, so only it says what the limit
+    // is.
+    let most = Limits::default().file_bytes.saturating_add(1);
+    File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).reading(path)?;
+    Ok(bytes)
+}
+
+/// Writes an asset to a file that the user named, and returns its summary.
+pub(crate) fn write_asset(output: &Path, asset: &Asset) -> Result<AssetSummary> {
+    let bytes = asset.to_bytes()?;
+    write_file(output, &bytes)?;
+    Ok(AssetSummary::new(output, bytes.len() as u64, asset))
+}
+
+/// Writes an asset, and prints its summary.
+pub(crate) fn write_and_show(output: &Path, asset: &Asset, is_json: bool) -> Result {
+    show(&write_asset(output, asset)?, is_json)
+}
+
+/// Reports the problems that the asset's validation would find in this metadata.
+pub(crate) fn check_metadata(metadata: &Metadata) -> Result<()> {
+    let warnings: Vec<String> = metadata.check()?.iter().map(|w| format!("--{w}")).collect();
+    warn(&warnings);
+    Ok(())
 }

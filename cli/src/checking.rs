@@ -1,6 +1,5 @@
 //! The common part of the commands that check models and devices.
 
-use std::borrow::Cow;
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -8,10 +7,9 @@ use clap::Args;
 use htex_check::harness::{Finding, Report, Runner};
 use serde::Serialize;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::invocation::{self, Program};
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, show};
 
 /// How checks are run and reported.
 #[derive(Args)]
@@ -34,7 +32,7 @@ impl CheckArgs {
     pub(crate) fn runner(
         &self,
         arguments: impl IntoIterator<Item = std::ffi::OsString>,
-    ) -> Result<Runner, Failure> {
+    ) -> Result<Runner> {
         let program = this_program()?;
         Ok(Runner {
             program: program.file.into(),
@@ -43,43 +41,32 @@ impl CheckArgs {
         })
     }
 
-    /// Prints the finding of a single check. `worded` replaces options in its message by flags.
-    pub(crate) fn print_one(
-        &self,
-        name: &str,
-        finding: &Finding,
-        worded: fn(&str) -> Cow<'_, str>,
-    ) -> Result<Exit, Failure> {
+    /// Prints the finding of a single check.
+    pub(crate) fn print_one(&self, name: &str, finding: &Finding) -> Result {
         if self.json {
             print_json(finding)?;
         } else {
             let word = finding.outcome.word();
-            print(&format!("{name}: {word}: {}\n", worded(&finding.message)))?;
+            print(&format!("{name}: {word}: {}\n", finding.message))?;
         }
-        Ok(exit_code(finding.outcome.is_bad()))
+        Ok(Exit::ok_if(!finding.outcome.is_bad()))
     }
 
-    /// Prints a report. `worded` replaces options in its messages by flags. `again` is the command
-    /// that runs one of its checks in a single process.
+    /// Prints a report. `again` is the command that runs one of its checks in a single process.
     pub(crate) fn print_report<Subject: Display + Serialize>(
         &self,
         report: &Report<Subject>,
-        worded: fn(&str) -> Cow<'_, str>,
         again: impl Fn(&str) -> String,
-    ) -> Result<Exit, Failure> {
-        if self.json {
-            print_json(report)?;
-        } else {
-            print(&worded(&report.to_string()))?;
-            if let Some(first) = report.bad().first() {
-                print(&format!("again, in one process: {}\n", again(first)))?;
-            }
+    ) -> Result {
+        show(report, self.json)?;
+        if let (Some(first), false) = (report.bad().first(), self.json) {
+            print(&format!("again, in one process: {}\n", again(first)))?;
         }
-        Ok(exit_code(!report.ok))
+        Ok(Exit::ok_if(report.ok))
     }
 }
 
-fn timeout(seconds: f64) -> Result<Duration, Failure> {
+fn timeout(seconds: f64) -> Result<Duration> {
     Duration::try_from_secs_f64(seconds)
         .ok()
         // The end of a check is `Instant::now() + timeout`, which must not overflow.
@@ -87,10 +74,6 @@ fn timeout(seconds: f64) -> Result<Duration, Failure> {
         .ok_or_else(|| Failure::Usage(format!("--timeout {seconds}: seconds, more than 0")))
 }
 
-fn this_program() -> Result<Program, Failure> {
+fn this_program() -> Result<Program> {
     invocation::program().map_err(Failure::other)
-}
-
-fn exit_code(bad: bool) -> Exit {
-    if bad { Exit::FAILURE } else { Exit::SUCCESS }
 }

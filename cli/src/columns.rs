@@ -46,7 +46,7 @@ impl Column {
     }
 
     /// Returns the value of this column for a fit.
-    pub(crate) fn of(self, quality: Option<&Quality>, felt: Option<&FeltError>) -> Option<f64> {
+    pub(crate) fn value(self, quality: Option<&Quality>, felt: Option<&FeltError>) -> Option<f64> {
         match (self.measure, self.by) {
             (Measure::Felt, _) => felt.map(|felt| felt.error_rms_db),
             (measure, By::Magnitude) => quality?.get(measure),

@@ -8,7 +8,7 @@ use htex_format::Manifest;
 use htex_scene::file::Levels;
 use htex_scene::{Gain, GainKey, Gains, recordings_of, texture_id, texture_name};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::output::warn;
 use crate::scenes::Ready;
 
@@ -26,7 +26,7 @@ pub(crate) struct FeltArgs {
 }
 
 impl FeltArgs {
-    pub(crate) fn apply(&self, ready: &mut Ready) -> Result<(), Failure> {
+    pub(crate) fn apply(&self, ready: &mut Ready) -> Result<()> {
         let scene = &mut ready.scene.file;
         if let Some(model) = &self.model {
             for surface in &mut scene.surfaces {
@@ -51,13 +51,13 @@ impl FeltArgs {
 }
 
 /// Returns the file in which gains are stored.
-pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
+pub(crate) fn gains_file() -> Result<PathBuf> {
     Gains::user_file().ok_or_else(|| {
         Failure::Other("no folder for gains was found; set HTEX_CONFIG_DIR".to_owned())
     })
 }
 
-pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
+pub(crate) fn gains() -> Result<(Gains, PathBuf)> {
     let file = gains_file()?;
     let gains = Gains::load(&file).reading(&file)?;
     Ok((gains, file))
@@ -75,7 +75,7 @@ pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey
 }
 
 /// Returns the hash by which earlier versions identified a texture.
-pub(crate) fn hash(ready: &Ready) -> Result<String, Failure> {
+pub(crate) fn hash(ready: &Ready) -> Result<String> {
     Ok(Gains::hash_of(&ready.file).reading(&ready.file)?)
 }
 
@@ -89,11 +89,7 @@ fn manifests(ready: &Ready) -> impl Iterator<Item = &Manifest> {
 }
 
 /// Applies a person's stored gain to a scene.
-pub(crate) fn apply_kept(
-    person: &str,
-    texture: Option<&str>,
-    ready: &mut Ready,
-) -> Result<(), Failure> {
+pub(crate) fn apply_gain(person: &str, texture: Option<&str>, ready: &mut Ready) -> Result<()> {
     let (gains, _) = gains()?;
     let key = key(person, texture, ready);
     let asked = ready.file.display();

@@ -12,7 +12,7 @@ use htex_device::Input;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 
 /// The signals of a source, and an additional tracker.
 #[derive(Args)]
@@ -79,7 +79,7 @@ impl InputArgs {
         self.tracker.as_deref() == Some("lines:-")
     }
 
-    pub(crate) fn signals(&self, name: &str, source: &dyn Input) -> Result<Signals, Failure> {
+    pub(crate) fn signals(&self, name: &str, source: &dyn Input) -> Result<Signals> {
         let map = parsed(self.map.as_deref())?;
         let calibrations = self
             .calibration
@@ -90,7 +90,7 @@ impl InputArgs {
         Ok(Signals::new(name, channels, calibrations, map.as_ref(), self.quantity())?)
     }
 
-    pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>, Failure> {
+    pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>> {
         let Some(text) = &self.tracker else {
             return Ok(None);
         };
@@ -118,7 +118,7 @@ impl InputArgs {
     }
 }
 
-fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>, Failure> {
+fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>> {
     Ok(map.map(str::parse).transpose()?)
 }
 

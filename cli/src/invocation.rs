@@ -7,6 +7,8 @@ use std::ffi::OsString;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
+use crate::failure::Result;
+
 /// The arguments and the program of the current run.
 static CURRENT: Mutex<Invocation> =
     Mutex::new(Invocation { arguments: Vec::new(), program: Vec::new() });
@@ -57,4 +59,21 @@ pub(crate) fn program() -> Result<Program, UnknownProgram> {
     let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
     let (file, arguments) = current.program.split_first().ok_or(UnknownProgram)?;
     Ok(Program { file: file.clone(), arguments: arguments.to_vec() })
+}
+
+/// Returns the name and version of this program, for an asset's provenance.
+pub(crate) fn tool() -> String {
+    concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned()
+}
+
+/// Returns this run's command line. Words with characters that are unusual in a path are quoted.
+pub(crate) fn command_line() -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
+    let quoted = |word: OsString| match word.to_string_lossy() {
+        word if !word.is_empty() && word.chars().all(is_plain) => word.into_owned(),
+        word => format!("'{}'", word.replace('\'', r"'\''")),
+    };
+    let words = arguments().into_iter().map(quoted);
+    let words: Vec<String> = std::iter::once("htex".to_owned()).chain(words).collect();
+    words.join(" ")
 }

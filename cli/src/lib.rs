@@ -1,67 +1,65 @@
 //! The `htex` command as a library: it parses arguments, calls the SDK, and prints. [`run`] is the
 //! whole command. The program `htex` and the Python package call it.
+
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod assets;
-mod bounded;
 mod checking;
 mod columns;
 mod commands;
 mod devices;
-mod exit;
+mod explicit_args;
 mod failure;
-mod folders;
 mod gains;
-mod given;
 mod grid;
 mod groups;
-mod hints;
 #[cfg(feature = "lab")]
 mod inputs;
 mod invocation;
 mod located;
-mod metadata;
-mod models;
 mod motions;
-#[cfg(not(feature = "schemas"))]
-mod no_schemas;
-mod of_file;
 mod output;
 mod outputs;
 mod playing;
 mod plugins;
-mod progress;
 mod recording_plot;
 mod recordings;
 mod report;
-mod rules;
 mod scene_sound;
 mod scenes;
 mod schemas;
-mod shown;
 mod signals;
-mod transfer;
-mod validation;
-mod version;
 mod wasm_limits;
 mod wav;
 
 use std::ffi::OsString;
 
 use clap::{CommandFactory, FromArgMatches, Parser};
+use htex_base::native::folders::relative;
+use htex_device_builtin::SOUND;
 
 use commands::Command;
-use exit::Exit;
-use failure::Failure;
-use htex_device_builtin::SOUND;
+use failure::{Exit, Failure, Result};
+
+/// The output of `htex --version`: the version, and one line each for the commit of the sources, the
+/// target and the features of this build. `htex -V` prints only the version.
+const LONG_VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    "\ncommit: ",
+    env!("HTEX_COMMIT"),
+    "\ntarget: ",
+    env!("HTEX_TARGET"),
+    "\nfeatures: ",
+    env!("HTEX_FEATURES"),
+);
 
 /// Fit, inspect, measure and play texture assets for touch.
 ///
 /// A recording of a finger sliding over a surface becomes a `.htex` file of a few hundred bytes
 /// with models of its spectrum and the measured error of each.
 #[derive(Parser)]
-#[command(name = "htex", version, long_version = version::LONG, max_term_width = 100, after_help = first_steps())]
+#[command(name = "htex", version, long_version = LONG_VERSION, max_term_width = 100, after_help = first_steps())]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -126,14 +124,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
 ///
 /// # Errors
 /// The text that the command would print.
-pub fn check_usage(arguments: impl IntoIterator<Item = OsString>) -> Result<(), String> {
-    match parsed(arguments) {
+pub fn check_usage(
+    arguments: impl IntoIterator<Item = OsString>,
+) -> std::result::Result<(), String> {
+    match parse(arguments) {
         Err(error) if error.use_stderr() => Err(error.to_string()),
         _ => Ok(()),
     }
 }
 
-fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
     let mut command = command();
     let matches = command.try_get_matches_from_mut(arguments)?;
     located::check_paths(&command, &matches)?;
@@ -141,7 +141,7 @@ fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Er
 }
 
 fn parse_and_run(arguments: Vec<OsString>) -> u8 {
-    let command = match parsed(arguments) {
+    let command = match parse(arguments) {
         Ok(cli) => cli.command,
         Err(error) => {
             // A closed standard output or standard error is not an error of the command.
@@ -154,7 +154,7 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
         Err(failure) => {
             let lines = failure.to_lines();
             crate::output::tell!("htex: {}", lines.join("\n"));
-            failure.exit_code().code()
+            failure.exit().code()
         }
     };
     // Last, because it waits as long as the output may have a voltage.
@@ -163,14 +163,32 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
 }
 
 /// Downloads the inputs of a command, runs it, and uploads its outputs.
-fn run_command(command: Command) -> Result<Exit, Failure> {
+fn run_command(command: Command) -> Result {
     // Also resets what an earlier command in this process has set.
     signals::handle()?;
-    folders::check()?;
-    transfer::fetch()?;
+    check_folders()?;
+    located::download()?;
     let exit = command.run()?;
     // The command may have asked for signals, but from here on nothing checks for them.
     signals::handle()?;
-    transfer::put()?;
+    located::upload()?;
     Ok(exit)
+}
+
+/// Refuses a relative path in htex's own variables. In variables that other programs read as well,
+/// it only warns, because the XDG base directory specification says to ignore a relative path.
+fn check_folders() -> Result<()> {
+    let mut ignored = Vec::new();
+    for (variable, path) in relative() {
+        let path = output::shown(&path);
+        let problem = format!("{variable} is {path}, which is no absolute path");
+        if variable.starts_with("HTEX_") {
+            return Err(Failure::Usage(format!(
+                "{problem}; give one that begins with / (on Windows with a drive)"
+            )));
+        }
+        ignored.push(format!("{problem}; it is ignored, and the usual folder is used"));
+    }
+    output::warn(&ignored);
+    Ok(())
 }

@@ -5,6 +5,7 @@
 //! temporary folder. Printed messages show the URI again ([`named`]).
 
 use std::ffi::{OsStr, OsString};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -12,9 +13,13 @@ use clap::ArgMatches;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
+use htex_base::files::AtFile;
 use htex_base::finding::plain;
-use htex_base::storage::Location;
+use htex_base::storage::{Location, Storage, StorageError};
+use htex_format::Limits;
 use tempfile::TempDir;
+
+use crate::failure::{Failure, Result};
 
 /// An argument for an asset, which must not exceed the maximum size of an asset.
 pub(crate) const ASSET: Argument = Argument(Role::Asset);
@@ -27,25 +32,25 @@ pub(crate) const OUTPUT: Argument = Argument(Role::Output);
 pub(crate) const LOCAL_OUTPUT: Argument = Argument(Role::LocalOutput);
 
 /// The remote files of the current run.
-static ELSEWHERE: Mutex<Elsewhere> = Mutex::new(Elsewhere { folder: None, files: Vec::new() });
+static REMOTE: Mutex<RemoteFiles> = Mutex::new(RemoteFiles { folder: None, files: Vec::new() });
 /// The temporary folder. It has its own lock for a signal handler, which may run while the other
 /// lock is held.
 static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-struct Elsewhere {
+struct RemoteFiles {
     folder: Option<TempDir>,
-    files: Vec<Copied>,
+    files: Vec<RemoteCopy>,
 }
 
 /// A remote file and its local copy.
-struct Copied {
+struct RemoteCopy {
     location: Location,
     local: PathBuf,
     role: Role,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Role {
+enum Role {
     Asset,
     Recording,
     Output,
@@ -79,7 +84,7 @@ impl TypedValueParser for Argument {
         }
         match location.local() {
             Some(path) => PathBufValueParser::new().parse_ref(command, argument, path.as_os_str()),
-            None => local().copy_of(location, self.0).map_err(wrong),
+            None => remote_files().copy_of(location, self.0).map_err(wrong),
         }
     }
 }
@@ -179,7 +184,7 @@ fn check_path(arg: &clap::Arg, path: &Path) -> Result<(), String> {
     ))
 }
 
-impl Elsewhere {
+impl RemoteFiles {
     /// Returns a local path that replaces a URI. The file name stays the same, because messages and
     /// formats depend on it.
     #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
@@ -207,7 +212,7 @@ impl Elsewhere {
         let folder = self.folder().map_err(failed)?.join(self.files.len().to_string());
         std::fs::create_dir(&folder).map_err(failed)?;
         let local = folder.join(name);
-        self.files.push(Copied { location, local: local.clone(), role });
+        self.files.push(RemoteCopy { location, local: local.clone(), role });
         Ok(local)
     }
 
@@ -225,15 +230,15 @@ impl Elsewhere {
     }
 }
 
-fn local() -> MutexGuard<'static, Elsewhere> {
-    ELSEWHERE.lock().unwrap_or_else(PoisonError::into_inner)
+fn remote_files() -> MutexGuard<'static, RemoteFiles> {
+    REMOTE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Forgets the files of the last run and removes their local copies.
 pub(crate) fn clear() {
-    let mut elsewhere = local();
-    elsewhere.files.clear();
-    elsewhere.folder = None;
+    let mut remote = remote_files();
+    remote.files.clear();
+    remote.folder = None;
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
 }
 
@@ -246,33 +251,33 @@ pub(crate) fn remove_copies() {
 }
 
 /// Returns the remote files with a certain role.
-pub(crate) fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
-    let elsewhere = local();
-    let wanted = elsewhere.files.iter().filter(|file| is_wanted(file.role));
+fn files(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
+    let remote = remote_files();
+    let wanted = remote.files.iter().filter(|file| is_wanted(file.role));
     wanted.map(|file| (file.location.clone(), file.local.clone(), file.role)).collect()
 }
 
 /// Keeps the local copies after the command has ended.
-pub(crate) fn keep() {
-    let mut elsewhere = local();
+fn keep() {
+    let mut remote = remote_files();
     // From now on, messages name the copies themselves.
-    elsewhere.files.clear();
+    remote.files.clear();
     // A signal must not remove what is kept.
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
-    if let Some(folder) = elsewhere.folder.take() {
+    if let Some(folder) = remote.folder.take() {
         let _ = folder.keep();
     }
 }
 
 /// Whether a path is the copy of a remote file.
 pub(crate) fn is_copy(path: &Path) -> bool {
-    local().files.iter().any(|file| file.local == path)
+    remote_files().files.iter().any(|file| file.local == path)
 }
 
 /// Replaces local copies in a text by their URIs, both as plain text and inside JSON.
-pub(crate) fn named(text: &str) -> String {
+pub(crate) fn with_uris(text: &str) -> String {
     let mut text = text.to_owned();
-    for file in &local().files {
+    for file in &remote_files().files {
         let (copy, uri) = (file.local.display().to_string(), file.location.to_string());
         let escaped = |text: &str| serde_json::Value::from(text).to_string();
         let in_json = |text: &str| escaped(text).trim_matches('"').to_owned();
@@ -283,6 +288,58 @@ pub(crate) fn named(text: &str) -> String {
         }
     }
     text
+}
+
+/// Maximum size of a downloaded recording, bytes. `--most-numbers` limits how many of its values
+/// are kept.
+const MOST_RECORDING_BYTES: u64 = 16 << 30;
+
+/// Downloads the inputs, and checks that the outputs can be written, as far as that is possible
+/// without a request.
+#[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
+pub(crate) fn download() -> Result<()> {
+    let files = files(|_| true);
+    if files.is_empty() {
+        return Ok(());
+    }
+    let storage = Storage::from_environment()?;
+    // Before any download, which a wrong output would make useless.
+    for (location, _, _) in files.iter().filter(|(_, _, role)| *role == Role::Output) {
+        storage.check_writable(location)?;
+    }
+    for (location, local, role) in files {
+        let most_bytes = match role {
+            Role::Output | Role::LocalOutput => continue,
+            Role::Asset => Limits::default().file_bytes,
+            Role::Recording => MOST_RECORDING_BYTES,
+        };
+        let mut options = File::options();
+        htex_base::files::private::only_user(&mut options);
+        // `create_new` follows no link. The folder is new, so nothing is there.
+        let file = options.write(true).create_new(true).open(&local).writing(&local)?;
+        storage.download(&location, file, most_bytes)?;
+    }
+    Ok(())
+}
+
+/// Uploads the outputs of a command that has succeeded. If that fails, the local copy is kept.
+pub(crate) fn upload() -> Result<()> {
+    let outputs = files(|role| role == Role::Output);
+    if outputs.is_empty() {
+        return Ok(());
+    }
+    let storage = Storage::from_environment()?;
+    for (location, local, _) in outputs {
+        let written = storage.write_file(&location, &local);
+        written.map_err(|error| kept(&local, error))?;
+    }
+    Ok(())
+}
+
+/// Returns the error for an output, whose local copy is kept after the command.
+fn kept(copy: &Path, error: StorageError) -> Failure {
+    keep();
+    Failure::Other(format!("{error}; the result is kept in {}", copy.display()))
 }
 
 /// Returns an argument in a form that may be shown and stored: a URL without its query, which may

@@ -1,4 +1,5 @@
 //! The `htex` program.
+
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

@@ -8,6 +8,7 @@ use std::time::Duration;
 use htex::Motion;
 #[cfg(feature = "lab")]
 use htex_lab::study::Touch;
+use htex_scene::Renderer;
 use rtrb::{Consumer, Producer, RingBuffer};
 
 /// Maximum number of motions that may wait for the player.
@@ -25,13 +26,13 @@ pub(crate) enum Motions {
 }
 
 /// The input that arrived since the last call.
-pub(crate) enum Moved {
+enum MotionUpdate {
     /// The newest motion.
-    To(Motion),
+    New(Motion),
     /// Nothing new.
-    Not,
+    Unchanged,
     /// The input has ended.
-    Ended,
+    End,
 }
 
 impl Motions {
@@ -45,22 +46,37 @@ impl Motions {
         Self::Queue(receiver)
     }
 
+    /// Applies the newest motion to a renderer. Returns false when the input has ended.
+    pub(crate) fn follow(&mut self, renderer: &mut Renderer) -> bool {
+        match self.update() {
+            MotionUpdate::New(finger) => {
+                // After a failed reading, the last motion is held for a while and then becomes no
+                // contact. The next reading may be valid.
+                let _ = renderer.set_motion(finger);
+                true
+            }
+            MotionUpdate::Unchanged => true,
+            MotionUpdate::End => false,
+        }
+    }
+
     /// Returns what has arrived since the last call.
-    pub(crate) fn look(&mut self) -> Moved {
+    fn update(&mut self) -> MotionUpdate {
         match self {
             Self::Queue(queue) => newest(queue),
             #[cfg(feature = "lab")]
-            Self::Page(touch, force_n) => Moved::To(
-                touch
+            Self::Page(touch, force_n) => {
+                let motion = touch
                     .now()
-                    .map_or(Motion::AWAY, |touched| Motion::new(touched.speed_mm_s, *force_n)),
-            ),
+                    .map_or(Motion::AWAY, |touched| Motion::new(touched.speed_mm_s, *force_n));
+                MotionUpdate::New(motion)
+            }
         }
     }
 }
 
 /// Returns the newest valid reading in a queue. Returns a failed one only if there is no valid one.
-fn newest(queue: &mut Consumer<Motion>) -> Moved {
+fn newest(queue: &mut Consumer<Motion>) -> MotionUpdate {
     // Checked before the queue is emptied, so that no motion before the end is missed.
     let is_ended = queue.is_abandoned();
     let mut newest: Option<Motion> = None;
@@ -70,9 +86,9 @@ fn newest(queue: &mut Consumer<Motion>) -> Moved {
         }
     }
     match newest {
-        Some(finger) => Moved::To(finger),
-        None if is_ended => Moved::Ended,
-        None => Moved::Not,
+        Some(finger) => MotionUpdate::New(finger),
+        None if is_ended => MotionUpdate::End,
+        None => MotionUpdate::Unchanged,
     }
 }
 
@@ -120,12 +136,12 @@ mod tests {
         let (sender, receiver) = RingBuffer::new(ROOM);
         read(&b"80 0.4\nfast\n1 2 3\n-60,0.5, 1 2\n50 -1\nNaN 1\n9e9 1\n"[..], sender);
         let mut motions = Motions::Queue(receiver);
-        let Moved::To(finger) = motions.look() else {
+        let MotionUpdate::New(finger) = motions.update() else {
             unreachable!("two lines were good");
         };
         let got = (finger.speed_mm_s, finger.force_n, finger.place_mm);
         assert_eq!(got, (-60.0, 0.5, Some([1.0, 2.0])));
-        assert!(matches!(motions.look(), Moved::Ended));
+        assert!(matches!(motions.update(), MotionUpdate::End));
     }
 
     /// A failed reading is passed on. The renderer holds the last motion for a while, and then
@@ -135,8 +151,8 @@ mod tests {
         for line in ["NaN 0.4\n", "80 inf\n", "80 -1\n", "80 21\n", "1001 0.4\n"] {
             let (sender, receiver) = RingBuffer::new(ROOM);
             read(line.as_bytes(), sender);
-            let moved = Motions::Queue(receiver).look();
-            assert!(matches!(moved, Moved::To(finger) if !finger.is_reading()), "{line}");
+            let moved = Motions::Queue(receiver).update();
+            assert!(matches!(moved, MotionUpdate::New(finger) if !finger.is_reading()), "{line}");
         }
     }
 }

@@ -1,18 +1,19 @@
 //! Standard output and standard error.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, FileError, OwnFolder};
 use htex_base::finding::{Notice, plain};
+use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::failure::Failure;
-use crate::hints::with_hint;
-use crate::located::named;
+use crate::failure::{Exit, Result, with_hint};
+use crate::located::with_uris;
 
 /// Prints a line on standard error. Unlike `eprintln!`, it does not panic if standard error is
 /// closed.
@@ -24,9 +25,19 @@ macro_rules! tell {
 }
 pub(crate) use tell;
 
+/// Prints the result of a command: as JSON with `--json`, else as text.
+pub(crate) fn show(result: &(impl Serialize + Display), is_json: bool) -> Result {
+    if is_json {
+        print_json(result)?
+    } else {
+        print(&result.to_string())?
+    }
+    Ok(Exit::SUCCESS)
+}
+
 /// Writes text to standard output. Control characters are escaped, because the text may quote
 /// untrusted files. A reader that has ended (`| head`) is not an error.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<()> {
     let lines: String = text
         .split_inclusive('\n')
         .map(|line| match line.strip_suffix('\n') {
@@ -38,12 +49,12 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Writes text unchanged to standard output, except that remote files are shown by their URIs.
-pub(crate) fn write(text: &str) -> Result<(), Failure> {
-    write_bytes(named(text).as_bytes())
+pub(crate) fn write(text: &str) -> Result<()> {
+    write_bytes(with_uris(text).as_bytes())
 }
 
 /// Writes bytes to standard output.
-pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
+pub(crate) fn write_bytes(bytes: &[u8]) -> Result<()> {
     let mut output = std::io::stdout().lock();
     match output.write_all(bytes).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -55,20 +66,21 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
 
 /// Writes a value as JSON with a line end. Characters that could control a terminal or change the
 /// direction of text are escaped as JSON escapes, because such characters occur only in strings.
-pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     write(&(json_line(value)? + "\n"))
 }
 
 /// Returns a value as JSON on one line, in which every character that steers a terminal is escaped.
-pub(crate) fn json_line(value: &impl Serialize) -> Result<String, Failure> {
+pub(crate) fn json_line(value: &impl Serialize) -> Result<String> {
     use std::fmt::Write as _;
     let text = serde_json::to_string(value)?;
     let mut escaped = String::with_capacity(text.len() + 1);
     for c in text.chars() {
-        match steers(c) {
+        if steers(c) {
             // All of these characters are in the basic multilingual plane.
-            true => drop(write!(escaped, "\\u{:04x}", u32::from(c))),
-            false => escaped.push(c),
+            let _ = write!(escaped, "\\u{:04x}", u32::from(c));
+        } else {
+            escaped.push(c);
         }
     }
     Ok(escaped)
@@ -115,14 +127,14 @@ pub(crate) fn note<N: Clone + Into<Notice>>(notes: &[N]) {
 fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
     for notice in notices {
         let Notice { text, hint } = notice.clone().into();
-        tell!("{kind}: {}", plain(&named(&with_hint(&text, hint))));
+        tell!("{kind}: {}", plain(&with_uris(&with_hint(&text, hint))));
     }
 }
 
 /// A file that a command writes. Every command writes its files by [`Self::replace`], so this type
 /// decides which links are followed.
 #[derive(Clone, Copy)]
-pub(crate) enum Written<'a> {
+pub(crate) enum OutputFile<'a> {
     /// A file that the user named. A link is followed, because the user may have named it for that
     /// purpose.
     Named(&'a Path),
@@ -131,7 +143,7 @@ pub(crate) enum Written<'a> {
     Inside(&'a OwnFolder, &'a Path),
 }
 
-impl Written<'_> {
+impl OutputFile<'_> {
     pub(crate) fn path(self) -> PathBuf {
         match self {
             Self::Named(path) => path.to_owned(),
@@ -158,6 +170,31 @@ impl Written<'_> {
 }
 
 /// Writes a file that the user named, under a temporary name next to it, and renames it.
-pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    Ok(Written::Named(path).write(bytes)?)
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    Ok(OutputFile::Named(path).write(bytes)?)
+}
+
+/// Returns a path for messages, with control characters escaped.
+pub(crate) fn shown(path: &Path) -> String {
+    plain(&path.display().to_string()).into_owned()
+}
+
+/// Returns a progress bar over `steps` named steps on standard error. It is hidden unless that is a
+/// terminal.
+pub(crate) fn bar(steps: u64) -> ProgressBar {
+    bar_like(steps, "{bar:24} {pos}/{len} {msg}")
+}
+
+/// Returns a progress bar over bytes, with the rate and the time left.
+#[cfg(feature = "build")]
+pub(crate) fn byte_bar(bytes: u64) -> ProgressBar {
+    bar_like(bytes, "{bar:24} {msg}, {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left")
+}
+
+fn bar_like(length: u64, template: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
 }

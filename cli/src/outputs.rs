@@ -6,8 +6,8 @@
 use std::fs::Metadata;
 use std::path::Path;
 
-use crate::failure::Failure;
-use crate::shown::shown;
+use crate::failure::{Failure, Result};
+use crate::output::shown;
 
 /// Refuses outputs that are inputs, and outputs that are the same file, under any name.
 ///
@@ -15,7 +15,7 @@ use crate::shown::shown;
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
-) -> Result<(), Failure> {
+) -> Result<()> {
     let inputs: Vec<&Path> = inputs.into_iter().collect();
     let mut before: Vec<&Path> = Vec::new();
     for output in outputs {

@@ -9,10 +9,9 @@ use htex_device::{DeviceError, SettingKind, StreamFormat};
 use htex_scene::file::Motion;
 use htex_scene::{Plan, Renderer};
 
-use crate::failure::Failure;
-use crate::invocation;
+use crate::failure::{Failure, Result};
 use crate::scenes::Ready;
-use crate::signals;
+use crate::{invocation, signals};
 
 /// Longest wait for space in a device. A device that takes nothing for this long is reported as
 /// stuck.
@@ -76,10 +75,10 @@ pub(crate) struct Output {
 
 impl Output {
     /// Opens the device of a scene.
-    pub(crate) fn open(ready: &Ready, plan: &Plan) -> Result<Self, Failure> {
+    pub(crate) fn open(ready: &Ready, plan: &Plan) -> Result<Self> {
         let frames = block_frames(ready, plan);
         let format = StreamFormat { rate_hz: plan.rate_hz, block_frames: frames };
-        let settings = ready.settings();
+        let settings = &ready.scene.settings;
         let written = ready.device.descriptor().settings.iter();
         for file in written.filter(|s| s.kind == SettingKind::Path) {
             ready.check_output(Path::new(settings.text(&file.name)))?;
@@ -120,7 +119,7 @@ impl Output {
     }
 
     /// Renders one block and writes it. Returns false at the end.
-    pub(crate) fn step(&mut self, renderer: &mut Renderer) -> Result<bool, Failure> {
+    pub(crate) fn step(&mut self, renderer: &mut Renderer) -> Result<bool> {
         let left = renderer.frames_left().map_or(usize::MAX, |left| left as usize);
         let frames = renderer.render(&mut self.block).unwrap_or_else(|error| {
             self.failed.get_or_insert_with(|| error.to_string());
@@ -142,13 +141,14 @@ impl Output {
         Ok(frames == self.block.len())
     }
 
-    fn write(&mut self, frames: usize) -> Result<(), Failure> {
+    fn write(&mut self, frames: usize) -> Result<()> {
         let mut rest = &self.block[..frames];
         while !rest.is_empty() {
             let taken = self.device.write(rest, PATIENCE)?;
             if taken == 0 {
-                let sentence = "the device has taken nothing for 5 s; connect it anew";
-                return Err(Failure::Other(sentence.to_owned()));
+                return Err(Failure::other(
+                    "the device has taken nothing for 5 s; connect it anew",
+                ));
             }
             rest = &rest[taken..];
         }
@@ -174,7 +174,7 @@ impl Output {
     }
 
     /// Plays what was written, and keeps the result unless there was an error.
-    pub(crate) fn finish(mut self) -> Result<htex_device::Status, Failure> {
+    pub(crate) fn finish(mut self) -> Result<htex_device::Status> {
         if let Some(error) = self.failed.take() {
             // The fade to zero still has to be played on a device with a clock. A file is not kept.
             if self.clocked {
@@ -184,5 +184,13 @@ impl Output {
         }
         self.device.finish()?;
         Ok(self.device.status())
+    }
+}
+
+/// Returns the line about samples that were limited, if there were any.
+pub(crate) fn limited_text(samples: u64) -> String {
+    match samples {
+        0 => String::new(),
+        _ => format!("{samples} samples were held at the drive or the device's limit\n"),
     }
 }

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_host::{Registry, Search, WasmLimits};
+use htex_host::{LoadedModel, Origin, Registry, Search, WasmLimits};
 
-use crate::failure::Failure;
-use crate::of_file::of_file;
+use crate::failure::{Result, for_file};
 use crate::output::warn;
 use crate::wasm_limits::WasmLimit;
 
@@ -40,12 +39,12 @@ impl PluginArgs {
     }
 
     /// Returns the models that are found. Reports those that shadow others on standard error.
-    pub(crate) fn registry(&self) -> Result<Registry, Failure> {
+    pub(crate) fn registry(&self) -> Result<Registry> {
         self.registry_with(&[])
     }
 
     /// Returns the models as [`Self::registry`] does, with additional plugin files.
-    pub(crate) fn registry_with(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
+    pub(crate) fn registry_with(&self, files: &[PathBuf]) -> Result<Registry> {
         let registry = self.search(files)?;
         let notes: Vec<String> = registry.notes().iter().map(ToString::to_string).collect();
         warn(&notes);
@@ -53,20 +52,30 @@ impl PluginArgs {
     }
 
     /// Returns the models as [`Self::registry`] does, but without reports.
-    pub(crate) fn registry_quietly(&self) -> Result<Registry, Failure> {
+    pub(crate) fn registry_quietly(&self) -> Result<Registry> {
         self.search(&[])
     }
 
     /// Returns the models that are found without any arguments, without reports.
-    pub(crate) fn installed() -> Result<Registry, Failure> {
+    pub(crate) fn installed() -> Result<Registry> {
         Ok(Registry::search(&Search::default().with_limits(WasmLimit::all(&[])))?)
+    }
+
+    /// Returns the model in the file of this name if the file exists, else the model with this short
+    /// name or id.
+    pub(crate) fn find(&self, name: &str) -> Result<LoadedModel> {
+        let file = Path::new(name);
+        if file.is_file() {
+            return Ok(LoadedModel::from_file_within(file, &self.limits())?);
+        }
+        Ok(self.registry()?.find(name)?.clone())
     }
 
     pub(crate) fn limits(&self) -> WasmLimits {
         WasmLimit::all(&self.wasm_limit)
     }
 
-    fn search(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
+    fn search(&self, files: &[PathBuf]) -> Result<Registry> {
         Ok(Registry::search(
             &Search::default()
                 .with_files([&self.plugin[..], files].concat())
@@ -89,7 +98,7 @@ pub(crate) struct PlayerArgs {
 
 impl PlayerArgs {
     /// Returns the models that are found, without those embedded in assets.
-    pub(crate) fn registry(&self) -> Result<Registry, Failure> {
+    pub(crate) fn registry(&self) -> Result<Registry> {
         self.plugins.registry()
     }
 
@@ -98,13 +107,23 @@ impl PlayerArgs {
         !self.no_embedded_plugins
     }
 
-    pub(crate) fn open(&self, path: &Path) -> Result<htex::Texture, Failure> {
+    pub(crate) fn open(&self, path: &Path) -> Result<htex::Texture> {
         let registry = self.plugins.registry()?;
-        let data = htex_format::Asset::open(path).map_err(of_file(path))?;
+        let data = htex_format::Asset::open(path).map_err(for_file(path))?;
         let asset = htex::Texture::with_registry(data, registry);
         if self.no_embedded_plugins {
             return Ok(asset);
         }
         Ok(asset.with_embedded())
+    }
+}
+
+/// Returns the order and the name of a way to load a model. The built-in model comes first, because
+/// the others are compared with it.
+pub(crate) fn way(origin: &Origin) -> (u8, &'static str) {
+    match origin {
+        Origin::Builtin => (0, "built in"),
+        Origin::Native(_) => (1, "native"),
+        _ => (2, "wasm"),
     }
 }

@@ -7,13 +7,12 @@ use htex_author::recording::{MOST_VALUES, read_recording};
 use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, SpectrumOptions, Take, validate_recording};
 use htex_base::finding::Report;
+
+use crate::failure::{Failure, Result};
+use crate::located;
+use crate::output::{note, shown};
 #[cfg(feature = "lab")]
 use htex_lab::record::KnownTake;
-
-use crate::failure::Failure;
-use crate::located;
-use crate::output::note;
-use crate::shown::shown;
 
 /// Options for reading recordings.
 #[derive(Args)]
@@ -58,15 +57,11 @@ impl RecordingArgs {
     }
 
     /// Reads recordings, each with its given condition.
-    pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
+    pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>> {
         self.read_with(files, &self.settings)
     }
 
-    fn read_with(
-        &self,
-        files: &[PathBuf],
-        settings: &ReadingSettings,
-    ) -> Result<Vec<Take>, Failure> {
+    fn read_with(&self, files: &[PathBuf], settings: &ReadingSettings) -> Result<Vec<Take>> {
         let options = settings.read_options(files.len())?;
         let given = self.conditions(files.len())?;
         let given = options.iter().zip(given);
@@ -82,14 +77,14 @@ impl RecordingArgs {
 
     /// Reads one recording with its condition. A recording made by `htex record` or a study is read
     /// as its JSON file says, unless flags say what its columns are.
-    pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
+    pub(crate) fn read_one(&self, file: &Path) -> Result<Take> {
         let own = known_take(file)?.filter(|_| !self.settings.says_columns());
         self.read_as(file, own)
     }
 
     /// Reads one of several recordings with its condition. A recording made by `htex record` or a
     /// study is read as its JSON file says, even if flags say what the columns of the others are.
-    pub(crate) fn read_among(&self, file: &Path) -> Result<Take, Failure> {
+    pub(crate) fn read_among(&self, file: &Path) -> Result<Take> {
         let own = known_take(file)?;
         if own.is_some() && self.settings.says_columns() {
             note(&[format!(
@@ -100,7 +95,7 @@ impl RecordingArgs {
         self.read_as(file, own)
     }
 
-    fn read_as(&self, file: &Path, own: Option<KnownTake>) -> Result<Take, Failure> {
+    fn read_as(&self, file: &Path, own: Option<KnownTake>) -> Result<Take> {
         let takes = match own {
             Some(own) => {
                 let file = own.recording.clone();
@@ -113,7 +108,7 @@ impl RecordingArgs {
     }
 
     /// Returns the findings in one recording.
-    pub(crate) fn validate(&self, file: &Path) -> Result<Report, Failure> {
+    pub(crate) fn validate(&self, file: &Path) -> Result<Report> {
         let given = self.conditions(1)?.pop().unwrap_or_default();
         let settings = &self.settings;
         let read = settings.read_options(1)?.pop().unwrap_or_default();
@@ -128,12 +123,12 @@ impl RecordingArgs {
         condition || self.strict || bounded || !self.settings.recorded().is_empty()
     }
 
-    pub(crate) fn spectrum_options(&self) -> Result<SpectrumOptions, Failure> {
+    pub(crate) fn spectrum_options(&self) -> Result<SpectrumOptions> {
         Ok(self.settings.spectrum_options()?)
     }
 
     /// Returns one condition for each of `count` recordings.
-    fn conditions(&self, count: usize) -> Result<Vec<Exploration>, Failure> {
+    fn conditions(&self, count: usize) -> Result<Vec<Exploration>> {
         let common = Exploration { speed_mm_s: self.speed, force_n: self.force };
         let given: Vec<Exploration> =
             self.at.iter().map(|text| parse_condition(text, common)).collect::<Result<_, _>>()?;
@@ -149,7 +144,7 @@ impl RecordingArgs {
 }
 
 #[cfg(feature = "lab")]
-fn known_take(file: &Path) -> Result<Option<KnownTake>, Failure> {
+fn known_take(file: &Path) -> Result<Option<KnownTake>> {
     Ok(KnownTake::find(file)?)
 }
 
@@ -167,15 +162,12 @@ impl KnownTake {
 }
 
 #[cfg(not(feature = "lab"))]
-fn known_take(_: &Path) -> Result<Option<KnownTake>, Failure> {
+fn known_take(_: &Path) -> Result<Option<KnownTake>> {
     Ok(None)
 }
 
 /// Parses `speed=80,force=0.4`. A quantity that is not given keeps its value.
-pub(crate) fn parse_condition(
-    text: &str,
-    mut condition: Exploration,
-) -> Result<Exploration, Failure> {
+pub(crate) fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration> {
     let wrong = |what: &str| {
         Failure::Usage(format!("--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"))
     };

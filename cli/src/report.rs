@@ -5,11 +5,12 @@ use htex_author::{FeltShare, FittedAsset};
 use htex_format::{By, MeasureKind, Quality};
 use htex_host::Registry;
 
-use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
+use crate::assets::{AssetSummary, motion_text, short_name};
 use crate::columns::Column;
+use crate::failure::Result;
 
 /// A fitted asset with the data needed for its report.
-pub(crate) struct Reported<'a> {
+pub(crate) struct ReportSource<'a> {
     pub(crate) fitted: &'a FittedAsset,
     /// The asset with the models that can play it.
     pub(crate) asset: &'a htex::Texture,
@@ -18,7 +19,7 @@ pub(crate) struct Reported<'a> {
     pub(crate) recording_bytes: u64,
 }
 
-impl Reported<'_> {
+impl ReportSource<'_> {
     /// Returns the texture at each of its recorded conditions.
     pub(crate) fn textures(&self) -> Result<Vec<Texture>, htex::Error> {
         let spectra = self.fitted.spectra.iter().enumerate();
@@ -44,8 +45,8 @@ impl Reported<'_> {
     pub(crate) fn texture(&self, condition: usize) -> Result<Texture, htex::Error> {
         let (manifest, spectrum) = (self.asset.manifest(), &self.fitted.spectra[condition]);
         let mut models = Vec::new();
-        for representation in &self.summary.representations {
-            models.extend(self.model(representation, condition)?);
+        for index in 0..self.summary.representations.len() {
+            models.extend(self.model(index, condition)?);
         }
         let known = &manifest.conditions[condition];
         Ok(Texture {
@@ -69,15 +70,14 @@ impl Reported<'_> {
     }
 
     /// Returns a model's curve at a condition; `None` if the model was not fitted there.
-    fn model(
-        &self,
-        representation: &RepresentationSummary,
-        condition: usize,
-    ) -> Result<Option<ModelResult>, htex::Error> {
-        let Some(at) = representation.at(condition) else {
+    fn model(&self, index: usize, condition: usize) -> Result<Option<ModelResult>, htex::Error> {
+        let Some((stated, at)) =
+            self.summary.conditions(index).find(|(stated, _)| stated.condition == condition)
+        else {
             return Ok(None);
         };
-        let quality = at.quality.as_ref();
+        let representation = &self.summary.representations[index];
+        let quality = stated.quality.as_ref();
         let known = &self.asset.manifest().conditions[condition];
         let motion = known
             .speed_mm_s
@@ -91,11 +91,11 @@ impl Reported<'_> {
         Ok(Some(ModelResult {
             model: descriptor.name.clone(),
             magnitude: playable.magnitude(motion, grid)?,
-            measured: tables().iter().map(|t| at.measured(t.0)).collect(),
+            measured: tables().iter().map(|t| at.measured(stated, t.0)).collect(),
             note: note(quality),
             band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),
             payload_bytes: representation.payload_bytes,
-            lines: descriptor.is_sum_of_sines().then(|| at.lines()),
+            lines: descriptor.is_sum_of_sines().then(|| at.lines(stated.level_rms)),
             color: model_color(name, &Registry::builtin_names()).to_owned(),
             short_name: name.to_owned(),
         }))
@@ -107,11 +107,11 @@ fn tables() -> Vec<(Column, Measure)> {
     let mut tables = Vec::new();
     for measure in htex_format::Measure::of_both() {
         let row = measure.row();
-        let of = [
+        let kinds = [
             (By::Magnitude, "fitted magnitude", row.caption),
             (By::Samples, "rendered samples", row.caption.filter(|_| row.played.is_some())),
         ];
-        for (by, what, caption) in of {
+        for (by, what, caption) in kinds {
             tables.extend(caption.map(|caption| {
                 let table = Measure {
                     caption: caption.replace("{}", what),
@@ -125,19 +125,19 @@ fn tables() -> Vec<(Column, Measure)> {
     tables
 }
 
-/// Returns the measures of a texture report, as used in [`Reported::textures`].
+/// Returns the measures of a texture report, as used in [`ReportSource::textures`].
 pub(crate) fn measures() -> Vec<Measure> {
     tables().into_iter().map(|(_, table)| table).collect()
 }
 
 /// Returns the correlation and nine-band error that are shown below a spectrum.
 fn note(quality: Option<&Quality>) -> String {
-    let of = |measure, decimals| {
+    let value = |measure, decimals| {
         let value = quality.and_then(|q| q.get(measure));
         htex_author::report::fixed(value.unwrap_or(f64::NAN), decimals)
     };
-    let r = of(htex_format::Measure::SpectralCorrelation, 2);
-    format!("r = {r}, error {} dB RMS", of(htex_format::Measure::NineBand, 1))
+    let r = value(htex_format::Measure::SpectralCorrelation, 2);
+    format!("r = {r}, error {} dB RMS", value(htex_format::Measure::NineBand, 1))
 }
 
 /// Counts, over the textures at all their conditions, how many each model keeps below the
@@ -155,7 +155,8 @@ pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) 
                     shares.len() - 1
                 }
             };
-            representation.count(&mut shares[at].1);
+            let felt = representation.at.iter().filter_map(|at| at.felt.as_ref());
+            felt.for_each(|felt| shares[at].1.count(felt));
         }
     }
     let share = |(short_name, share): (String, FeltShare)| Share {

@@ -11,11 +11,10 @@ use htex_format::{Quantity, Rights};
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Limits, Renderer, read_scene};
 
-use crate::failure::Failure;
-use crate::of_file::of_file;
+use crate::failure::{Failure, Result, for_file};
+use crate::output::shown;
 use crate::plugins::PlayerArgs;
 use crate::scenes::{Loader, Ready, costs};
-use crate::shown::shown;
 
 /// The device that takes a texture's samples unchanged, as numbers in their unit.
 const ADAPTER: &str = "org.htex.file";
@@ -41,11 +40,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Reads a scene. It plays for `seconds` if given, else for its own duration, else for two
     /// seconds.
-    pub(crate) fn open(
-        file: &Path,
-        player: &PlayerArgs,
-        seconds: Option<f64>,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn open(file: &Path, player: &PlayerArgs, seconds: Option<f64>) -> Result<Self> {
         let loader = Loader::builtin(player)?;
         let told = RefCell::default();
         // The quantity is a setting of the device, so it is read before the scene is loaded.
@@ -92,16 +87,16 @@ impl Scene {
         })
     }
 
-    fn samples(&self, rate_hz: f64) -> Result<Vec<f32>, Failure> {
+    fn samples(&self, rate_hz: f64) -> Result<Vec<f32>> {
         let device = numbers(Some(self.quantity), Some(rate_hz));
         let mut ready = load(&self.loader, &self.file, &device, &self.told)?;
         ready.scene.file.duration_s = Some(self.seconds);
         let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.file))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.file))?;
         let mut samples = Vec::new();
         let mut block = [0.0; BLOCK];
         loop {
-            let rendered = renderer.render(&mut block).map_err(of_file(&self.file))?;
+            let rendered = renderer.render(&mut block).map_err(for_file(&self.file))?;
             if rendered == 0 {
                 return Ok(samples);
             }
@@ -147,8 +142,6 @@ fn load(
     file: &Path,
     device: &DeviceOverride,
     told: &RefCell<BTreeSet<String>>,
-) -> Result<Ready, Failure> {
-    loader.load(file, &mut told.borrow_mut(), |around| {
-        htex_scene::Scene::open_with(file, around, device)
-    })
+) -> Result<Ready> {
+    loader.load(file, &mut told.borrow_mut(), |around| htex_scene::Scene::open_with(file, around, device))
 }

@@ -11,14 +11,12 @@ use htex_scene::{Costs, DeviceOverride, Plan, Scene, Surroundings};
 use serde_json::Value;
 
 use crate::devices::{DeviceArgs, SettingArgs};
-use crate::failure::Failure;
+use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
-use crate::output::{note, warn};
+use crate::output::{note, shown, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::{PlayerArgs, PluginArgs};
-use crate::schemas::Named;
-use crate::shown::shown;
+use crate::schemas::SchemaFile;
 
 /// Models and devices for a scene.
 #[derive(Args)]
@@ -35,10 +33,10 @@ pub(crate) struct SceneArgs {
 pub(crate) struct ChoiceArgs {
     /// The device, by short name or id, instead of the scene's; its settings are then the defaults
     #[arg(long, value_name = "ID", help_heading = "Devices")]
-    device: Option<String>,
+    pub(crate) device: Option<String>,
 
     #[command(flatten)]
-    settings: SettingArgs,
+    pub(crate) settings: SettingArgs,
 
     /// Value of one unit of the assets' quantity in the device's unit, if they differ: 0.1 plays an
     /// acceleration of 1 m/s2 as 0.1 N
@@ -53,7 +51,7 @@ impl ChoiceArgs {
         &self,
         output: Option<&Path>,
         rehearsal: bool,
-    ) -> Result<DeviceOverride, Failure> {
+    ) -> Result<DeviceOverride> {
         Ok(DeviceOverride {
             rehearsal,
             live: false,
@@ -66,18 +64,13 @@ impl ChoiceArgs {
         })
     }
 
-    /// Refuses a device that this build does not have.
-    pub(crate) fn check_built(name: &str) -> Result<(), Failure> {
-        DeviceArgs::missing(name).map_or(Ok(()), |why| Err(why.into()))
-    }
-
     /// Refuses to replace an existing file that the user did not name. The default file has the
     /// scene's name with another extension.
-    pub(crate) fn check_unnamed(&self, ready: &Ready) -> Result<(), Failure> {
+    pub(crate) fn check_unnamed(&self, ready: &Ready) -> Result<()> {
         let given = self.settings.given()?;
         let settings = ready.device.descriptor().settings.iter();
         for setting in settings.filter(|s| s.kind == SettingKind::Path) {
-            let path = ready.settings().text(&setting.name);
+            let path = ready.scene.settings.text(&setting.name);
             // `exists` would follow a link, and miss one that leads nowhere.
             if !given.contains_key(&setting.name) && Path::new(path).symlink_metadata().is_ok() {
                 return Err(Failure::Usage(format!(
@@ -87,15 +80,6 @@ impl ChoiceArgs {
             }
         }
         Ok(())
-    }
-
-    /// Whether the given settings name a file to write.
-    pub(crate) fn names_output(&self) -> Result<bool, Failure> {
-        Ok(self.settings.given()?.contains_key("path"))
-    }
-
-    pub(crate) fn names_device(&self) -> bool {
-        self.device.is_some()
     }
 }
 
@@ -109,11 +93,11 @@ pub(crate) struct Ready {
 }
 
 impl SceneArgs {
-    pub(crate) fn models(&self) -> Result<Registry, Failure> {
+    pub(crate) fn models(&self) -> Result<Registry> {
         self.player.registry()
     }
 
-    pub(crate) fn open(&self, file: &Path, device: &DeviceOverride) -> Result<Ready, Failure> {
+    pub(crate) fn open(&self, file: &Path, device: &DeviceOverride) -> Result<Ready> {
         if located::is_copy(file) {
             return Err(Failure::Usage(format!(
                 "{}: a scene names files beside it; download its folder and name the scene there",
@@ -130,7 +114,7 @@ impl SceneArgs {
         motion: Motion,
         seconds: Option<f64>,
         device: &DeviceOverride,
-    ) -> Result<Ready, Failure> {
+    ) -> Result<Ready> {
         self.load(file, |around| Scene::of_asset(file, motion, seconds, around, device))
     }
 
@@ -138,12 +122,12 @@ impl SceneArgs {
         &self,
         file: &Path,
         load: impl FnOnce(&Surroundings<'_>) -> Result<Scene, htex_scene::SceneError>,
-    ) -> Result<Ready, Failure> {
+    ) -> Result<Ready> {
         self.loader()?.load(file, &mut BTreeSet::new(), load)
     }
 
     /// Finds the models and devices once, for several scenes.
-    pub(crate) fn loader(&self) -> Result<Loader, Failure> {
+    pub(crate) fn loader(&self) -> Result<Loader> {
         Ok(Loader {
             models: self.models()?,
             devices: self.devices.devices()?,
@@ -151,18 +135,18 @@ impl SceneArgs {
         })
     }
 
-    pub(crate) fn validate(file: &Path) -> Result<htex_base::finding::Report, Failure> {
+    pub(crate) fn validate(file: &Path) -> Result<htex_base::finding::Report> {
         let registry = PluginArgs::installed()?;
         let around = Surroundings {
             models: &registry,
             embedded: false,
             devices: Some(&DeviceArgs::default().devices_quietly()?),
         };
-        htex_scene::validate(file, &around).map_err(of_file(file))
+        htex_scene::validate(file, &around).map_err(for_file(file))
     }
 
     /// Returns the schema for the settings of a scene's device, if the device is known.
-    pub(crate) fn settings_schema(scene: &Value) -> Result<Option<Named>, Failure> {
+    pub(crate) fn settings_schema(scene: &Value) -> Result<Option<SchemaFile>> {
         let name = scene.pointer("/device/adapter").and_then(Value::as_str);
         let devices = DeviceArgs::default().devices_quietly()?;
         // A scene that names no device plays to a file.
@@ -182,7 +166,7 @@ pub(crate) struct Loader {
 impl Loader {
     /// Creates a loader with only this program's own devices, for scenes that are rendered and not
     /// heard.
-    pub(crate) fn builtin(player: &PlayerArgs) -> Result<Self, Failure> {
+    pub(crate) fn builtin(player: &PlayerArgs) -> Result<Self> {
         Ok(Self {
             models: player.registry()?,
             devices: Devices::new(htex_device_builtin::devices()),
@@ -200,8 +184,8 @@ impl Loader {
         file: &Path,
         told: &mut BTreeSet<String>,
         load: impl FnOnce(&Surroundings<'_>) -> Result<Scene, htex_scene::SceneError>,
-    ) -> Result<Ready, Failure> {
-        let scene = load(&self.around()).map_err(of_file(file))?;
+    ) -> Result<Ready> {
+        let scene = load(&self.around()).map_err(for_file(file))?;
         let notes = scene.notes.iter().map(ToString::to_string);
         let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
         warn(&new);
@@ -218,19 +202,15 @@ impl Loader {
 }
 
 impl Ready {
-    pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan, Failure> {
-        htex_scene::plan(&self.scene, &self.capabilities, costs).map_err(of_file(&self.file))
+    pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan> {
+        htex_scene::plan(&self.scene, &self.capabilities, costs).map_err(for_file(&self.file))
     }
 
     /// Refuses an output file from which the scene was read.
-    pub(crate) fn check_output(&self, output: &Path) -> Result<(), Failure> {
+    pub(crate) fn check_output(&self, output: &Path) -> Result<()> {
         let mut inputs = self.scene.inputs();
         inputs.push(self.file.clone());
         check_outputs([output], inputs.iter().map(PathBuf::as_path))
-    }
-
-    pub(crate) fn settings(&self) -> &Settings {
-        &self.scene.settings
     }
 }
 
@@ -240,7 +220,7 @@ fn capabilities(
     device: &AdapterEntry,
     settings: &Settings,
     devices: &Devices,
-) -> Result<Capabilities, Failure> {
+) -> Result<Capabilities> {
     let missing = match device.adapter.capabilities(settings) {
         Err(error @ DeviceError::Missing(_)) if settings.number("limit_v") > 0.0 => error,
         other => return Ok(other?),
@@ -267,9 +247,9 @@ pub(crate) fn is_asset(file: &Path) -> bool {
 }
 
 /// Returns the motion of an asset's default condition.
-pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
-    let asset = htex::Texture::new(htex_format::Asset::open(file).map_err(of_file(file))?);
-    let representation = asset.representation(None).map_err(of_file(file))?;
+pub(crate) fn default_motion(file: &Path) -> Result<Motion> {
+    let asset = htex::Texture::new(htex_format::Asset::open(file).map_err(for_file(file))?);
+    let representation = asset.representation(None).map_err(for_file(file))?;
     let htex::Motion { speed_mm_s, force_n, .. } = representation.motion(None, None);
     Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
 }

@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::AtFile;
 use htex_base::finding::{FINDINGS_TRUNCATED, Finding, Report, Rule, Severity};
-#[cfg(feature = "schemas")]
-use htex_base::schema::{Schema, Violation};
 use htex_device::SettingKind;
 use htex_format::{EXTENSION_SCHEMA_BROKEN, SCHEMA_BROKEN};
 use serde_json::{Map, Value, json};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
+
+#[cfg(feature = "schemas")]
+use htex_base::schema::{Schema, Violation};
 #[cfg(not(feature = "schemas"))]
-use crate::no_schemas::{Schema, Violation};
+use without_validator::{Schema, Violation};
 
 /// The note for builds that cannot validate documents against schemas.
 pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
@@ -28,30 +29,13 @@ pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
 const KEPT: usize = 100;
 
 /// A schema of this project, named by its file in `spec/schemas`.
-pub(crate) struct Named {
+pub(crate) struct SchemaFile {
     file: String,
     schema: Schema,
 }
 
-impl Named {
-    pub(crate) fn manifest() -> Result<Self, Failure> {
-        Self::new("manifest-1.json", &htex_format::manifest_schema())
-    }
-
-    pub(crate) fn scene() -> Result<Self, Failure> {
-        Self::new("scene-1.json", &htex_scene::scene_schema())
-    }
-
-    pub(crate) fn model() -> Result<Self, Failure> {
-        Self::new("descriptor-1.json", &htex_model::descriptor_schema())
-    }
-
-    pub(crate) fn device() -> Result<Self, Failure> {
-        let [(file, schema), ..] = htex_device::schemas();
-        Self::new(file, &schema)
-    }
-
-    fn new(file: &str, schema: &Value) -> Result<Self, Failure> {
+impl SchemaFile {
+    pub(crate) fn new(file: &str, schema: &Value) -> Result<Self> {
         let schema =
             Schema::new(schema).map_err(|error| Failure::Other(format!("{file}: {error}")))?;
         let file = file.to_owned();
@@ -60,7 +44,7 @@ impl Named {
 
     /// Adds the schema's violations. A violation is added to the finding about the same place, or
     /// becomes its own finding.
-    pub(crate) fn hold(&self, document: &Value, report: &mut Report) {
+    pub(crate) fn check(&self, document: &Value, report: &mut Report) {
         for violation in self.schema.violations(document) {
             let rule = format!("{}#{}", self.file, violation.rule);
             let same = |f: &&mut Finding| {
@@ -111,7 +95,7 @@ pub(crate) struct ExtensionSchema {
 }
 
 impl ExtensionSchema {
-    pub(crate) fn read(argument: &str) -> Result<Self, Failure> {
+    pub(crate) fn read(argument: &str) -> Result<Self> {
         let wrong = |what: String| Failure::Usage(format!("--extension-schema {argument}: {what}"));
         if let Some(absent) = ABSENT {
             return Err(wrong(absent.to_owned()));
@@ -130,7 +114,7 @@ impl ExtensionSchema {
     }
 
     /// Adds a finding for each rule that the extension in the manifest breaks.
-    pub(crate) fn hold(&self, manifest: &Value, report: &mut Report) {
+    pub(crate) fn check(&self, manifest: &Value, report: &mut Report) {
         let Some(extension) = manifest.get("extensions").and_then(|all| all.get(&self.name)) else {
             return;
         };
@@ -148,7 +132,7 @@ fn file_name(file: &Path) -> String {
 }
 
 /// Returns the schema for a device's settings in a scene: strings, numbers and booleans.
-pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<Named, Failure> {
+pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<SchemaFile> {
     let mut properties = Map::new();
     for setting in &device.settings {
         let schema = match &setting.kind {
@@ -177,5 +161,36 @@ pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<Named, Failur
             "additionalProperties": false,
         } } } },
     });
-    Named::new(&format!("settings of {}", device.id), &schema)
+    SchemaFile::new(&format!("settings of {}", device.id), &schema)
+}
+
+/// Replaces the validator of JSON Schemas in a program that is built without the feature `schemas`.
+#[cfg(not(feature = "schemas"))]
+mod without_validator {
+    use std::convert::Infallible;
+
+    use serde_json::Value;
+
+    use crate::failure::Result;
+
+    /// A schema that does not check anything.
+    pub(crate) struct Schema;
+
+    /// A violation of a schema, which never occurs.
+    #[allow(dead_code)] // None is ever made.
+    pub(crate) struct Violation {
+        pub(crate) pointer: String,
+        pub(crate) rule: String,
+        pub(crate) message: String,
+    }
+
+    impl Schema {
+        pub(crate) fn new(_: &Value) -> Result<Self, Infallible> {
+            Ok(Self)
+        }
+
+        pub(crate) fn violations(&self, _: &Value) -> Vec<Violation> {
+            Vec::new()
+        }
+    }
 }

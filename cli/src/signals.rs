@@ -6,7 +6,7 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::located;
 use crate::output::tell;
 
@@ -27,7 +27,7 @@ static SIGNALS: AtomicUsize = AtomicUsize::new(0);
 static HANDLED: OnceLock<Result<(), String>> = OnceLock::new();
 
 /// From now on, signals end the program and remove unfinished files.
-pub(crate) fn handle() -> Result<(), Failure> {
+pub(crate) fn handle() -> Result<()> {
     MEANING.store(ENDS, Ordering::Relaxed);
     SIGNALS.store(0, Ordering::Relaxed);
     let handled = HANDLED.get_or_init(install).clone();

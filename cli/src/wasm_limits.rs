@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use htex_host::{WasmCompiler, WasmLimits};
 
+use crate::failure::Result;
 use crate::invocation;
 
 /// One limit with its value.

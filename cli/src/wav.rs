@@ -5,11 +5,10 @@ use std::io::{BufWriter, Error};
 use std::path::Path;
 
 use hound::{SampleFormat, WavSpec, WavWriter};
-
-use crate::failure::Failure;
-use crate::output::{Written, warn};
-use crate::shown::shown;
 use htex_format::Rights;
+
+use crate::failure::{Failure, Result};
+use crate::output::{OutputFile, shown, warn};
 
 /// Maximum number of frames in a WAV file.
 // Sizes in a RIFF file have 32 bits. 64 bytes are for the header; rights that do not fit as well
@@ -19,12 +18,12 @@ const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 /// Writes `frames` samples of one channel, with the rights of the textures that are played.
 /// `render` produces them block by block. Warns if all samples are 0.
 pub(crate) fn write_wav(
-    wav: Written<'_>,
+    wav: OutputFile<'_>,
     rate_hz: u32,
     frames: u64,
     rights: &Rights,
-    mut render: impl FnMut(&mut [f32]) -> Result<(), Failure>,
-) -> Result<(), Failure> {
+    mut render: impl FnMut(&mut [f32]) -> Result<()>,
+) -> Result<()> {
     if frames > MAX_FRAMES {
         let hours = MAX_FRAMES as f64 / f64::from(rate_hz) / 3600.0;
         return Err(Failure::Other(format!(

@@ -214,7 +214,7 @@ def free_half(htex, known, other):
     for key, options in (("grid", ("--grid", "auto")), ("one", ())):
         arguments = ("--rate", FREE_RATE, "--model", "bands", "--name", "real", "-o", "real.htex")
         htex.run("fit", "half.csv", *arguments, *options)
-        asset = json.loads(htex.run("info", "real.htex", "--json"))
+        asset = json.loads(htex.run("info", "real.htex", "--json"))["manifest"]
         if key == "grid":
             left_out = [at["left_out"]["third_octave_error_rms_db"] for at in asset["representations"][0]["at"] if at.get("left_out")]
             row |= {"conditions": len(asset["conditions"]), "stated": rms(left_out)}

@@ -316,7 +316,7 @@ impl Packages {
     }
 
     /// Returns the package in whose folder a file lies.
-    fn of(&self, path: &Path) -> Option<&str> {
+    fn package(&self, path: &Path) -> Option<&str> {
         let holds = |(_, package): &(&String, &Package)| path.starts_with(&package.folder);
         let depth = |(_, package): &(&String, &Package)| package.folder.iter().count();
         self.ours.iter().filter(holds).max_by_key(depth).map(|(name, _)| name.as_str())
@@ -327,14 +327,14 @@ impl Packages {
 fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
     let mut words: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for source in sources {
-        let package = packages.of(&source.path).unwrap_or_default();
+        let package = packages.package(&source.path).unwrap_or_default();
         for word in &source.words {
             words.entry(word).or_default().insert(package);
         }
     }
     let mut unused = Vec::new();
     for source in sources.iter().filter(|source| !source.is_test) {
-        let package = packages.of(&source.path).unwrap_or_default();
+        let package = packages.package(&source.path).unwrap_or_default();
         let is_internal = !FOR_USERS.contains(&package) && !package.is_empty();
         let is_unused =
             |name: &&String| words.get(name.as_str()).is_none_or(|packages| packages.len() < 2);

@@ -84,7 +84,7 @@ impl Platform {
     ///
     /// # Errors
     /// A message with the known names.
-    pub fn named(name: &str) -> Result<Self> {
+    pub fn find(name: &str) -> Result<Self> {
         let turned = name.split_once('-').map(|(a, b)| format!("{b}-{a}"));
         let is_it = |one: &&Self| one.name == name || Some(one.name) == turned.as_deref();
         let names = || PLATFORMS.map(|one| one.name).join(", ");
@@ -107,8 +107,8 @@ impl Platform {
     pub fn here() -> Result<Self> {
         let (cpu, system) = (std::env::consts::ARCH, std::env::consts::OS);
         match system {
-            "macos" => Self::named("macos"),
-            _ => Self::named(&format!("{cpu}-{system}")),
+            "macos" => Self::find("macos"),
+            _ => Self::find(&format!("{cpu}-{system}")),
         }
     }
 }

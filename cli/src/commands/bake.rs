@@ -1,18 +1,17 @@
+use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex::Motion;
+use htex_base::files::AtFile;
 use htex_play::bake::{BakeLimits, BakeResult, Grid};
+use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::of_file::of_file;
-use crate::output::{print, print_json, warn, write_file};
+use crate::failure::{Failure, Result, for_file};
+use crate::output::{show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
-use crate::shown::shown;
-use htex_base::files::AtFile;
 
 /// Range of the number of coefficients in a filter.
 const FEWEST: i64 = BakeLimits::FEWEST as i64;
@@ -77,25 +76,27 @@ pub(crate) struct Bake {
 }
 
 impl Bake {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
-        let (name, format) = named(&self.output, self.name.as_deref())?;
-        let given = self.given()?;
+        let (name, format) = name_and_format(&self.output, self.name.as_deref())?;
+        let grid = self.grid()?;
         if !(self.within > 0.0 && self.within.is_finite()) {
-            let sentence = format!("--within {}: a number of decibels above 0", self.within);
-            return Err(Failure::Usage(sentence));
+            return Err(Failure::Usage(format!(
+                "--within {}: a number of decibels above 0",
+                self.within
+            )));
         }
         let asset = self.player.open(&self.asset)?;
         let representation =
-            asset.representation(self.model.as_deref()).map_err(of_file(&self.asset))?;
-        let grid = match given {
+            asset.representation(self.model.as_deref()).map_err(for_file(&self.asset))?;
+        let grid = match grid {
             Some(grid) => grid,
-            None => Grid::for_default_condition(representation).map_err(of_file(&self.asset))?,
+            None => Grid::for_default_condition(representation).map_err(for_file(&self.asset))?,
         };
         let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
         let limits = BakeLimits::within_db(self.within).with_longest(longest);
         let baked = htex_play::bake::bake(representation, &grid, self.rate, limits)
-            .map_err(of_file(&self.asset))?;
+            .map_err(for_file(&self.asset))?;
         let rights = match format {
             Format::Bytes => Some(&baked.rights),
             Format::C | Format::Rust => None,
@@ -121,19 +122,14 @@ impl Bake {
             )]);
         }
         warn_of_frequencies(&baked);
-        if self.json {
-            print_json(&report(&baked, self.rate))?
-        } else {
-            print(&text(&self.output, &baked, self.rate))?
-        }
-        Ok(Exit::SUCCESS)
+        show(&BakeReport { output: &self.output, baked: &baked, rate_hz: self.rate }, self.json)
     }
 
     /// Reads the conditions from the command line.
-    fn given(&self) -> Result<Option<Grid>, Failure> {
+    fn grid(&self) -> Result<Option<Grid>> {
         if let Some(text) = &self.grid {
             let [speeds, forces] = axes("--grid", text, span)?;
-            return Grid::new(speeds, forces).map(Some).map_err(of_file(&self.asset));
+            return Grid::new(speeds, forces).map(Some).map_err(for_file(&self.asset));
         }
         let mut motions = Vec::new();
         for text in &self.at {
@@ -143,7 +139,7 @@ impl Bake {
         if motions.is_empty() {
             Ok(None)
         } else {
-            Grid::from_conditions(&motions).map(Some).map_err(of_file(&self.asset))
+            Grid::from_conditions(&motions).map(Some).map_err(for_file(&self.asset))
         }
     }
 }
@@ -177,7 +173,7 @@ enum Format {
 
 /// Returns the name of the array and the format. A given name is checked; otherwise the file's name
 /// is used.
-fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure> {
+fn name_and_format(output: &Path, given: Option<&str>) -> Result<(String, Format)> {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|p| p.to_str()).map(str::to_owned);
     let stem = text(output.file_stem()).unwrap_or_default();
     let (format, is_name, rule): (_, fn(&str) -> bool, _) = match text(output.extension())
@@ -211,7 +207,7 @@ fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure
 }
 
 /// Reads `speed=…,force=…`.
-fn axes<T>(flag: &str, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<[T; 2], Failure> {
+fn axes<T>(flag: &str, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<[T; 2]> {
     let (mut speed, mut force) = (None, None);
     for part in text.split(',') {
         match part.split_once('=').map(|(key, value)| (key.trim(), value)) {
@@ -252,64 +248,76 @@ fn span(text: &str) -> Option<Vec<f64>> {
     }
 }
 
-fn report(baked: &BakeResult, rate_hz: f64) -> serde_json::Value {
-    json!({
-        "model": baked.model,
-        "bytes": baked.bytes.len(),
-        "quantity": baked.quantity.name(),
-        "unit": baked.quantity.unit(),
-        "full_scale": baked.full_scale,
-        "rate_hz": rate_hz,
-        "internal_rate_hz": baked.internal_rate_hz,
-        "taps": baked.taps,
-        "filters": baked.filters,
-        "tones": baked.tones,
-        "speeds_mm_s": baked.grid.speeds_mm_s(),
-        "forces_n": baked.grid.forces_n(),
-        "law": {
-            "frequency_speed": baked.law.frequency_speed,
-            "level_speed": baked.law.level_speed,
-            "level_force": baked.law.level_force,
-        },
-        "ceiling": baked.ceiling,
-        "error_at_conditions_db": baked.at_conditions_db,
-        "error_between_db": baked.between_db,
-        "error_beyond_db": baked.beyond_db,
-    })
+/// A block that was written.
+struct BakeReport<'a> {
+    output: &'a Path,
+    baked: &'a BakeResult,
+    rate_hz: f64,
 }
 
-fn text(output: &Path, baked: &BakeResult, rate_hz: f64) -> String {
-    let BakeResult { model, quantity, law, at_conditions_db, between_db, .. } = baked;
-    let content = match (baked.taps, baked.filters) {
-        (0, _) => format!("{} sinusoids", baked.tones),
-        (taps, 1) => format!("a filter of {taps} coefficients"),
-        (taps, filters) => format!("{filters} filters of {taps} coefficients"),
-    };
-    let conditions = baked.grid.motions().count();
-    let between = match conditions {
-        1 => String::new(),
-        _ => format!(", {between_db:.2} dB midway between them"),
-    };
-    let beyond = match baked.beyond_db {
-        Some(error) => format!(
+impl Serialize for BakeReport<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { baked, rate_hz, .. } = self;
+        json!({
+            "model": baked.model,
+            "bytes": baked.bytes.len(),
+            "quantity": baked.quantity.name(),
+            "unit": baked.quantity.unit(),
+            "full_scale": baked.full_scale,
+            "rate_hz": rate_hz,
+            "internal_rate_hz": baked.internal_rate_hz,
+            "taps": baked.taps,
+            "filters": baked.filters,
+            "tones": baked.tones,
+            "speeds_mm_s": baked.grid.speeds_mm_s(),
+            "forces_n": baked.grid.forces_n(),
+            "law": {
+                "frequency_speed": baked.law.frequency_speed,
+                "level_speed": baked.law.level_speed,
+                "level_force": baked.law.level_force,
+            },
+            "ceiling": baked.ceiling,
+            "error_at_conditions_db": baked.at_conditions_db,
+            "error_between_db": baked.between_db,
+            "error_beyond_db": baked.beyond_db,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Display for BakeReport<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { output, baked, rate_hz } = self;
+        let BakeResult { model, quantity, law, at_conditions_db, between_db, .. } = baked;
+        let content = match (baked.taps, baked.filters) {
+            (0, _) => format!("{} sinusoids", baked.tones),
+            (taps, 1) => format!("a filter of {taps} coefficients"),
+            (taps, filters) => format!("{filters} filters of {taps} coefficients"),
+        };
+        let conditions = baked.grid.motions().count();
+        let between = match conditions {
+            1 => String::new(),
+            _ => format!(", {between_db:.2} dB midway between them"),
+        };
+        let beyond = baked.beyond_db.map_or(String::new(), |error| format!(
             ", {error:.1} dB at half the lowest and twice the highest speed, where frequencies do not follow"
-        ),
-        None => String::new(),
-    };
-    format!(
-        "{}: {} bytes, {model} at {rate_hz} Hz, {conditions} conditions, {content} at {:.1} Hz\n\
-         samples: {}, {}, full scale {}\n\
-         beyond the grid: frequency over speed ^{:.2}, level over speed ^{:.2}, level over force ^{:.2}, level at most {}\n\
-         largest error of nine bands: {at_conditions_db:.2} dB at the conditions{between}{beyond}\n",
-        shown(output),
-        baked.bytes.len(),
-        baked.internal_rate_hz,
-        quantity.words(),
-        quantity.unit(),
-        quantity.text(baked.full_scale),
-        law.frequency_speed,
-        law.level_speed,
-        law.level_force,
-        quantity.text(baked.ceiling),
-    )
+        ));
+        writeln!(
+            f,
+            "{}: {} bytes, {model} at {rate_hz} Hz, {conditions} conditions, {content} at {:.1} Hz\n\
+             samples: {}, {}, full scale {}\n\
+             beyond the grid: frequency over speed ^{:.2}, level over speed ^{:.2}, level over force ^{:.2}, level at most {}\n\
+             largest error of nine bands: {at_conditions_db:.2} dB at the conditions{between}{beyond}",
+            shown(output),
+            baked.bytes.len(),
+            baked.internal_rate_hz,
+            quantity.words(),
+            quantity.unit(),
+            quantity.text(baked.full_scale),
+            law.frequency_speed,
+            law.level_speed,
+            law.level_force,
+            quantity.text(baked.ceiling),
+        )
+    }
 }

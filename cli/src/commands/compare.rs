@@ -1,3 +1,4 @@
+use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -12,14 +13,11 @@ use serde::Serialize;
 use super::validate::{Kind, kind};
 use crate::assets::short_name;
 use crate::columns::{Column, cells, columns, headings};
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::located;
-use crate::of_file::OfFile;
-use crate::output::{note, print, print_json, warn};
+use crate::output::{note, show, shown, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
-use crate::shown::shown;
 
 /// Compare an asset with a recording
 ///
@@ -75,7 +73,7 @@ struct OtherRecording {
 }
 
 impl Compare {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         // Before any file is parsed: swapped arguments get advice, not the error of a wrong parser.
         self.check_kinds()?;
         let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
@@ -100,17 +98,14 @@ impl Compare {
                 comparison.representations = self.representations(&spectrum, found)?;
             }
         }
-        if self.json {
-            print_json(&comparison)?;
-        } else {
+        if !self.json {
             warn(&comparison.warnings);
-            print(&comparison.to_text())?;
         }
-        Ok(Exit::SUCCESS)
+        show(&comparison, self.json)
     }
 
     /// Refuses files of other kinds, and says what to do with them.
-    fn check_kinds(&self) -> Result<(), Failure> {
+    fn check_kinds(&self) -> Result<()> {
         let advice = match (kind(&self.recording), kind(&self.other)) {
             (Kind::Asset, Kind::Asset) => {
                 "both are assets, and a recording is compared with an asset or another recording; give the recording first, or see what each \
@@ -132,24 +127,21 @@ impl Compare {
         &self,
         spectrum: &TextureSpectrum,
         found: Exploration,
-    ) -> Result<Vec<ComparedModel>, Failure> {
+    ) -> Result<Vec<ComparedModel>> {
         let asset = self.player.open(&self.other)?;
         compare(&asset, spectrum, found).map_err(|error| match error {
             CompareError::Quantities { held, .. } => {
                 Failure::Usage(format!("{error}; give --quantity {held}"))
             }
-            CompareError::Play(error) => error.of(&self.other),
+            CompareError::Play(error) => Failure::from(error).in_file(&self.other),
             CompareError::Model(error) => error.into(),
             CompareError::Measure(error) => error.into(),
-            error => Failure::Other(error.to_string()),
+            error => Failure::other(error),
         })
     }
 
     /// Compares another recording, which is read in the same way as the first.
-    fn other_recording(
-        &self,
-        spectrum: &TextureSpectrum,
-    ) -> Result<(OtherRecording, Vec<Notice>), Failure> {
+    fn other_recording(&self, spectrum: &TextureSpectrum) -> Result<(OtherRecording, Vec<Notice>)> {
         let (other, found, warnings) = self.spectrum(&self.other)?;
         let difference = Difference::between(spectrum, &other).ok_or_else(|| {
             Failure::Other(format!(
@@ -174,10 +166,7 @@ impl Compare {
         Ok((compared, warnings))
     }
 
-    fn spectrum(
-        &self,
-        recording: &Path,
-    ) -> Result<(TextureSpectrum, Exploration, Vec<Notice>), Failure> {
+    fn spectrum(&self, recording: &Path) -> Result<(TextureSpectrum, Exploration, Vec<Notice>)> {
         let take = self.reading.read_among(recording)?;
         let options = self.reading.spectrum_options()?;
         let reading = read_take(&take, &options, self.reading.strict())?;
@@ -190,28 +179,30 @@ impl Compare {
     }
 }
 
-impl Comparison {
-    fn to_text(&self) -> String {
-        let mut text = match &self.other {
-            Some(other) => other.to_text(),
-            None => self.table(),
-        };
-        if let Some(db) = self.repeatability_rms_db {
-            text += &format!("the recording itself repeats within {db:.2} dB\n");
+impl Display for Comparison {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        match &self.other {
+            Some(other) => write!(f, "{other}")?,
+            None => self.table(f)?,
         }
-        text
+        match self.repeatability_rms_db {
+            Some(db) => writeln!(f, "the recording itself repeats within {db:.2} dB"),
+            None => Ok(()),
+        }
     }
+}
 
-    fn table(&self) -> String {
+impl Comparison {
+    fn table(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let columns = columns(Measure::ALL);
-        let mut text = format!("  model   {}\n", headings(&columns));
+        writeln!(f, "  model   {}", headings(&columns))?;
         for r in &self.representations {
-            let of = |column: Column| {
-                column.of(Some(&r.difference.quality), Some(&r.difference.felt.error))
+            let value = |column: Column| {
+                column.value(Some(&r.difference.quality), Some(&r.difference.felt.error))
             };
-            text += &format!("  {:8}{}\n", short_name(&r.model), cells(&columns, of));
+            writeln!(f, "  {:8}{}", short_name(&r.model), cells(&columns, value))?;
         }
-        text
+        Ok(())
     }
 }
 
@@ -222,22 +213,25 @@ impl OtherRecording {
         let value = value.map_or("-".to_owned(), |x| format!("{x:.*}", row.decimals));
         format!("{} {value} {}", row.short, row.unit).trim_end().to_owned()
     }
+}
 
-    fn to_text(&self) -> String {
+impl Display for OtherRecording {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let measures: Vec<String> = Measure::stored().map(|m| self.measured(m)).collect();
         let name = plain(&self.recording);
-        let mut text = format!("{name}: {}\n", measures.join(", "));
+        writeln!(f, "{name}: {}", measures.join(", "))?;
         let felt = &self.difference.felt.error;
-        text += &format!(
-            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold\n",
+        writeln!(
+            f,
+            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold",
             felt.error_rms_db,
             felt.largest_error_db,
             felt.total_error_db,
             if felt.below_difference_threshold { "below" } else { "above" }
-        );
-        if let Some(db) = self.repeatability_rms_db {
-            text += &format!("{} repeats within {db:.2} dB\n", plain(&self.recording));
+        )?;
+        match self.repeatability_rms_db {
+            Some(db) => writeln!(f, "{name} repeats within {db:.2} dB"),
+            None => Ok(()),
         }
-        text
     }
 }

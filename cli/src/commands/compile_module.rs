@@ -1,7 +1,6 @@
 use clap::Args;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 
 /// Compile the WASM module on standard input for the process that started this one (internal).
 #[derive(Args)]
@@ -12,7 +11,7 @@ pub(crate) struct CompileModule {
 }
 
 impl CompileModule {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         htex_host::serve_compiler(&self.arguments).map_err(Failure::other)?;
         Ok(Exit::SUCCESS)
     }

@@ -1,8 +1,7 @@
 use clap::Args;
 use clap_complete::Shell;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Result};
 use crate::output::write_bytes;
 
 /// Print a shell completion script
@@ -18,7 +17,7 @@ pub(crate) struct Completions {
 }
 
 impl Completions {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         // Not to standard output: `generate` panics if it cannot write, e.g. to a closed pipe.
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut crate::command(), "htex", &mut script);

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -18,13 +19,10 @@ use serde::Serialize;
 use super::simulate::write_response;
 use crate::assets::{AssetSummary, RepresentationSummary, short_name};
 use crate::columns::{cells, columns, headings};
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::models::tool;
-use crate::of_file::of_file;
-use crate::output::{Written, print, print_json};
-use crate::progress::bar;
-use crate::report::{Reported, measures, shares};
+use crate::failure::{Failure, Result, for_file};
+use crate::invocation::tool;
+use crate::output::{OutputFile, bar, show};
+use crate::report::{ReportSource, measures, shares};
 use crate::wav::write_wav;
 
 const WAV_RATE_HZ: u32 = 20_000;
@@ -59,13 +57,14 @@ pub(crate) struct Demo {
 }
 
 impl Demo {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let own = OwnFolder::new(&self.dir);
         own.make_folder(Path::new("")).writing(&self.dir)?;
-        let inside = |name: &str, bytes: &[u8]| Written::Inside(&own, name.as_ref()).write(bytes);
+        let inside =
+            |name: &str, bytes: &[u8]| OutputFile::Inside(&own, name.as_ref()).write(bytes);
         let rig =
             SimulationOptions::new(Surface::Sandpaper).setup_response().map_err(Failure::other)?;
-        write_response(&rig, Written::Inside(&own, RIG.as_ref()))?;
+        write_response(&rig, OutputFile::Inside(&own, RIG.as_ref()))?;
         let bar = bar(Surface::ALL.len() as u64);
         let mut done = Vec::new();
         for surface in Surface::ALL {
@@ -75,20 +74,14 @@ impl Demo {
         }
         bar.finish_and_clear();
         let report = self.dir.join(REPORT);
-        let rows: Vec<Row> = done.iter().flat_map(DemoTexture::rows).collect();
+        let rows = done.iter().flat_map(DemoTexture::rows).collect();
         let shares = shares(done.iter().map(|d| &d.summary));
         let textures: Vec<Texture> = done.into_iter().map(|d| d.texture).collect();
         let picture = spectra_picture(&textures, &PICTURED);
         inside("spectra.svg", picture.as_bytes())?;
         let page = texture_report(&self.page(textures, shares));
         inside(REPORT, page.as_bytes())?;
-        if self.json {
-            print_json(&rows)?;
-        } else {
-            print(&table(&rows))?;
-            print(&format!("\nThe report, with the spectra: {}\n", report.display()))?;
-        }
-        Ok(Exit::SUCCESS)
+        show(&Table { rows, report }, self.json)
     }
 
     /// Simulates, fits, validates and plays one surface.
@@ -97,10 +90,10 @@ impl Demo {
         own: &OwnFolder,
         surface: Surface,
         rig: &SetupResponse,
-    ) -> Result<DemoTexture, Failure> {
+    ) -> Result<DemoTexture> {
         let name = surface.to_string();
         let csv = PathBuf::from(format!("{name}.csv"));
-        self.write_recording(surface, Written::Inside(own, &csv))?;
+        self.write_recording(surface, OutputFile::Inside(own, &csv))?;
         let csv = self.dir.join(csv);
         // The files are read back, so that the demo takes the way of a user's recording and asset.
         let recording = read_recording(&csv, &ReadOptions::default())?;
@@ -108,24 +101,24 @@ impl Demo {
         let fitted = fit_asset(&[take], &request(&name, rig)?)?;
         let path = PathBuf::from(format!("{name}.htex"));
         let bytes = fitted.asset.to_bytes()?;
-        Written::Inside(own, &path).write(&bytes)?;
+        OutputFile::Inside(own, &path).write(&bytes)?;
         let path = self.dir.join(path);
-        let asset = htex::Texture::open(&path).map_err(of_file(&path))?;
+        let asset = htex::Texture::open(&path).map_err(for_file(&path))?;
         for representation in &asset.manifest().representations {
             let wav = format!("{name}-{}.wav", short_name(&representation.model));
-            let wav = Written::Inside(own, wav.as_ref());
+            let wav = OutputFile::Inside(own, wav.as_ref());
             play(&asset, &representation.model, &path, wav)?;
         }
         let summary =
             AssetSummary::new(&path, bytes.len() as u64, &fitted.asset).with_felt(&fitted.felt);
         let recording_bytes = std::fs::metadata(&csv).map_or(0, |m| m.len());
         let reported =
-            Reported { fitted: &fitted, asset: &asset, summary: &summary, recording_bytes };
-        let texture = reported.texture(0).map_err(of_file(&path))?;
+            ReportSource { fitted: &fitted, asset: &asset, summary: &summary, recording_bytes };
+        let texture = reported.texture(0).map_err(for_file(&path))?;
         Ok(DemoTexture { texture, summary })
     }
 
-    fn write_recording(&self, surface: Surface, csv: Written<'_>) -> Result<(), Failure> {
+    fn write_recording(&self, surface: Surface, csv: OutputFile<'_>) -> Result<()> {
         let options = SimulationOptions::new(surface).with_seed(self.seed);
         let simulation = simulate(&options).map_err(Failure::other)?;
         let write =
@@ -175,29 +168,32 @@ struct Row {
 }
 
 impl DemoTexture {
+    /// Returns a row for each model, at the first condition.
     fn rows(&self) -> Vec<Row> {
-        let row = |r: &RepresentationSummary| {
-            let quality = r.first.quality.clone().unwrap_or_default();
+        let AssetSummary { manifest, representations, bytes, .. } = &self.summary;
+        let row = |(index, r): (usize, &RepresentationSummary)| {
+            let (stated, at) = self.summary.conditions(index).next()?;
+            let quality = stated.quality.clone().unwrap_or_default();
             let own = shown().filter(|m| m.row().column.is_some());
             let played = shown().filter(|m| m.row().played.is_some());
-            Row {
+            Some(Row {
                 texture: self.texture.name.clone(),
                 model: short_name(&r.model).to_owned(),
                 by_magnitude: quality.by_magnitude.keyed(By::Magnitude, own),
-                felt: r.first.felt,
+                felt: at.felt,
                 by_samples: quality.by_samples.keyed(By::Samples, played),
-                cells: cells(&columns(shown()), |column| r.first.measured(column)),
-                repeatability_rms_db: self.summary.repeatability_rms_db,
+                cells: cells(&columns(shown()), |column| at.measured(stated, column)),
+                repeatability_rms_db: manifest.conditions[0].repeatability_rms_db,
                 payload_bytes: r.payload_bytes,
-                asset_bytes: self.summary.bytes,
+                asset_bytes: *bytes,
                 recording_bytes: self.texture.recording_bytes,
-            }
+            })
         };
-        self.summary.representations.iter().map(row).collect()
+        representations.iter().enumerate().filter_map(row).collect()
     }
 }
 
-fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
+fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest> {
     Ok(AssetRequest::new(name)
         .with_license("CC0-1.0".to_owned())
         .with_author("htex demo".to_owned())
@@ -208,13 +204,15 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
         .with_tool(tool()))
 }
 
-fn play(asset: &htex::Texture, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
+fn play(asset: &htex::Texture, model: &str, file: &Path, wav: OutputFile<'_>) -> Result<()> {
     let options = VoiceOptions::default().with_rate_hz(f64::from(WAV_RATE_HZ));
-    let representation = asset.representation(model).map_err(of_file(file))?;
-    let mut voice = representation.voice(&options).map_err(of_file(file))?;
+    let representation = asset.representation(model).map_err(for_file(file))?;
+    let mut voice = representation.voice(&options).map_err(for_file(file))?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     let rights = Rights::from_manifest(asset.manifest());
-    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).map_err(of_file(file)))
+    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| {
+        voice.render(block).map_err(for_file(file))
+    })
 }
 
 /// Returns the measures shown in the table.
@@ -222,23 +220,30 @@ fn shown() -> impl Iterator<Item = Measure> {
     Measure::of_both().filter(|m| m.row().stored)
 }
 
-fn table(rows: &[Row]) -> String {
-    let measures = headings(&columns(shown()));
-    let mut text = format!(
-        "texture           model {measures}  repeats/dB  parameters/B  asset/B  recording/B\n"
-    );
-    for r in rows {
-        let db = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
-        text += &format!(
-            "{:16}  {:6}{}  {:>10}  {:>12}  {:>7}  {:>11}\n",
-            r.texture,
-            r.model,
-            r.cells,
-            db(r.repeatability_rms_db),
-            r.payload_bytes,
-            r.asset_bytes,
-            r.recording_bytes
-        );
+/// The result of the demonstration.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct Table {
+    rows: Vec<Row>,
+    #[serde(skip)]
+    report: PathBuf,
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let measures = headings(&columns(shown()));
+        writeln!(
+            f,
+            "texture           model {measures}  repeats/dB  parameters/B  asset/B  recording/B"
+        )?;
+        for r in &self.rows {
+            let repeats = r.repeatability_rms_db.map_or("-".to_owned(), |x| format!("{x:.2}"));
+            writeln!(
+                f,
+                "{:16}  {:6}{}  {repeats:>10}  {:>12}  {:>7}  {:>11}",
+                r.texture, r.model, r.cells, r.payload_bytes, r.asset_bytes, r.recording_bytes
+            )?;
+        }
+        writeln!(f, "\nThe report, with the spectra: {}", self.report.display())
     }
-    text
 }

@@ -7,17 +7,12 @@ use clap::Args;
 use htex_author::settings::Metadata;
 use htex_author::{EditError, edit};
 
-use crate::assets::AssetSummary;
-use crate::bounded::read_asset;
+use crate::assets::{check_metadata, read_asset, write_and_show};
 use crate::commands::validate::{refuse_library, refuse_more};
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::located;
-use crate::metadata::checked;
-use crate::of_file::OfFile;
-use crate::output::{print, print_json, write_file};
+use crate::output::shown;
 use crate::outputs::check_outputs;
-use crate::shown::shown;
 
 /// Change an asset's metadata
 ///
@@ -47,38 +42,31 @@ pub(crate) struct Edit {
 }
 
 impl Edit {
-    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+    pub(crate) fn run(mut self) -> Result {
         refuse_more("edit", &self.more)?;
         let metadata = std::mem::take(&mut self.metadata);
         if metadata.is_empty() {
-            let sentence = "nothing to change: give at least one of the metadata, such as --author";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage(
+                "nothing to change: give at least one of the metadata, such as --author",
+            ));
         }
         // The command sees the local copy of a remote asset. Replacing the copy would change
         // nothing.
         if self.output.is_none() && located::is_copy(&self.asset) {
-            let file = located::named(&shown(&self.asset));
+            let file = located::with_uris(&shown(&self.asset));
             return Err(Failure::Usage(format!(
                 "{file}: an asset elsewhere is not replaced; name another file to write by -o FILE"
             )));
         }
         check_outputs(self.output.as_deref(), [self.asset.as_path()])?;
         refuse_library(&self.asset)?;
-        checked(&metadata)?;
+        check_metadata(&metadata)?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
-        let asset = edited.map_err(|error| match error {
-            EditError::Read(error) => error.of(&self.asset),
-            lost => Failure::Other(format!("{}: {lost}", shown(&self.asset))),
-        })?;
-        let output = self.output.as_ref().unwrap_or(&self.asset);
-        let bytes = asset.to_bytes()?;
-        write_file(output, &bytes)?;
-        let summary = AssetSummary::new(output, bytes.len() as u64, &asset);
-        if self.json {
-            print_json(&summary)?;
-        } else {
-            print(&summary.to_text())?;
-        }
-        Ok(Exit::SUCCESS)
+        let failure = |error| match error {
+            EditError::Read(error) => Failure::from(error),
+            lost => Failure::other(lost),
+        };
+        let asset = edited.map_err(|error| failure(error).in_file(&self.asset))?;
+        write_and_show(self.output.as_ref().unwrap_or(&self.asset), &asset, self.json)
     }
 }

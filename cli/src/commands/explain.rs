@@ -1,10 +1,24 @@
 use clap::Args;
+use htex_base::finding::Rule;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::hints::with_hint;
+use crate::failure::{Exit, Failure, Result, with_hint};
 use crate::output::print;
-use crate::rules::rules;
+
+/// All rules of this program, grouped by subject.
+const TABLES: &[&[Rule]] = &[
+    htex_format::RULES,
+    htex_format::library::RULES,
+    htex_scene::RULES,
+    htex_author::findings::RULES,
+    #[cfg(feature = "build")]
+    htex_build::RULES,
+    #[cfg(feature = "lab")]
+    htex_lab::study::RULES,
+];
+
+pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
+    TABLES.iter().copied().flatten()
+}
 
 /// Explain the code of a finding
 ///
@@ -16,7 +30,7 @@ pub(crate) struct Explain {
 }
 
 impl Explain {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let Some(code) = self.code else {
             let lines = rules().map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
@@ -33,5 +47,18 @@ impl Explain {
             with_hint(rule.fix, rule.hint)
         ))?;
         Ok(Exit::SUCCESS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_code_is_that_of_one_rule() {
+        let codes: BTreeSet<&str> = rules().map(|rule| rule.code).collect();
+        assert_eq!(codes.len(), rules().count());
     }
 }

@@ -1,7 +1,9 @@
+use std::fmt::{Display, Formatter};
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use htex_base::files::{AtFile, read_regular};
+use htex_base::finding::plain;
 use htex_exchange::{
     Coding, ExchangeError, Exported, Format, Loss, MOST_BYTES, Path, Played, Profile, Stroke,
     Writes, exported, profile_names,
@@ -10,16 +12,13 @@ use htex_format::Measure;
 use serde::Serialize;
 
 use crate::commands::spectrum::ChoiceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::given::Given;
+use crate::explicit_args::ExplicitArgs;
+use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::of_file::{OfFile, of_file};
-use crate::output::{note, print, print_json, write_file};
+use crate::output::{note, show, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::scene_sound::{Scene, is_scene};
-use crate::shown::shown;
 
 /// Write a texture in another haptic format
 ///
@@ -40,7 +39,7 @@ pub(crate) struct Export {
     to: String,
 
     #[command(flatten)]
-    given: Given<Settings>,
+    given: ExplicitArgs<Settings>,
 
     #[command(flatten)]
     player: PlayerArgs,
@@ -80,32 +79,16 @@ struct Settings {
 
     /// How hjif encodes a texture [default: vectorial]
     #[arg(long, value_enum, value_name = "CODING")]
-    coding: Option<CodingArg>,
+    coding: Option<Coding>,
 
     /// The same seed gives the same samples
     #[arg(long, default_value_t = 0)]
     seed: u64,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum CodingArg {
-    /// Seven tones
-    Vectorial,
-    /// Samples
-    Wavelet,
-}
-
-impl From<CodingArg> for Coding {
-    fn from(coding: CodingArg) -> Self {
-        match coding {
-            CodingArg::Vectorial => Self::Vectorial,
-            CodingArg::Wavelet => Self::Wavelet,
-        }
-    }
-}
-
+/// The file that was written.
 #[derive(Serialize)]
-struct Written<'a> {
+struct ExportReport<'a> {
     file: String,
     bytes: usize,
     #[serde(flatten)]
@@ -113,18 +96,21 @@ struct Written<'a> {
 }
 
 impl Export {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
         let format = Format::named(&self.to).ok_or_else(unknown)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
         let exported =
             if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };
         write_file(&self.output, &exported.bytes)?;
-        self.tell(&exported)?;
-        Ok(Exit::SUCCESS)
+        if !self.json {
+            note(&exported.notes);
+        }
+        let (file, bytes) = (self.output.display().to_string(), exported.bytes.len());
+        show(&ExportReport { file, bytes, exported: &exported }, self.json)
     }
 
-    fn of_asset(&self, format: &'static Format) -> Result<Exported, Failure> {
+    fn of_asset(&self, format: &'static Format) -> Result<Exported> {
         let inputs = [&self.asset].into_iter().chain(&self.given.values.stroke);
         check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
         let asset = self.player.open(&self.asset)?;
@@ -135,7 +121,7 @@ impl Export {
         htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))
     }
 
-    fn of_scene(&self, format: &'static Format) -> Result<Exported, Failure> {
+    fn of_scene(&self, format: &'static Format) -> Result<Exported> {
         format.check_export_of_scene(self.given.settings.iter().map(String::as_str))?;
         let scene = Scene::open(&self.asset, &self.player, self.given.values.seconds)?;
         // Only the loaded scene knows which other files it reads.
@@ -146,7 +132,7 @@ impl Export {
             .map_err(|error| self.failure(error))
     }
 
-    fn export(&self, format: &'static Format) -> Result<htex_exchange::Export<'_>, Failure> {
+    fn export(&self, format: &'static Format) -> Result<htex_exchange::Export<'_>> {
         let settings = &self.given.values;
         let mut export = htex_exchange::Export::new(format);
         export.model = settings.choice.model.as_deref();
@@ -155,12 +141,12 @@ impl Export {
         export.rate_hz = settings.rate.map(f64::from);
         export.seed = settings.seed;
         export.extension = self.output.extension().and_then(|e| e.to_str());
-        export.coding = settings.coding.map(Into::into);
+        export.coding = settings.coding;
         Ok(export)
     }
 
     /// Reads the asset's file if the export contains it.
-    fn file(&self, format: &Format) -> Result<Option<Vec<u8>>, Failure> {
+    fn file(&self, format: &Format) -> Result<Option<Vec<u8>>> {
         match format.writes {
             Some(Writes::Asset(_)) => {
                 let bytes = read_regular(&self.asset, MOST_BYTES).reading(&self.asset)?;
@@ -170,47 +156,42 @@ impl Export {
         }
     }
 
-    fn path(&self, asset: &htex::Texture) -> Result<Path, Failure> {
+    fn path(&self, asset: &htex::Texture) -> Result<Path> {
         let settings = &self.given.values;
         if let Some(stroke) = &settings.stroke {
             return Ok(Path::Stroke(Stroke::open(stroke)?));
         }
         let beyond = settings.choice.beyond(asset, htex::play::Effects::default());
-        note(&Vec::from_iter(beyond.map_err(of_file(&self.asset))?));
-        Ok(Path::Condition(settings.choice.motion(asset).map_err(of_file(&self.asset))?))
+        note(&Vec::from_iter(beyond.map_err(for_file(&self.asset))?));
+        Ok(Path::Condition(settings.choice.motion(asset).map_err(for_file(&self.asset))?))
     }
 
     /// Converts an error. An error of playing names the asset.
     fn failure(&self, error: ExchangeError) -> Failure {
         match error {
-            ExchangeError::Play(error) => error.of(&self.asset),
+            ExchangeError::Play(error) => Failure::from(error).in_file(&self.asset),
             error => error.into(),
         }
     }
+}
 
-    fn tell(&self, exported: &Exported) -> Result<(), Failure> {
-        if self.json {
-            return print_json(&Written {
-                file: self.output.display().to_string(),
-                bytes: exported.bytes.len(),
-                exported,
-            });
-        }
-        let played = exported.played.as_ref().map(played).unwrap_or_default();
-        let lost = exported.lost.as_ref().map(lost).unwrap_or_default();
-        let limited = exported.played.as_ref().map(limited).unwrap_or_default();
-        print(&format!(
-            "{}: {} bytes{played}{lost}{limited}\nthe format loses {}\n",
-            shown(&self.output),
-            exported.bytes.len(),
+impl Display for ExportReport<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { file, bytes, exported } = self;
+        let played = exported.played.as_ref();
+        writeln!(
+            f,
+            "{}: {bytes} bytes{}{}{}\nthe format loses {}",
+            plain(file),
+            played.map(played_text).unwrap_or_default(),
+            exported.lost.as_ref().map(lost).unwrap_or_default(),
+            played.map(limited).unwrap_or_default(),
             exported.loses,
-        ))?;
-        note(&exported.notes);
-        Ok(())
+        )
     }
 }
 
-fn played(played: &Played) -> String {
+fn played_text(played: &Played) -> String {
     format!(", {} s for {}", played.seconds, played.profile)
 }
 
@@ -249,7 +230,7 @@ impl From<ExchangeError> for Failure {
             | UnknownFormat { .. }
             | UnknownProfile { .. }
             | NoSamples { .. }) => Self::Usage(error.told(&flag)),
-            error => Self::Other(error.to_string()),
+            error => Self::other(error),
         }
     }
 }

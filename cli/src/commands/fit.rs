@@ -8,20 +8,16 @@ use htex_author::{AssetRequest, EmbedError, FittedAsset, embed_plugins, fit_asse
 use htex_base::files::{AtFile, FileError};
 use htex_host::Registry;
 
-use crate::assets::AssetSummary;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::grid::{grid_plot, grid_text};
-use crate::invocation;
+use crate::assets::{AssetSummary, check_metadata, write_asset};
+use crate::failure::{Exit, Failure, Result, for_file};
+use crate::grid::grid_plot;
+use crate::invocation::{command_line, tool};
 use crate::located;
-use crate::metadata::checked;
-use crate::models::tool;
-use crate::of_file::of_file;
-use crate::output::{note, print, print_json, warn, write_file};
+use crate::output::{note, show, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
-use crate::report::{Reported, measures, shares};
+use crate::report::{ReportSource, measures, shares};
 
 /// Fit models to recordings of one texture
 ///
@@ -78,24 +74,20 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let files = self.recordings.iter().chain(&self.embed_plugin).chain(&self.sign_with);
         let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
         let outputs = [&self.output].into_iter().chain(&self.report).chain(&self.grid_svg);
         check_outputs(outputs.map(PathBuf::as_path), files.chain(self.reading.inputs()))?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
-        let metadata = std::mem::take(&mut self.metadata);
-        checked(&metadata)?;
+        check_metadata(&self.metadata)?;
         // Wrong options are reported before the recordings are read, which may be long.
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;
-        metadata.apply(&mut fitted.asset.manifest);
+        self.metadata.apply(&mut fitted.asset.manifest);
         self.embed(&mut fitted.asset, &registry)?;
-        let bytes = fitted.asset.to_bytes()?;
-        write_file(&self.output, &bytes)?;
-        let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset)
-            .with_felt(&fitted.felt);
+        let mut summary = write_asset(&self.output, &fitted.asset)?.with_felt(&fitted.felt);
         for (r, ms) in summary.representations.iter_mut().zip(&fitted.fit_ms) {
             r.fit_ms = Some(*ms);
         }
@@ -108,18 +100,13 @@ impl Fit {
         }
         if self.json {
             summary.notes.extend(fitted.notes.iter().map(ToString::to_string));
-            summary.grid = fitted.grid;
-            print_json(&summary)?;
         } else {
             warn(&fitted.warnings);
             note(&fitted.notes);
-            // They were printed above, on standard error.
-            summary.warnings.clear();
-            print(&summary.to_text())?;
-            if let Some(grid) = &fitted.grid {
-                print(&grid_text(grid))?;
-            }
+            summary.is_warned = true;
         }
+        summary.grid = fitted.grid;
+        show(&summary, self.json)?;
         all_named_were_fitted(&self.fit, &fitted.skipped)
     }
 
@@ -129,10 +116,10 @@ impl Fit {
         fitted: &FittedAsset,
         summary: &AssetSummary,
         registry: Registry,
-    ) -> Result<(), Failure> {
+    ) -> Result<()> {
         let asset = htex::Texture::with_registry(fitted.asset.clone(), registry);
         let sizes = self.recordings.iter().map(std::fs::metadata);
-        let reported = Reported {
+        let reported = ReportSource {
             fitted,
             asset: &asset,
             summary,
@@ -143,7 +130,7 @@ impl Fit {
         let page = TextureReport {
             title: format!("{}: recording and models", fitted.asset.manifest.name),
             measures: measures(),
-            textures: textures.map_err(of_file(&self.output))?,
+            textures: textures.map_err(for_file(&self.output))?,
             command: command_line(),
             pictures: grid.map(|grid| grid_plot(&name, grid).to_svg()).into_iter().collect(),
             shares: shares([summary]),
@@ -153,7 +140,7 @@ impl Fit {
     }
 
     /// Embeds the modules of fitted models in the asset.
-    fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<(), Failure> {
+    fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<()> {
         let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
         // Only models that were fitted can be embedded, so this follows the fit.
         let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
@@ -169,7 +156,7 @@ impl Fit {
         })
     }
 
-    fn request(&self, registry: &Registry) -> Result<AssetRequest, Failure> {
+    fn request(&self, registry: &Registry) -> Result<AssetRequest> {
         let mut settings = self.fit.clone();
         settings.strict = Some(self.reading.strict());
         settings.add_options(&self.option)?;
@@ -181,10 +168,7 @@ impl Fit {
 
 /// Returns an error if a model that the user named could not be fitted. The written asset has the
 /// other models.
-pub(crate) fn all_named_were_fitted(
-    fit: &FitSettings,
-    skipped: &[(String, String)],
-) -> Result<Exit, Failure> {
+pub(crate) fn all_named_were_fitted(fit: &FitSettings, skipped: &[(String, String)]) -> Result {
     let named = fit.named_of(skipped);
     if named.is_empty() {
         Ok(Exit::SUCCESS)
@@ -196,20 +180,8 @@ pub(crate) fn all_named_were_fitted(
     }
 }
 
-/// Returns this run's command line. Words with characters that are unusual in a path are quoted.
-fn command_line() -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
-    let quoted = |word: std::ffi::OsString| match word.to_string_lossy() {
-        word if !word.is_empty() && word.chars().all(is_plain) => word.into_owned(),
-        word => format!("'{}'", word.replace('\'', r"'\''")),
-    };
-    let words = invocation::arguments().into_iter().map(quoted);
-    let words: Vec<String> = std::iter::once("htex".to_owned()).chain(words).collect();
-    words.join(" ")
-}
-
 /// Reads an ed25519 secret key.
-fn secret_key(file: &Path) -> Result<[u8; 32], Failure> {
+fn secret_key(file: &Path) -> Result<[u8; 32]> {
     let bytes = std::fs::read(file).reading(file)?;
     let len = bytes.len();
     bytes.try_into().map_err(|_| {

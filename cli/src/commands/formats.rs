@@ -1,10 +1,12 @@
+use std::fmt::{Display, Formatter};
+
 use clap::Args;
 use htex_exchange::{FORMATS, Format, PROFILES, Reads};
+use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::failure::Result;
+use crate::output::show;
 
 /// List the formats to import and export
 ///
@@ -17,35 +19,41 @@ pub(crate) struct Formats {
 }
 
 impl Formats {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        if self.json {
-            print_json(&json!({ "formats": FORMATS, "profiles": &*PROFILES }))?
-        } else {
-            print(&text())?
-        }
-        Ok(Exit::SUCCESS)
+    pub(crate) fn run(self) -> Result {
+        show(&FormatList, self.json)
     }
 }
 
-fn text() -> String {
-    let mut text = String::new();
-    for format in FORMATS {
-        text += &format!(
-            "{:8} {} ({}): {}\n         licence and author: {}\n         keeps {}\n         loses {}\n",
-            format.name,
-            format.title,
-            format.dotted(),
-            ways(format),
-            format.rights.place,
-            format.keeps,
-            format.loses,
-        );
+/// The formats and the profiles of actuators.
+struct FormatList;
+
+impl Serialize for FormatList {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        json!({ "formats": FORMATS, "profiles": &*PROFILES }).serialize(serializer)
     }
-    text += "\nprofiles of actuators:\n";
-    for profile in PROFILES.iter() {
-        text += &format!("{:10} {}\n", profile.name, profile.title);
+}
+
+impl Display for FormatList {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        for format in FORMATS {
+            writeln!(
+                f,
+                "{:8} {} ({}): {}\n         licence and author: {}\n         keeps {}\n         loses {}",
+                format.name,
+                format.title,
+                format.dotted(),
+                ways(format),
+                format.rights.place,
+                format.keeps,
+                format.loses,
+            )?;
+        }
+        writeln!(f, "\nprofiles of actuators:")?;
+        for profile in PROFILES.iter() {
+            writeln!(f, "{:10} {}", profile.name, profile.title)?;
+        }
+        Ok(())
     }
-    text
 }
 
 /// Says in words how files of this format are imported and exported.

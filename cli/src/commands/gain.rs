@@ -4,17 +4,14 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use clap::Args;
 use htex_base::files::AtFile;
 use htex_device::Quantity;
-use htex_scene::{Gain as Kept, Gains, Renderer, START_DB, factor_of_db};
+use htex_scene::{Gain as StoredGain, Gains, Renderer, START_DB, factor_of_db};
 
 use crate::commands::play;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result, for_file};
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
-use crate::of_file::of_file;
-use crate::output::print;
+use crate::output::{print, shown};
 use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
-use crate::shown::shown;
 use crate::signals::{self, interrupted};
 
 /// Step of the level, decibels.
@@ -61,7 +58,7 @@ pub(crate) struct Gain {
 }
 
 /// A drive, volts, and the RMS that was played with it, in the assets' unit.
-struct Found {
+struct MatchedGain {
     drive_v: f64,
     reference_rms: f64,
 }
@@ -74,19 +71,19 @@ enum Wish {
 }
 
 impl Gain {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let device = self.choice.to_override(None, false)?;
-        if !self.choice.names_device() && crate::scenes::is_asset(&self.file) {
-            let sentence = "--device is missing: a gain is for one device";
-            return Err(Failure::Usage(sentence.to_owned()));
+        if self.choice.device.is_none() && crate::scenes::is_asset(&self.file) {
+            return Err(Failure::usage("--device is missing: a gain is for one device"));
         }
         let mut ready = play::open(&self.with, &self.file, false, device)?;
         let limit_v = limit(&ready)?;
         let weak_v = limit_v * factor_of_db(START_DB);
         let start_v = self.start.unwrap_or(weak_v);
         if !(start_v > 0.0 && start_v <= limit_v) {
-            let sentence = format!("--start {start_v}: more than 0, at most {limit_v} V");
-            return Err(Failure::Usage(sentence));
+            return Err(Failure::Usage(format!(
+                "--start {start_v}: more than 0, at most {limit_v} V"
+            )));
         }
         // The participant needs any amount of time, whatever the scene says.
         ready.scene.file.duration_s = None;
@@ -94,7 +91,7 @@ impl Gain {
         let key = key(&self.person, self.texture.as_deref(), &ready);
         let (_, file) = gains()?;
         let Some(found) = adjust(&mut ready, start_v, limit_v)? else {
-            return Err(Failure::Other("ended without a match; nothing was kept".to_owned()));
+            return Err(Failure::other("ended without a match; nothing was kept"));
         };
         // Made before `key` is moved, and printed only after the gain is stored.
         let text = format!(
@@ -104,7 +101,7 @@ impl Gain {
             volts(found.drive_v),
             shown(&file)
         );
-        let kept = Kept {
+        let kept = StoredGain {
             key,
             file: self.file.display().to_string(),
             drive_v: found.drive_v,
@@ -119,7 +116,7 @@ impl Gain {
     }
 }
 
-fn limit(ready: &Ready) -> Result<f64, Failure> {
+fn limit(ready: &Ready) -> Result<f64> {
     let able = &ready.capabilities;
     match (able.quantity, able.limit) {
         (Quantity::DisplayVoltage, Some(limit_v)) => Ok(limit_v),
@@ -131,7 +128,7 @@ fn limit(ready: &Ready) -> Result<f64, Failure> {
 }
 
 /// Plays until the participant accepts the gain; `None` if the input ends or is interrupted before.
-fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>, Failure> {
+fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<MatchedGain>> {
     // Before the device is opened: from then on a signal must first bring the output to zero.
     signals::ask();
     let wishes = wishes();
@@ -140,7 +137,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
     while goes_on {
         ready.scene.file.device.drive_v = Some(drive_v);
         let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&ready.file))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&ready.file))?;
         // The first plan opens the device, which stays open while the gain changes.
         let output = match &mut output {
             Some(output) => output,
@@ -152,7 +149,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
             Some(Wish::Change(db)) => drive_v = (drive_v * factor_of_db(db)).min(limit_v),
             Some(Wish::Keep) => {
                 let reference_rms = plan.reference_rms;
-                kept = Some(Found { drive_v, reference_rms });
+                kept = Some(MatchedGain { drive_v, reference_rms });
                 goes_on = false;
             }
             None => goes_on = false,
@@ -164,7 +161,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
     Ok(kept)
 }
 
-fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output, Failure> {
+fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output> {
     let output = Output::open(ready, plan)?;
     Ok(if ready.capabilities.paced { output } else { output.paced() })
 }
@@ -174,7 +171,7 @@ fn play_until_wish(
     renderer: &mut Renderer,
     output: &mut Output,
     wishes: &Receiver<Wish>,
-) -> Result<Option<Wish>, Failure> {
+) -> Result<Option<Wish>> {
     let mut answer = None;
     let mut stopped = false;
     while output.step(renderer)? {

@@ -2,8 +2,7 @@ use clap::Args;
 use htex_device::guardian::hold;
 
 use crate::devices::DeviceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Result};
 
 /// Hold a device for the process that started this one (internal; `htex play` starts it).
 #[derive(Args)]
@@ -14,7 +13,7 @@ pub(crate) struct Guard {
 }
 
 impl Guard {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         // Only the end of the pipe ends this process.
         crate::signals::ignore();
         let devices = self.devices.devices_quietly()?;

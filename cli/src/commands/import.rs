@@ -1,4 +1,3 @@
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -7,18 +6,15 @@ use htex_base::files::{AtFile, read_regular};
 use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, SignalSettings, imported};
 use htex_format::{Quantity, license_file, read_license_file};
 
-use crate::assets::AssetSummary;
+use crate::assets::{AssetSummary, check_metadata};
 use crate::commands::fit::all_named_were_fitted;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::given::Given;
+use crate::explicit_args::ExplicitArgs;
+use crate::failure::{Failure, Result};
+use crate::invocation::tool;
 use crate::located;
-use crate::metadata::checked;
-use crate::models::tool;
-use crate::output::{note, print, print_json, warn, write_file};
+use crate::output::{note, print, show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
-use crate::shown::shown;
 
 /// Read another haptic format as a texture
 ///
@@ -35,7 +31,7 @@ pub(crate) struct Import {
     file: PathBuf,
 
     #[command(flatten)]
-    given: Given<Settings>,
+    given: ExplicitArgs<Settings>,
 
     /// The asset to write
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT, display_order = 3)]
@@ -79,13 +75,13 @@ struct Settings {
 }
 
 impl Import {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let plugins = self.plugins.files().iter().map(PathBuf::as_path);
         let beside = license_file(&self.file);
         // The command also reads the licence file, so the output must not replace it.
         let inputs = [self.file.as_path(), &beside].into_iter().chain(plugins);
         check_outputs([self.output.as_path()], inputs)?;
-        checked(&self.metadata)?;
+        check_metadata(&self.metadata)?;
         let name = self.file.file_name().unwrap_or_default().to_string_lossy();
         let given = self.given.settings.iter().map(String::as_str);
         Format::of_file(&name)?.check_import(given)?;
@@ -100,7 +96,7 @@ impl Import {
         self.write(imported)
     }
 
-    fn how<'a>(&self, name: &'a str, tool: &'a str) -> Result<htex_exchange::Import<'a>, Failure> {
+    fn how<'a>(&self, name: &'a str, tool: &'a str) -> Result<htex_exchange::Import<'a>> {
         let settings = &self.given.values;
         let mut fit = settings.fit.clone();
         fit.add_options(&settings.option)?;
@@ -122,30 +118,25 @@ impl Import {
         })
     }
 
-    fn write(&self, imported: htex_exchange::Imported) -> Result<Exit, Failure> {
-        let fit = &self.given.values.fit;
+    fn write(&self, imported: htex_exchange::Imported) -> Result {
         let bytes = imported.to_bytes()?;
         write_file(&self.output, &bytes)?;
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &imported.asset)
             .with_felt(&imported.felt);
         if self.json {
             // The asset may state some of these warnings already.
-            let known: BTreeSet<String> = summary.warnings.iter().cloned().collect();
+            let stated = &summary.manifest.provenance.warnings;
             let warnings = imported.warnings.iter().map(ToString::to_string);
-            let new = warnings.filter(|warning| !known.contains(warning));
-            summary.warnings.extend(new);
-            let notes = imported.notes.iter().map(ToString::to_string);
-            summary.notes.extend(notes);
-            print_json(&summary)?;
-            return all_named_were_fitted(fit, &imported.skipped);
+            summary.warnings = warnings.filter(|warning| !stated.contains(warning)).collect();
+            summary.notes.extend(imported.notes.iter().map(ToString::to_string));
+        } else {
+            warn(&imported.warnings);
+            note(&imported.notes);
+            summary.is_warned = true;
+            print(&format!("imported {}\n", shown(&self.file)))?;
         }
-        warn(&imported.warnings);
-        note(&imported.notes);
-        // They were printed above, on standard error.
-        summary.warnings.clear();
-        let text = summary.to_text();
-        print(&format!("imported {}\n{text}", shown(&self.file)))?;
-        all_named_were_fitted(fit, &imported.skipped)
+        show(&summary, self.json)?;
+        all_named_were_fitted(&self.given.values.fit, &imported.skipped)
     }
 }
 

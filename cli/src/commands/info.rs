@@ -5,11 +5,9 @@ use htex_host::Registry;
 
 use crate::assets::AssetSummary;
 use crate::commands::validate::{refuse_library, refuse_more};
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
-use crate::output::{print, print_json};
+use crate::output::show;
 
 /// Show what an asset holds, and its errors
 ///
@@ -32,10 +30,10 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         refuse_more("info", &self.more)?;
         refuse_library(&self.asset)?;
-        let asset = htex_format::Asset::open(&self.asset).map_err(of_file(&self.asset))?;
+        let asset = htex_format::Asset::open(&self.asset).map_err(for_file(&self.asset))?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
         let mut summary = AssetSummary::new(&self.asset, bytes, &asset);
         let models = Registry::builtin();
@@ -45,14 +43,9 @@ impl Info {
             let model = htex::play::model_of(&models, representation).ok();
             let order = model.map(|model| htex::play::field_order(representation, model));
             if let Some(Err(error)) = order {
-                summary.note(error.to_string());
+                summary.notes.push(error.to_string());
             }
         }
-        if self.json {
-            print_json(&summary)?;
-        } else {
-            print(&summary.to_text())?;
-        }
-        Ok(Exit::SUCCESS)
+        show(&summary, self.json)
     }
 }

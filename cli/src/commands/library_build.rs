@@ -1,5 +1,6 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::fmt::{Display, Formatter};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -7,21 +8,18 @@ use std::time::Instant;
 use clap::Args;
 use htex_author::FeltShare;
 use htex_base::finding::{Severity, plain};
-use htex_base::storage::Location;
 use htex_build::{
     Build as Recipe, BuildError, BuildOptions, Built, Destination, FindingShare, Job, Report,
     Status, TextureReport, Why, named_briefly, report_failure,
 };
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
 use crate::assets::short_name;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result, for_file};
+use crate::invocation::tool;
 use crate::located::Anywhere;
-use crate::models::tool;
-use crate::of_file::of_file;
-use crate::output::{print, print_json};
-use crate::progress;
+use crate::output::{byte_bar, print_json, show};
 use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
@@ -110,6 +108,8 @@ struct Summary<'a> {
     left_out: Vec<&'a TextureReport>,
     /// Names of textures in the previous library that the recipe no longer asks for.
     removed: &'a [String],
+    #[serde(skip)]
+    catalogue: String,
 }
 
 /// The fits that a build has to do.
@@ -124,7 +124,7 @@ struct Work {
 impl Build {
     /// Runs the build. An error is also written to the report, and as JSON to standard output, for
     /// programs that read those.
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let built = self.build();
         if let Err(failure) = &built {
             self.failed(failure)?;
@@ -133,24 +133,20 @@ impl Build {
     }
 
     /// Writes an error to the report, except for a build that changes nothing.
-    fn failed(&self, failure: &Failure) -> Result<(), Failure> {
+    fn failed(&self, failure: &Failure) -> Result<()> {
         let lines = failure.to_lines();
         let to = Destination::parse(&self.output, self.work.as_deref());
-        let changes_nothing = self.dry_run
-            || matches!(failure, Failure::Build { error: BuildError::Removes { .. }, .. });
+        let changes_nothing =
+            self.dry_run || matches!(failure.cause(), Failure::Build(BuildError::Removes { .. }));
         // Wrong usage is not written, because no build has begun.
-        if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit_code()) {
+        if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit()) {
             // If the report cannot be written, the reason is the one in `failure`.
             let _ = report_failure(to.folder(), &tool(), &lines);
         }
-        if self.json {
-            print_json(&serde_json::json!({ "textures": 0, "error": lines }))
-        } else {
-            Ok(())
-        }
+        if self.json { print_json(&json!({ "textures": 0, "error": lines })) } else { Ok(()) }
     }
 
-    fn build(&self) -> Result<Exit, Failure> {
+    fn build(&self) -> Result {
         let start = Instant::now();
         let options = BuildOptions::new(tool())
             .with_jobs(self.jobs.map_or(0, usize::from))
@@ -161,66 +157,36 @@ impl Build {
             .with_no_removals(self.no_removals)
             .with_browser_package(self.browser_package.clone());
         let to = Destination::parse(&self.output, self.work.as_deref())
-            .map_err(of_file(&self.recipe))?;
+            .map_err(for_file(&self.recipe))?;
         if to.remote().is_none() && self.work.is_some() {
-            let sentence =
-                "--work goes with a URI after -o; a build of this machine works in its own folder";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage(
+                "--work goes with a URI after -o; a build of this machine works in its own folder",
+            ));
         }
         let options = options.with_published(to.remote());
         let mut build =
-            Recipe::open(&self.recipe, to.folder(), options).map_err(of_file(&self.recipe))?;
-        let work = Work::of(&build);
+            Recipe::open(&self.recipe, to.folder(), options).map_err(for_file(&self.recipe))?;
+        let work = Work::new(&build);
         if self.dry_run {
             return self.announce(&build, &work);
         }
         if work.textures > 0 {
             // A store that refuses files must say so before hours of fitting.
-            to.try_out().map_err(of_file(&self.recipe))?;
+            to.try_out().map_err(for_file(&self.recipe))?;
         }
-        fit(&mut build, &work).map_err(of_file(&self.recipe))?;
-        let built = build.finish().map_err(of_file(&self.recipe))?;
-        to.publish().map_err(of_file(&self.recipe))?;
+        fit(&mut build, &work).map_err(for_file(&self.recipe))?;
+        let built = build.finish().map_err(for_file(&self.recipe))?;
+        to.publish().map_err(for_file(&self.recipe))?;
         self.report(&built, &to, &work, start.elapsed().as_secs_f64())
     }
 
     /// Checks the recipe, and prints what would be fitted and why.
-    fn announce(&self, build: &Recipe, work: &Work) -> Result<Exit, Failure> {
-        build.check().map_err(of_file(&self.recipe))?;
-        let to_fit = build.reasons();
-        let textures = build.plan().textures.len();
-        if self.json {
-            let json = |(texture, why): &(&str, Why)| serde_json::json!({ "texture": texture, "why": why.to_string() });
-            let to_fit: Vec<_> = to_fit.iter().map(json).collect();
-            print_json(&serde_json::json!({
-                "to_fit": to_fit,
-                "textures": textures,
-                "as_they_were": work.unchanged,
-                "removed": build.removed(),
-                "recordings": work.recordings,
-                "recording_bytes": work.bytes,
-            }))?;
-        } else {
-            let line = |(texture, why): &(&str, Why)| format!("{}: {why}\n", plain(texture));
-            let mut text: String = to_fit.iter().map(line).collect();
-            let megabytes = work.bytes as f64 / 1e6;
-            text += &format!(
-                "{textures} textures: {} to fit from {} recordings ({megabytes:.1} MB), {} as they were\n",
-                work.textures, work.recordings, work.unchanged
-            );
-            text += &removed(&build.removed());
-            print(&text)?;
-        }
-        Ok(Exit::SUCCESS)
+    fn announce(&self, build: &Recipe, work: &Work) -> Result {
+        build.check().map_err(for_file(&self.recipe))?;
+        show(&DryRun { build, work }, self.json)
     }
 
-    fn report(
-        &self,
-        built: &Built,
-        to: &Destination,
-        work: &Work,
-        seconds: f64,
-    ) -> Result<Exit, Failure> {
+    fn report(&self, built: &Built, to: &Destination, work: &Work, seconds: f64) -> Result {
         let report = &built.report;
         let results = to.results();
         let left_out: Vec<&TextureReport> =
@@ -244,18 +210,57 @@ impl Build {
             other_warnings: other_warnings(report),
             left_out,
             removed: &report.removed,
+            catalogue: results.inside("index.html").to_string(),
         };
-        if self.json {
-            print_json(&summary)?;
-        } else {
-            print(&summary.to_text(&results))?;
-        }
+        show(&summary, self.json)?;
         Ok(exit)
     }
 }
 
+/// What a build would do.
+struct DryRun<'a> {
+    build: &'a Recipe,
+    work: &'a Work,
+}
+
+impl Serialize for DryRun<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { build, work } = self;
+        let why =
+            |(texture, why): (&str, Why)| json!({ "texture": texture, "why": why.to_string() });
+        json!({
+            "to_fit": build.reasons().into_iter().map(why).collect::<Vec<_>>(),
+            "textures": build.plan().textures.len(),
+            "as_they_were": work.unchanged,
+            "removed": build.removed(),
+            "recordings": work.recordings,
+            "recording_bytes": work.bytes,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Display for DryRun<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { build, work } = self;
+        for (texture, why) in build.reasons() {
+            writeln!(f, "{}: {why}", plain(texture))?;
+        }
+        let megabytes = work.bytes as f64 / 1e6;
+        writeln!(
+            f,
+            "{} textures: {} to fit from {} recordings ({megabytes:.1} MB), {} as they were",
+            build.plan().textures.len(),
+            work.textures,
+            work.recordings,
+            work.unchanged
+        )?;
+        f.write_str(&removed(&build.removed()))
+    }
+}
+
 impl Work {
-    fn of(build: &Recipe) -> Self {
+    fn new(build: &Recipe) -> Self {
         let jobs = || build.pending().map(|(_, job)| job);
         Self {
             textures: build.pending().len(),
@@ -267,8 +272,8 @@ impl Work {
 }
 
 /// Runs the pending fits with a progress bar.
-fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
-    let bar = progress::bytes(work.bytes);
+fn fit(build: &mut Recipe, work: &Work) -> Result<(), BuildError> {
+    let bar = byte_bar(work.bytes);
     let (count, all) = (AtomicUsize::new(0), work.textures);
     let done = |job: &Job| {
         // Only a number on the screen depends on the order.
@@ -299,76 +304,74 @@ fn other_warnings(report: &Report) -> usize {
     assets.filter(|asset| asset.has_other_warnings()).count()
 }
 
-impl Summary<'_> {
-    /// Returns one line for each code of an error or a warning, errors first.
-    fn findings(&self) -> String {
-        let mut all: Vec<(&String, &FindingShare)> = self.findings.iter().collect();
-        all.retain(|(_, share)| share.severity != Severity::Info);
-        all.sort_by_key(|(code, share)| (share.severity, *code));
-        let line = |(code, share): &(&String, &FindingShare)| {
-            let more = if share.textures > share.first.len() { ", …" } else { "" };
-            let noun = if share.textures == 1 { "texture" } else { "textures" };
-            format!(
-                "{code} ({}): {} {noun}, {} in the library: {}{more}\n",
-                share.severity,
-                share.textures,
-                share.in_library,
-                plain(&share.first.join(", "))
-            )
-        };
-        let mut text: String = all.iter().map(line).collect();
-        if self.other_warnings > 0 {
-            text += &format!(
-                "other warnings: {} textures; build-report.json has them\n",
-                self.other_warnings
-            );
-        }
-        text
-    }
-
-    fn to_text(&self, results: &Location) -> String {
-        let mut text = format!(
-            "{}: {} textures, {} bytes; {} fitted, {} as they were\n",
+impl Display for Summary<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        writeln!(
+            f,
+            "{}: {} textures, {} bytes; {} fitted, {} as they were",
             plain(&self.library),
             self.textures,
             self.library_bytes,
             self.fitted,
             self.unchanged
-        );
+        )?;
         if self.fitted > 0 {
             let megabytes = self.recording_bytes as f64 / 1e6;
-            text += &format!(
-                "{} recordings, {megabytes:.1} MB in {:.1} s: {:.1} recordings/s, {:.1} MB/s\n",
+            writeln!(
+                f,
+                "{} recordings, {megabytes:.1} MB in {:.1} s: {:.1} recordings/s, {:.1} MB/s",
                 self.recordings,
                 self.seconds,
                 self.recordings as f64 / self.seconds,
                 megabytes / self.seconds
-            );
+            )?;
         }
         for (model, share) in self.felt_shares {
-            text += &format!(
+            writeln!(
+                f,
                 "{}: {} of {} textures below the difference threshold ({} of a sensitive finger's); {} within the recording's \
-                 repeatability\n",
+                 repeatability",
                 short_name(model),
                 share.below_difference_threshold,
                 share.textures,
                 share.below_if_sensitive,
                 share.within_repeatability
-            );
+            )?;
         }
-        text += &removed(self.removed);
-        text += &self.findings();
-        text += &format!("catalogue: {}\n", plain(&results.inside("index.html").to_string()));
+        f.write_str(&removed(self.removed))?;
+        self.findings(f)?;
+        writeln!(f, "catalogue: {}", plain(&self.catalogue))?;
         for texture in &self.left_out {
             for missed in &texture.missed {
-                text += &format!(
-                    "left out: {}: {}: {}\n",
-                    plain(&texture.name),
-                    missed.gate,
-                    plain(&missed.reason)
-                );
+                let (name, reason) = (plain(&texture.name), plain(&missed.reason));
+                writeln!(f, "left out: {name}: {}: {reason}", missed.gate)?;
             }
         }
-        text
+        Ok(())
+    }
+}
+
+impl Summary<'_> {
+    /// Writes one line for each code of an error or a warning, errors first.
+    fn findings(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let mut all: Vec<(&String, &FindingShare)> = self.findings.iter().collect();
+        all.retain(|(_, share)| share.severity != Severity::Info);
+        all.sort_by_key(|(code, share)| (share.severity, *code));
+        for (code, share) in all {
+            let more = if share.textures > share.first.len() { ", …" } else { "" };
+            let noun = if share.textures == 1 { "texture" } else { "textures" };
+            writeln!(
+                f,
+                "{code} ({}): {} {noun}, {} in the library: {}{more}",
+                share.severity,
+                share.textures,
+                share.in_library,
+                plain(&share.first.join(", "))
+            )?;
+        }
+        match self.other_warnings {
+            0 => Ok(()),
+            count => writeln!(f, "other warnings: {count} textures; build-report.json has them"),
+        }
     }
 }

@@ -6,13 +6,10 @@ use htex_author::by_hand::{ByHand, make};
 use htex_author::settings::Metadata;
 use htex_format::{Condition, Quantity};
 
-use crate::assets::AssetSummary;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::assets::{check_metadata, write_and_show};
+use crate::failure::{Failure, Result};
+use crate::invocation::tool;
 use crate::located;
-use crate::metadata::checked;
-use crate::models::tool;
-use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::parse_condition;
@@ -59,11 +56,10 @@ pub(crate) struct Make {
 }
 
 impl Make {
-    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let files = self.plugins.files().iter().map(PathBuf::as_path);
         check_outputs([self.output.as_path()], files)?;
-        let metadata = std::mem::take(&mut self.metadata);
-        checked(&metadata)?;
+        check_metadata(&self.metadata)?;
         let registry = self.plugins.registry()?;
         let model = registry.find(&self.model)?;
         let at = self
@@ -83,36 +79,19 @@ impl Make {
         for text in &self.set {
             let (name, values) = parameter(text)?;
             if texture.values.insert(name.clone(), values).is_some() {
-                let sentence = format!("--set {text}: {name} is given twice; leave one out");
-                return Err(Failure::Usage(sentence));
+                return Err(Failure::Usage(format!(
+                    "--set {text}: {name} is given twice; leave one out"
+                )));
             }
         }
-        let made = make(model, &texture);
-        let mut asset = made.map_err(Failure::usage)?;
-        metadata.apply(&mut asset.manifest);
-        write(&self.output, &asset, self.json)
+        let mut asset = make(model, &texture).map_err(Failure::usage)?;
+        self.metadata.apply(&mut asset.manifest);
+        write_and_show(&self.output, &asset, self.json)
     }
-}
-
-/// Writes an asset made by hand, and prints its summary.
-pub(super) fn write(
-    output: &std::path::Path,
-    asset: &htex_format::Asset,
-    is_json: bool,
-) -> Result<Exit, Failure> {
-    let bytes = asset.to_bytes()?;
-    write_file(output, &bytes)?;
-    let summary = AssetSummary::new(output, bytes.len() as u64, asset);
-    if is_json {
-        print_json(&summary)?;
-    } else {
-        print(&summary.to_text())?;
-    }
-    Ok(Exit::SUCCESS)
 }
 
 /// Reads `NAME=NUMBER,…`.
-fn parameter(text: &str) -> Result<(String, Vec<f64>), Failure> {
+fn parameter(text: &str) -> Result<(String, Vec<f64>)> {
     let wrong = |what: &str| {
         Failure::Usage(format!("--set {text}: {what}; it looks like alpha=2 or cepstrum=-12,3.1"))
     };

@@ -5,8 +5,7 @@ use clap::{Args, Command};
 use clap_mangen::Man;
 use htex_base::files::{AtFile, OwnFolder};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Result};
 
 /// Write the manual pages
 ///
@@ -21,7 +20,7 @@ pub(crate) struct Manual {
 }
 
 impl Manual {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         // Otherwise there would be a page for the `help` of each subcommand.
         let mut command = crate::command().disable_help_subcommand(true);
         // Gives subcommands their full names, such as `htex-fit`, which name the files.
@@ -32,7 +31,7 @@ impl Manual {
 }
 
 /// Writes the page of a command and the pages of its subcommands.
-fn write_pages(command: &Command, folder: &OwnFolder) -> Result<(), Failure> {
+fn write_pages(command: &Command, folder: &OwnFolder) -> Result<()> {
     let page = Man::new(command.clone());
     let name = PathBuf::from(page.get_filename());
     let file = folder.path().join(&name);

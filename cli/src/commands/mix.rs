@@ -4,13 +4,10 @@ use clap::Args;
 use htex_author::by_hand::{MixedAsset, mix};
 use htex_author::settings::Metadata;
 
-use super::make::write;
-use crate::bounded::read_asset;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::assets::{check_metadata, read_asset, write_and_show};
+use crate::failure::{Failure, Result};
+use crate::invocation::tool;
 use crate::located;
-use crate::metadata::checked;
-use crate::models::tool;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
@@ -48,27 +45,20 @@ pub(crate) struct Mix {
 }
 
 impl Mix {
-    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         check_outputs([self.output.as_path()], [self.a.as_path(), self.b.as_path()])?;
-        let metadata = std::mem::take(&mut self.metadata);
-        checked(&metadata)?;
-        let (a, b) = (self.open(&self.a)?, self.open(&self.b)?);
-        let part = |(asset, blake3)| MixedAsset { asset, blake3 };
-        let stem = self.output.file_stem().unwrap_or_default();
-        let mixed = mix(
-            part((&a.0, &a.1[..])),
-            part((&b.0, &b.1[..])),
-            self.weight,
-            &stem.to_string_lossy(),
-            &tool(),
-        );
+        check_metadata(&self.metadata)?;
+        let [a, b] = [self.open(&self.a)?, self.open(&self.b)?];
+        let [first, second] = [&a, &b].map(|(asset, blake3)| MixedAsset { asset, blake3 });
+        let name = self.output.file_stem().unwrap_or_default().to_string_lossy();
+        let mixed = mix(first, second, self.weight, &name, &tool());
         let mut asset = mixed.map_err(Failure::other)?;
-        metadata.apply(&mut asset.manifest);
-        write(&self.output, &asset, self.json)
+        self.metadata.apply(&mut asset.manifest);
+        write_and_show(&self.output, &asset, self.json)
     }
 
     /// Opens a texture and computes the hash of its file.
-    fn open(&self, path: &Path) -> Result<(htex::Texture, String), Failure> {
+    fn open(&self, path: &Path) -> Result<(htex::Texture, String)> {
         let asset = self.player.open(path)?;
         // An opened asset does not keep its file's bytes, and written again it may have others.
         let bytes = read_asset(path)?;

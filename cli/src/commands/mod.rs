@@ -8,7 +8,7 @@ mod completions;
 mod demo;
 mod device;
 mod edit;
-mod explain;
+pub(crate) mod explain;
 mod export;
 mod fit;
 mod formats;
@@ -42,99 +42,63 @@ mod synth;
 mod tradeoff;
 mod validate;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-
-/// All subcommands.
-#[derive(clap::Subcommand)]
-pub(crate) enum Command {
-    Demo(demo::Demo),
-    Simulate(simulate::Simulate),
-    Process(process::Process),
-    #[cfg(feature = "lab")]
-    Record(Box<record::Record>),
-    #[cfg(feature = "lab")]
-    Response(Box<response::Response>),
-    Fit(Box<fit::Fit>),
-    Info(info::Info),
-    Edit(edit::Edit),
-    Validate(validate::Validate),
-    Explain(explain::Explain),
-    Spectrum(spectrum::Spectrum),
-    Synth(synth::Synth),
-    Bake(bake::Bake),
-    #[cfg(feature = "build")]
-    Build(library_build::Build),
-    Make(make::Make),
-    Mix(mix::Mix),
-    Import(Box<import::Import>),
-    Export(export::Export),
-    Formats(formats::Formats),
-    Compare(compare::Compare),
-    Tradeoff(tradeoff::Tradeoff),
-    #[cfg(feature = "lab")]
-    Studio(studio::Studio),
-    #[cfg(feature = "lab")]
-    Study(study::Study),
-    Plan(plan::Plan),
-    Render(render::Render),
-    Play(play::Play),
-    Gain(gain::Gain),
-    Guard(guard::Guard),
-    #[cfg(feature = "wasm")]
-    CompileModule(compile_module::CompileModule),
-    Lib(lib::Lib),
-    Completions(completions::Completions),
-    Man(manual::Manual),
-    Schema(schema::Schema),
-    Plugin(plugin::Plugin),
-    Device(device::Device),
-}
-
-impl Command {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        match self {
-            Self::Demo(args) => args.run(),
-            Self::Simulate(args) => args.run(),
-            Self::Process(args) => args.run(),
-            #[cfg(feature = "lab")]
-            Self::Record(args) => args.run(),
-            #[cfg(feature = "lab")]
-            Self::Response(args) => args.run(),
-            Self::Fit(args) => args.run(),
-            Self::Info(args) => args.run(),
-            Self::Edit(args) => args.run(),
-            Self::Validate(args) => args.run(),
-            Self::Explain(args) => args.run(),
-            Self::Spectrum(args) => args.run(),
-            Self::Synth(args) => args.run(),
-            Self::Bake(args) => args.run(),
-            #[cfg(feature = "build")]
-            Self::Build(args) => args.run(),
-            Self::Make(args) => args.run(),
-            Self::Mix(args) => args.run(),
-            Self::Import(args) => args.run(),
-            Self::Export(args) => args.run(),
-            Self::Formats(args) => args.run(),
-            Self::Compare(args) => args.run(),
-            Self::Tradeoff(args) => args.run(),
-            #[cfg(feature = "lab")]
-            Self::Studio(args) => args.run(),
-            #[cfg(feature = "lab")]
-            Self::Study(args) => args.run(),
-            Self::Plan(args) => args.run(),
-            Self::Render(args) => args.run(),
-            Self::Play(args) => args.run(),
-            Self::Gain(args) => args.run(),
-            Self::Guard(args) => args.run(),
-            #[cfg(feature = "wasm")]
-            Self::CompileModule(args) => args.run(),
-            Self::Lib(args) => args.run(),
-            Self::Completions(args) => args.run(),
-            Self::Man(args) => args.run(),
-            Self::Schema(args) => args.run(),
-            Self::Plugin(args) => args.run(),
-            Self::Device(args) => args.run(),
+/// Defines an enum of subcommands, each of which runs itself.
+macro_rules! subcommands {
+    ($name:ident {
+        $($(#[$meta:meta])* $variant:ident($args:ty) $(if $cfg:meta)?,)*
+    }) => {
+        #[derive(clap::Subcommand)]
+        pub(crate) enum $name {
+            $($(#[$meta])* $(#[cfg($cfg)])? $variant($args),)*
         }
+
+        impl $name {
+            pub(crate) fn run(self) -> crate::failure::Result {
+                match self {
+                    $($(#[cfg($cfg)])? Self::$variant(args) => args.run(),)*
+                }
+            }
+        }
+    };
+}
+use subcommands;
+
+subcommands! {
+    Command {
+        Demo(demo::Demo),
+        Simulate(simulate::Simulate),
+        Process(process::Process),
+        Record(Box<record::Record>) if feature = "lab",
+        Response(Box<response::Response>) if feature = "lab",
+        Fit(Box<fit::Fit>),
+        Info(info::Info),
+        Edit(edit::Edit),
+        Validate(validate::Validate),
+        Explain(explain::Explain),
+        Spectrum(spectrum::Spectrum),
+        Synth(synth::Synth),
+        Bake(bake::Bake),
+        Build(library_build::Build) if feature = "build",
+        Make(make::Make),
+        Mix(mix::Mix),
+        Import(Box<import::Import>),
+        Export(export::Export),
+        Formats(formats::Formats),
+        Compare(compare::Compare),
+        Tradeoff(tradeoff::Tradeoff),
+        Studio(studio::Studio) if feature = "lab",
+        Study(study::Study) if feature = "lab",
+        Plan(plan::Plan),
+        Render(render::Render),
+        Play(play::Play),
+        Gain(gain::Gain),
+        Guard(guard::Guard),
+        CompileModule(compile_module::CompileModule) if feature = "wasm",
+        Lib(lib::Lib),
+        Completions(completions::Completions),
+        Man(manual::Manual),
+        Schema(schema::Schema),
+        Plugin(plugin::Plugin),
+        Device(device::Device),
     }
 }

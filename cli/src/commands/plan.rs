@@ -1,15 +1,15 @@
-use std::fmt::Write;
+use std::fmt::{Display, Formatter};
 use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::report::{Chain, ChainStage};
 use htex_base::files::AtFile;
 use htex_scene::{Costs, Plan as Planned};
+use serde::Serialize;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::Result;
 use crate::located;
-use crate::output::{print, print_json, warn, write_file};
+use crate::output::{show, warn, write_file};
 use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
 /// Show which stages a scene needs, and why
@@ -41,7 +41,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let ready = self.with.open(&self.scene, &self.choice.to_override(None, true)?)?;
         let costs = if self.measure { self.measured()? } else { costs() };
         let plan = ready.plan(&costs)?;
@@ -49,20 +49,15 @@ impl Plan {
             ready.check_output(file)?;
             write_file(file, drawing(&self.scene.display().to_string(), &plan).as_bytes())?;
         }
-        if self.json {
-            print_json(&plan)?;
-        } else {
-            print(&text(&plan))?;
-        }
-        Ok(Exit::SUCCESS)
+        show(&PlanReport(plan), self.json)
     }
 
-    fn measured(&self) -> Result<Costs, Failure> {
+    fn measured(&self) -> Result<Costs> {
         let machine = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
         let costs = Costs::measure(&self.with.models()?, &machine)?;
         match costs_file() {
             Some(file) => costs.save(&file).writing(&file)?,
-            None => warn(&["no cache folder was found to keep the costs in".to_owned()]),
+            None => warn(&["no cache folder was found to keep the costs in"]),
         }
         Ok(costs)
     }
@@ -73,33 +68,37 @@ fn name(name: &str, surface: Option<usize>) -> String {
     surface.map_or_else(|| name.to_owned(), |i| format!("{name} [{i}]"))
 }
 
-fn text(plan: &Planned) -> String {
-    let moves =
-        if plan.constant { "nothing changes while it plays" } else { "it follows the finger" };
-    let mut text = format!("{} Hz, {moves}\n\n  ns/sample  stage\n", plan.rate_hz);
-    for stage in &plan.stages {
-        let (name, reason) = (name(stage.name, stage.surface), &stage.reason);
-        let _ = writeln!(text, "  {:9.2}  {name:18} {reason}", stage.ns_per_sample);
+/// A plan as it is printed.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct PlanReport(Planned);
+
+impl Display for PlanReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let plan = &self.0;
+        let moves =
+            if plan.constant { "nothing changes while it plays" } else { "it follows the finger" };
+        writeln!(f, "{} Hz, {moves}\n\n  ns/sample  stage", plan.rate_hz)?;
+        for stage in &plan.stages {
+            let (name, reason) = (name(stage.name, stage.surface), &stage.reason);
+            writeln!(f, "  {:9.2}  {name:18} {reason}", stage.ns_per_sample)?;
+        }
+        writeln!(f, "  {:9.2}  the renderer itself", plan.renderer_ns)?;
+        writeln!(f, "  {:9.2}  in all", plan.ns_per_sample_total)?;
+        if !plan.left_out.is_empty() {
+            writeln!(f, "\nleft out")?;
+        }
+        for out in &plan.left_out {
+            writeln!(f, "             {:18} {}", name(out.name, out.surface), out.reason)?;
+        }
+        writeln!(f)?;
+        for chosen in &plan.representation {
+            let (surface, model, why) = (chosen.surface, &chosen.model, &chosen.why);
+            writeln!(f, "surface {surface} is played by {model}: {why}")?;
+        }
+        writeln!(f, "costs: {}", plan.costs)?;
+        plan.notes.iter().try_for_each(|note| writeln!(f, "note: {note}"))
     }
-    let _ = writeln!(text, "  {:9.2}  the renderer itself", plan.renderer_ns);
-    let _ = writeln!(text, "  {:9.2}  in all", plan.ns_per_sample_total);
-    if !plan.left_out.is_empty() {
-        text += "\nleft out\n";
-    }
-    for out in &plan.left_out {
-        let name = name(out.name, out.surface);
-        let _ = writeln!(text, "             {name:18} {}", out.reason);
-    }
-    text += "\n";
-    for chosen in &plan.representation {
-        let (surface, model, why) = (chosen.surface, &chosen.model, &chosen.why);
-        let _ = writeln!(text, "surface {surface} is played by {model}: {why}");
-    }
-    let _ = writeln!(text, "costs: {}", plan.costs);
-    for note in &plan.notes {
-        let _ = writeln!(text, "note: {note}");
-    }
-    text
 }
 
 fn drawing(title: &str, plan: &Planned) -> String {

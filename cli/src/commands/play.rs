@@ -7,15 +7,13 @@ use htex_device_builtin::SOUND;
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Plan, Renderer};
 
-use crate::devices::built_with;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::gains::{FeltArgs, apply_kept};
+use crate::devices::{DeviceArgs, built_with};
+use crate::failure::{Exit, Failure, Result, for_file};
+use crate::gains::{FeltArgs, apply_gain};
 use crate::located;
-use crate::motions::{Motions, Moved};
-use crate::of_file::of_file;
+use crate::motions::Motions;
 use crate::output::{note, print};
-use crate::playing::Output;
+use crate::playing::{Output, limited_text};
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, default_motion, is_asset};
 use crate::signals::{self, interrupted};
 
@@ -66,12 +64,12 @@ fn without_sound() -> Resettable<StyledStr> {
 }
 
 impl Play {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let ready = self.load()?;
         self.choice.check_unnamed(&ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
-        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.file))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.file))?;
         // Before the device is opened: from then on a signal must first bring the output to zero.
         signals::ask();
         let mut output = Output::open(&ready, &plan)?;
@@ -82,7 +80,7 @@ impl Play {
             output = output.paced();
         }
         while output.step(&mut renderer)? {
-            let ended = motions.as_mut().is_some_and(|m| follow(m, &mut renderer));
+            let ended = motions.as_mut().is_some_and(|motions| !motions.follow(&mut renderer));
             if ended || interrupted() {
                 renderer.stop();
             }
@@ -92,10 +90,9 @@ impl Play {
         Ok(Exit::SUCCESS)
     }
 
-    fn load(&self) -> Result<Ready, Failure> {
+    fn load(&self) -> Result<Ready> {
         if let Some(seconds) = self.seconds.filter(|s| !(*s > 0.0 && *s <= 1e9)) {
-            let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
-            return Err(Failure::Usage(sentence));
+            return Err(Failure::Usage(format!("--seconds {seconds}: more than 0, at most 1e9")));
         }
         let device =
             DeviceOverride { live: self.motion.is_some(), ..self.choice.to_override(None, false)? };
@@ -105,15 +102,14 @@ impl Play {
         match (self.motion.is_some(), scene.motion == Motion::Live) {
             (true, false) => scene.motion = Motion::Live,
             (false, true) => {
-                let sentence = "the scene's motion is live; give it with --motion -";
-                return Err(Failure::Usage(sentence.to_owned()));
+                return Err(Failure::usage("the scene's motion is live; give it with --motion -"));
             }
             _ => {}
         }
         self.felt.apply(&mut ready)?;
         if let Some(person) = &self.person {
             // After `--levels`: own levels also need the level at which the gain was found.
-            apply_kept(person, self.texture.as_deref(), &mut ready)?;
+            apply_gain(person, self.texture.as_deref(), &mut ready)?;
         }
         Ok(ready)
     }
@@ -126,32 +122,19 @@ pub(crate) fn open(
     file: &std::path::Path,
     live: bool,
     mut device: DeviceOverride,
-) -> Result<Ready, Failure> {
+) -> Result<Ready> {
     if is_asset(file) {
         device.adapter.get_or_insert_with(|| SOUND.short_name().to_owned());
     }
-    if let Some(name) = &device.adapter {
-        ChoiceArgs::check_built(name)?;
+    // A device that this build does not have is reported with how to get it.
+    if let Some(why) = device.adapter.as_deref().and_then(DeviceArgs::missing) {
+        return Err(why.into());
     }
     if !is_asset(file) {
         return with.open(file, &device);
     }
     let motion = if live { Motion::Live } else { default_motion(file)? };
     with.of_asset(file, motion, None, &device)
-}
-
-/// Applies the newest motion. Returns true when the input has ended.
-fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
-    match motions.look() {
-        Moved::To(finger) => {
-            // After a failed reading, the last motion is held for a while and then becomes no
-            // contact. The next reading may be valid.
-            let _ = renderer.set_motion(finger);
-            false
-        }
-        Moved::Not => false,
-        Moved::Ended => true,
-    }
 }
 
 fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> String {
@@ -164,9 +147,6 @@ fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> Str
         status.underruns,
         status.peak,
     );
-    let limited = renderer.limited_samples();
-    if limited > 0 {
-        text += &format!("{limited} samples were held at the drive or the device's limit\n");
-    }
+    text += &limited_text(renderer.limited_samples());
     text
 }

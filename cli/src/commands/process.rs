@@ -1,14 +1,16 @@
+use std::fmt::{Display, Formatter};
 use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{Reading, Recording, TextureSpectrum, read_take};
-use serde_json::{Value, json};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use super::spectrum::write_spectrum;
+use crate::failure::Result;
 use crate::located;
-use crate::output::{note, print, print_json, warn, write_file};
+use crate::output::{note, show, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::recording_plot::recording_plot;
 use crate::recordings::RecordingArgs;
@@ -37,7 +39,7 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let inputs = [self.recording.as_path()].into_iter().chain(self.reading.inputs());
         check_outputs(self.svg.as_deref(), inputs)?;
         let take = self.reading.read_one(&self.recording)?;
@@ -49,18 +51,12 @@ impl Process {
             let picture = recording_plot(&take.recording, &reading.part.segments).to_svg();
             write_file(svg, picture.as_bytes())?;
         }
-        if self.json {
-            print_json(&summary(&take.recording, &reading, &spectrum))?;
-        } else {
+        if !self.json {
             warn(&reading.warnings);
             note(&reading.notes);
             note(&[seconds_read(&take.recording, &reading)]);
-            let rows = spectrum.frequency_hz.iter().zip(&spectrum.magnitude);
-            let rows: String = rows.map(|(f, m)| format!("{f},{m:.12}\n")).collect();
-            let suffix = spectrum.quantity.suffix();
-            print(&format!("frequency_hz,magnitude_{suffix}\n{rows}"))?;
         }
-        Ok(Exit::SUCCESS)
+        show(&RecordingSpectrum { recording: &take.recording, reading, spectrum }, self.json)
     }
 }
 
@@ -94,27 +90,45 @@ fn seconds_read(recording: &Recording, reading: &Reading) -> String {
     text
 }
 
-fn summary(recording: &Recording, reading: &Reading, spectrum: &TextureSpectrum) -> Value {
-    let segments = &reading.part.segments;
-    json!({
-        "rate_hz": recording.rate_hz,
-        "segments": spectrum.segments,
-        "segments_from": origin(reading),
-        "segments_off_target": segments.off_target.len(),
-        "sweeps": segments.sweeps.len(),
-        "sweeps_cut_off": segments.cut_off,
-        "read_s": stretches_s(recording, reading),
-        "quantity": spectrum.quantity,
-        "unit": spectrum.quantity.unit(),
-        "frequency_hz": spectrum.frequency_hz,
-        "magnitude": spectrum.magnitude,
-        "speed_mm_s": reading.condition.speed_mm_s,
-        "speed_spread_mm_s": reading.spread.speed_mm_s,
-        "force_n": reading.condition.force_n,
-        "force_spread_n": reading.spread.force_n,
-        "repeatability_rms_db": spectrum.repeatability_rms_db,
-        "simulated": recording.simulated,
-        "findings": reading.findings,
-        "warnings": reading.warnings,
-    })
+/// The spectrum of a recording, and what was read of it.
+struct RecordingSpectrum<'a> {
+    recording: &'a Recording,
+    reading: Reading,
+    spectrum: TextureSpectrum,
+}
+
+impl Serialize for RecordingSpectrum<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { recording, reading, spectrum } = self;
+        let segments = &reading.part.segments;
+        json!({
+            "rate_hz": recording.rate_hz,
+            "segments": spectrum.segments,
+            "segments_from": origin(reading),
+            "segments_off_target": segments.off_target.len(),
+            "sweeps": segments.sweeps.len(),
+            "sweeps_cut_off": segments.cut_off,
+            "read_s": stretches_s(recording, reading),
+            "quantity": spectrum.quantity,
+            "unit": spectrum.quantity.unit(),
+            "frequency_hz": spectrum.frequency_hz,
+            "magnitude": spectrum.magnitude,
+            "speed_mm_s": reading.condition.speed_mm_s,
+            "speed_spread_mm_s": reading.spread.speed_mm_s,
+            "force_n": reading.condition.force_n,
+            "force_spread_n": reading.spread.force_n,
+            "repeatability_rms_db": spectrum.repeatability_rms_db,
+            "simulated": recording.simulated,
+            "findings": reading.findings,
+            "warnings": reading.warnings,
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Display for RecordingSpectrum<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let TextureSpectrum { quantity, frequency_hz, magnitude, .. } = &self.spectrum;
+        write_spectrum(f, *quantity, frequency_hz, magnitude)
+    }
 }

@@ -1,24 +1,23 @@
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_base::files::AtFile;
+use htex_base::finding::plain;
 use htex_device::{Capabilities, Quantity, Settings, StreamFormat};
 use htex_scene::file::Motion;
 use htex_scene::{Renderer, output_name};
-use serde_json::json;
+use serde::Serialize;
+use serde_json::Value;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
-use crate::output::{Written, note, print, print_json, warn};
-use crate::playing::Output;
-use crate::progress::bar;
+use crate::output::{OutputFile, bar, note, show, shown, warn};
+use crate::playing::{Output, limited_text};
 use crate::scene_sound::rights;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
-use crate::shown::shown;
 use crate::signals::{self, interrupted};
 use crate::wav::silence;
 
@@ -58,25 +57,25 @@ pub(crate) struct Render {
 }
 
 impl Render {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let mut ready = self.with.open(&self.scene, &self.choice.to_override(None, true)?)?;
         self.check_length(&mut ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
         let rights = rights(&ready);
-        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.scene))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.scene))?;
         if self.json {
             // Timing slows the renderer down, and only JSON has the times.
             renderer = renderer.timed();
         }
         signals::ask();
-        let Opened { path, aside, mut output } = self.open(&ready, plan.rate_hz)?;
+        let RenderTarget { path, aside, mut output } = self.open(&ready, plan.rate_hz)?;
         let length_s = plan.frames.unwrap_or(0) as f64 / plan.rate_hz;
         let bar = bar(length_s.ceil() as u64);
         while output.step(&mut renderer)? {
             if interrupted() {
                 // Dropping the device without `finish` leaves no file behind.
-                return Err(Failure::Other("interrupted; nothing was written".to_owned()));
+                return Err(Failure::other("interrupted; nothing was written"));
             }
             bar.set_position((output.frames() as f64 / plan.rate_hz) as u64);
         }
@@ -88,30 +87,29 @@ impl Render {
         if renderer.peak() == 0.0 {
             warn(&[silence(&path)]);
         }
-        let file = path.display().to_string();
-        if self.json {
-            print_json(&json!({
-                "file": file,
-                "frames": frames,
-                "rate_hz": plan.rate_hz,
-                "unit": ready.capabilities.quantity.unit(),
-                "stages_run": renderer.stages_run(),
-                "peak": renderer.peak(),
-                "limited_samples": renderer.limited_samples(),
-            }))?;
-        } else {
-            print(&text(&shown(&path), frames, plan.rate_hz, &ready, &renderer))?;
-        }
-        Ok(Exit::SUCCESS)
+        let unit = ready.capabilities.quantity.unit();
+        show(
+            &Rendering {
+                file: path.display().to_string(),
+                frames,
+                limited_samples: renderer.limited_samples(),
+                peak: renderer.peak(),
+                rate_hz: plan.rate_hz,
+                stages_run: serde_json::to_value(renderer.stages_run())?,
+                unit,
+            },
+            self.json,
+        )
     }
 
     /// Sets the requested length, and refuses a scene without end.
-    fn check_length(&self, ready: &mut Ready) -> Result<(), Failure> {
+    fn check_length(&self, ready: &mut Ready) -> Result<()> {
         let scene = &mut ready.scene.file;
         if let Some(seconds) = self.seconds {
             if !(seconds > 0.0 && seconds <= 1e9) {
-                let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
-                return Err(Failure::Usage(sentence));
+                return Err(Failure::Usage(format!(
+                    "--seconds {seconds}: more than 0, at most 1e9"
+                )));
             }
             scene.duration_s = Some(seconds);
         }
@@ -126,16 +124,16 @@ impl Render {
         Err(Failure::Other(format!("{file}: {sentence}")))
     }
 
-    fn open(&self, ready: &Ready, rate_hz: f64) -> Result<Opened, Failure> {
+    fn open(&self, ready: &Ready, rate_hz: f64) -> Result<RenderTarget> {
         let known = ready.devices.find_output("org.htex.file")?;
         let is_file = ready.device.descriptor().id == known.descriptor().id;
         let mut given = if is_file {
-            ready.settings().iter().map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
+            ready.scene.settings.iter().map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
         } else {
             like(&ready.capabilities, &self.scene)
         };
         let aside = match &self.output {
-            Some(output) => Aside::of(output)?,
+            Some(output) => Aside::for_output(output)?,
             None => None,
         };
         if let Some(output) = &self.output {
@@ -152,7 +150,7 @@ impl Render {
         if let Some(beside) = rights(ready).beside(&path) {
             ready.check_output(&beside)?;
         }
-        let is_named = self.output.is_some() || self.choice.names_output()?;
+        let is_named = self.output.is_some() || self.choice.settings.given()?.contains_key("path");
         // `exists` would follow a link, and miss one that leads nowhere.
         if !is_named && path.symlink_metadata().is_ok() {
             let path = shown(&path);
@@ -161,12 +159,12 @@ impl Render {
             )));
         }
         let device = known.adapter.open_output(&settings, &format)?;
-        Ok(Opened { path, aside, output: Output::new(device, BLOCK, rate_hz) })
+        Ok(RenderTarget { path, aside, output: Output::new(device, BLOCK, rate_hz) })
     }
 }
 
 /// The file that receives the samples.
-struct Opened {
+struct RenderTarget {
     path: PathBuf,
     aside: Option<Aside>,
     output: Output,
@@ -182,7 +180,7 @@ struct Aside {
 impl Aside {
     /// Creates a temporary file for an output of this name, if it needs one. The file keeps the
     /// extension, which determines the format.
-    fn of(path: &Path) -> Result<Option<Self>, Failure> {
+    fn for_output(path: &Path) -> Result<Option<Self>> {
         if path.to_str().is_some() {
             return Ok(None);
         }
@@ -192,9 +190,9 @@ impl Aside {
         Ok(Some(Self { path: folder.path().join(format!("render.{extension}")), _folder: folder }))
     }
 
-    fn move_to(self, path: &Path) -> Result<(), Failure> {
+    fn move_to(self, path: &Path) -> Result<()> {
         let copy = |file: &mut File| std::io::copy(&mut File::open(&self.path)?, file).map(drop);
-        Ok(Written::Named(path).replace(copy)?)
+        Ok(OutputFile::Named(path).replace(copy)?)
     }
 }
 
@@ -211,13 +209,23 @@ fn like(able: &Capabilities, scene: &Path) -> BTreeMap<String, String> {
     given.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
 }
 
-fn text(file: &str, frames: u64, rate_hz: f64, ready: &Ready, renderer: &Renderer) -> String {
-    let (unit, peak) = (ready.capabilities.quantity.unit(), renderer.peak());
-    let seconds = frames as f64 / rate_hz;
-    let mut text = format!("{file}: {seconds:.3} s at {rate_hz} Hz, peak {peak:.4} {unit}\n");
-    let limited = renderer.limited_samples();
-    if limited > 0 {
-        text += &format!("{limited} samples were held at the drive or the device's limit\n");
+/// What was rendered.
+#[derive(Serialize)]
+struct Rendering {
+    file: String,
+    frames: u64,
+    limited_samples: u64,
+    peak: f64,
+    rate_hz: f64,
+    stages_run: Value,
+    unit: &'static str,
+}
+
+impl Display for Rendering {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { file, peak, rate_hz, unit, .. } = self;
+        let seconds = self.frames as f64 / rate_hz;
+        writeln!(f, "{}: {seconds:.3} s at {rate_hz} Hz, peak {peak:.4} {unit}", plain(file))?;
+        f.write_str(&limited_text(self.limited_samples))
     }
-    text
 }

@@ -1,4 +1,5 @@
 use std::collections::BTreeSet;
+use std::fmt::{Display, Formatter};
 use std::io::BufWriter;
 use std::path::PathBuf;
 
@@ -7,16 +8,17 @@ use htex_author::recording::{
     ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
 };
 use htex_base::finding::Notice;
+use htex_lab::LabError;
 use htex_lab::response::{
-    MeasuredResponse, Piece, Record, ResponseError, ResponseOptions, ResponseSettings, column_map,
-    measure, response_picture,
+    MeasuredResponse, Piece, Record, ResponseSettings, column_map, measure, response_picture,
 };
-use serde_json::{Value, json};
+use serde::ser::Error;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::located;
-use crate::output::{Written, note, print, print_json, warn, write_file};
+use crate::output::{OutputFile, note, show, warn, write_file};
 use crate::outputs::check_outputs;
 
 /// Measure the response of a rig or display
@@ -79,33 +81,30 @@ pub(crate) struct Response {
 }
 
 impl Response {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let outputs = [&self.csv, &self.svg].into_iter().flatten();
         let inputs = self.recordings.iter().map(PathBuf::as_path);
         check_outputs(outputs.map(PathBuf::as_path), inputs)?;
         let (records, remarks) = self.read()?;
-        let measured = measure(&records, &self.options())?;
+        let measured = measure(&records, &self.settings)?;
         if let Some(csv) = &self.csv {
             let response = measured.setup_response();
             let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
-            Written::Named(csv).replace(write)?;
+            OutputFile::Named(csv).replace(write)?;
         }
         if let Some(svg) = &self.svg {
             let picture = response_picture(&measured, &self.title());
             write_file(svg, picture.as_bytes())?;
         }
-        if self.json {
-            print_json(&self.summary(&measured, &remarks)?)?;
-        } else {
+        if !self.json {
             note(&remarks);
             warn(&measured.warnings);
-            print(&text(&measured))?;
         }
-        Ok(Exit::SUCCESS)
+        show(&ResponseReport { args: &self, measured, remarks }, self.json)
     }
 
     /// Reads the records. Also returns each notice about them once.
-    fn read(&self) -> Result<(Vec<Record>, Vec<Notice>), Failure> {
+    fn read(&self) -> Result<(Vec<Record>, Vec<Notice>)> {
         let others = self.map.as_deref().map(str::parse::<ColumnMap>).transpose()?;
         let map = column_map(&self.input, &self.output, others.as_ref())?;
         let options = ReadOptions::default()
@@ -128,23 +127,29 @@ impl Response {
         Ok((records, remarks.into_iter().collect()))
     }
 
-    fn options(&self) -> ResponseOptions {
-        (&self.settings).into()
-    }
-
     fn title(&self) -> String {
         format!("{} over {}", self.output, self.input)
     }
+}
 
-    /// Summarises the response and the settings of the measurement.
-    fn summary(&self, measured: &MeasuredResponse, remarks: &[Notice]) -> Result<Value, Failure> {
-        let mut summary = serde_json::to_value(measured)?;
+/// A measured response, and the settings of the measurement.
+struct ResponseReport<'a> {
+    args: &'a Response,
+    measured: MeasuredResponse,
+    remarks: Vec<Notice>,
+}
+
+impl Serialize for ResponseReport<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { args, measured, remarks } = self;
+        // Collected in a map, because that has the order of the alphabet.
+        let mut summary = serde_json::to_value(measured).map_err(S::Error::custom)?;
         // Indexing inserts a key. It cannot panic, because a struct is always a JSON object.
-        summary["input"] = json!(self.input);
-        summary["output"] = json!(self.output);
-        summary["settings"] = serde_json::to_value(self.options())?;
+        summary["input"] = json!(args.input);
+        summary["output"] = json!(args.output);
+        summary["settings"] = args.settings.resolved();
         summary["notes"] = json!(remarks);
-        Ok(summary)
+        summary.serialize(serializer)
     }
 }
 
@@ -154,7 +159,7 @@ fn read_failure(error: ReadError) -> Failure {
     match error.problem {
         ReadProblem::Columns { .. } => {
             let problem = error.to_string();
-            ResponseError::Columns { problem }.into()
+            LabError::Columns { problem }.into()
         }
         _ => error.into(),
     }
@@ -163,25 +168,28 @@ fn read_failure(error: ReadError) -> Failure {
 /// Maximum number of windows of a continuous drive that are listed.
 const MOST_LISTED: usize = 40;
 
-/// Summarises in a few lines what was used, what was discarded, and the result.
-fn text(measured: &MeasuredResponse) -> String {
-    let is_listed =
-        |piece: &&Piece| measured.pieces.len() <= MOST_LISTED || piece.thrown_out.is_some();
-    let listed = measured.pieces.iter().filter(is_listed).take(MOST_LISTED);
-    let lines: String = listed.map(line).collect();
-    let thrown_out = measured.pieces.len() - measured.averages;
-    let band = [measured.frequency_hz.first(), measured.frequency_hz.last()];
-    let [low_hz, high_hz] = band.map(|hz| hz.copied().unwrap_or_default());
-    format!(
-        "{lines}{} used, {thrown_out} thrown out\n\
-         {} of windows of {} s: {low_hz} to {high_hz} Hz in steps of {} Hz\n{}{}",
-        measured.averages,
-        measured.estimator,
-        measured.window_s,
-        measured.resolution_hz,
-        largest(measured),
-        least_coherence(measured),
-    )
+impl Display for ResponseReport<'_> {
+    /// Summarises in a few lines what was used, what was discarded, and the result.
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let MeasuredResponse { pieces, averages, frequency_hz, .. } = &self.measured;
+        let is_listed = |piece: &&Piece| pieces.len() <= MOST_LISTED || piece.thrown_out.is_some();
+        for piece in pieces.iter().filter(is_listed).take(MOST_LISTED) {
+            f.write_str(&line(piece))?;
+        }
+        let thrown_out = pieces.len() - averages;
+        let [low_hz, high_hz] =
+            [frequency_hz.first(), frequency_hz.last()].map(|hz| hz.copied().unwrap_or_default());
+        write!(
+            f,
+            "{averages} used, {thrown_out} thrown out\n\
+             {} of windows of {} s: {low_hz} to {high_hz} Hz in steps of {} Hz\n{}{}",
+            self.measured.estimator,
+            self.measured.window_s,
+            self.measured.resolution_hz,
+            largest(&self.measured),
+            least_coherence(&self.measured),
+        )
+    }
 }
 
 fn line(piece: &Piece) -> String {

@@ -1,8 +1,7 @@
 use clap::{Args, ValueEnum};
 use htex_host::Registry;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Result};
 use crate::output::print;
 
 /// Print JSON Schemas and model descriptors
@@ -45,7 +44,7 @@ enum What {
 }
 
 impl Schema {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let value = match self.what {
             What::Manifest => Ok(htex_format::manifest_schema()),
             What::Scene => Ok(htex_scene::scene_schema()),

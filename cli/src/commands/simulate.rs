@@ -7,10 +7,9 @@ use htex_author::SetupResponse;
 use htex_author::settings::GivenLaw;
 use htex_author::simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::located;
-use crate::output::Written;
+use crate::output::OutputFile;
 use crate::outputs::check_outputs;
 
 /// Simulate a recording of a surface
@@ -101,7 +100,7 @@ impl FromStr for Range {
 }
 
 impl Simulate {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let outputs = [self.output.as_path()]
             .into_iter()
             .chain(self.frf.as_deref())
@@ -116,14 +115,14 @@ impl Simulate {
         let truth = truth.transpose()?;
         let simulation = simulate(&options).map_err(Failure::usage)?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
-        Written::Named(&self.output).replace(write)?;
+        OutputFile::Named(&self.output).replace(write)?;
         if let Some((file, truth)) = truth {
             let write = |file: &mut std::fs::File| truth.write_json(&mut BufWriter::new(file));
-            Written::Named(file).replace(write)?;
+            OutputFile::Named(file).replace(write)?;
         }
         if let Some(frf) = &self.frf {
             let response = options.setup_response().map_err(Failure::usage)?;
-            write_response(&response, Written::Named(frf))?;
+            write_response(&response, OutputFile::Named(frf))?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -138,7 +137,7 @@ impl Simulate {
             .with_lifted(self.lifted)
     }
 
-    fn options(&self) -> Result<SimulationOptions, Failure> {
+    fn options(&self) -> Result<SimulationOptions> {
         let options = SimulationOptions::new(self.surface)
             .with_seed(self.seed)
             .with_rate_hz(self.rate)
@@ -174,7 +173,7 @@ impl Simulate {
 }
 
 /// Writes a setup response for `--frf`.
-pub(super) fn write_response(response: &SetupResponse, to: Written<'_>) -> Result<(), Failure> {
+pub(super) fn write_response(response: &SetupResponse, to: OutputFile<'_>) -> Result<()> {
     let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
     Ok(to.replace(write)?)
 }

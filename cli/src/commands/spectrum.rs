@@ -1,14 +1,14 @@
+use std::fmt::{Display, Formatter};
 use std::path::PathBuf;
 
 use clap::Args;
 use htex::play::Effects;
-use serde_json::json;
+use htex_format::Quantity;
+use serde::Serialize;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
-use crate::output::{print, print_json, warn};
+use crate::output::{show, warn};
 use crate::plugins::PlayerArgs;
 
 /// Show the spectrum that an asset plays
@@ -68,9 +68,7 @@ impl ChoiceArgs {
         let representation = asset.representation(self.model.as_deref())?;
         Ok(Some(representation.motion(self.speed, self.force)))
     }
-}
 
-impl ChoiceArgs {
     /// Returns a note on how a motion that was not recorded is played.
     pub(crate) fn beyond(
         &self,
@@ -87,36 +85,50 @@ impl ChoiceArgs {
 }
 
 impl Spectrum {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let asset = self.player.open(&self.asset)?;
         let grid = htex::model::Band::TACTILE.grid_hz();
-        let motion = self.choice.motion(&asset).map_err(of_file(&self.asset))?;
+        let motion = self.choice.motion(&asset).map_err(for_file(&self.asset))?;
         let representation = asset.representation(self.choice.model.as_deref());
-        let representation = representation.map_err(of_file(&self.asset))?;
+        let representation = representation.map_err(for_file(&self.asset))?;
         let (magnitude, effects) = if self.unscaled {
             (representation.recorded_magnitude(motion, &grid), Effects::NONE)
         } else {
             (representation.magnitude(motion, &grid), Effects::default())
         };
-        let magnitude = magnitude.map_err(of_file(&self.asset))?;
+        let magnitude = magnitude.map_err(for_file(&self.asset))?;
         let beyond = self.choice.beyond(&asset, effects);
-        if let Some(said) = beyond.map_err(of_file(&self.asset))? {
+        if let Some(said) = beyond.map_err(for_file(&self.asset))? {
             warn(&[said]);
         }
         let quantity = asset.quantity();
-        if self.json {
-            print_json(&json!({
-                "quantity": quantity,
-                "unit": quantity.unit(),
-                "frequency_hz": grid,
-                "magnitude": magnitude,
-            }))?;
-        } else {
-            let rows = grid.iter().zip(&magnitude);
-            let rows: String = rows.map(|(f, m)| format!("{f},{m:.12}\n")).collect();
-            let suffix = quantity.suffix();
-            print(&format!("frequency_hz,magnitude_{suffix}\n{rows}"))?;
-        }
-        Ok(Exit::SUCCESS)
+        let unit = quantity.unit();
+        show(&PlayedSpectrum { frequency_hz: grid, magnitude, quantity, unit }, self.json)
     }
+}
+
+/// The spectrum that an asset plays.
+#[derive(Serialize)]
+struct PlayedSpectrum {
+    frequency_hz: Vec<f64>,
+    magnitude: Vec<f64>,
+    quantity: Quantity,
+    unit: &'static str,
+}
+
+impl Display for PlayedSpectrum {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write_spectrum(f, self.quantity, &self.frequency_hz, &self.magnitude)
+    }
+}
+
+/// Writes a spectrum as CSV.
+pub(super) fn write_spectrum(
+    f: &mut Formatter<'_>,
+    quantity: Quantity,
+    frequency_hz: &[f64],
+    magnitude: &[f64],
+) -> std::fmt::Result {
+    writeln!(f, "frequency_hz,magnitude_{}", quantity.suffix())?;
+    frequency_hz.iter().zip(magnitude).try_for_each(|(hz, m)| writeln!(f, "{hz},{m:.12}"))
 }

@@ -5,8 +5,7 @@ use clap::Args;
 use htex_base::files::{Key, OwnFolder};
 use htex_lab::page::ServedFolder;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::output::{print, warn};
 use crate::signals;
 
@@ -45,7 +44,7 @@ pub(crate) struct Studio {
 }
 
 impl Studio {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let folder = self.page()?;
         let served = ServedFolder::open(&folder, self.port, &key()?)
             .map_err(|error| Failure::Other(error.to_string()))?;
@@ -58,7 +57,7 @@ impl Studio {
     }
 
     /// Returns the folder that contains the page.
-    fn page(&self) -> Result<PathBuf, Failure> {
+    fn page(&self) -> Result<PathBuf> {
         let given = self.folder.clone().or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
         let looked = match given {
             Some(folder) => vec![folder],
@@ -77,7 +76,7 @@ impl Studio {
 
 /// Returns the key for the address that only this user knows. Without a folder to store it, the
 /// address changes every time.
-fn key() -> Result<Key, Failure> {
+fn key() -> Result<Key> {
     let config = htex_host::folders::config();
     if let Some(key) = config.and_then(|folder| Key::load_or_create(&folder, KEY).ok()) {
         return Ok(key);

@@ -4,17 +4,15 @@ use clap::Args;
 use htex::VoiceOptions;
 use htex::play::exploration::CEILING;
 use htex::play::{Effects, Synthesis};
+use htex_format::Rights;
 
 use crate::commands::spectrum::ChoiceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
-use crate::output::{Written, warn};
+use crate::output::{OutputFile, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
-use htex_format::Rights;
 
 /// Play an asset to a WAV file
 ///
@@ -67,7 +65,7 @@ pub(crate) struct Synth {
 }
 
 impl Synth {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         if !(self.seconds > 0.0 && self.seconds <= 1e9) {
             let sentence = format!("--seconds {}: more than 0, at most 1e9", self.seconds);
             return Err(Failure::Usage(sentence));
@@ -82,22 +80,22 @@ impl Synth {
         let options = VoiceOptions::default()
             .with_rate_hz(f64::from(self.rate))
             .with_seed(self.seed)
-            .with_motion(self.choice.motion(&asset).map_err(of_file(&self.asset))?)
+            .with_motion(self.choice.motion(&asset).map_err(for_file(&self.asset))?)
             .with_synthesis(self.quality)
             .with_ceiling(self.ceiling)
             .with_effects(effects);
-        let beyond = self.choice.beyond(&asset, effects).map_err(of_file(&self.asset))?;
+        let beyond = self.choice.beyond(&asset, effects).map_err(for_file(&self.asset))?;
         warn(&Vec::from_iter(beyond));
         let representation = asset.representation(self.choice.model.as_deref());
         let mut voice = representation
             .and_then(|representation| representation.voice(&options))
-            .map_err(of_file(&self.asset))?;
+            .map_err(for_file(&self.asset))?;
         // At least one, because a very short time is also more than 0.
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::from_manifest(asset.manifest());
-        let wav = Written::Named(&self.output);
+        let wav = OutputFile::Named(&self.output);
         write_wav(wav, self.rate, frames, &rights, |block| {
-            voice.render(block).map_err(of_file(&self.asset))
+            voice.render(block).map_err(for_file(&self.asset))
         })?;
         Ok(Exit::SUCCESS)
     }

@@ -1,3 +1,4 @@
+use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,20 +11,17 @@ use htex_author::tradeoff::{
 use htex_author::{AuthorError, Exploration, Take};
 use htex_base::files::{AtFile, OwnFolder};
 use htex_format::{By, Measure};
-use htex_host::{LoadedModel, Origin, Registry};
+use htex_host::{LoadedModel, Registry};
+use serde::Serialize;
 
 use crate::columns::{Column, cells, headings};
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::invocation;
+use crate::failure::{Failure, Result};
+use crate::invocation::{command_line, tool};
 use crate::located;
-use crate::models::tool;
-use crate::output::{Written, print, print_json, warn, write_file};
+use crate::output::{OutputFile, bar, show, shown, warn, write_file};
 use crate::outputs::check_outputs;
-use crate::plugins::PluginArgs;
-use crate::progress::bar;
+use crate::plugins::{PluginArgs, way};
 use crate::recordings::RecordingArgs;
-use crate::shown::shown;
 
 /// Measure accuracy against bytes and time
 ///
@@ -76,20 +74,20 @@ pub(crate) struct Tradeoff {
 /// Parses an error by the first words of its name, e.g. `third-octave`.
 fn error_axis() -> impl TypedValueParser<Value = ErrorAxis> {
     let name = |error: ErrorAxis| error.name().split(' ').next().unwrap_or_default();
-    let named = move |given: String| ErrorAxis::ALL.into_iter().find(|e| name(*e) == given);
+    let by_name = move |given: String| ErrorAxis::ALL.into_iter().find(|e| name(*e) == given);
     PossibleValuesParser::new(ErrorAxis::ALL.map(name))
-        .map(move |given| named(given).unwrap_or_default())
+        .map(move |given| by_name(given).unwrap_or_default())
 }
 
 impl Tradeoff {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let [csv_file, json_file, part_file] =
             ["csv", "json", "part"].map(|e| self.output.with_extension(e));
         if [&csv_file, &json_file, &part_file].contains(&&self.output) {
-            let output = shown(&self.output);
-            let sentence =
-                format!("-o {output}: points go beside it under that name; name a .html file");
-            return Err(Failure::Usage(sentence));
+            return Err(Failure::Usage(format!(
+                "-o {}: points go beside it under that name; name a .html file",
+                shown(&self.output)
+            )));
         }
         let files = self.recordings.iter().chain(self.plugins.files()).map(PathBuf::as_path);
         check_outputs(
@@ -117,25 +115,22 @@ impl Tradeoff {
         // Their names are ours, so no link is followed.
         for (file, bytes) in [(&csv_file, csv(&tradeoff).as_bytes()), (&json_file, &json[..])] {
             let (own, name) = OwnFolder::of_file(file).writing(file)?;
-            Written::Inside(&own, &name).write(bytes)?;
+            OutputFile::Inside(&own, &name).write(bytes)?;
         }
-        write_file(&self.output, page(&tradeoff, &command()).as_bytes())?;
+        write_file(&self.output, page(&tradeoff, &command_line()).as_bytes())?;
         // Last: if a file cannot be written, the next run still continues from the journal.
         journal.discard()?;
-        if self.json {
-            print_json(&tradeoff)?;
-        } else {
+        if !self.json {
             warn(&tradeoff.warnings);
-            print(&to_text(&tradeoff, &self.output))?;
         }
-        Ok(Exit::SUCCESS)
+        show(&TradeoffReport { tradeoff, output: &self.output }, self.json)
     }
 
     /// Returns the requested models, each with all the ways in which it was found.
-    fn models(&self) -> Result<Vec<Model>, Failure> {
+    fn models(&self) -> Result<Vec<Model>> {
         let registry = self.plugins.registry_quietly()?;
         let mut models: Vec<Model> = Vec::new();
-        for model in self.named(&registry)? {
+        for model in self.requested(&registry)? {
             let mut found: Vec<&LoadedModel> = registry.all(model.id()).collect();
             found.sort_by_key(|model| way(model.origin()).0);
             let ways = found.into_iter().map(|m| (way(m.origin()).1.to_owned(), m.clone()));
@@ -148,7 +143,7 @@ impl Tradeoff {
         Ok(models)
     }
 
-    fn named<'a>(&self, registry: &'a Registry) -> Result<Vec<&'a LoadedModel>, Failure> {
+    fn requested<'a>(&self, registry: &'a Registry) -> Result<Vec<&'a LoadedModel>> {
         if self.only.is_empty() {
             return Ok(registry.by_default().collect());
         }
@@ -162,7 +157,7 @@ impl Tradeoff {
         Ok(models)
     }
 
-    fn subjects(&self) -> Result<Vec<Subject>, Failure> {
+    fn subjects(&self) -> Result<Vec<Subject>> {
         let mut takes = self.reading.read(&self.recordings)?;
         if self.simulated {
             takes.extend(simulated()?);
@@ -184,7 +179,7 @@ impl Tradeoff {
 }
 
 /// Simulates the five surfaces as `htex demo` does.
-fn simulated() -> Result<Vec<Take>, Failure> {
+fn simulated() -> Result<Vec<Take>> {
     let take = |surface: Surface| {
         let options = SimulationOptions::new(surface);
         let simulation = simulate(&options).map_err(Failure::other)?;
@@ -196,56 +191,53 @@ fn simulated() -> Result<Vec<Take>, Failure> {
     Surface::ALL.into_iter().map(take).collect()
 }
 
-/// Returns the order and the name of a way to load a model.
-fn way(origin: &Origin) -> (u8, &'static str) {
-    match origin {
-        Origin::Builtin => (0, "built in"),
-        Origin::Native(_) => (1, "native"),
-        _ => (2, "wasm"),
-    }
+/// A trade-off as it is printed.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct TradeoffReport<'a> {
+    tradeoff: htex_author::tradeoff::Tradeoff,
+    #[serde(skip)]
+    output: &'a Path,
 }
 
-/// Returns the command as the user gave it.
-fn command() -> String {
-    let arguments =
-        invocation::arguments().into_iter().map(|argument| argument.to_string_lossy().into_owned());
-    let quoted = arguments.map(|a| if a.contains([' ', '\'']) { format!("{a:?}") } else { a });
-    ["htex".to_owned()].into_iter().chain(quoted).collect::<Vec<_>>().join(" ")
-}
-
-fn to_text(tradeoff: &htex_author::tradeoff::Tradeoff, output: &Path) -> String {
-    let points = tradeoff.summary();
-    let name = points.first().map_or("", |p| &p.recording);
-    let column = |measure| Column::new(measure, By::Magnitude);
-    let has_column = |m: &Measure| m.row().column.is_some();
-    let errors: Vec<Column> = errors().filter(has_column).map(column).collect();
-    let others: Vec<Column> = others().filter(has_column).map(column).collect();
-    let mut text = format!(
-        "{name}: the front against bytes, by {}\n  bytes  held out{}  below threshold{}  ns/sample  setting\n",
-        tradeoff.error,
-        headings(&errors),
-        headings(&others),
-    );
-    let mut front: Vec<&Point> = points.into_iter().filter(|p| p.on_front).collect();
-    front.sort_by_key(|p| p.bytes);
-    for p in front {
-        let of = |column: Column| Some(p.get(By::Magnitude, column.measure()));
-        text += &format!(
-            "  {:>5}  {:>8.2}{}  {:>13.0} %{}  {:>9.1}  {}\n",
-            p.bytes,
-            p.held_out_error.unwrap_or(f64::NAN),
-            cells(&errors, of),
-            100.0 * p.shares.below_threshold,
-            cells(&others, of),
-            p.ns_per_sample,
-            p.name()
-        );
-    }
-    for against in ["bytes", "time"] {
-        text += &format!("\nknees against {against}\n");
-        for knee in tradeoff.knees.iter().filter(|k| k.recording == name && k.against == against) {
-            text += &format!("  {}: {}\n", knee.of, knee.words);
+impl Display for TradeoffReport<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let points = self.tradeoff.summary();
+        let name = points.first().map_or("", |p| &p.recording);
+        let column = |measure| Column::new(measure, By::Magnitude);
+        let has_column = |m: &Measure| m.row().column.is_some();
+        let errors: Vec<Column> = errors().filter(has_column).map(column).collect();
+        let others: Vec<Column> = others().filter(has_column).map(column).collect();
+        writeln!(
+            f,
+            "{name}: the front against bytes, by {}\n  bytes  held out{}  below threshold{}  ns/sample  setting",
+            self.tradeoff.error,
+            headings(&errors),
+            headings(&others),
+        )?;
+        let mut front: Vec<&Point> = points.into_iter().filter(|p| p.on_front).collect();
+        front.sort_by_key(|p| p.bytes);
+        for p in front {
+            let value = |column: Column| Some(p.get(By::Magnitude, column.measure()));
+            writeln!(
+                f,
+                "  {:>5}  {:>8.2}{}  {:>13.0} %{}  {:>9.1}  {}",
+                p.bytes,
+                p.held_out_error.unwrap_or(f64::NAN),
+                cells(&errors, value),
+                100.0 * p.shares.below_threshold,
+                cells(&others, value),
+                p.ns_per_sample,
+                p.name()
+            )?;
         }
+        for against in ["bytes", "time"] {
+            writeln!(f, "\nknees against {against}")?;
+            let knees = self.tradeoff.knees.iter();
+            for knee in knees.filter(|k| k.recording == name && k.against == against) {
+                writeln!(f, "  {}: {}", knee.of, knee.words)?;
+            }
+        }
+        writeln!(f, "\nThe report, with the pictures: {}", shown(self.output))
     }
-    text + &format!("\nThe report, with the pictures: {}\n", shown(output))
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_base::files::open_regular;
-use htex_base::finding::{Findings, Report, Severity};
+use htex_base::finding::{FileReport, Findings, Report, Severity, plain};
 use htex_device::DeviceError;
 use htex_format::library::{EXTENSION, MAGIC};
 use htex_format::{DESCRIPTOR_INVALID, Limits, PLUGIN_UNUSABLE, Representation, validate_with};
@@ -11,16 +11,13 @@ use htex_host::{Registry, Search, WasmLimits};
 use serde_json::Value;
 
 use super::lib::check;
-use crate::bounded::read_asset;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::assets::read_asset;
+use crate::failure::{Exit, Failure, Result, for_file, with_hint};
 use crate::located;
-use crate::of_file::of_file;
-use crate::output::warn;
+use crate::output::{print, print_json, shown, warn};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
-use crate::schemas::{ABSENT, ExtensionSchema, Named};
-use crate::validation::report;
+use crate::schemas::{ABSENT, ExtensionSchema, SchemaFile};
 use crate::wasm_limits::WasmLimit;
 
 /// Check files against their formats
@@ -62,7 +59,7 @@ pub(crate) struct Validate {
 }
 
 impl Validate {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let schemas = self
             .extension_schema
             .iter()
@@ -70,9 +67,9 @@ impl Validate {
             .collect::<Result<Vec<_>, _>>()?;
         let kinds: Vec<Kind> = self.files.iter().map(|path| kind(path)).collect();
         if self.reading.is_given() && !kinds.contains(&Kind::Recording) {
-            let sentence =
-                "the options for reading recordings go with a recording, and none is given";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage(
+                "the options for reading recordings go with a recording, and none is given",
+            ));
         }
         let by_schema = |kind| matches!(kind, Kind::Asset | Kind::Document);
         if let (Some(absent), true) = (ABSENT, kinds.iter().copied().any(by_schema)) {
@@ -90,16 +87,16 @@ impl Validate {
             refused |= self.reading.strict() && kind == Kind::Recording && !is_clean(&report);
             Ok((path.as_path(), report))
         });
-        // `report` consumes the iterator, so `refused` is complete afterwards.
-        let exit = report(reports, self.json)?;
+        // `show_reports` consumes the iterator, so `refused` is complete afterwards.
+        let exit = show_reports(reports, self.json)?;
         Ok(if refused { Exit::FAILURE } else { exit })
     }
 
-    fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report, Failure> {
+    fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report> {
         let mut report = validate_asset(path, schemas)?;
         // An invalid asset may not open.
         if self.embedded_plugins && report.valid {
-            hold_plugins(path, &WasmLimit::all(&self.wasm_limit), &mut report)?;
+            check_plugins(path, &WasmLimit::all(&self.wasm_limit), &mut report)?;
         }
         Ok(report)
     }
@@ -136,25 +133,68 @@ pub(crate) fn kind(path: &Path) -> Kind {
 }
 
 /// Refuses a library where a single asset is needed, and says what to do.
-pub(crate) fn refuse_library(path: &Path) -> Result<(), Failure> {
+pub(crate) fn refuse_library(path: &Path) -> Result<()> {
     if kind(path) != Kind::Library {
         return Ok(());
     }
-    let file = crate::shown::shown(path);
+    let file = shown(path);
     Err(Failure::Usage(format!(
         "{file}: it is a library, which holds many textures: `htex lib ls` lists them, and `htex lib unpack LIBRARY NAME -o DIR` takes one out"
     )))
 }
 
 /// Says what to do with additional assets, for a command that takes only one.
-pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<(), Failure> {
+pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<()> {
     let Some(second) = more.first() else {
         return Ok(());
     };
-    let file = crate::shown::shown(second);
+    let file = shown(second);
     Err(Failure::Usage(format!(
         "{file}: `htex {command}` takes one asset; run it for each. `htex compare RECORDING ASSET` measures assets against their recording"
     )))
+}
+
+/// Prints reports as they come, or all of them as JSON. The exit status is 1 if one is not valid.
+pub(crate) fn show_reports<'a>(
+    reports: impl Iterator<Item = Result<(&'a Path, Report)>>,
+    is_json: bool,
+) -> Result {
+    let (mut all_valid, mut reported) = (true, Vec::new());
+    for report in reports {
+        let (path, report) = report?;
+        all_valid &= report.valid;
+        let report = report.of_file(&path.display().to_string());
+        if is_json {
+            reported.push(report);
+        } else {
+            print(&report_text(&report))?;
+        }
+    }
+    if is_json {
+        print_json(&reported)?;
+    }
+    Ok(Exit::ok_if(all_valid))
+}
+
+fn report_text(report: &FileReport) -> String {
+    let verdict = if report.valid { "valid" } else { "NOT VALID" };
+    let mut text = format!("{}: {verdict}\n", plain(&report.file));
+    for finding in &report.findings {
+        let place = match plain(&finding.pointer) {
+            pointer if pointer.is_empty() => String::new(),
+            pointer => format!(" at {pointer}"),
+        };
+        text += &format!(
+            "  {} {}{place}: {}\n",
+            finding.severity,
+            finding.code,
+            with_hint(&finding.message, finding.hint)
+        );
+        if let Some(rule) = &finding.schema_rule {
+            text += &format!("    schema: {}\n", plain(rule));
+        }
+    }
+    text
 }
 
 /// Whether `--strict` accepts the findings.
@@ -163,7 +203,7 @@ fn is_clean(report: &Report) -> bool {
 }
 
 /// Validates an asset. If it is too large, it is not read to its end.
-fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report, Failure> {
+fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report> {
     let limits = Limits::default();
     let bytes = read_asset(path)?;
     let models = Registry::builtin();
@@ -174,18 +214,19 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
     let mut report = validate_with(&bytes, &limits, &known);
     if let Some(manifest) = htex_format::manifest_json(&bytes, &limits) {
         if is_of_major_1(&manifest, "htex") {
-            Named::manifest()?.hold(&manifest, &mut report);
+            SchemaFile::new("manifest-1.json", &htex_format::manifest_schema())?
+                .check(&manifest, &mut report);
         }
         for extension in extensions {
-            extension.hold(&manifest, &mut report);
+            extension.check(&manifest, &mut report);
         }
     }
     Ok(report)
 }
 
 /// Loads the embedded models of an asset. A model that cannot be loaded is a finding.
-fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
-    let data = htex_format::Asset::open(path).map_err(of_file(path))?;
+fn check_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<()> {
+    let data = htex_format::Asset::open(path).map_err(for_file(path))?;
     let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
     let asset = htex::Texture::with_registry(data, registry).with_embedded();
     let mut findings = Findings::default();
@@ -211,14 +252,14 @@ const MOST_TOML_BYTES: u64 = 1 << 20;
 
 /// Validates a recipe. Its first fault becomes a finding.
 #[cfg(feature = "build")]
-fn validate_recipe(path: &Path) -> Result<Report, Failure> {
+fn validate_recipe(path: &Path) -> Result<Report> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
-    let options = BuildOptions::new(crate::models::tool()).with_limits(WasmLimit::all(&[]));
+    let options = BuildOptions::new(crate::invocation::tool()).with_limits(WasmLimit::all(&[]));
     // If it cannot be read, `check` says why.
     let text = htex_base::files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
     let is_study = |line: &str| line.trim_start().starts_with("htex_study");
     if text.lines().any(is_study) {
-        let file = crate::shown::shown(path);
+        let file = shown(path);
         return Err(Failure::Usage(format!(
             "{file}: it is a study; check it by `htex study validate`"
         )));
@@ -238,14 +279,14 @@ fn validate_recipe(path: &Path) -> Result<Report, Failure> {
 }
 
 #[cfg(not(feature = "build"))]
-fn validate_recipe(path: &Path) -> Result<Report, Failure> {
-    let file = crate::shown::shown(path);
+fn validate_recipe(path: &Path) -> Result<Report> {
+    let file = shown(path);
     let words = "this program was built without recipes; build it with the feature `build`";
     Err(Failure::Usage(format!("{file}: {words}")))
 }
 
 /// Validates a scene or a descriptor. Their keys tell them apart.
-fn validate_json(path: &Path) -> Result<Report, Failure> {
+fn validate_json(path: &Path) -> Result<Report> {
     let bytes = read_asset(path)?;
     // What is not JSON goes on as a scene, whose reader reports the place.
     let document = htex_format::parse_json(&bytes).unwrap_or_default();
@@ -254,7 +295,11 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
     if has("id") && has("fields") {
         let refused = htex_host::read_descriptor(&text()).err();
         let problem = refused.map(|error| error.to_string());
-        return descriptor(&document, problem, Named::model()?);
+        return descriptor(
+            &document,
+            problem,
+            SchemaFile::new("descriptor-1.json", &htex_model::descriptor_schema())?,
+        );
     }
     if has("id") && has("settings") {
         let read = serde_json::from_str::<htex_device::Descriptor>(&text());
@@ -265,24 +310,25 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
             }),
             Err(error) => Some(error.to_string()),
         };
-        return descriptor(&document, problem, Named::device()?);
+        let [(file, schema), ..] = htex_device::schemas();
+        return descriptor(&document, problem, SchemaFile::new(file, &schema)?);
     }
     let mut report = SceneArgs::validate(path)?;
     if document.get("htex_scene").is_some_and(|v| v == htex_scene::file::VERSION) {
-        Named::scene()?.hold(&document, &mut report);
+        SchemaFile::new("scene-1.json", &htex_scene::scene_schema())?.check(&document, &mut report);
         if let Some(settings) = SceneArgs::settings_schema(&document)? {
-            settings.hold(&document, &mut report);
+            settings.check(&document, &mut report);
         }
     }
     Ok(report)
 }
 
-fn descriptor(document: &Value, problem: Option<String>, schema: Named) -> Result<Report, Failure> {
+fn descriptor(document: &Value, problem: Option<String>, schema: SchemaFile) -> Result<Report> {
     let mut findings = Findings::default();
     if let Some(problem) = problem {
         findings.add(DESCRIPTOR_INVALID, "", format!("{problem}; correct it"));
     }
     let mut report = findings.into_report();
-    schema.hold(document, &mut report);
+    schema.check(document, &mut report);
     Ok(report)
 }

@@ -1,16 +1,23 @@
 //! `htex bake` as a user runs it.
 
-use crate::common::{Place, numbers};
+use std::sync::LazyLock;
+
+use crate::common::{Files, Place, numbers, stated};
 use htex_player::{Block, BlockKind, Player};
 
 /// A place with the asset `t.htex`, and the level of sBeta.
 fn fitted() -> (Place, f64) {
+    static FITTED: LazyLock<(Files, f64)> = LazyLock::new(fit);
+    (Place::with(&FITTED.0), FITTED.1)
+}
+
+fn fit() -> (Files, f64) {
     let place = Place::new();
     let csv = place.recording("coarse-fabric");
     let at = ["--at", "speed=80,force=0.4", "-o", "t.htex", "--json"];
     let fit = place.json(&[&["fit", &csv][..], &at].concat());
-    let level = fit["representations"][3]["level_rms"].as_f64().unwrap();
-    (place, level)
+    let level = stated(&fit, 3)["level_rms"].as_f64().unwrap();
+    (place.files(), level)
 }
 
 fn bytes(place: &Place, name: &str) -> Vec<u8> {

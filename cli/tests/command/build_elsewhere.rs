@@ -35,9 +35,7 @@ impl Bench {
         for name in NAMES {
             let (surface, take) = name.split_once('_').unwrap();
             let file = format!("rec/{name}.csv");
-            let simulate = ["simulate", "--surface", surface, "--seed", take];
-            let run = place.run(&[&simulate[..], &["--seconds", "2", "-o", &file]].concat());
-            assert_eq!(run.code(), 0, "{}", run.error());
+            place.simulated(&file, &["--surface", surface, "--seed", take, "--seconds", "2"]);
             let name = format!("lab/{file}");
             server.put(&name, fs::read(place.path(&file)).unwrap());
             // This server has no entity tags in lists; a time that has just been set may stay after

@@ -9,9 +9,11 @@ fn a_texture_is_made_of_parameters() {
     let make = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02"];
     let more = ["--at", "speed=80,force=0.4", "--license", "CC0-1.0", "-o", "new.htex"];
     let made = place.json(&[&make[..], &more, &["--json"]].concat());
-    assert_eq!((&made["name"], &made["made"]["how"]), (&"new".into(), &"parameters".into()));
+    let made = &made["manifest"];
+    assert_eq!(made["name"], "new");
+    assert_eq!(made["provenance"]["made"]["how"], "parameters");
     let info = place.json(&["info", "new.htex", "--json"]);
-    assert_eq!(info["made"]["how"], "parameters");
+    assert_eq!(info["manifest"]["provenance"]["made"]["how"], "parameters");
     assert!(place.run(&["info", "new.htex"]).text().contains("made by hand"));
     assert_eq!(place.run(&["validate", "new.htex"]).code(), 0);
     assert_eq!(place.run(&["synth", "new.htex", "--seconds", "20", "-o", "new.wav"]).code(), 0);
@@ -68,7 +70,7 @@ fn textures_are_mixed() {
         let words = ["mix", "vinyl.htex", "sandpaper.htex", "--weight", weight];
         place.json(&[&words[..], &["-o", output, "--json"]].concat())
     };
-    let half = mix("0.25", "mixed.htex");
+    let half = mix("0.25", "mixed.htex")["manifest"]["provenance"].clone();
     assert_eq!(half["made"]["how"], "mixed");
     assert_eq!(half["made"]["from"][0]["weight"], 0.75);
     assert_eq!(half["simulated"], true);

@@ -1,6 +1,6 @@
 //! An asset that embeds its model plays where that model was never installed.
 
-use crate::common::Place;
+use crate::common::{Place, stated};
 
 /// Builds the third-party example in C to `bursts.wasm`; false without a compiler for it.
 fn build_bursts(place: &Place) -> bool {
@@ -31,8 +31,10 @@ fn a_third_party_model_travels_with_its_asset() {
     std::fs::remove_file(place.path("bursts.wasm")).unwrap();
 
     let info = place.json(&["info", "b.htex", "--json"]);
-    assert_eq!(info["plugins"][0]["model"], "org.example.bursts");
-    assert_eq!(info["plugins"][0]["signed_by"].as_str().unwrap().len(), 64);
+    let plugin = &info["manifest"]["plugins"][0];
+    assert_eq!(plugin["model"], "org.example.bursts");
+    assert_eq!(plugin["signature"]["public_key"].as_str().unwrap().len(), 64);
+    assert!(info["plugin_bytes"][0].as_u64().unwrap() > 1000);
     let validated = place.json(&["validate", "b.htex", "--json"]);
     assert_eq!(validated[0]["valid"], true);
 
@@ -41,7 +43,7 @@ fn a_third_party_model_travels_with_its_asset() {
     assert_eq!(run.code(), 0, "{}", run.error());
     let mut wav = hound::WavReader::open(place.path("b.wav")).unwrap();
     let power: f64 = wav.samples::<f32>().map(|x| f64::from(x.unwrap()).powi(2)).sum();
-    let level = fitted["representations"][0]["level_rms"].as_f64().unwrap();
+    let level = stated(&fitted, 0)["level_rms"].as_f64().unwrap();
     let ratio = (power / 40_000.0).sqrt() / level;
     assert!((0.8..1.2).contains(&ratio), "two seconds of bursts: {ratio}");
 

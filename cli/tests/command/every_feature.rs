@@ -2,7 +2,9 @@
 //! that is expected, no number that is infinite or none, and one choice of the model in all
 //! commands.
 
-use crate::common::Place;
+use std::sync::LazyLock;
+
+use crate::common::{Files, Place};
 use htex_format::Asset;
 use serde_json::json;
 
@@ -35,15 +37,19 @@ const REFUSED: [(&str, &str, &str); 8] = [
 ];
 
 fn place() -> Place {
+    static MADE: LazyLock<Files> = LazyLock::new(files);
+    Place::with(&MADE)
+}
+
+fn files() -> Files {
     let place = Place::new();
     for name in FILES.iter().take(6) {
         place.write(name, std::fs::read(format!("{COMPAT}/{name}")).unwrap());
     }
     let speeds = ["40", "80", "160"].map(|speed| {
         let name = format!("at-{speed}.csv");
-        let simulate = ["simulate", "--surface", "sandpaper", "--seconds", "4"];
-        let at = ["--speed", speed, "--force", "0.4", "-o", &name];
-        assert_eq!(place.run(&[&simulate[..], &at].concat()).code(), 0);
+        let surface = ["--surface", "sandpaper", "--seconds", "4"];
+        place.simulated(&name, &[&surface[..], &["--speed", speed, "--force", "0.4"]].concat());
         name
     });
     let fit = ["fit", &speeds[0], &speeds[1], &speeds[2]];
@@ -73,7 +79,7 @@ fn place() -> Place {
         });
         place.write(&format!("{name}.scene.json"), scene.to_string());
     }
-    place
+    place.files()
 }
 
 /// The commands that take an asset or a scene of it; `FILE` is its name.
@@ -92,7 +98,6 @@ const COMMANDS: &[&[&str]] = &[
     &["mix", "FILE", "one.htex", "--weight", "0.5", "-o", "out.htex"],
     &["play", "FILE", "--device", "file", "--set", "path=out.wav", "--seconds", "0.1"],
     &["plan", "FILE.scene.json"],
-    &["plan", "FILE.scene.json", "--json"],
     &["plan", "FILE.scene.json", "--measure"],
     &["render", "FILE.scene.json", "-o", "out.wav"],
     &["lib", "pack", "out.htexlib", "FILE"],
@@ -108,7 +113,9 @@ fn every_command_takes_a_file_of_every_feature() {
     let place = place();
     let mut wrong = Vec::new();
     for name in FILES {
-        for command in COMMANDS {
+        // What measures the costs of models does not depend on the file.
+        let commands = COMMANDS.iter().filter(|c| name == FILES[0] || !c.contains(&"--measure"));
+        for command in commands {
             let arguments: Vec<String> = command.iter().map(|a| a.replace("FILE", name)).collect();
             let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
             let run = place.run(&arguments);

@@ -1,8 +1,10 @@
 //! `htex import`, `htex export` and `htex formats`, as a user runs them.
 
+use std::sync::LazyLock;
+
 use serde_json::{Value, json};
 
-use crate::common::Place;
+use crate::common::{Files, Place};
 
 /// Half a second of a hum that grows.
 fn haptic() -> String {
@@ -30,6 +32,11 @@ fn run(place: &Place, line: &str, code: i32) -> (String, String) {
 }
 
 fn imported() -> Place {
+    static IMPORTED: LazyLock<Files> = LazyLock::new(import);
+    Place::with(&IMPORTED)
+}
+
+fn import() -> Files {
     let place = Place::new();
     place.write("hum.haptic", haptic());
     run(
@@ -37,7 +44,7 @@ fn imported() -> Place {
         &format!("import hum.haptic {GIVEN} --model bands --license CC0-1.0 -o hum.htex"),
         0,
     );
-    place
+    place.files()
 }
 
 #[test]
@@ -51,10 +58,11 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
     assert!(text.starts_with("imported hum.haptic\nhum.htex: "), "{text}");
     assert!(error.contains("Its 0.500 s are repeated 8 times."), "{error}");
     let made = place.json(&words(&format!("{line} --json")));
-    assert_eq!(made["license"], "CC0-1.0");
-    assert_eq!(made["conditions"], json!([{"speed_mm_s": 80.0, "force_n": 0.4}]));
+    assert_eq!(made["manifest"]["license"], "CC0-1.0");
+    assert_eq!(made["manifest"]["conditions"], json!([{"speed_mm_s": 80.0, "force_n": 0.4}]));
     assert_eq!(made["representations"].as_array().unwrap().len(), 1);
-    assert!(made["warnings"].to_string().contains("repeated 8 times"), "{made}");
+    let warnings = &made["manifest"]["provenance"]["warnings"];
+    assert!(warnings.to_string().contains("repeated 8 times"), "{made}");
     run(&place, "validate hum.htex", 0);
 
     // A licence is asked for.
@@ -135,9 +143,10 @@ fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
     let place = Place::new();
     place.write("felt.xml", HATT);
     let made = place.json(&words("import felt.xml --license CC-BY-4.0 -o felt.htex --json"));
-    assert_eq!(made["license"], "CC-BY-4.0");
-    assert_eq!(made["quantity"], "acceleration");
-    assert_eq!(made["conditions"].as_array().unwrap().len(), 4);
+    let manifest = &made["manifest"];
+    assert_eq!(manifest["license"], "CC-BY-4.0");
+    assert_eq!(manifest["quantity"], "acceleration");
+    assert_eq!(manifest["conditions"].as_array().unwrap().len(), 4);
     run(&place, "validate felt.htex", 0);
     for flag in [
         "--full-scale 1",
@@ -259,7 +268,7 @@ fn a_mesh_carries_the_file_there_and_back() {
         assert!(text.contains("the format loses nothing of a texture"), "{text}");
         assert!(!text.contains("lost: felt") && error.is_empty(), "{text}{error}");
         let told = place.json(&words(&format!("import {mesh} -o again.htex --json")));
-        assert_eq!(told["license"], "CC0-1.0");
+        assert_eq!(told["manifest"]["license"], "CC0-1.0");
         assert_eq!(std::fs::read(place.path("again.htex")).unwrap(), file);
     }
     let told = place.json(&words("export hum.htex --to gltf -o hum.gltf --json"));
@@ -482,11 +491,11 @@ fn every_way_out_carries_the_licence() {
         let Some(given) = back else { continue };
         let import = |more: &str| format!("import {file} {given} {more} -o again.htex --json");
         let again = place.json(&words(&import("")));
-        assert_eq!(again["license"], "CC-BY-4.0", "{file}");
-        assert_eq!(again["author"], "Ada", "{file}");
+        assert_eq!(again["manifest"]["license"], "CC-BY-4.0", "{file}");
+        assert_eq!(again["manifest"]["author"], "Ada", "{file}");
         // A flag is stronger, and another statement beside the file is an error.
         let other = place.json(&words(&import("--license MIT")));
-        assert_eq!(other["license"], "MIT", "{file}");
+        assert_eq!(other["manifest"]["license"], "MIT", "{file}");
         place.write(&format!("{file}.license"), "SPDX-License-Identifier: MIT\n");
         let (_, error) = run(&place, &import(""), 2);
         assert!(
@@ -532,7 +541,7 @@ fn every_way_out_carries_the_licence() {
         "felt.xml.license",
         "SPDX-FileCopyrightText: Ada\nSPDX-License-Identifier: CC-BY-4.0\n",
     );
-    let felt = place.json(&words("import felt.xml -o felt.htex --json"));
+    let felt = &place.json(&words("import felt.xml -o felt.htex --json"))["manifest"];
     assert_eq!((&felt["license"], &felt["author"]), (&json!("CC-BY-4.0"), &json!("Ada")));
     let all = place.json(&["formats", "--json"]);
     let places = all["formats"].as_array().unwrap().iter().map(|f| f["rights"].as_str());

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::common::{Place, entries, numbers};
+use crate::common::{Place, computed, entries, numbers, stated};
 use htex_format::{By, Measure};
 use htex_host::Registry;
 
@@ -16,26 +16,35 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
     let fit = place.json(&[&fit[..], &windows].concat());
     let info = place.json(&["info", "a.htex", "--json"]);
     assert_eq!(fit["bytes"], std::fs::metadata(place.path("a.htex")).unwrap().len());
-    assert!(fit["repeatability_rms_db"].as_f64().unwrap() > 0.0);
+    let condition = &fit["manifest"]["conditions"][0];
+    assert!(condition["repeatability_rms_db"].as_f64().unwrap() > 0.0);
     for (i, loaded) in Registry::builtin().by_default().enumerate() {
         let model = loaded.id();
         let (fitted, read) = (&fit["representations"][i], &info["representations"][i]);
         assert_eq!(fitted["model"], model);
         assert!(fitted["fit_ms"].as_f64().unwrap() > 0.0);
-        let mut parameters: Vec<&str> =
-            fitted["parameters"].as_object().unwrap().keys().map(String::as_str).collect();
+        let mut parameters: Vec<&str> = computed(&fit, i)["parameters"]
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect();
         parameters.sort_unstable();
         let fields = loaded.descriptor().fields.iter();
         let mut fields: Vec<&str> = fields.map(|field| &field.name[..]).collect();
         fields.sort_unstable();
         assert_eq!(parameters, fields);
-        assert_eq!(fitted["parameters"], read["parameters"], "{model}");
+        let parameters = |summary| computed(summary, i)["parameters"].clone();
+        assert_eq!(parameters(&fit), parameters(&info), "{model}");
         assert_eq!(fitted["payload_bytes"], read["payload_bytes"]);
-        assert_eq!(numbers(&fitted["band_error_db"]).len(), 9);
+        let (fitted, read) = (stated(&fit, i), stated(&info, i));
+        assert_eq!(numbers(&fitted["quality"]["band_error_db"]).len(), 9);
         let both = Measure::of_both().filter(|m| m.row().stored);
         let keys = both.flat_map(|m| [By::Magnitude, By::Samples].map(|by| m.key(by)));
-        for key in keys.chain(["level_rms"]) {
-            let (a, b) = (fitted[key].as_f64().unwrap(), read[key].as_f64().unwrap());
+        let levels = [("level_rms", &fitted["level_rms"], &read["level_rms"])];
+        let measures = keys.map(|key| (key, &fitted["quality"][key], &read["quality"][key]));
+        for (key, a, b) in measures.chain(levels) {
+            let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
             // The file keeps levels to nine digits and agreement to four decimals.
             assert!((a - b).abs() <= 5.1e-5 * a.abs().max(1.0), "{model} {key}: {a} {b}");
         }
@@ -84,7 +93,7 @@ fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
             let level = |recording: &str, more: &[&str]| {
                 let fit = ["fit", recording, "--model", model, "-o", "g.htex", "--json"];
                 let fitted = place.json(&[&fit[..], more].concat());
-                fitted["representations"][0]["level_rms"].as_f64().unwrap()
+                stated(&fitted, 0)["level_rms"].as_f64().unwrap()
             };
             let mut levels = vec![level(&csv, &[])];
             for seed in ["0", "1", "2"] {
@@ -120,8 +129,9 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
     let fit = |options: &[&str]| {
         let fit = ["fit", "cp.csv", "--frf", "rig.csv", "--model", "sbeta", "-o", "s.htex"];
         let fitted = place.json(&[&fit[..], &["--json"], options].concat());
-        let error = &fitted["representations"][0]["band_error_rms_db"];
-        (error.as_f64().unwrap(), fitted["warnings"].to_string())
+        let error = &stated(&fitted, 0)["quality"]["band_error_rms_db"];
+        let warnings = &fitted["manifest"]["provenance"]["warnings"];
+        (error.as_f64().unwrap(), warnings.to_string())
     };
     let (by_magnitude_db, told) = fit(&["--option", "sbeta.error=magnitude"]);
     let (by_decibel_db, silent) = fit(&[]);
@@ -162,14 +172,15 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
         "steep.htex",
         "--json",
     ]);
-    let representation = &fitted["representations"][0];
-    println!("{representation}");
-    let rms_db = representation["band_error_rms_db"].as_f64().unwrap();
-    let bands = representation["band_error_db"].as_array().unwrap().iter();
+    let quality = &stated(&fitted, 0)["quality"];
+    println!("{quality}");
+    let rms_db = quality["band_error_rms_db"].as_f64().unwrap();
+    let bands = quality["band_error_db"].as_array().unwrap().iter();
     let worst_db = bands.fold(0.0, |worst: f64, error| worst.max(error.as_f64().unwrap().abs()));
     assert!(rms_db < 12.0 && worst_db > 24.0, "{rms_db} dB, {worst_db} dB");
     let warned = format!("{worst_db:.1} dB in the worst band");
-    assert!(fitted["warnings"].to_string().contains(&warned), "{}", fitted["warnings"]);
+    let warnings = fitted["manifest"]["provenance"]["warnings"].to_string();
+    assert!(warnings.contains(&warned), "{warnings}");
 }
 
 #[test]
@@ -179,7 +190,7 @@ fn knobs_change_the_fit() {
     let parameters = |model: &str, options: &[&str]| {
         let mut arguments = vec!["fit", &csv, "--model", model, "-o", "k.htex", "--json"];
         options.iter().for_each(|option| arguments.extend(["--option", option]));
-        place.json(&arguments)["representations"][0]["parameters"].clone()
+        computed(&place.json(&arguments), 0)["parameters"].clone()
     };
     let count = |model: &str, option: &str, list: &str| {
         parameters(model, &[option])[list].as_array().unwrap().len()
@@ -235,7 +246,7 @@ fn several_conditions_of_one_texture() {
     arguments.extend(given.iter().map(String::as_str));
     arguments.extend(["-o", "grid.htex", "--json"]);
     let fit = place.json(&arguments);
-    assert_eq!(fit["conditions"].as_array().unwrap().len(), 4);
+    assert_eq!(fit["manifest"]["conditions"].as_array().unwrap().len(), 4);
     assert_eq!(fit["representations"][0]["at"].as_array().unwrap().len(), 4);
     let level = |speed: &str, force: &str| {
         let motion = ["--model", "sbeta", "--speed", speed, "--force", force, "--json"];
@@ -244,7 +255,7 @@ fn several_conditions_of_one_texture() {
         sum.sqrt()
     };
     // At a known condition, its level; between, between; outside, that of the law.
-    let known = fit["representations"][3]["at"][3]["level_rms"].as_f64().unwrap();
+    let known = fit["manifest"]["representations"][3]["at"][3]["level_rms"].as_f64().unwrap();
     assert!((level("120", "0.7") / known - 1.0).abs() < 1e-6);
     assert!(level("60", "0.3") < level("60", "0.5") && level("60", "0.5") < level("60", "0.7"));
     assert!(level("500", "9") > level("120", "0.7"));

@@ -21,7 +21,7 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
     let fitted = place.json(&[&fit[..], &grid, &["-o", "a.htex", "--json"]].concat());
     let cells = fitted["grid"]["cells"].as_array().unwrap();
     let named = cells.iter().filter(|c| c["condition"].is_u64()).count();
-    assert!(named >= 8 && named == fitted["conditions"].as_array().unwrap().len());
+    assert!(named >= 8 && named == fitted["manifest"]["conditions"].as_array().unwrap().len());
     assert!(
         cells
             .iter()
@@ -34,17 +34,17 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
     assert!(std::fs::read_to_string(place.path("page.html")).unwrap().contains("Conditions"));
 
     let info = place.json(&["info", "a.htex", "--json"]);
-    assert_eq!(info["htex"], "1.0");
+    assert_eq!(info["manifest"]["htex"], "1.0");
     // The file holds fewer digits of the repeatability.
     let place_of = |json: &serde_json::Value| -> Vec<[f64; 3]> {
-        let conditions = json["conditions"].as_array().unwrap().iter();
+        let conditions = json["manifest"]["conditions"].as_array().unwrap().iter();
         let keys = ["speed_mm_s", "force_n", "segments"];
         conditions.map(|c| keys.map(|key| c[key].as_f64().unwrap())).collect()
     };
     assert_eq!(place_of(&info), place_of(&fitted));
     let grid = &fitted["grid"];
     assert!(grid["left_out_rms_db"].is_f64() && grid["one_condition_rms_db"].is_f64());
-    let at = info["representations"][0]["at"].as_array().unwrap();
+    let at = info["manifest"]["representations"][0]["at"].as_array().unwrap();
     assert!(at.iter().any(|at| at["left_out"]["third_octave_error_rms_db"].is_f64()));
     let text = place.run(&["info", "a.htex"]).text();
     assert!(text.contains("left out") && text.contains("segments"), "{text}");

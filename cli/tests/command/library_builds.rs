@@ -35,9 +35,7 @@ fn place() -> Place {
     for surface in ["vinyl", "sandpaper", "fine-fabric"] {
         for take in ["1", "2"] {
             let file = format!("rec/{surface}_{take}.csv");
-            let simulate = ["simulate", "--surface", surface, "--seed", take];
-            let run = place.run(&[&simulate[..], &["--seconds", "2", "-o", &file]].concat());
-            assert_eq!(run.code(), 0, "{}", run.error());
+            place.simulated(&file, &["--surface", surface, "--seed", take, "--seconds", "2"]);
             // Files that have just changed are hashed again the next time.
             age(&place.path(&file), 60);
         }
@@ -60,10 +58,10 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         for entry in fs::read_dir(inside).unwrap() {
             let path = entry.unwrap().path();
             let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
-            match path.is_dir() {
-                true if name == ".htex-build" => {}
-                true => folders.push(path),
-                false => drop(files.insert(name, fs::read(&path).unwrap())),
+            if !path.is_dir() {
+                files.insert(name, fs::read(&path).unwrap());
+            } else if name != ".htex-build" {
+                folders.push(path);
             }
         }
     }
@@ -132,6 +130,8 @@ fn what_changed_is_built_and_nothing_else() {
     let alone = place.json(&["info", "1.htex", "--json"]);
     let ours = place.json(&["info", "dist/textures/vinyl/1.htex", "--json"]);
     assert_eq!(alone["representations"], ours["representations"]);
+    let stated = |info: &serde_json::Value| info["manifest"]["representations"].clone();
+    assert_eq!(stated(&alone), stated(&ours));
 
     // Nothing changed; then only times did.
     assert_eq!(build(&place, "dist", &[])["fitted"], 0);
@@ -177,7 +177,7 @@ fn metadata_fit_nothing_again() {
     let dry = build(&place, "dist", &["--dry-run"]);
     assert_eq!((&dry["to_fit"], &dry["as_they_were"]), (&serde_json::json!([]), &6.into()));
     assert_eq!(build(&place, "dist", &[])["fitted"], 0);
-    let info = place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"]);
+    let info = &place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"])["manifest"];
     assert_eq!((&info["license"], &info["name"]), (&"CC-BY-4.0".into(), &"new/vinyl/1".into()));
     assert!(!place.path("dist/textures/vinyl").exists());
     // As if nothing else had ever been built, once the names that are gone were told.
@@ -187,7 +187,8 @@ fn metadata_fit_nothing_again() {
     // Metadata that are left out leave nothing behind.
     place.write("library.toml", other.replace("author = \"A. N. Other\"\n", ""));
     assert_eq!(build(&place, "dist", &[])["fitted"], 0);
-    assert!(place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"])["author"].is_null());
+    let info = place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"]);
+    assert!(info["manifest"]["author"].is_null());
     // An option that is taken back, before and after pruning.
     let with_level = RECIPE.replace("models = ", "level = \"fitted\"\nmodels = ");
     for (recipe, flags, fitted) in [
@@ -610,7 +611,7 @@ fn a_table_says_what_files_do_not() {
     let entries = entries_of(&place.path("dist/t.htexlib"));
     assert_eq!((&entries[0].name[..], &entries[1].tags[0][..]), ("A", "dear"));
     let recordings = place.json(&["info", "dist/textures/A.htex", "--json"]);
-    assert_eq!(recordings["conditions"].as_array().unwrap().len(), 1);
+    assert_eq!(recordings["manifest"]["conditions"].as_array().unwrap().len(), 1);
 
     // A row whose file is missing stops the build, or its texture is left out and the others stand.
     let missing = table.replace("160", "80") + "rec/none.csv,C,80,0.4,dear\n";

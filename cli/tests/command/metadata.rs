@@ -110,7 +110,7 @@ fn metadata_is_fitted_shown_removed_and_checked() {
     let fit = ["fit", &csv, "--model", "sbeta", "-o", "v.htex", "--json"];
     let finger = ["--finger", "bare index finger"];
     place.json(&[&fit[..], &METADATA, &finger].concat());
-    let info = place.json(&["info", "v.htex", "--json"]);
+    let info = &place.json(&["info", "v.htex", "--json"])["manifest"];
     assert_eq!(info["finger"], "bare index finger");
     assert_eq!((&info["name"], &info["htex"]), (&"Coarse cloth".into(), &"1.0".into()));
     let text = place.run(&["info", "v.htex"]).text();
@@ -120,7 +120,7 @@ fn metadata_is_fitted_shown_removed_and_checked() {
     // In place; an empty text removes an entry.
     let run = place.run(&["edit", "v.htex", "--doi", "", "--author", "B. Uthor"]);
     assert_eq!(run.code(), 0, "{}", run.error());
-    let info = place.json(&["info", "v.htex", "--json"]);
+    let info = &place.json(&["info", "v.htex", "--json"])["manifest"];
     assert_eq!((&info["doi"], &info["author"]), (&Value::Null, &"B. Uthor".into()));
     let kept = std::fs::read(place.path("v.htex")).unwrap();
     for (wrong, words) in [
@@ -142,8 +142,7 @@ fn metadata_is_fitted_shown_removed_and_checked() {
 fn a_fit_draws_its_report() {
     let place = Place::new();
     let csv = place.recording("vinyl");
-    let simulate = ["simulate", "--surface", "vinyl", "--seconds", "4", "--speed", "40"];
-    assert_eq!(place.run(&[&simulate[..], &["-o", "slow.csv"]].concat()).code(), 0);
+    place.simulated("slow.csv", &["--surface", "vinyl", "--seconds", "4", "--speed", "40"]);
     let two = ["fit", &csv, "slow.csv", "-o", "v.htex", "--report", "v.html"];
     let run = place.run(&two);
     assert_eq!(run.code(), 0, "{}", run.error());

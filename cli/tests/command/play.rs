@@ -1,6 +1,6 @@
 //! Played samples agree with the asset's levels and spectra.
 
-use crate::common::{Place, numbers};
+use crate::common::{Place, computed, numbers, stated};
 use htex_host::Registry;
 
 #[test]
@@ -18,7 +18,7 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         assert_eq!((wav.spec().sample_rate, wav.len()), (20_000, 1_200_000));
         let samples = wav.samples::<f32>().map(|x| f64::from(x.unwrap()));
         let power = samples.map(|x| x * x).sum::<f64>() / 1_200_000.0;
-        let level = fit["representations"][i]["level_rms"].as_f64().unwrap();
+        let level = stated(&fit, i)["level_rms"].as_f64().unwrap();
 
         let stated = place.json(&["spectrum", "t.htex", "--model", model, "--json"]);
         let process = ["process", "t.wav", "--segments", "windows", "--averaging", "rms"];
@@ -30,7 +30,7 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         let in_all = power.sqrt() / level;
         let ratio = if model == "speak" { in_all } else { read };
         let distance = if model == "speak" {
-            let lines = &fit["representations"][i]["parameters"]["frequency_hz"];
+            let lines = &computed(&fit, i)["parameters"]["frequency_hz"];
             let bins = numbers(lines).iter().map(|f| (f / 5.0) as usize - 4).collect();
             distance_db(&stated, &measured, bins)
         } else {

@@ -1,6 +1,6 @@
 //! Textures of other quantities than force, from the recording to the device.
 
-use crate::common::{Place, numbers};
+use crate::common::{Place, numbers, stated};
 
 const RATE_HZ: usize = 5_000;
 const G_M_S2: f64 = 9.806_65;
@@ -57,7 +57,7 @@ fn an_acceleration_keeps_its_unit_from_the_recording_to_the_device() {
 
     let fit = ["fit", "tool.csv", "--at", "speed=100,force=1", "-o", "tool.htex", "--json"];
     let fitted = place.json(&[&fit[..], &quantity, &["--model", "speak"]].concat());
-    let level = fitted["representations"][0]["level_rms"].as_f64().unwrap();
+    let level = stated(&fitted, 0)["level_rms"].as_f64().unwrap();
     let info = place.run(&["info", "tool.htex"]);
     assert!(info.text().contains("acceleration in m/s2, 20 to 1000 Hz"), "{}", info.text());
     assert!(info.text().contains(&format!("{level:.3} m/s2")), "{}", info.text());

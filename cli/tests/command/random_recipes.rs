@@ -63,8 +63,7 @@ impl Traps {
         }
         for (surface, file) in [("vinyl", "a"), ("sandpaper", "b")] {
             let file = format!("work/rec/{file}.csv");
-            let simulate = ["simulate", "--surface", surface, "--seconds", "1", "-o", &file];
-            assert_eq!(place.run(&simulate).code(), 0);
+            place.simulated(&file, &["--surface", surface, "--seconds", "1"]);
         }
         fs::copy(place.path("work/rec/a.csv"), place.path("outside/a.csv")).unwrap();
         for victim in ["victim", "victim.part", "folder/victim.htex", "folder/victim.part"] {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::common::{Place, entries, numbers};
+use crate::common::{Place, computed, entries, numbers, stated};
 
 /// Friction of a to-and-fro movement with a texture, newtons, at a rate.
 fn friction(rate_hz: f64, seconds: f64) -> Vec<f64> {
@@ -59,11 +59,12 @@ fn csv_at_1_khz_with_speed_force_accel_friction() {
     place.write("tribometer.csv", csv);
     let arguments = ["fit", "tribometer.csv", "--rate", "1000", "-o", "t.htex", "--json"];
     let fit = place.json(&arguments);
-    assert_eq!(fit["band_hz"][1], 500.0);
-    let warnings = fit["warnings"].to_string();
+    let manifest = &fit["manifest"];
+    assert_eq!(manifest["band"]["high_hz"], 500.0);
+    let warnings = manifest["provenance"]["warnings"].to_string();
     assert!(warnings.contains("500 Hz") && warnings.contains("accel"), "{warnings}");
-    assert_eq!(fit["conditions"][0]["speed_mm_s"], 80.0);
-    assert_eq!(fit["conditions"][0]["force_n"], 0.5);
+    assert_eq!(manifest["conditions"][0]["speed_mm_s"], 80.0);
+    assert_eq!(manifest["conditions"][0]["force_n"], 0.5);
     let spectrum = place.json(&["spectrum", "t.htex", "--model", "speak", "--json"]);
     assert_eq!(strongest_hz(&spectrum), 110.0);
     // Above the band there is nothing, and the asset plays at any rate all the same.
@@ -111,19 +112,20 @@ fn wav_at_44_100_hz() {
     let condition = ["--scale", "2", "--at", "speed=80,force=0.4"];
     let arguments = ["fit", "stroke.wav", "-o", "w.htex", "--json"];
     let fit = place.json(&[&arguments[..], &condition].concat());
-    assert_eq!(fit["conditions"][0]["speed_mm_s"], 80.0);
+    assert_eq!(fit["manifest"]["conditions"][0]["speed_mm_s"], 80.0);
     let compared = place.json(&["compare", "stroke.wav", "w.htex", "--json", condition[0], "2"]);
     // The default model of the asset against its own recording: what fit said.
     for i in 0..5 {
         let key = "band_error_rms_db";
-        let (a, b) = (&fit["representations"][i][key], &compared["representations"][i][key]);
+        let found = &compared["representations"][i];
+        let (a, b) = (&stated(&fit, i)["quality"][key], &found[key]);
         assert!((a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-6, "{i}: {a} {b}");
-        let felt = |of: &serde_json::Value| of["representations"][i]["felt"].clone();
+        let (felt, again) = (&computed(&fit, i)["felt"], &found["felt"]);
         for key in ["below_difference_threshold", "below_if_sensitive", "within_repeatability"] {
-            assert!(felt(&fit)[key].is_boolean() && felt(&fit)[key] == felt(&compared)[key]);
+            assert!(felt[key].is_boolean() && felt[key] == again[key]);
         }
-        let error_db = |of: &serde_json::Value| felt(of)["error_rms_db"].as_f64().unwrap();
-        assert!((error_db(&fit) - error_db(&compared)).abs() < 1e-6, "{i}");
+        let error_db = |of: &serde_json::Value| of["error_rms_db"].as_f64().unwrap();
+        assert!((error_db(felt) - error_db(again)).abs() < 1e-6, "{i}");
     }
     assert_eq!(strongest_hz(&place.json(&["process", "stroke.wav", "--json"])), 110.0);
 }
@@ -135,8 +137,7 @@ fn recordings_are_compared_with_each_other() {
     for (file, surface, seed) in
         [("a.csv", "vinyl", "1"), ("b.csv", "vinyl", "2"), ("c.csv", "sandpaper", "1")]
     {
-        let simulate = ["simulate", "--surface", surface, "--seed", seed, "-o", file];
-        assert_eq!(place.run(&simulate).code(), 0);
+        place.simulated(file, &["--surface", surface, "--seed", seed]);
     }
     let compared = |other: &str| place.json(&["compare", "a.csv", other, "--json"]);
     let (same, other) = (compared("b.csv"), compared("c.csv"));

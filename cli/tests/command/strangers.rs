@@ -28,8 +28,7 @@ const SOON: Duration = Duration::from_secs(20);
 fn place() -> Place {
     let place = Place::new();
     fs::create_dir(place.path("rec")).unwrap();
-    let simulate = ["simulate", "--surface", "vinyl", "--seconds", "2", "-o", "rec/a.csv"];
-    assert_eq!(place.run(&simulate).code(), 0);
+    place.simulated("rec/a.csv", &["--surface", "vinyl", "--seconds", "2"]);
     place.write("library.toml", RECIPE);
     place
 }

@@ -6,11 +6,16 @@ pub mod measured;
 #[cfg(unix)]
 pub mod native;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+/// Files by their paths in a folder.
+pub type Files = BTreeMap<PathBuf, Vec<u8>>;
 
 /// A folder to work in.
 pub struct Place(TempDir);
@@ -52,9 +57,48 @@ impl Place {
     /// A simulated recording of 4 s.
     pub fn recording(&self, surface: &str) -> String {
         let name = format!("{surface}.csv");
-        let run = self.run(&["simulate", "--surface", surface, "--seconds", "4", "-o", &name]);
-        assert_eq!(run.code(), 0, "{}", run.error());
+        self.simulated(&name, &["--surface", surface, "--seconds", "4"]);
         name
+    }
+
+    /// A recording that `htex simulate` makes by these arguments, once per test program.
+    pub fn simulated(&self, name: &str, arguments: &[&str]) {
+        static MADE: Mutex<BTreeMap<String, Vec<u8>>> = Mutex::new(BTreeMap::new());
+        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        let recording = made.entry(arguments.join(" ")).or_insert_with(|| {
+            let place = Self::new();
+            let run = place.run(&[&["simulate"], arguments, &["-o", "rec.csv"]].concat());
+            assert_eq!(run.code(), 0, "{}", run.error());
+            std::fs::read(place.path("rec.csv")).unwrap()
+        });
+        self.write(name, recording);
+    }
+
+    /// A folder with copies of files that were made once per test program.
+    pub fn with(files: &Files) -> Self {
+        let place = Self::new();
+        for (name, bytes) in files {
+            std::fs::create_dir_all(place.0.path().join(name).parent().unwrap()).unwrap();
+            std::fs::write(place.0.path().join(name), bytes).unwrap();
+        }
+        place
+    }
+
+    /// The files of this folder and of the folders in it.
+    pub fn files(&self) -> Files {
+        let (mut files, mut folders) = (Files::new(), vec![self.0.path().to_owned()]);
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    let name = path.strip_prefix(self.0.path()).unwrap().to_owned();
+                    files.insert(name, std::fs::read(path).unwrap());
+                }
+            }
+        }
+        files
     }
 }
 
@@ -74,6 +118,16 @@ impl Run {
     pub fn text(&self) -> String {
         String::from_utf8(self.0.stdout.clone()).unwrap()
     }
+}
+
+/// What the manifest in a summary states of a representation at its first condition.
+pub fn stated(summary: &Value, index: usize) -> &Value {
+    &summary["manifest"]["representations"][index]["at"][0]
+}
+
+/// What a summary computes of a representation at its first condition.
+pub fn computed(summary: &Value, index: usize) -> &Value {
+    &summary["representations"][index]["at"][0]
 }
 
 /// The numbers of a JSON array.

@@ -55,7 +55,7 @@ fn a_live_motion_waits_no_longer_than_is_promised() {
             bench.is_at_zero();
             return;
         }
-        check_failed(&done, &["ran dry", "--set buffer_ms="]);
+        check_failed(&done, &["ran dry", "buffer_ms=", "(see --set)"]);
         assert!(bench.card_v().last().is_none_or(|v| *v == 0.0));
     }
     unreachable!("the buffer ran dry in every play");

@@ -61,10 +61,12 @@ impl Path {
         self.age = 0.0;
         self.off_mm = at_mm - self.told_mm;
         self.off_step_mm = step_mm - self.told_step_mm;
-        match self.off_mm.abs() <= JUMP_MM {
-            _ if !self.started => Way::Start(self.leap()),
-            true => Way::Smooth,
-            false => Way::Jump,
+        if !self.started {
+            Way::Start(self.leap())
+        } else if self.off_mm.abs() <= JUMP_MM {
+            Way::Smooth
+        } else {
+            Way::Jump
         }
     }
 

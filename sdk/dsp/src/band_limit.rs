@@ -251,15 +251,14 @@ fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
         let sine = turns.sin[i] * turns.sin[i];
         let s = symmetric[i] * symmetric[i];
         let a = antisymmetric[i] * antisymmetric[i];
-        power[i] = match last.is_empty() {
+        power[i] = if last.is_empty() {
             // (1 - cos) = sin² / (1 + cos), which stays precise at low frequencies.
-            true => {
-                let above = 1.0 + turns.cos[i];
-                0.5 * (s * above + a * (sine / above))
-            }
+            let above = 1.0 + turns.cos[i];
+            0.5 * (s * above + a * (sine / above))
+        } else {
             // An odd number of lines has the fixed factors 1 and `1 - z⁻²`, and the latter has
             // the squared magnitude `4 sin²`.
-            false => s + a * sine,
+            s + a * sine
         };
     }
     power

@@ -13,11 +13,12 @@ pub(crate) const RATE_HZ: f64 = 8_000.0;
 
 /// How `.hjif` codes a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Coding {
-    /// As at most seven tones.
+    /// Seven tones
     #[default]
     Vectorial,
-    /// As samples.
+    /// Samples
     Wavelet,
 }
 

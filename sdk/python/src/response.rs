@@ -1,10 +1,8 @@
 //! Frequency responses of recording rigs and finger displays.
 
 use htex_author::SetupResponse;
-use htex_lab::record::RecordError;
-use htex_lab::response::{
-    Record, RecordProblem, ResponseError, ResponseOptions, ResponseSettings, measure,
-};
+use htex_lab::LabError;
+use htex_lab::response::{Record, ResponseSettings, measure};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
@@ -20,15 +18,15 @@ pub(crate) fn response<'py>(
     rate_hz: f64,
     settings: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let options = ResponseOptions::from(&parsed::<ResponseSettings>(settings)?);
+    let settings = parsed::<ResponseSettings>(settings)?;
     let measured = py.detach(|| {
         let record = |(i, (input, output)): (usize, (Vec<f64>, Vec<f64>))| {
             Record::new(format!("recording {}", i + 1), rate_hz, input, output)
         };
         let records: Result<Vec<Record>, _> = records.into_iter().enumerate().map(record).collect();
-        measure(&records?, &options)
+        measure(&records?, &settings)
     });
-    from_json(py, &json!({"measured": measured.map_err(raised)?, "settings": options}))
+    from_json(py, &json!({"measured": measured.map_err(raised)?, "settings": settings.resolved()}))
 }
 
 /// Returns a response as a CSV file.
@@ -54,21 +52,13 @@ pub(crate) fn response_csv(
     Ok(PyBytes::new(py, &csv))
 }
 
-impl IntoPyErr for ResponseError {
+impl IntoPyErr for LabError {
     fn into_py_err(self) -> PyErr {
         match self {
-            Self::Option { .. }
-            | Self::Record {
-                problem: RecordProblem::Rate { .. } | RecordProblem::Lengths { .. },
-                ..
-            } => option(self.to_string()),
+            Self::Option { .. } | Self::Rate { .. } | Self::Lengths { .. } => {
+                option(self.to_string())
+            }
             other => RecordingError::new_err(other.to_string()),
         }
-    }
-}
-
-impl IntoPyErr for RecordError {
-    fn into_py_err(self) -> PyErr {
-        RecordingError::new_err(self.to_string())
     }
 }

@@ -172,7 +172,7 @@ def test_a_fit_says_what_is_felt(place: pathlib.Path) -> None:
     fit = htex.fit(place / "rec.csv", models=["ar", "sbeta"])
     expected = json.loads(command("fit", "rec.csv", "--model", "ar,sbeta", "-o", "felt.htex", "--json", cwd=place).stdout)
     assert [at for model in fit.felt for at in model] == [
-        representation["felt"] for representation in expected["representations"]
+        at["felt"] for representation in expected["representations"] for at in representation["at"]
     ]
 
 

@@ -16,15 +16,16 @@ import htex
 
 def test_a_texture_describes_its_asset(texture: htex.Texture, place: pathlib.Path) -> None:
     info = json.loads(command("info", "cloth.htex", "--json", cwd=place).stdout)
-    assert (texture.name, texture.unit) == (info["name"], info["unit"])
-    assert list(texture.band_hz) == info["band_hz"]
+    manifest = info["manifest"]
+    assert (texture.name, texture.unit) == (manifest["name"], manifest["unit"])
+    assert list(texture.band_hz) == [manifest["band"]["low_hz"], manifest["band"]["high_hz"]]
     assert texture.models == [r["model"] for r in info["representations"]]
     assert texture.manifest["license"] == "CC0-1.0"
-    assert texture.conditions[0].speed_mm_s == info["conditions"][0]["speed_mm_s"]
-    for representation in info["representations"]:
+    assert texture.conditions[0].speed_mm_s == manifest["conditions"][0]["speed_mm_s"]
+    for representation, stated in zip(info["representations"], manifest["representations"], strict=True):
         model = representation["model"]
-        assert texture.level(model=model) == representation["level_rms"]
-        assert texture.parameters(model=model) == representation["parameters"]
+        assert texture.level(model=model) == stated["at"][0]["level_rms"]
+        assert texture.parameters(model=model) == representation["at"][0]["parameters"]
 
 
 def test_the_spectrum_is_that_of_the_command(texture: htex.Texture, place: pathlib.Path) -> None:

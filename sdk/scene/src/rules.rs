@@ -141,20 +141,20 @@ htex_base::finding::rule_table! {
         "The device adapter is unknown.",
         "The meaning of the samples depends on the device.",
         "Correct the name; `htex device list` shows the available ones.";
-    DEVICE_PATH_UNSAFE Error:
+    DEVICE_PATH_UNSAFE Error ("set"):
         "A setting of the scene names a driver.",
         "A scene may come from an untrusted source: playing it must not load code.",
         "Give the `setting` to the player instead.";
-    DEVICE_PATH_UNUSED Warning:
+    DEVICE_PATH_UNUSED Warning ("set"):
         "A setting of the scene names a file to write.",
         "A scene may come from an untrusted source: only the user chooses which files are written.",
         "Give the `setting` to the player instead; remove it from the scene.";
-    DEVICE_HARDWARE Warning:
+    DEVICE_HARDWARE Warning ("profile", "set"):
         "The scene describes the hardware, or exceeds a limit.",
         "A wrong gain or limit can apply hundreds of volts more to a finger. Settings of the \
          hardware come from a profile or from the user; a scene can only ask for a lower limit, a shorter buffer or a longer ramp.",
         "Give the `profile` of the rig to the player; remove the setting from the scene.";
-    DEVICE_SETTING Error:
+    DEVICE_SETTING Error ("set"):
         "A profile or a setting of the device cannot be used.",
         "It is unknown, missing, or has an invalid value.",
         "Correct it; `htex device info` shows settings and profiles.";

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use htex_base::finding::{Findings, plain};
 use htex_lab::study::{
-    Line, ParticipantPlan, Participants, Plan, Presented, Session, Study, export, read_study,
+    Line, ParticipantPlan, Participants, Plan, Presentation, Session, Study, export, read_study,
 };
 
 use crate::promise::{self, sentence};
@@ -94,6 +94,6 @@ pub(crate) fn answered() -> String {
     let header = serde_json::from_value(header).expect("a header");
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = Session::open(&study, own, folder.path(), &header).expect("a new session");
-    session.rate(3, 900, 1000, Presented::default()).expect("the first trial");
+    session.rate(3, 900, 1000, Presentation::default()).expect("the first trial");
     std::fs::read_to_string(session.file()).expect("it was written")
 }

@@ -15,7 +15,7 @@ struct Kept {
     quality: Quality,
 }
 
-fn take(options: &SimulationOptions) -> Take {
+fn simulated_take(options: &SimulationOptions) -> Take {
     Take {
         recording: simulate(options).unwrap().to_recording("a recording").unwrap(),
         given: Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) },
@@ -67,7 +67,7 @@ fn correlation_of(quality: &Quality) -> f64 {
 
 #[test]
 fn third_octaves_of_unseen_recordings_in_24_and_48_bytes() {
-    let takes: Vec<Take> = unseen().iter().map(take).collect();
+    let takes: Vec<Take> = unseen().iter().map(simulated_take).collect();
     let fine: &[(&str, &str)] = &[("bands", "64")];
     for (options, bytes, most_db) in [(&[][..], 24, 0.6), (fine, 48, 0.4)] {
         let kept: Vec<Kept> = takes.iter().map(|take| keep(take, options)).collect();
@@ -99,7 +99,7 @@ fn third_octaves_of_unseen_recordings_in_24_and_48_bytes() {
 #[test]
 fn nine_bands_are_kept_to_half_a_step() {
     for surface in Surface::ALL {
-        let take = take(&SimulationOptions::new(surface));
+        let take = simulated_take(&SimulationOptions::new(surface));
         let kept = keep(&take, &[("bands", "9"), ("step_db", "0.5")]);
         let played_db = kept.quality.samples(Measure::NineBand).unwrap();
         // Half a step, plus what the window blurs next to steep flanks.
@@ -111,7 +111,7 @@ fn nine_bands_are_kept_to_half_a_step() {
 
 #[test]
 fn bytes_buy_detail_and_steps_buy_accuracy() {
-    let take = take(&SimulationOptions::new(Surface::ALL[0]));
+    let take = simulated_take(&SimulationOptions::new(Surface::ALL[0]));
     let (mut correlation, mut bytes) = (0.0, 0);
     for bands in ["3", "9", "19", "30", "64"] {
         let kept = keep(&take, &[("bands", bands)]);

@@ -43,7 +43,7 @@ pub(super) fn prove(options: &Options) -> Result<()> {
     };
     let folder = target().join("outputs");
     prepare(&folder)?;
-    let texts = Texts::of(&htex, &folder)?;
+    let texts = Texts::new(&htex, &folder)?;
     for line in LINES.lines().filter(|line| !line.starts_with('#')) {
         for line in texts.expand(line) {
             print(&htex, &folder, &line)?;
@@ -121,7 +121,7 @@ fn hash(folder: &Path) -> Result<()> {
 struct Texts(Vec<(&'static str, Vec<String>)>);
 
 impl Texts {
-    fn of(command: &Path, folder: &Path) -> Result<Self> {
+    fn new(command: &Path, folder: &Path) -> Result<Self> {
         let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
         let mut conformance = Vec::new();
         for place in INPUTS.iter().filter_map(|input| input.strip_prefix("spec/")) {

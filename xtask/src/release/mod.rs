@@ -43,7 +43,7 @@ impl Release {
             return Ok(PLATFORMS.to_vec());
         }
         let names = self.only.iter().filter(|name| !["npm", "sdist"].contains(&&name[..]));
-        names.map(|name| Platform::named(name)).collect()
+        names.map(|name| Platform::find(name)).collect()
     }
 
     fn has(&self, name: &str) -> bool {

@@ -5,9 +5,7 @@ use htex_device::Origin;
 
 use crate::checking::CheckArgs;
 use crate::devices::OneDeviceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::hints::with_quoted;
+use crate::failure::{Exit, Failure, Result};
 use crate::output::print_json;
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
@@ -33,10 +31,10 @@ pub(crate) struct CheckOne {
 }
 
 impl Check {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let Self { device, checking } = self;
         if let Some(name) = &checking.reproduce {
-            return checking.print_one(name, &finding(&device, name)?, with_quoted);
+            return checking.print_one(name, &finding(&device, name)?);
         }
         // A wrong setting is reported once, and not by each check. The same holds for a wrong name,
         // which names nothing to check.
@@ -46,12 +44,12 @@ impl Check {
         arguments.extend(device.again());
         let report = check(&device.device, &subject, &checking.runner(arguments)?);
         let again = |name: &str| format!("htex device check {} --reproduce {name}", device.shown());
-        checking.print_report(&report, with_quoted, again)
+        checking.print_report(&report, again)
     }
 }
 
 impl CheckOne {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         print_json(&finding(&self.device, &self.name)?)?;
         Ok(Exit::SUCCESS)
     }
@@ -59,7 +57,7 @@ impl CheckOne {
 
 /// Finds the device. Unlike [`OneDeviceArgs::load`], does not load the library of a file that is
 /// named, because that may crash.
-fn subject(device: &OneDeviceArgs) -> Result<Subject, Failure> {
+fn subject(device: &OneDeviceArgs) -> Result<Subject> {
     if let Some(file) = device.file() {
         return Ok(Subject::Library(file.to_owned()));
     }
@@ -71,7 +69,7 @@ fn subject(device: &OneDeviceArgs) -> Result<Subject, Failure> {
 }
 
 /// Runs one check in this process.
-fn finding(device: &OneDeviceArgs, name: &str) -> Result<Finding, Failure> {
+fn finding(device: &OneDeviceArgs, name: &str) -> Result<Finding> {
     let (profile, given) = (device.settings.profile(), device.settings.given()?);
     run_one(&subject(device)?, name, profile, &given)
         .map_err(|error| Failure::Usage(error.to_string()))

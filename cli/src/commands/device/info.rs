@@ -3,8 +3,7 @@ use htex_device::{Capabilities, Channel, DeviceError, Direction, InputStream, Ma
 use serde_json::json;
 
 use crate::devices::OneDeviceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Result};
 use crate::output::{print, print_json, tamed};
 
 use super::list::descriptor_text;
@@ -24,7 +23,7 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let entry = self.device.load()?;
         let (descriptor, adapter) = (entry.descriptor(), entry.adapter.as_ref());
         let given = self.device.settings.given()?;

@@ -4,8 +4,7 @@ use htex_device::{AdapterEntry, Descriptor, Direction, Profile, Setting, Setting
 use serde_json::{Value, json};
 
 use crate::devices::DeviceArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 use crate::invocation;
 use crate::output::{print, print_json, tamed};
 

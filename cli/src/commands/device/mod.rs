@@ -6,8 +6,7 @@ mod list;
 
 use clap::{Args, Subcommand};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 
 /// List, inspect and check devices
 #[derive(Args)]

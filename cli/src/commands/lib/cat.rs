@@ -3,11 +3,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::given::Given;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use super::LibraryArg;
+use crate::failure::{Exit, Failure, Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
 use crate::output::{write_bytes, write_file};
 use crate::outputs::check_outputs;
 
@@ -15,8 +13,8 @@ use crate::outputs::check_outputs;
 #[derive(Args)]
 pub(crate) struct Cat {
     /// The library, a path or URI
-    #[arg(value_parser = Given::parser())]
-    library: Given,
+    #[arg(value_parser = LibraryArg::parser())]
+    library: LibraryArg,
 
     /// Name of the texture, as printed by `htex lib ls`
     name: String,
@@ -27,14 +25,13 @@ pub(crate) struct Cat {
 }
 
 impl Cat {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         check_outputs(self.output.as_deref(), self.library.local())?;
         if self.output.is_none() && std::io::stdout().is_terminal() {
-            let sentence = "a texture is not text; name a file for it with -o";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage("a texture is not text; name a file for it with -o"));
         }
         let library = self.library.open()?;
-        let bytes = library.get(&self.name).map_err(of_file(&self.library.shown()))?;
+        let bytes = library.get(&self.name).map_err(for_file(&self.library.shown()))?;
         match &self.output {
             Some(output) => write_file(output, &bytes)?,
             None => write_bytes(&bytes)?,

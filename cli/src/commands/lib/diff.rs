@@ -1,25 +1,24 @@
 use std::cmp::Ordering;
+use std::fmt::{Display, Formatter};
 
 use clap::Args;
 use htex_format::library::{Entry, Library, LibraryFile};
 use serde::Serialize;
 
-use super::given::Given;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::of_file::of_file;
-use crate::output::{print, print_json};
+use super::LibraryArg;
+use crate::failure::{Exit, Result, for_file};
+use crate::output::show;
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 #[derive(Args)]
 pub(crate) struct Diff {
     /// A library, a path or URI
-    #[arg(value_parser = Given::parser())]
-    a: Given,
+    #[arg(value_parser = LibraryArg::parser())]
+    a: LibraryArg,
 
     /// Another library
-    #[arg(value_parser = Given::parser())]
-    b: Given,
+    #[arg(value_parser = LibraryArg::parser())]
+    b: LibraryArg,
 
     /// Print JSON
     #[arg(long)]
@@ -36,41 +35,36 @@ struct Differences {
 
 /// An iterator over a library's entries that knows the next one.
 struct Walk<'a> {
-    given: &'a Given,
+    library: &'a LibraryArg,
     entries: htex_format::library::Entries<'a, LibraryFile>,
     next: Option<Entry>,
 }
 
 impl Diff {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let (a, b) = (self.a.open()?, self.b.open()?);
         let differences = compare(Walk::new(&self.a, &a)?, Walk::new(&self.b, &b)?)?;
-        if self.json {
-            print_json(&differences)?;
-        } else {
-            print(&differences.to_text())?;
-        }
-        Ok(if differences.is_empty() { Exit::SUCCESS } else { Exit::FAILURE })
+        show(&differences, self.json)?;
+        Ok(Exit::ok_if(differences.is_empty()))
     }
 }
 
 impl<'a> Walk<'a> {
-    fn new(given: &'a Given, library: &'a Library<LibraryFile>) -> Result<Self, Failure> {
-        let entries = library.entries();
-        let mut walk = Self { given, entries, next: None };
+    fn new(argument: &'a LibraryArg, library: &'a Library<LibraryFile>) -> Result<Self> {
+        let mut walk = Self { library: argument, entries: library.entries(), next: None };
         walk.step()?;
         Ok(walk)
     }
 
     /// Takes the next entry.
-    fn step(&mut self) -> Result<Option<Entry>, Failure> {
-        let next = self.entries.next().transpose().map_err(of_file(&self.given.shown()))?;
+    fn step(&mut self) -> Result<Option<Entry>> {
+        let next = self.entries.next().transpose().map_err(for_file(&self.library.shown()))?;
         Ok(std::mem::replace(&mut self.next, next))
     }
 }
 
 /// Walks through both libraries in the order of the names.
-fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Differences, Failure> {
+fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Differences> {
     let mut differences = Differences::default();
     loop {
         let order = match (&a.next, &b.next) {
@@ -96,11 +90,14 @@ impl Differences {
     fn is_empty(&self) -> bool {
         self.only_in_a.is_empty() && self.only_in_b.is_empty() && self.changed.is_empty()
     }
+}
 
-    fn to_text(&self) -> String {
-        let lines = |sign: char, names: &[String]| -> String {
-            names.iter().map(|name| format!("{sign} {name}\n")).collect()
-        };
-        lines('-', &self.only_in_a) + &lines('+', &self.only_in_b) + &lines('~', &self.changed)
+impl Display for Differences {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        for (sign, names) in [('-', &self.only_in_a), ('+', &self.only_in_b), ('~', &self.changed)]
+        {
+            names.iter().try_for_each(|name| writeln!(f, "{sign} {name}"))?;
+        }
+        Ok(())
     }
 }

@@ -1,19 +1,17 @@
 use clap::Args;
 use htex_format::library::Query;
 
-use super::given::Given;
+use super::LibraryArg;
 use super::listing::Listing;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::of_file::of_file;
+use crate::failure::{Exit, Result, for_file};
 use crate::output::note;
 
 /// Search a library; all that is asked for must hold.
 #[derive(Args)]
 pub(crate) struct Find {
     /// The library, a path or URI
-    #[arg(value_parser = Given::parser())]
-    library: Given,
+    #[arg(value_parser = LibraryArg::parser())]
+    library: LibraryArg,
 
     /// Parts of names or tags, case-insensitive
     words: Vec<String>,
@@ -40,7 +38,7 @@ pub(crate) struct Find {
 }
 
 impl Find {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
         let library = self.library.open()?;
         let query = Query {
@@ -52,13 +50,13 @@ impl Find {
         };
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {
-            let entry = entry.map_err(of_file(&file))?;
+            let entry = entry.map_err(for_file(&file))?;
             if query.matches(&entry) {
                 listing.add(&entry)?;
             }
         }
         if listing.finish()? == 0 {
-            note(&["no texture of the library has all of this".to_owned()]);
+            note(&["no texture of the library has all of this"]);
         }
         Ok(Exit::SUCCESS)
     }

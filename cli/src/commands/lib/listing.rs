@@ -5,7 +5,7 @@ use htex_format::Law;
 use htex_format::library::{Entry, Interval};
 
 use crate::assets::short_name;
-use crate::failure::Failure;
+use crate::failure::Result;
 use crate::output::{json_line, print, write};
 
 /// Number of bytes that are buffered before they are written.
@@ -23,7 +23,7 @@ impl Listing {
         Self { is_json, text: String::new(), count: 0 }
     }
 
-    pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
+    pub(super) fn add(&mut self, entry: &Entry) -> Result<()> {
         if self.is_json {
             let json = json_line(entry)?;
             self.text += if self.count == 0 { "[" } else { ",\n " };
@@ -39,7 +39,7 @@ impl Listing {
     }
 
     /// Ends the list. Returns the number of entries.
-    pub(super) fn finish(mut self) -> Result<u64, Failure> {
+    pub(super) fn finish(mut self) -> Result<u64> {
         if self.is_json {
             self.text += if self.count == 0 { "[]\n" } else { "]\n" };
         }
@@ -47,7 +47,7 @@ impl Listing {
         Ok(self.count)
     }
 
-    fn flush(&mut self) -> Result<(), Failure> {
+    fn flush(&mut self) -> Result<()> {
         let text = std::mem::take(&mut self.text);
         // `print` would escape with `\u{…}`, which is not JSON.
         if self.is_json { write(&text) } else { print(&text) }

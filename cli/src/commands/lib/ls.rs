@@ -1,10 +1,8 @@
 use clap::Args;
 
-use super::given::Given;
+use super::LibraryArg;
 use super::listing::Listing;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::of_file::of_file;
+use crate::failure::{Exit, Result, for_file};
 use crate::output::note;
 
 /// List the textures of a library: name, bytes, recorded speeds and forces, law, models, tags.
@@ -14,8 +12,8 @@ use crate::output::note;
 #[derive(Args)]
 pub(crate) struct Ls {
     /// The library, a path or URI
-    #[arg(value_parser = Given::parser())]
-    library: Given,
+    #[arg(value_parser = LibraryArg::parser())]
+    library: LibraryArg,
 
     /// Print JSON: an array of objects
     #[arg(long)]
@@ -23,13 +21,13 @@ pub(crate) struct Ls {
 }
 
 impl Ls {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
         let library = self.library.open()?;
         note(&library.notes().iter().map(ToString::to_string).collect::<Vec<_>>());
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {
-            listing.add(&entry.map_err(of_file(&file))?)?;
+            listing.add(&entry.map_err(for_file(&file))?)?;
         }
         listing.finish()?;
         Ok(Exit::SUCCESS)

@@ -3,20 +3,23 @@
 mod cat;
 mod diff;
 mod find;
-mod given;
 mod listing;
 mod ls;
 mod pack;
-mod sources;
 mod unpack;
 mod verify;
 
-use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
+use htex_base::storage::{Location, Storage};
+use htex_format::library::{Library, LibraryFile};
 
 pub(super) use verify::check;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use super::subcommands;
+use crate::failure::{Result, for_file};
 
 /// Pack, list, verify and unpack libraries
 ///
@@ -30,27 +33,46 @@ pub(crate) struct Lib {
     command: Command,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    Pack(pack::Pack),
-    Unpack(unpack::Unpack),
-    Ls(ls::Ls),
-    Find(find::Find),
-    Cat(cat::Cat),
-    Diff(diff::Diff),
-    Verify(verify::Verify),
+subcommands! {
+    Command {
+        Pack(pack::Pack),
+        Unpack(unpack::Unpack),
+        Ls(ls::Ls),
+        Find(find::Find),
+        Cat(cat::Cat),
+        Diff(diff::Diff),
+        Verify(verify::Verify),
+    }
 }
 
 impl Lib {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        match self.command {
-            Command::Pack(args) => args.run(),
-            Command::Unpack(args) => args.run(),
-            Command::Ls(args) => args.run(),
-            Command::Find(args) => args.run(),
-            Command::Cat(args) => args.run(),
-            Command::Diff(args) => args.run(),
-            Command::Verify(args) => args.run(),
-        }
+    pub(crate) fn run(self) -> Result {
+        self.command.run()
+    }
+}
+
+/// A library argument: a path, or a URI from which only the needed ranges are read.
+#[derive(Clone, Debug)]
+struct LibraryArg(Location);
+
+impl LibraryArg {
+    /// Returns the parser of the argument.
+    fn parser() -> impl TypedValueParser<Value = Self> {
+        OsStringValueParser::new().try_map(|text| Location::parse(&text).map(Self))
+    }
+
+    fn open(&self) -> Result<Library<LibraryFile>> {
+        let storage = Storage::from_environment()?;
+        Library::open_located(&storage, &self.0).map_err(for_file(&self.shown()))
+    }
+
+    /// Returns the file if it is on this machine.
+    fn local(&self) -> Option<&Path> {
+        self.0.local()
+    }
+
+    /// Returns the path or URI for messages.
+    fn shown(&self) -> PathBuf {
+        PathBuf::from(self.0.to_string())
     }
 }

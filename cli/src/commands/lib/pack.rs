@@ -1,20 +1,18 @@
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_base::files::AtFile;
 use htex_format::library::{EXTENSION, LibraryError, PackSummary, Writer};
-use serde_json::{Value, json};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
-use super::sources::sources;
-use crate::bounded::read_asset;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::assets::read_asset;
+use crate::failure::{Failure, Result, for_file};
 use crate::located;
-use crate::of_file::{OfFile, of_file};
-use crate::output::{print, print_json};
+use crate::output::{bar, show, shown};
 use crate::outputs::check_outputs;
-use crate::progress::bar;
-use crate::shown::shown;
 
 /// Pack textures into a library.
 ///
@@ -46,7 +44,7 @@ pub(crate) struct Pack {
 }
 
 impl Pack {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let is_library = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
         // Without this, `htex lib pack oak.htex birch.htex` would replace the first texture by a
         // library.
@@ -60,24 +58,19 @@ impl Pack {
         check_outputs([self.output.as_path()], sources.values().map(PathBuf::as_path))?;
         let stem = self.output.file_stem().map(|stem| stem.to_string_lossy());
         let name = self.name.clone().unwrap_or(stem.unwrap_or_default().into_owned());
-        let mut writer = Writer::create(&self.output, &name).map_err(of_file(&self.output))?;
+        let mut writer = Writer::create(&self.output, &name).map_err(for_file(&self.output))?;
         if self.unlicensed {
             writer.allow_unlicensed();
         }
         let bar = bar(sources.len() as u64);
         for (name, path) in &sources {
             let bytes = read_asset(path)?;
-            writer.add(name, &bytes).map_err(of_file(path))?;
+            writer.add(name, &bytes).map_err(for_file(path))?;
             bar.inc(1);
         }
         let packed = writer.finish().map_err(|error| self.failure(error, &sources))?;
         bar.finish_and_clear();
-        if self.json {
-            print_json(&summary(&self.output, &name, &packed))?;
-        } else {
-            print(&text(&self.output, &packed))?;
-        }
-        Ok(Exit::SUCCESS)
+        show(&PackReport { file: &self.output, name: &name, packed }, self.json)
     }
 
     /// Converts an error of writing, and says what to do here.
@@ -87,35 +80,109 @@ impl Pack {
                 let file = sources.get(name).map_or_else(|| name.clone(), |path| shown(path));
                 Failure::Other(format!("{error}: htex edit {file} --license SPDX, or --unlicensed"))
             }
-            _ => error.of(&self.output),
+            _ => Failure::from(error).in_file(&self.output),
         }
     }
 }
 
-/// Summarises the library that was written, as JSON.
-fn summary(path: &Path, name: &str, packed: &PackSummary) -> Value {
-    json!({
-        "file": path.display().to_string(),
-        "name": name,
-        "textures": packed.entries,
-        "bytes": packed.bytes,
-        "index_bytes": packed.index_bytes,
-        "shared_objects": packed.shared_objects,
-        "saved_bytes": packed.saved_bytes,
-        "blake3": packed.blake3.iter().map(|byte| format!("{byte:02x}")).collect::<String>(),
-    })
+/// A library that was written.
+struct PackReport<'a> {
+    file: &'a Path,
+    name: &'a str,
+    packed: PackSummary,
 }
 
-fn text(path: &Path, packed: &PackSummary) -> String {
-    let PackSummary { entries, bytes, index_bytes, saved_bytes, .. } = packed;
-    let textures = if *entries == 1 { "texture" } else { "textures" };
-    let mut text = format!(
-        "{}: {entries} {textures} in {bytes} bytes, {index_bytes} of them the index\n",
-        shown(path)
-    );
-    if packed.shared_objects > 0 {
-        let objects = packed.shared_objects;
-        text += &format!("  {objects} shared objects save {saved_bytes} bytes\n");
+impl Serialize for PackReport<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { file, name, packed } = self;
+        json!({
+            "file": file.display().to_string(),
+            "name": name,
+            "textures": packed.entries,
+            "bytes": packed.bytes,
+            "index_bytes": packed.index_bytes,
+            "shared_objects": packed.shared_objects,
+            "saved_bytes": packed.saved_bytes,
+            "blake3": packed.blake3.iter().map(|byte| format!("{byte:02x}")).collect::<String>(),
+        })
+        .serialize(serializer)
     }
-    text
+}
+
+impl Display for PackReport<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let PackSummary { entries, bytes, index_bytes, shared_objects, saved_bytes, .. } = &self.packed;
+        let textures = if *entries == 1 { "texture" } else { "textures" };
+        writeln!(
+            f,
+            "{}: {entries} {textures} in {bytes} bytes, {index_bytes} of them the index",
+            shown(self.file)
+        )?;
+        if *shared_objects > 0 {
+            writeln!(f, "  {shared_objects} shared objects save {saved_bytes} bytes")?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns the `.htex` files of the inputs by their names in the library. A file is named after
+/// itself, and a file in a folder after its path in the folder, both without `.htex`.
+fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>> {
+    let mut found = BTreeMap::new();
+    for input in inputs {
+        if !input.is_dir() {
+            let name = input.file_name().map(Path::new).unwrap_or(input);
+            add(&mut found, name, input.clone())?;
+            continue;
+        }
+        let before = found.len();
+        search(input, Path::new(""), &mut found)?;
+        if found.len() == before {
+            let folder = shown(input);
+            return Err(Failure::Other(format!(
+                "{folder}: no .htex file is in this folder or below"
+            )));
+        }
+    }
+    Ok(found)
+}
+
+/// Adds the files of a folder and its subfolders. Links to folders are not followed, because they
+/// may form a loop.
+fn search(folder: &Path, inside: &Path, found: &mut BTreeMap<String, PathBuf>) -> Result<()> {
+    for entry in std::fs::read_dir(folder).reading(folder)? {
+        let entry = entry.reading(folder)?;
+        let (path, inside) = (entry.path(), inside.join(entry.file_name()));
+        // `file_type` does not follow a link, but `is_file` below does: links to files are packed.
+        if entry.file_type().reading(folder)?.is_dir() {
+            search(&path, &inside, found)?;
+        } else if is_called_texture(&path) && path.is_file() {
+            add(found, &inside, path)?;
+        }
+    }
+    Ok(())
+}
+
+fn add(found: &mut BTreeMap<String, PathBuf>, inside: &Path, path: PathBuf) -> Result<()> {
+    let inside =
+        if is_called_texture(inside) { inside.with_extension("") } else { inside.to_owned() };
+    let parts: Option<Vec<&str>> = inside.iter().map(|part| part.to_str()).collect();
+    let Some(parts) = parts else {
+        let path = shown(&path);
+        return Err(Failure::Other(format!("{path}: its name is not UTF-8; rename it")));
+    };
+    let name = parts.join("/");
+    if let Some(other) = found.get(&name) {
+        return Err(Failure::Usage(format!(
+            "{} and {} would both be called {name:?}; rename one, or pack the folder that has both",
+            shown(other),
+            shown(&path)
+        )));
+    }
+    found.insert(name, path);
+    Ok(())
+}
+
+fn is_called_texture(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("htex"))
 }

@@ -4,13 +4,9 @@ use clap::Args;
 use htex_base::files::{AtFile, Batch, OwnFolder};
 use htex_format::library::{Entry, LibraryError, Names};
 
-use super::given::Given;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::of_file::{OfFile, of_file};
-use crate::output::print;
-use crate::progress::bar;
-use crate::shown::shown;
+use super::LibraryArg;
+use crate::failure::{Exit, Failure, Result, for_file};
+use crate::output::{bar, print, shown};
 
 /// Write the textures of a library as files: NAME.htex in a folder.
 ///
@@ -18,8 +14,8 @@ use crate::shown::shown;
 #[derive(Args)]
 pub(crate) struct Unpack {
     /// The library, a path or URI
-    #[arg(value_parser = Given::parser())]
-    library: Given,
+    #[arg(value_parser = LibraryArg::parser())]
+    library: LibraryArg,
 
     /// Names of textures [default: all]
     names: Vec<String>,
@@ -34,7 +30,7 @@ pub(crate) struct Unpack {
 }
 
 impl Unpack {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let file = self.library.shown();
         let library = self.library.open()?;
         let count = if self.names.is_empty() { library.len() } else { self.names.len() as u64 };
@@ -44,8 +40,8 @@ impl Unpack {
         let (mut ratio, mut names) = (library.ratio(), Names::default());
         if self.names.is_empty() {
             for entry in library.entries() {
-                let entry = entry.map_err(of_file(&file))?;
-                ratio.add(&entry).map_err(of_file(&file))?;
+                let entry = entry.map_err(for_file(&file))?;
+                ratio.add(&entry).map_err(for_file(&file))?;
                 check_alike(&mut names, &entry.name)?;
             }
         }
@@ -54,16 +50,17 @@ impl Unpack {
         }
         let mut batch = Batch::default();
         let mut write = |entry: Entry| {
-            let bytes = library.read(&entry).map_err(of_file(&file))?;
+            let bytes = library.read(&entry).map_err(for_file(&file))?;
             bar.inc(1);
             self.write(&mut batch, &entry.name, &bytes)
         };
         if self.names.is_empty() {
-            library.entries().try_for_each(|entry| write(entry.map_err(of_file(&file))?))?;
+            library.entries().try_for_each(|entry| write(entry.map_err(for_file(&file))?))?;
         }
         for name in &self.names {
-            let entry = library.entry(name).map_err(of_file(&file))?;
-            let absent = || LibraryError::Absent { name: name.clone() }.of(&file);
+            let entry = library.entry(name).map_err(for_file(&file))?;
+            let absent =
+                || Failure::from(LibraryError::Absent { name: name.clone() }).in_file(&file);
             write(entry.ok_or_else(absent)?)?;
         }
         // After an error before this, files that are not in their places yet are removed.
@@ -75,7 +72,7 @@ impl Unpack {
 
     /// Writes a texture. The reader has checked its name, so it leads to a file inside the folder,
     /// where no link is followed.
-    fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<()> {
         let (own, inside) = (OwnFolder::new(&self.output), PathBuf::from(format!("{name}.htex")));
         let path = self.output.join(&inside);
         match path.symlink_metadata() {
@@ -100,7 +97,7 @@ impl Unpack {
 
 /// Refuses a name that would be the same file as an earlier one on some system, so that neither is
 /// lost.
-fn check_alike(names: &mut Names, name: &str) -> Result<(), Failure> {
+fn check_alike(names: &mut Names, name: &str) -> Result<()> {
     if names.insert(name) {
         Ok(())
     } else {

@@ -3,11 +3,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_base::finding::Report;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::commands::validate::show_reports;
+use crate::failure::{Result, for_file};
 use crate::located;
-use crate::of_file::of_file;
-use crate::validation::report;
 
 /// Check every page and every texture of libraries; exit status 1 if one is not valid.
 ///
@@ -24,13 +22,13 @@ pub(crate) struct Verify {
 }
 
 impl Verify {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let reports = self.libraries.iter().map(|path| Ok((path.as_path(), check(path)?)));
-        report(reports, self.json)
+        show_reports(reports, self.json)
     }
 }
 
 /// Validates a library.
-pub(crate) fn check(path: &Path) -> Result<Report, Failure> {
-    htex_format::library::validate(path).map_err(of_file(path))
+pub(crate) fn check(path: &Path) -> Result<Report> {
+    htex_format::library::validate(path).map_err(for_file(path))
 }

@@ -1,14 +1,14 @@
+use std::fmt::{Display, Formatter};
 use std::path::Path;
 
 use clap::Args;
 use htex_check::model::{BLOCKS, Cost, Subject, bench};
 use htex_host::{LoadedModel, Origin, Registry, WasmLimits};
+use serde::Serialize;
 
-use crate::commands::plugin::named::named;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::output::{print, print_json};
-use crate::plugins::PluginArgs;
+use crate::failure::{Failure, Result};
+use crate::output::show;
+use crate::plugins::{PluginArgs, way};
 
 /// Measure what models cost: nanoseconds a sample, built in, as native plugins and as WASM.
 ///
@@ -30,17 +30,12 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let costs = bench(&self.subjects()?).map_err(Failure::other)?;
-        if self.json {
-            print_json(&costs)?;
-        } else {
-            print(&table(&costs))?;
-        }
-        Ok(Exit::SUCCESS)
+        show(&CostTable(costs), self.json)
     }
 
-    fn subjects(&self) -> Result<Vec<Subject>, Failure> {
+    fn subjects(&self) -> Result<Vec<Subject>> {
         let registry = self.plugins.registry_quietly()?;
         let builtin = Registry::builtin();
         let mut names = self.models.clone();
@@ -52,11 +47,11 @@ impl Bench {
         for name in &names {
             let mut models = vec![];
             if Path::new(name).is_file() {
-                models.push(named(name, &self.plugins)?);
+                models.push(self.plugins.find(name)?);
             } else {
                 let id = registry.find(name)?.id().to_owned();
                 models.extend(registry.all(&id).cloned());
-                models.sort_by_key(|model| order(model.origin()));
+                models.sort_by_key(|model| way(model.origin()).0);
             }
             for model in models {
                 add(&mut subjects, &model, &self.plugins.limits())?;
@@ -66,59 +61,53 @@ impl Bench {
     }
 }
 
-/// Sorts the built-in model first, because the others are compared with it.
-fn order(origin: &Origin) -> u8 {
-    match origin {
-        Origin::Builtin => 0,
-        Origin::Native(_) => 1,
-        _ => 2,
-    }
-}
-
 /// Adds a model. A WASM module is added a second time with counted instructions.
-fn add(
-    subjects: &mut Vec<Subject>,
-    loaded: &LoadedModel,
-    limits: &WasmLimits,
-) -> Result<(), Failure> {
+fn add(subjects: &mut Vec<Subject>, loaded: &LoadedModel, limits: &WasmLimits) -> Result<()> {
     let subject = |way: &str, loaded: &LoadedModel| Subject {
         model: loaded.short_name().to_owned(),
         way: way.to_owned(),
         loaded: loaded.clone(),
     };
-    match loaded.origin() {
-        Origin::Wasm(file) => {
-            subjects.push(subject("wasm", loaded));
-            let counted = limits.clone().with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
-            let counted = LoadedModel::from_file_within(file, &counted)?;
-            subjects.push(subject("wasm, counted", &counted));
-        }
-        Origin::Builtin => subjects.push(subject("built in", loaded)),
-        _ => subjects.push(subject("native", loaded)),
+    subjects.push(subject(way(loaded.origin()).1, loaded));
+    if let Origin::Wasm(file) = loaded.origin() {
+        let counted = limits.clone().with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
+        let counted = LoadedModel::from_file_within(file, &counted)?;
+        subjects.push(subject("wasm, counted", &counted));
     }
     Ok(())
 }
 
-fn table(costs: &[Cost]) -> String {
-    let width = costs.iter().map(|c| c.model.len()).max().unwrap_or(0).max(5);
-    let mut text = format!("  {:width$}  {:13}", "model", "way");
-    for block in BLOCKS {
-        text += &format!("  {:>22}", format!("blocks of {block}"));
-    }
-    text += &format!("  {:>7}  {:>13}\n", "a call", "start/ms");
-    for cost in costs {
-        text += &format!("  {:width$}  {:13}", cost.model, cost.way);
-        for block in &cost.blocks {
-            let t = block.per_sample;
-            let times = format!("{:.1} {:.1}±{:.1}", t.min_ns, t.median_ns, t.spread_ns);
-            text += &format!("  {times:>16} {:4.2}x", block.ratio);
+/// What models cost.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct CostTable(Vec<Cost>);
+
+impl Display for CostTable {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let costs = &self.0;
+        let width = costs.iter().map(|c| c.model.len()).max().unwrap_or(0).max(5);
+        write!(f, "  {:width$}  {:13}", "model", "way")?;
+        for block in BLOCKS {
+            write!(f, "  {:>22}", format!("blocks of {block}"))?;
         }
-        let start = cost
-            .start
-            .map_or(String::new(), |start| format!("{:.0} -> {:.1}", start.cold_ms, start.warm_ms));
-        text += &format!("  {:>7.0}  {start:>13}\n", cost.per_call_ns);
+        writeln!(f, "  {:>7}  {:>13}", "a call", "start/ms")?;
+        for cost in costs {
+            write!(f, "  {:width$}  {:13}", cost.model, cost.way)?;
+            for block in &cost.blocks {
+                let t = block.per_sample;
+                let times = format!("{:.1} {:.1}±{:.1}", t.min_ns, t.median_ns, t.spread_ns);
+                write!(f, "  {times:>16} {:4.2}x", block.ratio)?;
+            }
+            let start = cost.start.map_or(String::new(), |start| {
+                format!("{:.0} -> {:.1}", start.cold_ms, start.warm_ms)
+            });
+            writeln!(f, "  {:>7.0}  {start:>13}", cost.per_call_ns)?;
+        }
+        writeln!(
+            f,
+            "ns a sample: least, median ± half the distance between the quartiles, and the least over \
+             that of the first line of the model; ns a call; from the file to the first sample, \
+             compiled and from the cache"
+        )
     }
-    text + "ns a sample: least, median ± half the distance between the quartiles, and the least over \
-            that of the first line of the model; ns a call; from the file to the first sample, \
-            compiled and from the cache\n"
 }

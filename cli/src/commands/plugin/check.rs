@@ -6,8 +6,7 @@ use htex_base::files::FileError;
 use htex_check::model::{CheckError, Options, Report, Settings, check, run_one};
 
 use crate::checking::CheckArgs;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::output::print_json;
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
@@ -79,23 +78,23 @@ fn seed_of(report: &Report, name: &str) -> u64 {
 }
 
 impl Check {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let file = &self.file;
         if let Some(name) = &self.checking.reproduce {
             let settings =
                 Settings { seed: self.seed, against: self.against.as_deref(), fuzz: self.fuzz };
             let finding = run_one(file, name, settings).map_err(failed)?;
-            return self.checking.print_one(name, &finding, |text| text.into());
+            return self.checking.print_one(name, &finding);
         }
         let report = check(file, &self.options()?).map_err(failed)?;
         let again = |name: &str| {
             let (file, seed) = (file.display(), seed_of(&report, name));
             format!("htex plugin check {file} --reproduce {name} --seed {seed}")
         };
-        self.checking.print_report(&report, |text| text.into(), again)
+        self.checking.print_report(&report, again)
     }
 
-    fn options(&self) -> Result<Options, Failure> {
+    fn options(&self) -> Result<Options> {
         Ok(Options {
             runner: self.checking.runner(["plugin".into(), "check-one".into()])?,
             seed: self.seed,
@@ -107,7 +106,7 @@ impl Check {
 }
 
 impl CheckOne {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let settings =
             Settings { seed: self.seed, against: self.against.as_deref(), fuzz: self.fuzz };
         print_json(&run_one(&self.file, &self.name, settings).map_err(failed)?)?;

@@ -1,10 +1,11 @@
+use std::fmt::{Display, Formatter};
+
 use clap::Args;
 use htex_host::{Descriptor, Field, FitOption, Kind, Scale};
+use serde::Serialize;
 
-use crate::commands::plugin::named::named;
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::output::{print, print_json, tamed};
+use crate::failure::Result;
+use crate::output::{show, tamed};
 use crate::plugins::PluginArgs;
 
 /// Show a model's descriptor: parameters and fit options, with units and ranges.
@@ -23,26 +24,29 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let model = named(&self.model, &self.plugins)?;
-        if self.json {
-            print_json(model.descriptor())?;
-        } else {
-            print(&text(&tamed(model.descriptor())))?;
-        }
-        Ok(Exit::SUCCESS)
+    pub(crate) fn run(self) -> Result {
+        show(&ModelInfo(self.plugins.find(&self.model)?.descriptor().clone()), self.json)
     }
 }
 
-fn text(descriptor: &Descriptor) -> String {
-    let Descriptor { id, name, version, summary, .. } = descriptor;
-    let fields: String = descriptor.fields.iter().map(field).collect();
-    let options: String = descriptor.options.iter().map(option).collect();
-    let options = if options.is_empty() { "  none\n".to_owned() } else { options };
-    let used = if descriptor.only_named { "Used only if you name it.\n" } else { "" };
-    format!(
-        "{name} ({id} {version})\n{summary}\n{used}\nparameters\n{fields}\nfit options\n{options}"
-    )
+/// A model's descriptor as it is printed.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct ModelInfo(Descriptor);
+
+impl Display for ModelInfo {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Descriptor { id, name, version, summary, fields, options, .. } = tamed(&self.0);
+        let fields: String = fields.iter().map(field).collect();
+        let mut options: String = options.iter().map(option).collect();
+        if options.is_empty() {
+            options += "  none\n";
+        }
+        write!(
+            f,
+            "{name} ({id} {version})\n{summary}\n\nparameters\n{fields}\nfit options\n{options}"
+        )
+    }
 }
 
 fn field(field: &Field) -> String {

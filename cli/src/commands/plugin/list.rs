@@ -1,11 +1,13 @@
+use std::fmt::{Display, Formatter};
+
 use clap::Args;
 use htex_base::finding::plain;
 use htex_host::Registry;
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::failure::Result;
+use crate::output::show;
 use crate::plugins::PluginArgs;
 
 /// List all models found, and what was found but is not used.
@@ -24,40 +26,38 @@ pub(crate) struct List {
 }
 
 impl List {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let registry = self.plugins.registry_quietly()?;
-        if self.json {
-            print_json(&json(&registry))?;
-        } else {
-            print(&text(&registry))?;
+    pub(crate) fn run(self) -> Result {
+        show(&ModelList(self.plugins.registry_quietly()?), self.json)
+    }
+}
+
+/// The models that were found.
+struct ModelList(Registry);
+
+impl Serialize for ModelList {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let models = self.0.models().iter().map(|model| {
+            let descriptor = model.descriptor();
+            json!({
+                "id": descriptor.id,
+                "name": descriptor.name,
+                "version": descriptor.version,
+                "origin": model.origin().to_string(),
+            })
+        });
+        let models: Vec<Value> = models.collect();
+        let notes: Vec<String> = self.0.notes().iter().map(ToString::to_string).collect();
+        json!({ "models": models, "notes": notes }).serialize(serializer)
+    }
+}
+
+impl Display for ModelList {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        for model in self.0.models() {
+            let (name, version) = (model.short_name(), &model.descriptor().version);
+            writeln!(f, "  {name:12} {version:8} {:28} {}", model.id(), model.origin())?;
         }
-        Ok(Exit::SUCCESS)
+        let mut notes = self.0.notes().iter();
+        notes.try_for_each(|note| writeln!(f, "note: {}", plain(&note.to_string())))
     }
-}
-
-fn json(registry: &Registry) -> Value {
-    let models = registry.models().iter().map(|model| {
-        let descriptor = model.descriptor();
-        json!({
-            "id": descriptor.id,
-            "name": descriptor.name,
-            "version": descriptor.version,
-            "origin": model.origin().to_string(),
-        })
-    });
-    let models: Vec<Value> = models.collect();
-    let notes: Vec<String> = registry.notes().iter().map(ToString::to_string).collect();
-    json!({ "models": models, "notes": notes })
-}
-
-fn text(registry: &Registry) -> String {
-    let mut text = String::new();
-    for model in registry.models() {
-        let (name, version) = (model.short_name(), &model.descriptor().version);
-        text += &format!("  {name:12} {version:8} {:28} {}\n", model.id(), model.origin());
-    }
-    for note in registry.notes() {
-        text += &format!("note: {}\n", plain(&note.to_string()));
-    }
-    text
 }

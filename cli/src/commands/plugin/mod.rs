@@ -4,13 +4,12 @@ mod bench;
 mod check;
 mod info;
 mod list;
-mod named;
 mod new;
 
-use clap::{Args, Subcommand};
+use clap::Args;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use super::subcommands;
+use crate::failure::Result;
 
 /// Inspect, check and time texture models
 #[derive(Args)]
@@ -19,26 +18,20 @@ pub(crate) struct Plugin {
     command: Command,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    List(list::List),
-    Info(info::Info),
-    Check(check::Check),
-    New(new::New),
-    Bench(bench::Bench),
-    #[command(hide = true)]
-    CheckOne(check::CheckOne),
+subcommands! {
+    Command {
+        List(list::List),
+        Info(info::Info),
+        Check(check::Check),
+        New(new::New),
+        Bench(bench::Bench),
+        #[command(hide = true)]
+        CheckOne(check::CheckOne),
+    }
 }
 
 impl Plugin {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        match self.command {
-            Command::List(args) => args.run(),
-            Command::Info(args) => args.run(),
-            Command::Check(args) => args.run(),
-            Command::New(args) => args.run(),
-            Command::Bench(args) => args.run(),
-            Command::CheckOne(args) => args.run(),
-        }
+    pub(crate) fn run(self) -> Result {
+        self.command.run()
     }
 }

@@ -2,12 +2,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use htex_base::files::{AtFile, OwnFolder};
 use htex_check::model::templates;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::output::print;
-use htex_base::files::{AtFile, OwnFolder};
 
 /// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
@@ -49,7 +48,7 @@ impl Lang {
 }
 
 impl New {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let dir = self.dir.clone().unwrap_or_else(|| (&self.name).into());
         self.check(&dir)?;
         // Before the folder is made, so that a wrong --sdk leaves nothing behind.
@@ -75,7 +74,7 @@ impl New {
     }
 
     /// Refuses an invalid name and an existing folder.
-    fn check(&self, dir: &Path) -> Result<(), Failure> {
+    fn check(&self, dir: &Path) -> Result<()> {
         let name = &self.name;
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
         if !name.bytes().all(plain) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
@@ -108,11 +107,10 @@ impl New {
     }
 
     /// Returns the folder `sdk` that a Rust project depends on.
-    fn sdk(&self) -> Result<PathBuf, Failure> {
+    fn sdk(&self) -> Result<PathBuf> {
         let sdk = self.sdk.as_deref().or(SDK.map(Path::new));
         let sdk = sdk.ok_or_else(|| {
-            let rule = "--sdk names the folder `sdk` of the sources of htex, whose crates a model in Rust takes by path";
-            Failure::Usage(rule.to_owned())
+            Failure::usage("--sdk names the folder `sdk` of the sources of htex, whose crates a model in Rust takes by path")
         })?;
         sdk.canonicalize().map_err(|error| {
             let sdk = sdk.display();
@@ -130,7 +128,7 @@ fn capital(word: &str) -> String {
 
 /// Returns the path from a project to the SDK. It is relative if both are on the same drive, and
 /// empty if the project does not need the SDK.
-fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
+fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String> {
     let Some(sdk) = sdk else {
         return Ok(String::new());
     };

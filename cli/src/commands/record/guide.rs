@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use clap::Args;
-use htex_lab::record::{Guidance, GuidePage, Moment, Next, RecordError, Recorded, Setup};
+use htex_lab::LabError;
+use htex_lab::record::{Guidance, GuidePage, Moment, Next, Setup, TakeReport};
 
 use super::screen::Screen;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::output::tell;
 use crate::signals;
 
@@ -39,7 +40,7 @@ pub(super) struct GuideArgs {
 
 impl GuideArgs {
     /// Returns the target to show.
-    pub(super) fn guidance(&self, setup: &Setup) -> Result<Guidance, Failure> {
+    pub(super) fn guidance(&self, setup: &Setup) -> Result<Guidance> {
         if !(self.stroke > 0.0 && self.stroke <= 1e4) {
             let sentence = format!("--stroke {}: above 0 and at most 10,000 mm", self.stroke);
             return Err(Failure::Usage(sentence));
@@ -52,12 +53,7 @@ impl GuideArgs {
         })
     }
 
-    pub(super) fn open(
-        &self,
-        setup: &Setup,
-        guidance: Guidance,
-        rate_hz: f64,
-    ) -> Result<Guide, Failure> {
+    pub(super) fn open(&self, setup: &Setup, guidance: Guidance, rate_hz: f64) -> Result<Guide> {
         if !self.page {
             return Ok(Guide::Screen(Box::new(Screen::new(
                 guidance,
@@ -111,7 +107,7 @@ impl Guide {
     }
 
     /// Shows a complete take.
-    pub(super) fn told(&mut self, take: &Recorded) {
+    pub(super) fn told(&mut self, take: &TakeReport) {
         match self {
             Self::Screen(screen) => screen.end(),
             Self::Page(page) => page.told(take),
@@ -119,7 +115,7 @@ impl Guide {
     }
 
     /// Shows how the session ended.
-    pub(super) fn end(&mut self, recorded: &Result<Recorded, RecordError>) {
+    pub(super) fn end(&mut self, recorded: &Result<TakeReport, LabError>) {
         match self {
             Self::Screen(screen) => screen.end(),
             Self::Page(page) => page.end(recorded),

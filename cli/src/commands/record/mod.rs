@@ -8,18 +8,17 @@ use clap::{Args, ValueEnum};
 use htex_author::Exploration;
 use htex_base::finding::plain;
 use htex_device::Input;
+use htex_lab::LabError;
 use htex_lab::record::{
-    Moment, Next, Outcome, RecordError, Recorded, Required, Session, Setup, Tare, recover,
+    Moment, Next, Outcome, Requirements, Session, Setup, TakeReport, Tare, recover,
 };
 use serde_json::json;
 
 use crate::devices::{DeviceArgs, SettingArgs};
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure, Result};
 use crate::inputs::{InputArgs, paced};
-use crate::models::tool;
-use crate::output::{print, print_json, tell, warn};
-use crate::shown::shown;
+use crate::invocation::tool;
+use crate::output::{print, print_json, shown, tell, warn};
 use crate::signals;
 
 use guide::{Guide, GuideArgs};
@@ -92,7 +91,7 @@ pub(crate) struct Record {
     /// Minimum fraction of a take in which the finger slides; with targets, at half of the target
     /// speed or more and with the target force. A take below it is recorded again; 0 disables the
     /// test. The rest of the time the finger turns between sweeps
-    #[arg(long, value_name = "PART", default_value_t = Required::USUAL_ON_TARGET)]
+    #[arg(long, value_name = "PART", default_value_t = Requirements::USUAL_ON_TARGET)]
     min_on_target: f64,
 
     /// Minimum number of complete sweeps in a take; a take with fewer is recorded again, and 0
@@ -124,11 +123,11 @@ enum TareArg {
 }
 
 impl Record {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let mut setup = self.setup();
         let guidance = self.guide.guidance(&setup)?;
         setup.required.sweeps =
-            self.min_sweeps.unwrap_or_else(|| Required::usual_sweeps(&guidance, setup.seconds));
+            self.min_sweeps.unwrap_or_else(|| Requirements::usual_sweeps(&guidance, setup.seconds));
         let recovered = recover(&self.output)?;
         for take in &recovered {
             tell!("htex: recovered {}", said(take));
@@ -159,10 +158,11 @@ impl Record {
         Ok(Exit::SUCCESS)
     }
 
-    fn open(&self) -> Result<Box<dyn Input>, Failure> {
+    fn open(&self) -> Result<Box<dyn Input>> {
         if self.fast && !self.source.starts_with("file:") {
-            let sentence = "--fast replays files; other sources come at their own pace";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage(
+                "--fast replays files; other sources come at their own pace",
+            ));
         }
         let given = paced(&self.source, self.settings.given()?, self.fast);
         self.devices.open_input(&self.source, self.settings.profile(), &given)
@@ -186,7 +186,7 @@ impl Record {
             quantity: self.input.quantity(),
             target: Exploration { speed_mm_s: self.target_speed, force_n: self.target_force },
             tolerance: self.tolerance,
-            required: Required { on_target: self.min_on_target, ..Required::NOTHING },
+            required: Requirements { on_target: self.min_on_target, ..Requirements::NOTHING },
             attempts: self.attempts,
             format: self.input.format.unwrap_or_default(),
             tool: tool(),
@@ -200,10 +200,10 @@ impl Record {
 fn record(
     session: &mut Session,
     guide: &mut Guide,
-    takes: &mut Vec<Recorded>,
-) -> Result<Recorded, RecordError> {
+    takes: &mut Vec<TakeReport>,
+) -> Result<TakeReport, LabError> {
     if guide.wait_for_start() == Next::Stop {
-        return Err(RecordError::Left { kept: None });
+        return Err(LabError::Left { kept: None });
     }
     // Both closures show something, and the session holds both at the same time.
     let guide = RefCell::new(guide);
@@ -216,14 +216,14 @@ fn record(
 }
 
 /// Describes a take in one line, and each of its findings in another line.
-fn said(take: &Recorded) -> String {
+fn said(take: &TakeReport) -> String {
     let file = shown(&take.file);
     let what = match take.outcome {
         Outcome::Kept => "kept".to_owned(),
         Outcome::Rejected => format!("rejected, {}", plain(&take.verdict.reasons.join("; "))),
         Outcome::Incomplete => format!("incomplete, {:.2} s", take.recorded_s),
     };
-    let measured = |what: &str, unit: &str, measured: Option<htex_lab::record::Measured>| {
+    let measured = |what: &str, unit: &str, measured: Option<htex_lab::record::MeanRange>| {
         measured.map_or(String::new(), |m| {
             format!("; {what} {:.3} {unit} ({:.3} to {:.3})", m.mean, m.min, m.max)
         })

@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 use htex_format::Quantity;
-use htex_lab::record::{Force, Guidance, LiveSignal, LiveSpectrum, Moment, Phase, Required};
+use htex_lab::record::{Force, Guidance, LiveSignal, LiveSpectrum, Moment, Phase, Requirements};
 
 use crate::output::tell;
 
@@ -23,7 +23,7 @@ const BAR_WIDTH: usize = 2;
 /// Draws on standard error if that is a terminal. Otherwise prints only what begins.
 pub(super) struct Screen {
     guidance: Guidance,
-    required: Required,
+    required: Requirements,
     signal: LiveSignal,
     is_terminal: bool,
     drawn: Option<Instant>,
@@ -35,7 +35,7 @@ pub(super) struct Screen {
 impl Screen {
     pub(super) fn new(
         guidance: Guidance,
-        required: Required,
+        required: Requirements,
         quantity: Quantity,
         rate_hz: f64,
     ) -> Self {
@@ -88,7 +88,7 @@ impl Screen {
     }
 }
 
-fn beginning(moment: &Moment<'_>, required: Required) -> String {
+fn beginning(moment: &Moment<'_>, required: Requirements) -> String {
     let Moment { number, of_s, .. } = *moment;
     match moment.phase {
         Phase::Lift => format!("take the finger off the surface within {of_s} s"),
@@ -99,8 +99,8 @@ fn beginning(moment: &Moment<'_>, required: Required) -> String {
 }
 
 /// Says what a take needs to be accepted.
-fn asked(required: Required) -> String {
-    let Required { on_target, sweeps } = required;
+fn asked(required: Requirements) -> String {
+    let Requirements { on_target, sweeps } = required;
     let share = (on_target > 0.0).then(|| format!("on target {:.0} % or more", 100.0 * on_target));
     let sweeps = (sweeps > 0).then(|| format!("complete sweeps {sweeps} or more"));
     let all: Vec<String> = share.into_iter().chain(sweeps).collect();

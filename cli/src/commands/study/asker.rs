@@ -5,7 +5,7 @@ use htex_lab::study::{Asker, Key, Page, PageOptions, Study, View};
 use htex_scene::file::Motion;
 
 use super::terminal::Terminal;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::motions::Motions;
 use crate::output::tell;
 
@@ -14,7 +14,7 @@ const CSS_PIXEL_MM: &str = "0.2646";
 
 /// How a session asks, and the source of the motion if the study's motion is live.
 #[derive(Args)]
-#[command(next_help_heading = "Asking")]
+#[command(next_help_heading = "SessionInput")]
 pub(super) struct AskingArgs {
     /// Ask on a web page of this machine instead of the terminal; its address is printed
     #[arg(long)]
@@ -45,7 +45,7 @@ pub(super) struct AskingArgs {
 }
 
 /// The asker and the queue of live motions.
-pub(super) struct Asking {
+pub(super) struct SessionInput {
     pub(super) asker: Box<dyn Asker>,
     pub(super) motions: Option<Motions>,
 }
@@ -58,7 +58,7 @@ fn positive(text: &str) -> Result<f64, String> {
 
 impl AskingArgs {
     /// Refuses a combination that cannot work.
-    pub(super) fn check(&self, study: &Study, is_simulated: bool) -> Result<(), Failure> {
+    pub(super) fn check(&self, study: &Study, is_simulated: bool) -> Result<()> {
         let is_live = study.motion == Motion::Live;
         let source = self.motion.as_deref();
         let problem = match source {
@@ -88,14 +88,17 @@ impl AskingArgs {
     }
 
     /// Asks nobody, for a simulated participant.
-    pub(super) fn of_nobody(&self) -> Asking {
-        Asking { asker: Box::new(Nobody), motions: self.motion.is_some().then(Motions::from_stdin) }
+    pub(super) fn nobody(&self) -> SessionInput {
+        SessionInput {
+            asker: Box::new(Nobody),
+            motions: self.motion.is_some().then(Motions::from_stdin),
+        }
     }
 
     /// Asks a real participant.
-    pub(super) fn open(&self, study: &Study, participant: &str) -> Result<Asking, Failure> {
+    pub(super) fn open(&self, study: &Study, participant: &str) -> Result<SessionInput> {
         if !self.page {
-            return Ok(Asking { asker: Box::new(Terminal::new()), motions: None });
+            return Ok(SessionInput { asker: Box::new(Terminal::new()), motions: None });
         }
         let is_touched = self.motion.as_deref() == Some("page");
         let title = match &study.name[..] {
@@ -115,7 +118,7 @@ impl AskingArgs {
             None => None,
         };
         let asker = Box::new(page);
-        Ok(Asking { asker, motions })
+        Ok(SessionInput { asker, motions })
     }
 }
 

@@ -1,16 +1,15 @@
-use std::path::PathBuf;
+use std::fmt::{Display, Formatter};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_lab::study::export;
+use htex_lab::study::{FeltSpectra, export};
+use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::located;
-use crate::output::{print, print_json, warn, write_file};
-use crate::shown::shown;
-
 use super::spectra::SpectraArgs;
+use crate::failure::Result;
+use crate::located;
+use crate::output::{show, shown, warn, write_file};
 
 /// Write the ratings of all participants as a table, and the spectra of what they felt as another.
 ///
@@ -19,7 +18,7 @@ use super::spectra::SpectraArgs;
 /// the study's target by more than 10 %; empty if neither was measured). The columns of the spectra
 /// are participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
-pub(super) struct Export {
+pub(crate) struct Export {
     /// The folder of answers, written by `htex study run`
     folder: PathBuf,
 
@@ -40,7 +39,7 @@ pub(super) struct Export {
 }
 
 impl Export {
-    pub(super) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let table = export(&self.folder, self.attribute.as_deref())?;
         warn(&table.warnings);
         // The ratings are written first, so that a problem with a recording does not lose them.
@@ -50,24 +49,37 @@ impl Export {
             warn(&spectra.warnings);
             write_file(file, spectra.csv.as_bytes())?;
         }
-        let (participants, ratings) = (table.participants, table.ratings);
-        if self.json {
-            print_json(&json!({
-                "participants": participants,
-                "ratings": ratings,
-                "incomplete": table.incomplete,
-                "off_target": table.off_target,
-                "recordings": spectra.as_ref().map(|(_, spectra)| spectra.recordings),
-            }))?;
-        } else {
-            if let Some((file, spectra)) = &spectra {
-                print(&format!("{}: spectra of {} recordings\n", shown(file), spectra.recordings))?;
-            }
-            print(&format!(
-                "{}: {ratings} ratings of {participants} participants\n",
-                shown(&self.output)
-            ))?;
+        show(&Tables { args: &self, table, spectra }, self.json)
+    }
+}
+
+/// The tables that were written.
+struct Tables<'a> {
+    args: &'a Export,
+    table: htex_lab::study::Export,
+    spectra: Option<(&'a Path, FeltSpectra)>,
+}
+
+impl Serialize for Tables<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        json!({
+            "participants": self.table.participants,
+            "ratings": self.table.ratings,
+            "incomplete": self.table.incomplete,
+            "off_target": self.table.off_target,
+            "recordings": self.spectra.as_ref().map(|(_, spectra)| spectra.recordings),
+        })
+        .serialize(serializer)
+    }
+}
+
+impl Display for Tables<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        if let Some((file, spectra)) = &self.spectra {
+            writeln!(f, "{}: spectra of {} recordings", shown(file), spectra.recordings)?;
         }
-        Ok(Exit::SUCCESS)
+        let (participants, ratings) = (self.table.participants, self.table.ratings);
+        let file = shown(&self.args.output);
+        writeln!(f, "{file}: {ratings} ratings of {participants} participants")
     }
 }

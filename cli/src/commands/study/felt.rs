@@ -10,9 +10,9 @@ use htex_scene::file::Motion;
 
 use super::asker::AskingArgs;
 use crate::devices::{DeviceArgs, pairs};
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::inputs::{InputArgs, paced};
-use crate::models::tool;
+use crate::invocation::tool;
 use crate::output::warn;
 
 /// The source of what is felt.
@@ -39,7 +39,7 @@ pub(super) struct FeltArgs {
 
 impl FeltArgs {
     /// Refuses a combination that cannot work.
-    pub(super) fn check(&self, asking: &AskingArgs, is_simulated: bool) -> Result<(), Failure> {
+    pub(super) fn check(&self, asking: &AskingArgs, is_simulated: bool) -> Result<()> {
         let problem = if self.source.is_none() && self.input.is_given() {
             "--map, --calibration, --quantity, --tracker and --format are about what is felt; give --source, too"
         } else if self.input.tracks_stdin() && asking.reads_stdin(is_simulated) {
@@ -58,7 +58,7 @@ impl FeltArgs {
         participant: &str,
         devices: &DeviceArgs,
         is_fast: bool,
-    ) -> Result<Option<Felt>, Failure> {
+    ) -> Result<Option<Felt>> {
         let Some(name) = self.source.clone() else {
             return Ok(None);
         };

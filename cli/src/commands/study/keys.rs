@@ -4,7 +4,7 @@ use std::io::Read;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use htex_lab::study::{GainKey, Key, View};
+use htex_lab::study::View;
 use rustix::stdio::stdin;
 use rustix::termios::{
     LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcsetattr,
@@ -28,6 +28,22 @@ pub(super) enum Press {
 }
 
 impl Press {
+    /// Returns the line that means the same in a view; `None` if there is none.
+    pub(super) fn line(self, view: &View) -> Option<String> {
+        let is_matching = matches!(view, View::Matching { .. });
+        Some(match self {
+            Self::Char('\r' | '\n') => String::new(),
+            Self::Char(' ') if !is_matching => String::new(),
+            Self::Char('=') | Self::Up => "+".to_owned(),
+            Self::Down => "-".to_owned(),
+            Self::PageUp => "++".to_owned(),
+            Self::PageDown => "--".to_owned(),
+            Self::End => "q".to_owned(),
+            Self::Char(' ') | Self::Other => return None,
+            Self::Char(key) => key.to_string(),
+        })
+    }
+
     /// Returns its name for messages.
     pub(super) fn name(self) -> String {
         match self {
@@ -153,28 +169,6 @@ fn presses_of(bytes: &[u8]) -> Vec<Press> {
         };
     }
     presses
-}
-
-pub(super) fn meaning(press: Press, view: &View) -> Option<Key> {
-    let is_matching = matches!(view, View::Matching { .. });
-    Some(match press {
-        Press::End | Press::Char('q') => Key::Quit,
-        Press::Char('\r' | '\n') if is_matching => Key::Gain(GainKey::Accept),
-        Press::Char('\r' | '\n' | ' ') if !is_matching => Key::Go,
-        Press::Up | Press::Char('+' | '=') => Key::Gain(GainKey::Stronger),
-        Press::Down | Press::Char('-') => Key::Gain(GainKey::Weaker),
-        Press::PageUp => Key::Gain(GainKey::MuchStronger),
-        Press::PageDown => Key::Gain(GainKey::MuchWeaker),
-        Press::Char(digit) => match (view, digit.to_digit(10)) {
-            (View::Question { scale, .. }, Some(digit))
-                if (u32::from(scale.min)..=u32::from(scale.max)).contains(&digit) =>
-            {
-                Key::Digit(digit as u8)
-            }
-            _ => return None,
-        },
-        Press::Other => return None,
-    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 mod asker;
 mod clock;
-mod elsewhere;
 mod export;
 mod felt;
 #[cfg(unix)]
@@ -14,16 +13,16 @@ mod spectra;
 mod terminal;
 mod validate;
 
+use std::ffi::OsString;
 use std::path::Path;
 
-use clap::{Args, Subcommand};
+use clap::Args;
 use htex_base::files::AtFile;
-use htex_base::finding::Findings;
+use htex_base::finding::{Finding, Findings};
 use htex_lab::study::{Study as File, read_study};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::shown::shown;
+use super::subcommands;
+use crate::failure::{Failure, Result};
 
 /// Plan, run and analyse rating studies
 ///
@@ -35,42 +34,52 @@ pub(crate) struct Study {
     command: Command,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    Validate(validate::Validate),
-    Plan(plan::Plan),
-    Run(Box<run::Run>),
-    Export(export::Export),
-    /// Analyse the ratings of a study, and what was felt; by the Python package
-    /// (`pip install htex[lab]`)
-    Analyse(elsewhere::Elsewhere),
-    /// Find out how many participants a study needs; by the Python package
-    /// (`pip install htex[lab]`)
-    Power(elsewhere::Elsewhere),
-}
-
-impl Study {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        match self.command {
-            Command::Validate(args) => args.run(),
-            Command::Plan(args) => args.run(),
-            Command::Run(args) => args.run(),
-            Command::Export(args) => args.run(),
-            Command::Analyse(args) | Command::Power(args) => args.run(),
-        }
+subcommands! {
+    Command {
+        Validate(validate::Validate),
+        Plan(plan::Plan),
+        Run(Box<run::Run>),
+        Export(export::Export),
+        /// Analyse the ratings of a study, and what was felt; by the Python package
+        /// (`pip install htex[lab]`)
+        Analyse(PythonCommand),
+        /// Find out how many participants a study needs; by the Python package
+        /// (`pip install htex[lab]`)
+        Power(PythonCommand),
     }
 }
 
-/// The message for findings that prevent a study from running.
-const CANNOT_RUN: &str = "this study cannot be run";
+impl Study {
+    pub(crate) fn run(self) -> Result {
+        self.command.run()
+    }
+}
+
+/// A subcommand that is implemented in the `htex` command of the Python package.
+#[derive(Args)]
+#[command(disable_help_flag = true)]
+pub(crate) struct PythonCommand {
+    /// Parsed only so that any arguments lead to the error.
+    #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    _arguments: Vec<OsString>,
+}
+
+impl PythonCommand {
+    fn run(self) -> Result {
+        Err(Failure::usage(
+            "this program has no statistics; `pip install htex[lab]` brings a command `htex` that has them, with the same arguments",
+        ))
+    }
+}
+
+/// Reports findings that prevent a study from running.
+fn cannot_run(file: &Path, findings: Vec<Finding>) -> Failure {
+    Failure::Findings { cannot: "this study cannot be run", findings }.in_file(file)
+}
 
 /// Reads a study, which must be valid. Does not read the files that it names.
-fn open(file: &Path) -> Result<File, Failure> {
+fn open(file: &Path) -> Result<File> {
     let bytes = std::fs::read(file).reading(file)?;
     let mut findings = Findings::default();
-    read_study(&bytes, &mut findings).ok_or_else(|| Failure::Findings {
-        cannot: CANNOT_RUN,
-        file: shown(file),
-        findings: findings.into_list(),
-    })
+    read_study(&bytes, &mut findings).ok_or_else(|| cannot_run(file, findings.into_list()))
 }

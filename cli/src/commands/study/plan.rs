@@ -1,22 +1,22 @@
-use std::path::PathBuf;
+use std::fmt::{Display, Formatter};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_lab::study::Plan as Planned;
+use serde::Serialize;
 
 use super::open;
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::Result;
 use crate::located;
-use crate::output::{print, print_json, write_file};
+use crate::output::{show, shown, write_file};
 use crate::outputs::check_outputs;
-use crate::shown::shown;
 
 /// Write the order of every participant.
 ///
 /// The order depends only on the study: the same seed gives the same order on every machine.
 /// `htex study run` follows it.
 #[derive(Args)]
-pub(super) struct Plan {
+pub(crate) struct Plan {
     /// The study: study.toml
     study: PathBuf,
 
@@ -30,7 +30,7 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let study = open(&self.study)?;
         let plan = Planned::new(&study);
         if let Some(file) = &self.output {
@@ -38,31 +38,42 @@ impl Plan {
             let text = serde_json::to_string_pretty(&plan)?;
             write_file(file, (text + "\n").as_bytes())?;
         }
-        if self.json {
-            print_json(&plan)?;
-        } else {
-            print(&self.text(&plan, study.trial_s))?;
-        }
-        Ok(Exit::SUCCESS)
+        show(
+            &PlanReport { plan, output: self.output.as_deref(), trial_s: study.trial_s },
+            self.json,
+        )
     }
+}
 
-    fn text(&self, plan: &Planned, trial_s: f64) -> String {
-        let Some(first) = plan.participants.first() else {
-            return String::new();
+/// A plan as it is printed.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct PlanReport<'a> {
+    plan: Planned,
+    #[serde(skip)]
+    output: Option<&'a Path>,
+    #[serde(skip)]
+    trial_s: f64,
+}
+
+impl Display for PlanReport<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Some(first) = self.plan.participants.first() else {
+            return Ok(());
         };
         let trials = first.training.len() + first.trials.len();
-        let mut text = format!(
-            "{} participants; each: {} trials of training, {} gains to match, {} trials of testing; {:.0} min of trials\n",
-            plan.participants.len(),
+        writeln!(
+            f,
+            "{} participants; each: {} trials of training, {} gains to match, {} trials of testing; {:.0} min of trials",
+            self.plan.participants.len(),
             first.training.len(),
             first.gain.len(),
             first.trials.len(),
-            trials as f64 * trial_s / 60.0
-        );
-        match &self.output {
-            Some(file) => text += &format!("written to {}\n", shown(file)),
-            None => text += "the orders: -o plan.json, or --json\n",
+            trials as f64 * self.trial_s / 60.0
+        )?;
+        match self.output {
+            Some(file) => writeln!(f, "written to {}", shown(file)),
+            None => writeln!(f, "the orders: -o plan.json, or --json"),
         }
-        text
     }
 }

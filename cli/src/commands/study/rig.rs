@@ -8,16 +8,16 @@ use htex_base::files::{AtFile, OwnFolder};
 use htex_base::finding::plain;
 use htex_device::{DeviceError, SettingKind};
 use htex_format::ErrorMeasure;
+use htex_lab::LabError;
 use htex_lab::study::{
-    DeviceUsed, Felt, Meter, OutputLevels, Played, Rig, Stimulus, Study, StudyError, full_drive,
-    scene_of, set_gain,
+    DeviceUsed, Felt, Meter, OutputLevels, Playback, Rig, Stimulus, Study, full_drive, scene_of,
+    set_gain,
 };
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Renderer, Scene, output_name};
 
-use crate::failure::Failure;
-use crate::motions::{Motions, Moved};
-use crate::of_file::of_file;
+use crate::failure::{Failure, Result, for_file};
+use crate::motions::Motions;
 use crate::output::tell;
 use crate::playing::Output;
 use crate::scenes::{Loader, Ready, costs};
@@ -54,11 +54,10 @@ pub(super) struct StudyRig<'a> {
 
 impl StudyRig<'_> {
     /// Loads a texture with a model and the device.
-    fn load(&self, texture: &str, model: &str, file: &str) -> Result<Ready, Failure> {
+    fn load(&self, texture: &str, model: &str, file: &str) -> Result<Ready> {
         let listed = self.study.textures.iter().find(|t| t.name() == texture);
         let Some(listed) = listed else {
-            let sentence = format!("the study has no texture {texture}");
-            return Err(Failure::Other(sentence));
+            return Err(Failure::Other(format!("the study has no texture {texture}")));
         };
         let name = output_name(file.as_ref(), &self.format);
         let path = self.folder.join(name);
@@ -71,7 +70,7 @@ impl StudyRig<'_> {
     }
 
     /// Describes the device that will be used.
-    pub(super) fn device_used(&self) -> Result<DeviceUsed, Failure> {
+    pub(super) fn device_used(&self) -> Result<DeviceUsed> {
         let (first, model) = (&self.study.textures[0], &self.study.models[0]);
         let ready = self.load(&first.name(), model, "device")?;
         let descriptor = ready.device.descriptor();
@@ -84,7 +83,7 @@ impl StudyRig<'_> {
         // may be made longer during a session, e.g. if it ran dry.
         let is_live = matches!(self.study.motion, Motion::Live);
         let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
-        let settings = ready.settings().iter().filter(|(name, _)| !is_unfelt(name));
+        let settings = ready.scene.settings.iter().filter(|(name, _)| !is_unfelt(name));
         Ok(DeviceUsed {
             adapter: descriptor.id.clone(),
             profile: self.device.profile.clone().unwrap_or_default(),
@@ -95,7 +94,7 @@ impl StudyRig<'_> {
     }
 
     /// Whether the device writes a file for each trial.
-    pub(super) fn plays_to_files(&self) -> Result<bool, Failure> {
+    pub(super) fn plays_to_files(&self) -> Result<bool> {
         let (first, model) = (&self.study.textures[0], &self.study.models[0]);
         let ready = self.load(&first.name(), model, "device")?;
         let settings = &ready.device.descriptor().settings;
@@ -103,7 +102,7 @@ impl StudyRig<'_> {
     }
 
     /// Refuses a trial that would be played through a link in the folder of answers.
-    fn check_file(&self, stimulus: &Stimulus) -> Result<(), Failure> {
+    fn check_file(&self, stimulus: &Stimulus) -> Result<()> {
         let Some(answers) = &self.answers else {
             return Ok(());
         };
@@ -113,7 +112,7 @@ impl StudyRig<'_> {
         Ok(())
     }
 
-    fn begin(&self, stimulus: &Stimulus) -> Result<(Ready, Option<f64>), Failure> {
+    fn begin(&self, stimulus: &Stimulus) -> Result<(Ready, Option<f64>)> {
         self.check_file(stimulus)?;
         let mut ready = self.load(&stimulus.texture, &stimulus.model, &stimulus.file)?;
         let scene = &mut ready.scene.file;
@@ -129,33 +128,12 @@ impl StudyRig<'_> {
         };
         Ok((ready, drive_v))
     }
-
-    /// Applies the newest motion. Returns false when the input has ended.
-    fn follow(&mut self, renderer: &mut Renderer) -> bool {
-        let Some(motions) = &mut self.motions else {
-            return true;
-        };
-        match motions.look() {
-            Moved::To(finger) => {
-                // After a failed reading, the last motion is held for a while and then becomes no
-                // contact. The next reading may be valid.
-                let _ = renderer.set_motion(finger);
-                true
-            }
-            Moved::Not => true,
-            Moved::Ended => false,
-        }
-    }
 }
 
 impl Rig for StudyRig<'_> {
     type Error = Failure;
 
-    fn play(
-        &mut self,
-        stimulus: &Stimulus,
-        ends: &mut dyn FnMut() -> bool,
-    ) -> Result<Played, Failure> {
+    fn play(&mut self, stimulus: &Stimulus, ends: &mut dyn FnMut() -> bool) -> Result<Playback> {
         // Taken out, because `play_with` borrows the whole rig.
         let mut felt = self.felt.take();
         self.playing = None;
@@ -206,19 +184,19 @@ impl StudyRig<'_> {
         mut felt: Option<&mut Felt>,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
-    ) -> Result<Played, Failure> {
+    ) -> Result<Playback> {
         let (ready, drive_v) = self.begin(stimulus)?;
         let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(of_file(&self.path))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.path))?;
         if ready.scene.file.motion == Motion::Live {
             // Without a reading yet, there is no contact.
-            renderer.set_motion(htex::Motion::AWAY).map_err(of_file(&self.path))?;
+            renderer.set_motion(htex::Motion::AWAY).map_err(for_file(&self.path))?;
         }
         let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
         if let Some((felt, name)) = recorded {
             let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
             // Before the device plays, so that the beginning of the trial is recorded.
-            felt.begin(name, seconds).map_err(StudyError::from)?;
+            felt.begin(name, seconds).map_err(LabError::felt)?;
         }
         let mut output = Output::open(&ready, &plan)?;
         if !self.is_fast && !ready.capabilities.paced {
@@ -231,7 +209,7 @@ impl StudyRig<'_> {
             let goes_on = output.step(&mut renderer)?;
             if let Some((_, meter)) = &mut self.playing {
                 // Also for the last block, which may be shorter.
-                meter.take(output.last_block());
+                meter.push(output.last_block());
             }
             if let Some(felt) = felt.as_deref().filter(|felt| felt.waits()) {
                 felt.sounds(output.lead_s());
@@ -240,7 +218,8 @@ impl StudyRig<'_> {
                 break;
             }
             if !stopped {
-                self.ended |= !self.follow(&mut renderer);
+                let motions = self.motions.as_mut();
+                self.ended |= motions.is_some_and(|motions| !motions.follow(&mut renderer));
                 left = self.ended || interrupted() || ends();
                 stopped = left || felt.as_deref().is_some_and(Felt::has_failed);
                 if stopped {
@@ -256,7 +235,7 @@ impl StudyRig<'_> {
             return Err(ran_dry(&ready).into());
         }
         let levels = self.playing.as_ref().map(|(_, meter)| meter.levels());
-        let mut played = Played {
+        let mut played = Playback {
             drive_v,
             output: levels.unwrap_or_default(),
             reference_rms: plan.reference_rms,

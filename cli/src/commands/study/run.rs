@@ -1,26 +1,26 @@
-use std::path::{Path, PathBuf};
+use std::fmt::{Display, Formatter};
+use std::path::PathBuf;
 
 use clap::Args;
 use htex_base::files::{AtFile, OwnFolder};
 use htex_base::finding::Severity;
+use htex_lab::LabError;
 use htex_lab::study::{
-    Clock, Ended, Felt, Header, Plan, Session, SimulatedParticipant, Study, StudyError,
-    check_files, run,
+    Clock, Felt, Header, Plan, Session, SessionEnd, SimulatedParticipant, Study, check_files, run,
 };
 use htex_scene::file::Motion;
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 use super::asker::AskingArgs;
 use super::clock::{FastClock, WallClock};
 use super::felt::FeltArgs;
 use super::rig::StudyRig;
-use super::{CANNOT_RUN, open};
-use crate::exit::Exit;
-use crate::failure::Failure;
-use crate::models::tool;
-use crate::output::{print, print_json, tell};
+use super::{cannot_run, open};
+use crate::failure::{Exit, Failure, Result};
+use crate::invocation::tool;
+use crate::output::{print, print_json, shown, tell};
 use crate::scenes::{ChoiceArgs, SceneArgs};
-use crate::shown::shown;
 use crate::signals;
 
 /// Run the session of a participant: play each trial on the device, ask, and keep each answer.
@@ -29,7 +29,7 @@ use crate::signals;
 /// session was left (q, Ctrl-C) or killed, the same command continues it. Answers to different
 /// versions of a study, its assets or its device are not mixed.
 #[derive(Args)]
-pub(super) struct Run {
+pub(crate) struct Run {
     /// The study: study.toml
     study: PathBuf,
 
@@ -67,7 +67,7 @@ pub(super) struct Run {
 }
 
 impl Run {
-    pub(super) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let study = open(&self.study)?;
         self.asking.check(&study, self.simulated.is_some())?;
         self.felt.check(&self.asking, self.simulated.is_some())?;
@@ -77,9 +77,14 @@ impl Run {
         signals::ask();
         let mut sessions = Vec::new();
         for participant in &participants {
-            let (ended, summary) = self.session(&study, &plan, participant)?;
-            sessions.push(summary);
-            if ended == Ended::Left {
+            let session = self.session(&study, &plan, participant)?;
+            if !self.json {
+                print(&session.to_string())?;
+            }
+            let is_done = session.done;
+            sessions.push(session);
+            if !is_done {
+                tell!("note: {participant} is not done; run the same command to go on");
                 break;
             }
         }
@@ -90,27 +95,23 @@ impl Run {
     }
 
     /// Refuses a study that would fail in the middle of a session.
-    fn check_files(&self, study: &Study) -> Result<(), Failure> {
+    fn check_files(&self, study: &Study) -> Result<()> {
         let mut findings = Vec::new();
         // Stands for the files of the trials, whose names are not known yet.
         let device = self.choice.to_override(Some(&self.output.join("trial.wav")), false)?;
         let loader = self.with.loader()?;
         check_files(study, &self.study, &loader.around(), &device, &mut findings);
         findings.retain(|finding| finding.severity == Severity::Error);
-        if findings.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::Findings { cannot: CANNOT_RUN, file: shown(&self.study), findings })
-        }
+        if findings.is_empty() { Ok(()) } else { Err(cannot_run(&self.study, findings)) }
     }
 
-    fn participants(&self, plan: &Plan) -> Result<Vec<String>, Failure> {
+    fn participants(&self, plan: &Plan) -> Result<Vec<String>> {
         let names = plan.participants.iter().map(|p| p.participant.clone());
         let names: Vec<String> = names.collect();
         match &self.participant {
             None => Ok(names),
             Some(name) if names.contains(name) => Ok(vec![name.clone()]),
-            Some(name) => Err(StudyError::NoParticipant {
+            Some(name) => Err(LabError::NoParticipant {
                 name: name.clone(),
                 known: match &names[..] {
                     [first, .., last] if names.len() > 20 => format!("{first} to {last}"),
@@ -121,40 +122,44 @@ impl Run {
         }
     }
 
-    fn session(
-        &self,
-        study: &Study,
-        plan: &Plan,
-        participant: &str,
-    ) -> Result<(Ended, Value), Failure> {
+    fn session(&self, study: &Study, plan: &Plan, participant: &str) -> Result<SessionReport> {
         let mut rig = self.rig(study, participant)?;
         let simulated = self.simulated.map(|seed| SimulatedParticipant::new(seed, participant));
-        let Some(own) = plan.of(participant) else {
-            return Err(Failure::Other(format!("{participant} has no plan")));
+        let Some(own) = plan.participant(participant) else {
+            return Err(Failure::other(format_args!("{participant} has no plan")));
         };
         rig.felt =
             self.felt.open(study, &self.output, participant, &self.with.devices, self.fast)?;
         let device = rig.device_used()?;
         let mut clock: Box<dyn Clock> =
             if self.fast { Box::new(FastClock::default()) } else { Box::new(WallClock::new()) };
-        let header = Header::new(study, &self.study, own, device, tool())?
-            .with_begun(clock.date())
-            .with_source(rig.felt.as_ref().and_then(Felt::used))
-            .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
+        let header = Header {
+            begun: clock.date(),
+            source: rig.felt.as_ref().and_then(Felt::used),
+            simulated: simulated.as_ref().map(SimulatedParticipant::header),
+            ..Header::new(study, &self.study, own, device, tool())?
+        };
         let mut session = Session::open(study, own, &self.output, &header)?;
         // The page is opened only once the session is known to be the right one.
         let mut asking = match self.simulated {
-            Some(_) => self.asking.of_nobody(),
+            Some(_) => self.asking.nobody(),
             None => self.asking.open(study, participant)?,
         };
         rig.motions = asking.motions.take();
         let ended =
             run(&mut session, &mut rig, &mut *asking.asker, &mut *clock, simulated.as_ref())?;
-        let summary = self.told(&session, ended)?;
-        Ok((ended, summary))
+        let (trials, all) = session.trials();
+        Ok(SessionReport {
+            done: ended == SessionEnd::Done,
+            file: shown(session.file()),
+            of: all,
+            participant: participant.to_owned(),
+            simulated: session.is_simulated(),
+            trials,
+        })
     }
 
-    fn rig<'a>(&self, study: &'a Study, participant: &str) -> Result<StudyRig<'a>, Failure> {
+    fn rig<'a>(&self, study: &'a Study, participant: &str) -> Result<StudyRig<'a>> {
         let mut device = self.choice.to_override(None, false)?;
         device.live = study.motion == Motion::Live;
         let asked = study.device.settings.get("format").and_then(Value::as_str);
@@ -185,27 +190,23 @@ impl Run {
         }
         Ok(rig)
     }
+}
 
-    /// Prints how a session ended.
-    fn told(&self, session: &Session<'_>, ended: Ended) -> Result<Value, Failure> {
-        let (done, all) = session.trials();
-        let name = session.participant();
-        let file = shown(session.file());
-        let simulated = session.is_simulated();
-        if !self.json {
-            let who = if simulated { " (simulated)" } else { "" };
-            print(&format!("{name}{who}: {done} of {all} trials, {file}\n"))?;
-        }
-        if ended == Ended::Left {
-            tell!("note: {name} is not done; run the same command to go on");
-        }
-        Ok(json!({
-            "participant": name,
-            "simulated": simulated,
-            "trials": done,
-            "of": all,
-            "done": ended == Ended::Done,
-            "file": shown(Path::new(&file)),
-        }))
+/// How a session ended.
+#[derive(Serialize)]
+struct SessionReport {
+    done: bool,
+    file: String,
+    of: usize,
+    participant: String,
+    simulated: bool,
+    trials: usize,
+}
+
+impl Display for SessionReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { file, of, participant, trials, .. } = self;
+        let who = if self.simulated { " (simulated)" } else { "" };
+        writeln!(f, "{participant}{who}: {trials} of {of} trials, {file}")
     }
 }

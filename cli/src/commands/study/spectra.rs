@@ -9,7 +9,7 @@ use htex_lab::study::{FeltSpectra, OffTarget, Reference, felt_spectra};
 
 use super::felt::target;
 use super::open;
-use crate::failure::Failure;
+use crate::failure::{Failure, Result};
 use crate::located;
 use crate::recordings::RecordingArgs;
 
@@ -48,11 +48,11 @@ pub(super) struct SpectraArgs {
 
 impl SpectraArgs {
     /// Returns the table and its file, if one is asked for.
-    pub(super) fn table(&self, folder: &Path) -> Result<Option<(&Path, FeltSpectra)>, Failure> {
+    pub(super) fn table(&self, folder: &Path) -> Result<Option<(&Path, FeltSpectra)>> {
         if self.recorded.is_empty() && self.reading.is_given() {
-            let sentence =
-                "the options of reading recordings are about those of --recorded; give one, too";
-            return Err(Failure::Usage(sentence.to_owned()));
+            return Err(Failure::usage(
+                "the options of reading recordings are about those of --recorded; give one, too",
+            ));
         }
         let Some(file) = &self.spectra else {
             return Ok(None);
@@ -61,14 +61,15 @@ impl SpectraArgs {
         let felt =
             ReadingSettings { response: self.felt_frf.clone(), ..ReadingSettings::default() };
         let felt = felt.spectrum_options()?;
-        let mut recorded = self.of_assets()?;
+        let mut recorded = self.asset_spectra()?;
         for text in &self.recorded {
             let (texture, file) = text.split_once('=').ok_or_else(|| {
                 Failure::Usage(format!("--recorded {text}: it looks like TEXTURE=FILE"))
             })?;
             let file = Path::new(file);
             let take = self.reading.read_among(file)?;
-            let reference = Reference::of_recording(&take, file, &options, self.reading.strict())?;
+            let reference =
+                Reference::from_recording(&take, file, &options, self.reading.strict())?;
             recorded.insert(texture.to_owned(), reference);
         }
         let spectra = felt_spectra(folder, &recorded, &felt, self.off_target)?;
@@ -76,7 +77,7 @@ impl SpectraArgs {
     }
 
     /// Returns the spectra in the study's assets, for textures whose recording was not given.
-    fn of_assets(&self) -> Result<BTreeMap<String, Reference>, Failure> {
+    fn asset_spectra(&self) -> Result<BTreeMap<String, Reference>> {
         let Some(path) = &self.study else {
             return Ok(BTreeMap::new());
         };
@@ -90,7 +91,8 @@ impl SpectraArgs {
         for texture in &study.textures {
             let name = texture.name();
             if !is_given(&name) {
-                let reference = Reference::of_asset(&folder.join(&texture.asset), target(&study))?;
+                let reference =
+                    Reference::from_asset(&folder.join(&texture.asset), target(&study))?;
                 recorded.insert(name, reference);
             }
         }

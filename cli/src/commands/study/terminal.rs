@@ -7,7 +7,8 @@ use std::time::Instant;
 use htex_lab::study::{Asker, GainKey, GainMethod, Key, View};
 
 #[cfg(unix)]
-use super::keys::{Keys, meaning};
+use super::keys::Keys;
+use crate::failure::Result;
 use crate::output::tell;
 
 /// Asks on standard error and reads answers from standard input.
@@ -81,7 +82,7 @@ impl Asker for Terminal {
             #[cfg(unix)]
             Input::Keys(keys) => {
                 let press = keys.next(&self.view)?;
-                let key = meaning(press, &self.view);
+                let key = press.line(&self.view).and_then(|line| key(&line, &self.view));
                 if key.is_none() && !matches!(self.view, View::Playing { .. }) {
                     self.refuse(&press.name());
                 }

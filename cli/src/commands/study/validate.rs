@@ -5,17 +5,16 @@ use htex_base::files::AtFile;
 use htex_base::finding::{Findings, Report};
 use htex_lab::study::{check_files, read_study};
 
-use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::commands::validate::show_reports;
+use crate::failure::Result;
 use crate::scenes::{ChoiceArgs, SceneArgs};
-use crate::validation::report;
 
 /// Check a study, the assets that it names, and its device; exit status 1 if it cannot be run.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
 /// study.
 #[derive(Args)]
-pub(super) struct Validate {
+pub(crate) struct Validate {
     /// The study: study.toml
     study: PathBuf,
 
@@ -31,12 +30,15 @@ pub(super) struct Validate {
 }
 
 impl Validate {
-    pub(super) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(self) -> Result {
         let checked = self.check(&self.study);
-        report(std::iter::once(checked.map(|report| (self.study.as_path(), report))), self.json)
+        show_reports(
+            std::iter::once(checked.map(|report| (self.study.as_path(), report))),
+            self.json,
+        )
     }
 
-    fn check(&self, path: &Path) -> Result<Report, Failure> {
+    fn check(&self, path: &Path) -> Result<Report> {
         let bytes = std::fs::read(path).reading(path)?;
         let mut findings = Findings::default();
         let study = read_study(&bytes, &mut findings);

@@ -175,9 +175,10 @@ impl Uri {
             );
         }
         if authority.is_empty() {
-            return Err(match is_url {
-                true => "the host is missing, as in https://HOST/PATH",
-                false => "the bucket is missing, as in s3://BUCKET/KEY",
+            return Err(if is_url {
+                "the host is missing, as in https://HOST/PATH"
+            } else {
+                "the bucket is missing, as in s3://BUCKET/KEY"
             });
         }
         let is_bucket = |c: char| c.is_ascii_alphanumeric() || "-_.$".contains(c);

@@ -93,7 +93,7 @@ impl Case {
             if given.contains_key(name) || fixed.is_some_and(|p| p.settings.contains_key(name)) {
                 continue;
             }
-            let missing = || Finding::skipped(format!("give `setting {name}=…`"));
+            let missing = || Finding::skipped(format!("give `--set {name}=…`"));
             given.insert(name.clone(), self.value(setting).ok_or_else(missing)?);
         }
         Ok(Settings::resolve(descriptor, profile, &given)?)

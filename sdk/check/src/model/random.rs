@@ -26,10 +26,11 @@ impl Random {
     pub(crate) fn within(&mut self, min: f64, max: f64) -> f64 {
         let part = self.unit();
         let is_wide = min > 0.0 && max / min > 100.0;
-        let x = match is_wide {
-            true => min * (part * (max / min).ln()).exp(),
+        let x = if is_wide {
+            min * (part * (max / min).ln()).exp()
+        } else {
             // `max - min` would be shorter, but may be infinite.
-            false => min * (1.0 - part) + max * part,
+            min * (1.0 - part) + max * part
         };
         // Rounding may lead slightly beyond the ends.
         x.clamp(min, max)

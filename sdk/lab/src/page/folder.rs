@@ -18,7 +18,7 @@
 //! ahead of time (`dns-prefetch`), and WebRTC.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -28,9 +28,9 @@ use hyper::body::{Bytes, Incoming};
 use hyper::header::HeaderValue;
 use hyper::{Method, Request, Response, StatusCode};
 
-use super::PageError;
 use super::gate::{Refusal, check_origin, host};
-use super::server::{Answers, Server, hexadecimal, listen};
+use super::server::{Answers, Server, hexadecimal, listen, page_error};
+use crate::error::LabError;
 
 /// Limits of a folder: the number of files, the size of one file, and how deep folders may be
 /// nested.
@@ -67,16 +67,6 @@ const HEADERS: [(&str, &str); 5] = [
     ),
 ];
 
-/// Why a folder cannot be served.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FolderError {
-    #[error(transparent)]
-    Page(#[from] PageError),
-    #[error("{}: {problem}", path.display())]
-    Folder { path: PathBuf, problem: String },
-}
-
 /// A folder that is served as long as this value lives.
 pub struct ServedFolder {
     url: String,
@@ -90,20 +80,20 @@ impl ServedFolder {
     /// # Errors
     /// If the folder has no `index.html`, a file is a link, cannot be read or is too large, or the
     /// port is taken.
-    pub fn open(folder: &Path, port: u16, key: &Key) -> Result<Self, FolderError> {
+    pub fn open(folder: &Path, port: u16, key: &Key) -> Result<Self, LabError> {
         let mut files = BTreeMap::new();
         read(&OwnFolder::new(folder), "", 0, &mut files)?;
         if !files.contains_key(INDEX) {
             return Err(wrong(folder, format!("there is no {INDEX}")));
         }
-        let failed = |error: std::io::Error| PageError { port, problem: error.to_string() };
-        let (listener, port) = listen(port).map_err(failed)?;
-        let mut files = files.into_iter().map(begun).collect::<BTreeMap<_, _>>();
+        let (listener, own_port) = listen(port).map_err(|error| page_error(port, error))?;
+        let mut files = files.into_iter().map(kept_at_home).collect::<BTreeMap<_, _>>();
         files.insert(STAY_NAME.to_owned(), Bytes::from_static(STAY.as_bytes()));
-        let host = host(&name(folder, key), port);
+        let host = host(&name(folder, key), own_port);
         let url = format!("http://{host}/");
         let shelf = Files { host, files };
-        let server = Server::start(listener, Arc::new(shelf)).map_err(failed)?;
+        let server = Server::start(listener, Arc::new(shelf));
+        let server = server.map_err(|error| page_error(port, error))?;
         Ok(Self { url, _server: server })
     }
 
@@ -114,7 +104,7 @@ impl ServedFolder {
 }
 
 /// Returns a file as it is served. A page starts with the script that keeps it at its address.
-fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
+fn kept_at_home((name, bytes): (String, Bytes)) -> (String, Bytes) {
     if kind_of(&name) != HTML {
         return (name, bytes);
     }
@@ -134,8 +124,8 @@ fn name(folder: &Path, key: &Key) -> String {
     hexadecimal(&tag[..16])
 }
 
-fn wrong(path: &Path, problem: impl ToString) -> FolderError {
-    FolderError::Folder { path: path.to_owned(), problem: problem.to_string() }
+fn wrong(path: &Path, problem: impl ToString) -> LabError {
+    LabError::Folder { path: path.to_owned(), problem: problem.to_string() }
 }
 
 /// Reads the files of a folder and its subfolders, by their paths in an address.
@@ -144,7 +134,7 @@ fn read(
     below: &str,
     depth: usize,
     files: &mut BTreeMap<String, Bytes>,
-) -> Result<(), FolderError> {
+) -> Result<(), LabError> {
     let folder = own.entry_path(below.as_ref()).map_err(|error| wrong(own.path(), error))?;
     let failed = |error: std::io::Error| wrong(&folder, error);
     for entry in std::fs::read_dir(&folder).map_err(failed)? {

@@ -20,7 +20,7 @@ pub(super) struct Gate {
 
 /// What a request asks for.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Asked {
+pub(super) enum PageRequest {
     /// The page itself.
     Page,
     /// A named request.
@@ -50,16 +50,16 @@ impl Gate {
     }
 
     /// Decides by the head of a request, before its body is read.
-    pub(super) fn admit(&self, head: &Parts, requests: &[&str]) -> Result<Asked, Refusal> {
+    pub(super) fn admit(&self, head: &Parts, requests: &[&str]) -> Result<PageRequest, Refusal> {
         check_origin(head, &self.hosts)?;
         let Some(path) = head.uri.path().strip_prefix(&self.root) else {
             let why = "the address is not complete; open the one that htex printed";
             return Err((StatusCode::NOT_FOUND, why));
         };
         match (&head.method, path) {
-            (&Method::GET, "") => Ok(Asked::Page),
+            (&Method::GET, "") => Ok(PageRequest::Page),
             (&Method::POST, path) if requests.contains(&path) => {
-                Ok(Asked::Request(path.to_owned()))
+                Ok(PageRequest::Request(path.to_owned()))
             }
             _ => Err((StatusCode::NOT_FOUND, "there is no such page")),
         }

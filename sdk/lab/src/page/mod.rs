@@ -11,17 +11,8 @@ mod server;
 
 use serde_json::Value;
 
-pub use folder::{FolderError, ServedFolder};
+pub use folder::ServedFolder;
 pub(crate) use server::LocalPage;
-
-/// Why a page cannot be served.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot serve the page at 127.0.0.1:{port}: {problem}")]
-pub struct PageError {
-    /// The port; 0 if any free port was requested.
-    pub port: u16,
-    pub problem: String,
-}
 
 /// What a page shows and which requests it takes. The server's thread calls both functions.
 pub(crate) trait Content: Send + Sync + 'static {
@@ -31,7 +22,7 @@ pub(crate) trait Content: Send + Sync + 'static {
     const REQUESTS: &'static [&'static str];
 
     /// Handles a request from the tab that owns the page, or `stop` from any tab.
-    fn take(&self, request: &str, body: &Value);
+    fn handle(&self, request: &str, body: &Value);
 
     /// Returns the reply to each request of the owner.
     fn state(&self) -> Value;

@@ -30,8 +30,9 @@ use tokio::sync::oneshot;
 use tokio::task::AbortHandle;
 use tokio::time::{sleep, timeout};
 
-use super::gate::{Asked, Gate, Owner, Refusal};
-use crate::page::{Content, PageError};
+use super::gate::{Gate, Owner, PageRequest, Refusal};
+use crate::error::LabError;
+use crate::page::Content;
 
 /// Largest number of open connections.
 const MOST_CONNECTIONS: usize = 64;
@@ -111,26 +112,23 @@ impl LocalPage {
     ///
     /// # Errors
     /// If the port is taken or there are no random numbers.
-    pub(crate) fn open<C: Content>(port: u16, content: Arc<C>) -> Result<Self, PageError> {
-        let failed = |problem: String| PageError { port, problem };
-        let is_chosen = port != 0;
-        let listener = listen(port).map_err(|error| failed(error.to_string()))?;
-        let port = listener.1;
+    pub(crate) fn open<C: Content>(port: u16, content: Arc<C>) -> Result<Self, LabError> {
+        let (listener, own_port) = listen(port).map_err(|error| page_error(port, error))?;
         let mut random = [[0u8; 16]; 2];
         for bytes in &mut random {
-            getrandom::fill(bytes).map_err(|e| failed(e.to_string()))?;
+            getrandom::fill(bytes).map_err(|error| page_error(port, error))?;
         }
         let [token, name] = random.map(|bytes| hexadecimal(&bytes));
         let owner = Arc::new(Owner::default());
         let desk = Desk {
-            gate: Gate::new(&token, &name, port, is_chosen),
+            gate: Gate::new(&token, &name, own_port, port != 0),
             owner: Arc::clone(&owner),
             content,
             requests: [&[STATE, LEAVE, STOP], C::REQUESTS].concat(),
         };
         let urls = desk.gate.urls();
-        let started = Server::start(listener.0, Arc::new(desk));
-        Ok(Self { owner, urls, _server: started.map_err(|error| failed(error.to_string()))? })
+        let server = Server::start(listener, Arc::new(desk));
+        Ok(Self { owner, urls, _server: server.map_err(|error| page_error(port, error))? })
     }
 
     /// Returns the text that tells the user which address to open.
@@ -150,6 +148,11 @@ impl LocalPage {
             std::thread::sleep(Duration::from_millis(20));
         }
     }
+}
+
+/// Returns the error for a page that cannot be served at the requested port.
+pub(super) fn page_error(port: u16, error: impl ToString) -> LabError {
+    LabError::Page { port, problem: error.to_string() }
 }
 
 pub(super) fn hexadecimal(bytes: &[u8]) -> String {
@@ -252,13 +255,15 @@ impl<C: Content> Answers for Desk<C> {
         let asked = self.gate.admit(&head, &self.requests)?;
         is_known.store(true, Ordering::Relaxed);
         let name = match asked {
-            Asked::Page => return Ok(reply(StatusCode::OK, "text/html; charset=utf-8", C::HTML)),
-            Asked::Request(name) => name,
+            PageRequest::Page => {
+                return Ok(reply(StatusCode::OK, "text/html; charset=utf-8", C::HTML));
+            }
+            PageRequest::Request(name) => name,
         };
         let body = read(body).await?;
         // Anyone who has the address may stop the session, whichever tab owns the page.
         if name == STOP {
-            self.content.take(STOP, &body);
+            self.content.handle(STOP, &body);
         }
         let tab = body.get("tab").and_then(Value::as_str).unwrap_or_default();
         if !self.owner.admits(tab) {
@@ -267,7 +272,7 @@ impl<C: Content> Answers for Desk<C> {
         match &name[..] {
             LEAVE => self.owner.leave(),
             STATE | STOP => {}
-            name => self.content.take(name, &body),
+            name => self.content.handle(name, &body),
         }
         let state = self.content.state().to_string();
         Ok(reply(StatusCode::OK, "application/json", state))

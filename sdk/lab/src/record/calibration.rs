@@ -5,10 +5,10 @@ use std::path::Path;
 use htex_base::files::ContentError;
 use serde::Deserialize;
 
-use crate::record::error::RecordError;
+use crate::error::LabError;
 
 /// Axes of a six-axis sensor.
-pub const AXES: usize = 6;
+pub(crate) const AXES: usize = 6;
 /// Names and units of the axes.
 const NAMES: [(&str, &str); AXES] =
     [("fx", "N"), ("fy", "N"), ("fz", "N"), ("tx", "N m"), ("ty", "N m"), ("tz", "N m")];
@@ -24,7 +24,7 @@ const MOST_BYTES: u64 = 1 << 16;
 /// let text = "2,0,0,0,0,0\n0,2,0,0,0,0\n0,0,-3,0,0,0\n0,0,0,1,0,0\n0,0,0,0,1,0\n0,0,0,0,0,1\n";
 /// let calibration = Calibration::parse(Path::new("nano17.csv"), text)?;
 /// assert_eq!(calibration.forces([1.0, 0.5, -0.1, 0.0, 0.0, 0.0])[..3], [2.0, 1.0, 0.30000000000000004]);
-/// # Ok::<(), htex_lab::record::RecordError>(())
+/// # Ok::<(), htex_lab::LabError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
@@ -42,20 +42,20 @@ impl Calibration {
     /// with `matrix = [[…], …]`.
     ///
     /// # Errors
-    /// [`RecordError::Content`] if the file cannot be read, or does not hold a matrix of full rank.
-    pub fn read(path: &Path) -> Result<Self, RecordError> {
-        in_calibration(path, text_of(path).and_then(|text| Self::of(path, &text)))
+    /// [`LabError::Content`] if the file cannot be read, or does not hold a matrix of full rank.
+    pub fn read(path: &Path) -> Result<Self, LabError> {
+        in_calibration(path, text_of(path).and_then(|text| Self::from_text(path, &text)))
     }
 
     /// Parses a text. `path` gives the format by its extension, and the name used in messages.
     ///
     /// # Errors
     /// The errors of [`Self::read`].
-    pub fn parse(path: &Path, text: &str) -> Result<Self, RecordError> {
-        in_calibration(path, Self::of(path, text))
+    pub fn parse(path: &Path, text: &str) -> Result<Self, LabError> {
+        in_calibration(path, Self::from_text(path, text))
     }
 
-    fn of(path: &Path, text: &str) -> Result<Self, Problem> {
+    fn from_text(path: &Path, text: &str) -> Result<Self, Problem> {
         let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let matrix = if is_toml {
             htex_base::files::toml::from_str::<File>(text)?.matrix
@@ -155,7 +155,7 @@ fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
 type Problem = Box<dyn std::error::Error>;
 
 /// Adds the file and what a calibration looks like to an error.
-fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, RecordError> {
+fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, LabError> {
     let advice = "a calibration is six rows of six numbers, N and N m for a volt of each channel";
     let result = result.map_err(|problem| format!("{problem}; {advice}"));
     Ok(result.map_err(ContentError::in_file(path))?)

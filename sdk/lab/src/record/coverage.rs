@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-9;
 /// What a take must have to be accepted, in addition to keeping to its target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
-pub struct Required {
+pub struct Requirements {
     /// Smallest share of the take in which the finger slides on its target, 0 to 1
     /// ([`Coverage::on_target`]). 0 requires nothing.
     #[schemars(range(min = 0, max = 1))]
@@ -34,7 +34,7 @@ pub struct Required {
     pub sweeps: u32,
 }
 
-impl Required {
+impl Requirements {
     /// No requirements.
     pub const NOTHING: Self = Self { on_target: 0.0, sweeps: 0 };
     /// Required share unless another one is given. It separates simulated takes of 10 s over 83 mm,
@@ -104,7 +104,7 @@ pub struct Coverage {
 
 impl Coverage {
     /// Measures a recording. The targets are for speed (mm/s) and force (N).
-    pub(crate) fn of(
+    pub(crate) fn measure(
         recording: &Recording,
         segments: &Segments,
         [speed, force]: [Option<Target>; 2],
@@ -128,7 +128,7 @@ impl Coverage {
     }
 
     /// Returns what the take lacks, as phrases.
-    pub(crate) fn lacks(&self, required: Required) -> Vec<String> {
+    pub(crate) fn lacks(&self, required: Requirements) -> Vec<String> {
         let share = (self.on_target < required.on_target).then(|| self.share_lacking(required));
         let sweeps = (self.sweeps < required.sweeps as usize).then(|| {
             format!("complete sweeps: {}, at least {} asked for", self.sweeps, required.sweeps)
@@ -136,7 +136,7 @@ impl Coverage {
         share.into_iter().chain(sweeps).collect()
     }
 
-    fn share_lacking(&self, required: Required) -> String {
+    fn share_lacking(&self, required: Requirements) -> String {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let mut parts = vec![format!("it slides in {}", percent(self.sliding))];
         let known = [("speed", self.speed), ("force", self.force)];

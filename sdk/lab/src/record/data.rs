@@ -1,15 +1,13 @@
 //! The data of a take, on disk and in memory.
 
-use htex_author::recording::MAX_RATE_HZ;
-use htex_author::recording::Role;
+use htex_author::recording::{MAX_RATE_HZ, Role};
 use htex_format::Quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::record::coverage::Required;
-use crate::record::format::Format;
-use crate::record::names;
+use crate::record::coverage::Requirements;
+use crate::record::files::{self, Format};
 use crate::record::setup::LONGEST_S;
 
 /// Roles that are axes of the texture's signal.
@@ -25,7 +23,7 @@ pub struct TakeHeader {
     #[schemars(extend("const" = 1))]
     pub htex_take: u32,
     /// Name that all takes of the session share.
-    #[schemars(regex(pattern = names::PATTERN))]
+    #[schemars(regex(pattern = files::NAME_PATTERN))]
     pub name: String,
     /// Number of the take, from 1.
     #[schemars(range(min = 1))]
@@ -61,7 +59,7 @@ pub struct TakeHeader {
     /// Allowed relative difference from the target.
     pub tolerance: f64,
     /// What the take must have to be accepted.
-    pub required: Required,
+    pub required: Requirements,
     /// Format of the recording: see [`Format`].
     pub format: Format,
 }
@@ -205,7 +203,7 @@ impl TakeHeader {
         let is_whole = self.rate_hz.fract() == 0.0 && self.rate_hz <= f64::from(u32::MAX);
         let checks = [
             (self.number >= 1, "its number is 0; takes count from 1"),
-            (names::check(&self.name).is_ok(), "its name is no name of a take"),
+            (files::check_name(&self.name).is_ok(), "its name is no name of a take"),
             (self.rate_hz > 0.0 && self.rate_hz <= MAX_RATE_HZ, "its sample rate is out of range"),
             (self.seconds > 0.0 && self.seconds <= LONGEST_S, "its length is out of range"),
             (

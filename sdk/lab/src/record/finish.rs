@@ -5,16 +5,15 @@ use std::path::{Path, PathBuf};
 use htex_base::files::{AtFile, ContentError, OwnFolder};
 use serde::Serialize;
 
-use crate::record::error::RecordError;
-use crate::record::format::Outcome;
+use crate::error::LabError;
+use crate::record::files::{self, Outcome};
 use crate::record::judge::{Verdict, judge};
-use crate::record::names;
 use crate::record::part::read_part;
 use crate::record::write::write_take;
 
 /// A take that was completed or recovered.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Recorded {
+pub struct TakeReport {
     pub file: PathBuf,
     pub outcome: Outcome,
     /// Number of the take.
@@ -26,18 +25,18 @@ pub struct Recorded {
 }
 
 /// Creates the error for a take that was cut short, with the file that holds its beginning.
-pub(crate) fn with_kept(error: RecordError, kept: Option<Recorded>) -> RecordError {
+pub(crate) fn with_kept(error: LabError, kept: Option<TakeReport>) -> LabError {
     let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
     let kept = kept.map(|kept| kept.file);
     match error {
-        RecordError::Ended { seconds, .. } => RecordError::Ended { after_s, seconds, kept },
-        RecordError::Left { .. } => RecordError::Left { kept },
-        error => RecordError::Interrupted { error: Box::new(error), kept },
+        LabError::Ended { seconds, .. } => LabError::Ended { after_s, seconds, kept },
+        LabError::Left { .. } => LabError::Left { kept },
+        error => LabError::Interrupted { error: Box::new(error), kept },
     }
 }
 
 /// Writes the recording of a part file and removes the part file; `None` if nothing was recorded.
-pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, RecordError> {
+pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<TakeReport>, LabError> {
     let data = read_part(path)?.filter(|data| data.frames() > 0);
     let recorded = match data {
         None => None,
@@ -49,7 +48,7 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
                 (true, true) => Outcome::Kept,
             };
             let written = write_take(folder, &data, outcome, &verdict)?;
-            Some(Recorded {
+            Some(TakeReport {
                 file: written.recording,
                 outcome,
                 number: data.header.number,
@@ -71,12 +70,12 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
 ///
 /// # Errors
 /// If the header of a part file is damaged, or a recording cannot be written.
-pub fn recover(folder: &Path) -> Result<Vec<Recorded>, RecordError> {
-    let parts = names::parts(folder).map_err(ContentError::in_file(folder))?;
+pub fn recover(folder: &Path) -> Result<Vec<TakeReport>, LabError> {
+    let parts = files::part_files(folder).map_err(ContentError::in_file(folder))?;
     let mut recovered = Vec::new();
     for path in &parts {
         match finish(folder, path) {
-            Err(RecordError::Busy { .. }) => {}
+            Err(LabError::Busy { .. }) => {}
             take => recovered.extend(take?),
         }
     }

@@ -121,8 +121,7 @@ impl Guidance {
     }
 
     /// Returns the range of forces within the tolerance, newtons.
-    #[must_use]
-    pub fn force_range_n(&self) -> Option<[f64; 2]> {
+    pub(crate) fn force_range_n(&self) -> Option<[f64; 2]> {
         let target_n = self.force_n?;
         let range_n = self.tolerance * target_n;
         Some([target_n - range_n, target_n + range_n])

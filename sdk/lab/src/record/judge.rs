@@ -17,7 +17,7 @@ const GAP_S: f64 = 0.2;
 
 /// A quantity measured over the sweeps of a take.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
+pub struct MeanRange {
     /// Mean over all segments.
     pub mean: f64,
     /// Lowest mean over 50 ms.
@@ -34,9 +34,9 @@ pub struct Verdict {
     /// What it did wrong, as phrases.
     pub reasons: Vec<String>,
     /// Scanning speed, mm/s.
-    pub speed_mm_s: Option<Measured>,
+    pub speed_mm_s: Option<MeanRange>,
     /// Normal force, newtons.
-    pub force_n: Option<Measured>,
+    pub force_n: Option<MeanRange>,
     /// How much of it is usable. Absent if no texture can be read from it.
     pub coverage: Option<Coverage>,
     /// Number of 0.2 s segments from which a texture would be read.
@@ -51,7 +51,7 @@ pub struct Verdict {
 ///
 /// Minimum and maximum are taken from means over 50 ms, as in [`htex_author::Spread`]: faster
 /// changes belong to the texture. Between sweeps the finger turns, so only the middles count. The
-/// take must also meet the requirements in its header ([`crate::record::Required`]).
+/// take must also meet the requirements in its header ([`crate::record::Requirements`]).
 #[must_use]
 pub fn judge(data: &TakeData) -> Verdict {
     let header = &data.header;
@@ -74,7 +74,7 @@ pub fn judge(data: &TakeData) -> Verdict {
                 };
                 verdict.reasons.extend(reason);
             }
-            let coverage = Coverage::of(&recording, &reading.part.segments, [speed, force]);
+            let coverage = Coverage::measure(&recording, &reading.part.segments, [speed, force]);
             verdict.reasons.extend(coverage.lacks(header.required));
             verdict.coverage = Some(coverage);
             if header.target_speed_mm_s.is_some() {
@@ -110,12 +110,12 @@ fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
 
 /// Converts the take to a recording. Uses the tracker's speed if there is a tracker.
 fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
-    let of = |role: &str| data.header.signal(role).map(|at| data.signals[at].clone());
+    let signal = |role: &str| data.header.signal(role).map(|at| data.signals[at].clone());
     let axes =
         texture_axes(&data.header.signals).iter().map(|at| data.signals[*at].clone()).collect();
     let (name, rate_hz) = (data.header.name.as_str(), data.header.rate_hz);
     let mut recording = Recording::of(data.header.quantity, name, rate_hz, axes)?;
-    if let Some(normal) = of("normal") {
+    if let Some(normal) = signal("normal") {
         recording = recording.with_normal(normal)?;
     }
     match speed(data) {
@@ -132,12 +132,12 @@ fn speed(data: &TakeData) -> Option<Vec<f64>> {
         let at = data.header.tracker.iter().position(|(own, _)| own == role)?;
         Some(&data.tracker[at + 1][..])
     };
-    let of = |role: &str| data.header.signal(role).map(|at| &data.signals[at][..]);
+    let own = |role: &str| data.header.signal(role).map(|at| &data.signals[at][..]);
     let (time_s, speed, position) = match data.tracker.first() {
         // A speed needs two rows.
         Some(time_s) if time_s.len() < 2 => return None,
         Some(time_s) => (time_s, tracked("speed"), [tracked("x"), tracked("y")]),
-        None => (&at_s, of("speed"), [of("x"), of("y")]),
+        None => (&at_s, own("speed"), [own("x"), own("y")]),
     };
     if let Some(speed) = speed {
         return Some(at_s.iter().map(|t| interpolated(time_s, speed, *t).abs()).collect());
@@ -181,7 +181,7 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
     let measured = |range: Option<[f64; 2]>, values: Option<&Vec<f64>>| {
         let ([min, max], values) = (range?, values?);
         let mean = mean(values);
-        Some(Measured { mean, min, max })
+        Some(MeanRange { mean, min, max })
     };
     verdict.speed_mm_s = measured(reading.spread.speed_mm_s, recording.speed_mm_s.as_ref());
     verdict.force_n = measured(reading.spread.force_n, recording.normal_n.as_ref());
@@ -191,8 +191,8 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
 }
 
 /// Returns what differs from a target by more than the tolerance, if anything does.
-fn differs(what: &str, unit: &str, target: Target, measured: Measured) -> Option<String> {
-    let Measured { mean, min, max } = measured;
+fn differs(what: &str, unit: &str, target: Target, measured: MeanRange) -> Option<String> {
+    let MeanRange { mean, min, max } = measured;
     let values = [("mean", mean), ("minimum", min), ("maximum", max)];
     let wrong = values.iter().filter(|(_, value)| !target.is_met(*value));
     let wrong: Vec<String> = wrong.map(|(name, value)| format!("{name} {value:.4}")).collect();

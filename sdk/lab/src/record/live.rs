@@ -89,14 +89,13 @@ impl LiveSignal {
         let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
         let segments = segment_spectra(&recording, &options).ok()?;
         let texture = TextureSpectrum::average(&[segments], Averaging::Rms).ok()?;
-        Some(LiveSpectrum::of(&texture))
+        Some(LiveSpectrum::from_texture(&texture))
     }
 }
 
 impl LiveSpectrum {
     /// Converts a texture's spectrum to decibels.
-    #[must_use]
-    pub fn of(texture: &TextureSpectrum) -> Self {
+    pub(crate) fn from_texture(texture: &TextureSpectrum) -> Self {
         let bank = BandBank::new(BAND_COUNT, texture.band, &texture.frequency_hz);
         let energies = bank.energies(&texture.magnitude);
         let rms = energies.iter().map(|energy| (SQUARED_RMS * energy).sqrt());

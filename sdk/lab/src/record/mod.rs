@@ -6,7 +6,7 @@
 //! recording. A complete take is judged ([`judge`]). It is set aside and recorded again if the
 //! mean, minimum or maximum of speed or force differs from its target by more than the tolerance
 //! (10 % in the paper, Supplementary, "Texture recording"). The same happens if the finger slides
-//! on target for too short a time, or if there are too few sweeps ([`Required`]). The results are
+//! on target for too short a time, or if there are too few sweeps ([`Requirements`]). The results are
 //! files that `htex fit` reads, with JSON next to them.
 //!
 //! From a finger to a recording:
@@ -24,48 +24,42 @@
 //!    holds the newest 0.4 s. The terminal draws each moment. A page only stores it, and the thread
 //!    of its server computes the spectrum from a copy when the page asks.
 
-mod beside;
 mod calibration;
 mod coverage;
 mod data;
-mod error;
+mod files;
 mod finish;
-mod format;
 mod guide;
 mod judge;
-mod kept;
 mod live;
-mod names;
 mod page;
 mod part;
-mod phases;
 mod reader;
 mod replay;
 mod session;
 mod setup;
 mod signals;
+mod stored;
 mod tracker;
 mod write;
 
-pub use beside::KnownTake;
-pub(crate) use beside::{header as header_beside, settings as settings_of};
-pub use calibration::{AXES, Calibration};
-pub use coverage::{Coverage, Required};
+pub use calibration::Calibration;
+pub use coverage::{Coverage, Requirements};
 pub use data::{TakeData, TakeHeader, take_schema};
-pub use error::RecordError;
-pub use finish::{Recorded, recover};
-pub use format::{Format, Outcome};
+pub use files::{Format, Outcome};
+pub use finish::{TakeReport, recover};
 pub use guide::{Force, Guidance, Moment, Phase};
-pub use judge::{Measured, Verdict, judge};
-pub use kept::kept_spectrum;
+pub use judge::{MeanRange, Verdict, judge};
 pub use live::{LiveSignal, LiveSpectrum};
 pub use page::GuidePage;
 pub use part::{PartFile, read_part};
-pub use phases::Next;
+pub use reader::Next;
 pub(crate) use reader::{Inputs, Reader};
 pub use replay::Replay;
 pub use session::Session;
 pub use setup::{Setup, Tare};
 pub use signals::Signals;
+pub use stored::KnownTake;
+pub(crate) use stored::{header as header_beside, settings as settings_of};
 pub use tracker::{LineTracker, TableTracker, TrackerRows};
 pub(crate) use write::write_signals;

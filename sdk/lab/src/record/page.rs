@@ -9,16 +9,16 @@ use htex_format::Quantity;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::error::LabError;
 use crate::page::{Content, LocalPage};
-use crate::record::coverage::Required;
-use crate::record::error::RecordError;
-use crate::record::finish::Recorded;
-use crate::record::format::Outcome;
+use crate::record::coverage::Requirements;
+use crate::record::files::Outcome;
+use crate::record::finish::TakeReport;
 use crate::record::guide::{Force, Guidance, Moment, Phase};
-use crate::record::judge::Measured;
-use crate::record::kept::kept_spectrum;
+use crate::record::judge::MeanRange;
 use crate::record::live::{LiveSignal, LiveSpectrum};
 use crate::record::setup::{Setup, Tare};
+use crate::record::stored::kept_spectrum;
 
 /// Longest time for which a moment is extrapolated until the next one arrives, seconds.
 const CONTINUED_S: f64 = 0.1;
@@ -31,12 +31,12 @@ const SCALE_FALL_DB_S: f64 = 5.0;
 
 /// The page of a recording session, served as long as this value lives.
 pub struct GuidePage {
-    shown: Arc<Shown>,
+    shown: Arc<SharedState>,
     served: LocalPage,
 }
 
 /// What the page shows, shared by the server's thread and the recording thread.
-struct Shown {
+struct SharedState {
     session: About,
     guidance: Guidance,
     folder: PathBuf,
@@ -48,7 +48,7 @@ struct Shown {
 struct About {
     title: String,
     attempts: u32,
-    required: Required,
+    required: Requirements,
     has_tare: bool,
     unit: &'static str,
     speed_mm_s: Option<f64>,
@@ -99,8 +99,8 @@ struct TakeLine {
     reasons: Vec<String>,
     /// Problems of the signals.
     findings: Vec<String>,
-    speed_mm_s: Option<Measured>,
-    force_n: Option<Measured>,
+    speed_mm_s: Option<MeanRange>,
+    force_n: Option<MeanRange>,
 }
 
 /// The end of a session.
@@ -132,13 +132,13 @@ impl GuidePage {
     /// source's sample rate.
     ///
     /// # Errors
-    /// [`RecordError::Page`] if the port is taken or there are no random numbers.
+    /// [`LabError::Page`] if the port is taken or there are no random numbers.
     pub fn open(
         port: u16,
         setup: &Setup,
         guidance: Guidance,
         rate_hz: f64,
-    ) -> Result<Self, RecordError> {
+    ) -> Result<Self, LabError> {
         let session = About {
             title: setup.name.clone(),
             attempts: setup.attempts,
@@ -152,7 +152,7 @@ impl GuidePage {
             quantity: setup.quantity,
         };
         let kept = kept_spectrum(&setup.folder, &setup.name, setup.quantity);
-        let shown = Arc::new(Shown {
+        let shown = Arc::new(SharedState {
             session,
             guidance,
             folder: setup.folder.clone(),
@@ -210,7 +210,7 @@ impl GuidePage {
     }
 
     /// Shows a completed take.
-    pub fn told(&self, take: &Recorded) {
+    pub fn told(&self, take: &TakeReport) {
         let about = &self.shown.session;
         // Read before the lock is taken, because the recording waits for the lock.
         let kept = match take.outcome {
@@ -232,7 +232,7 @@ impl GuidePage {
     }
 
     /// Shows the end of the session. If the page is open, waits until it has received the end.
-    pub fn end(&self, recorded: &Result<Recorded, RecordError>) {
+    pub fn end(&self, recorded: &Result<TakeReport, LabError>) {
         self.shown.lock().end = Some(match recorded {
             Ok(take) => End { is_kept: true, text: take.file.display().to_string() },
             Err(error) => End { is_kept: false, text: error.to_string() },
@@ -241,7 +241,7 @@ impl GuidePage {
     }
 }
 
-impl Shown {
+impl SharedState {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -280,11 +280,11 @@ impl Shown {
     }
 }
 
-impl Content for Shown {
+impl Content for SharedState {
     const HTML: &'static str = include_str!("page.html");
     const REQUESTS: &'static [&'static str] = &["start"];
 
-    fn take(&self, request: &str, _: &Value) {
+    fn handle(&self, request: &str, _: &Value) {
         let mut state = self.lock();
         match request {
             "start" => state.has_started = true,

@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, ContentError, OwnFolder};
 
+use crate::error::LabError;
 use crate::record::data::{TakeData, TakeHeader};
-use crate::record::error::RecordError;
-use crate::record::names;
+use crate::record::files;
 
 /// Kind of a chunk that holds frames.
 const FRAMES: u8 = b'F';
@@ -40,8 +40,8 @@ impl PartFile {
     /// Creates a part file, which must not exist yet.
     ///
     /// # Errors
-    /// [`RecordError::File`].
-    pub fn create(path: &Path, header: &TakeHeader) -> Result<Self, RecordError> {
+    /// [`LabError::File`].
+    pub fn create(path: &Path, header: &TakeHeader) -> Result<Self, LabError> {
         let begun = || -> std::io::Result<File> {
             let (folder, name) = OwnFolder::of_file(path)?;
             let mut file = OwnFolder::private(folder.path()).create(&name)?;
@@ -70,8 +70,8 @@ impl PartFile {
     /// Appends interleaved frames. Each full second is written and flushed to disk.
     ///
     /// # Errors
-    /// [`RecordError::File`].
-    pub fn push(&mut self, frames: &[f64]) -> Result<(), RecordError> {
+    /// [`LabError::File`].
+    pub fn push(&mut self, frames: &[f64]) -> Result<(), LabError> {
         self.frames.extend_from_slice(frames);
         self.waiting += frames.len();
         if self.waiting >= self.second { self.flush() } else { Ok(()) }
@@ -85,8 +85,8 @@ impl PartFile {
     /// Writes everything that is waiting and flushes it to disk.
     ///
     /// # Errors
-    /// [`RecordError::File`].
-    pub fn flush(&mut self) -> Result<(), RecordError> {
+    /// [`LabError::File`].
+    pub fn flush(&mut self) -> Result<(), LabError> {
         let mut bytes = Vec::new();
         append(&mut bytes, FRAMES, &self.frames);
         append(&mut bytes, TRACKER, &self.rows);
@@ -116,15 +116,14 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 /// incomplete, which means that nothing was recorded.
 ///
 /// # Errors
-/// [`RecordError::Content`] if it cannot be read or is not a part file; [`RecordError::Busy`] while
+/// [`LabError::Content`] if it cannot be read or is not a part file; [`LabError::Busy`] while
 /// another program writes to it.
-pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
+pub fn read_part(path: &Path) -> Result<Option<TakeData>, LabError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.map_err(ContentError::in_file(path))?;
     // A `PartFile` holds the lock as long as it is written to.
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
-        let file = path.to_owned();
-        return Err(RecordError::Busy { file });
+        return Err(LabError::busy(path, "recording into it"));
     }
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).map_err(ContentError::in_file(path))?;
@@ -141,7 +140,7 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
             )
         })
         .map_err(ContentError::in_file(path))?;
-    let own = names::stem(&header.name, header.number);
+    let own = files::stem(&header.name, header.number);
     if path.file_stem().is_none_or(|stem| stem != &own[..]) {
         let problem = format!(
             "it is the part of {own}; give it that name again, so that no other take is replaced"

@@ -1,11 +1,15 @@
 //! Reads a source in blocks: the values of its signals, and the tracker's rows up to the same time.
+//! Runs the phases of a session block by block, and computes what the user sees.
 
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+use htex_author::recording::Role;
 use htex_device::{Input, InputFrames};
 
-use crate::record::data::TakeHeader;
-use crate::record::error::RecordError;
+use crate::error::LabError;
+use crate::record::data::{TakeHeader, texture_axes};
+use crate::record::guide::{FingerPath, Moment, Phase};
 use crate::record::signals::Signals;
 use crate::record::tracker::TrackerRows;
 
@@ -65,9 +69,9 @@ impl Reader {
     /// Reads the next block of at most `most` frames; `None` if nothing arrived for a short time.
     ///
     /// # Errors
-    /// The errors of the source and of the tracker, [`RecordError::Silent`], and
-    /// [`RecordError::Ended`].
-    pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, RecordError> {
+    /// The errors of the source and of the tracker, [`LabError::Silent`], and
+    /// [`LabError::Ended`].
+    pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, LabError> {
         let (rate_hz, width) = (self.source.stream().rate_hz, self.source.stream().channels.len());
         // At least one frame, because a block of a rate below 50 Hz would have none.
         let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
@@ -76,12 +80,12 @@ impl Reader {
         let frames = match self.source.read(&mut self.samples, WAIT)? {
             InputFrames::Count(0) if since.elapsed() > SILENT => {
                 let seconds = SILENT.as_secs();
-                return Err(RecordError::Silent { seconds });
+                return Err(LabError::Silent { seconds });
             }
             InputFrames::Count(0) => return Ok(None),
             InputFrames::Count(frames) => frames,
             InputFrames::End => {
-                return Err(RecordError::Ended { after_s: 0.0, seconds: self.seconds, kept: None });
+                return Err(LabError::Ended { after_s: 0.0, seconds: self.seconds, kept: None });
             }
         };
         self.since = None;
@@ -121,11 +125,11 @@ impl Block {
     /// Refuses values that are not finite.
     ///
     /// # Errors
-    /// [`RecordError::NotFinite`].
-    pub(crate) fn check(&self, header: &TakeHeader) -> Result<(), RecordError> {
+    /// [`LabError::NotFinite`].
+    pub(crate) fn check(&self, header: &TakeHeader) -> Result<(), LabError> {
         for ((role, _), values) in header.signals.iter().zip(&self.values) {
             if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-                return Err(RecordError::NotFinite {
+                return Err(LabError::NotFinite {
                     role: role.clone(),
                     value: values[at],
                     at_s: self.begin_s + at as f64 / header.rate_hz,
@@ -133,5 +137,148 @@ impl Block {
             }
         }
         Ok(())
+    }
+}
+
+pub(crate) type Take<'a> = dyn FnMut(&Block) -> Result<(), LabError> + 'a;
+
+/// Length of the mean by which the force is shown, seconds. A take is judged by means of the same
+/// length.
+const FORCE_S: f64 = 0.05;
+
+/// Whether a session continues.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Next {
+    /// The session continues.
+    Go,
+    /// The session ends; what was recorded is kept.
+    Stop,
+}
+
+/// A phase to be read.
+pub(crate) struct Span {
+    pub(crate) phase: Phase,
+    /// Number of the take.
+    pub(crate) number: u32,
+    /// Its length, seconds.
+    pub(crate) of_s: f64,
+}
+
+impl Span {
+    pub(crate) fn new(phase: Phase, number: u32, of_s: f64) -> Self {
+        Self { phase, number, of_s }
+    }
+}
+
+/// Reads phases and follows the finger.
+pub(crate) struct Phases {
+    pub(crate) reader: Reader,
+    path: FingerPath,
+    force: RunningMean,
+    /// Indices of the axes of the texture's signal.
+    texture: Vec<usize>,
+}
+
+impl Phases {
+    pub(crate) fn new(reader: Reader) -> Self {
+        let frames = (FORCE_S * reader.source.stream().rate_hz).round().max(1.0) as usize;
+        Self {
+            texture: texture_axes(&reader.inputs.signals.list()),
+            force: RunningMean::new(frames),
+            path: FingerPath::default(),
+            reader,
+        }
+    }
+
+    /// Reads a phase and passes each block to `take`.
+    pub(crate) fn run(
+        &mut self,
+        span: Span,
+        watch: &mut dyn FnMut(&Moment<'_>) -> Next,
+        take: &mut Take<'_>,
+    ) -> Result<(), LabError> {
+        let Span { phase, number, of_s } = span;
+        let rate_hz = self.reader.source.stream().rate_hz;
+        let frames = (of_s * rate_hz).round() as u64;
+        let mut done = 0;
+        while done < frames {
+            let Some(block) = self.reader.block(frames - done)? else {
+                continue;
+            };
+            let values = &block.values;
+            done += values.first().map_or(0, Vec::len) as u64;
+            // Stored before it is shown, so that a stop does not lose this block.
+            take(&block)?;
+            let texture: Vec<&[f64]> = self.texture.iter().map(|at| &values[*at][..]).collect();
+            let moment = Moment {
+                phase,
+                number,
+                elapsed_s: done as f64 / rate_hz,
+                of_s,
+                force_n: self.force(values),
+                position_mm: self.position(&block),
+                texture: &texture,
+            };
+            if watch(&moment) == Next::Stop {
+                return Err(LabError::Left { kept: None });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the force of the last 50 ms. The sign is dropped, because a sensor or a recording
+    /// may count pressing as negative.
+    fn force(&mut self, values: &[Vec<f64>]) -> Option<f64> {
+        let normal = self.reader.inputs.signals.position(Role::Normal)?;
+        self.force.push(&values[normal]);
+        Some(self.force.mean().abs())
+    }
+
+    /// Returns the finger's position, from the tracker if there is one, else from the source.
+    fn position(&mut self, block: &Block) -> Option<f64> {
+        for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
+            let own = self
+                .reader
+                .inputs
+                .signals
+                .position(role)
+                .and_then(|at| block.values[at].last().copied());
+            let at_mm = self.tracked(role, &block.rows).or(own);
+            if let Some(at_mm) = at_mm {
+                self.path.see(axis, at_mm);
+            }
+        }
+        self.path.place_mm()
+    }
+
+    /// Returns the tracker's newest position along the axis of a role.
+    fn tracked(&self, role: Role, rows: &[f64]) -> Option<f64> {
+        let signals = self.reader.inputs.tracked();
+        let axis = signals.iter().position(|(own, _)| own == role.name())?;
+        let newest = rows.chunks_exact(signals.len() + 1).last()?;
+        newest.get(axis + 1).copied()
+    }
+}
+
+/// Mean of the newest values.
+struct RunningMean {
+    newest: VecDeque<f64>,
+    most: usize,
+}
+
+impl RunningMean {
+    fn new(most: usize) -> Self {
+        Self { newest: VecDeque::with_capacity(most), most }
+    }
+
+    fn push(&mut self, values: &[f64]) {
+        let values = &values[values.len().saturating_sub(self.most)..];
+        let surplus = (self.newest.len() + values.len()).saturating_sub(self.most);
+        self.newest.drain(..surplus);
+        self.newest.extend(values);
+    }
+
+    fn mean(&self) -> f64 {
+        self.newest.iter().sum::<f64>() / self.newest.len().max(1) as f64
     }
 }

@@ -3,19 +3,16 @@
 use std::path::Path;
 
 use htex_author::recording::Role;
+use htex_base::files::{AtFile, ContentError, OwnFolder};
 use htex_device::Input;
 
-use htex_base::files::{AtFile, ContentError, OwnFolder};
-
+use crate::error::LabError;
 use crate::record::data::TakeHeader;
-use crate::record::error::RecordError;
-use crate::record::finish::{Recorded, finish, with_kept};
-use crate::record::format::Outcome;
+use crate::record::files::{self, Outcome};
+use crate::record::finish::{TakeReport, finish, with_kept};
 use crate::record::guide::{Moment, Phase};
-use crate::record::names;
 use crate::record::part::PartFile;
-use crate::record::phases::{Next, Phases, Span};
-use crate::record::reader::{Inputs, Reader};
+use crate::record::reader::{Inputs, Next, Phases, Reader, Span};
 use crate::record::setup::{Setup, Tare, check};
 use crate::record::signals::Signals;
 use crate::record::tracker::TrackerRows;
@@ -39,20 +36,20 @@ impl Session {
         source: Box<dyn Input>,
         signals: Signals,
         tracker: Option<Box<dyn TrackerRows>>,
-    ) -> Result<Self, RecordError> {
+    ) -> Result<Self, LabError> {
         check(&setup, source.stream().rate_hz)?;
         let moves = |roles: &[(String, String)]| {
             roles.iter().any(|(role, _)| matches!(&role[..], "x" | "y" | "speed"))
         };
         let is_tracked = tracker.as_ref().is_some_and(|tracker| moves(&tracker.signals()));
         if setup.target.speed_mm_s.is_some() && !is_tracked && !moves(&signals.list()) {
-            return Err(RecordError::NotMeasured {
+            return Err(LabError::NotMeasured {
                 what: "speed",
                 advice: "give a tracker, or map speed, x or y",
             });
         }
         if setup.target.force_n.is_some() && signals.position(Role::Normal).is_none() {
-            return Err(RecordError::NotMeasured {
+            return Err(LabError::NotMeasured {
                 what: "force",
                 advice: "map the channel of the normal force, as in normal=ai2:0.31",
             });
@@ -68,14 +65,14 @@ impl Session {
     /// block of samples, and `told` for each completed take.
     ///
     /// # Errors
-    /// [`RecordError::OffTarget`] if no take kept to its target; [`RecordError::Left`] if `watch`
+    /// [`LabError::OffTarget`] if no take kept to its target; [`LabError::Left`] if `watch`
     /// ended the session; and errors of the source, after which the folder `incomplete` holds what
     /// was recorded.
     pub fn record(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,
-        told: &mut dyn FnMut(&Recorded),
-    ) -> Result<Recorded, RecordError> {
+        told: &mut dyn FnMut(&TakeReport),
+    ) -> Result<TakeReport, LabError> {
         self.phases.reader.source.start()?;
         let mut reasons = String::new();
         for attempt in 0..self.setup.attempts {
@@ -90,7 +87,7 @@ impl Session {
                     self.tare(watch)?;
                 }
             }
-            let take = self.take(watch)?;
+            let take = self.record_take(watch)?;
             told(&take);
             if take.outcome == Outcome::Kept {
                 self.phases.reader.source.finish()?;
@@ -99,15 +96,15 @@ impl Session {
             reasons = take.verdict.reasons.join("; ");
         }
         self.phases.reader.source.finish()?;
-        Err(RecordError::OffTarget {
+        Err(LabError::OffTarget {
             attempts: self.setup.attempts,
             reasons,
-            folder: self.setup.folder.join(names::REJECTED),
+            folder: self.setup.folder.join(files::REJECTED),
         })
     }
 
     /// Measures the forces without a finger on the surface.
-    fn tare(&mut self, watch: &mut dyn FnMut(&Moment<'_>) -> Next) -> Result<(), RecordError> {
+    fn tare(&mut self, watch: &mut dyn FnMut(&Moment<'_>) -> Next) -> Result<(), LabError> {
         // An earlier tare must not be part of the new means.
         self.phases.reader.inputs.signals.tare(&[]);
         let (mut sums, mut count) = (vec![0.0; self.phases.reader.inputs.signals.list().len()], 0);
@@ -124,16 +121,16 @@ impl Session {
     }
 
     /// Records one take.
-    fn take(
+    fn record_take(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,
-    ) -> Result<Recorded, RecordError> {
+    ) -> Result<TakeReport, LabError> {
         let folder = self.setup.folder.clone();
-        let number = names::next_number(&folder, &self.setup.name).writing(&folder)?;
+        let number = files::next_number(&folder, &self.setup.name).writing(&folder)?;
         let countdown = Span::new(Phase::Countdown, number, self.setup.countdown_s);
         self.phases.run(countdown, watch, &mut |_| Ok(()))?;
         let header = self.header(number);
-        let mut part = PartFile::create(&names::part(&folder, &header.name, number), &header)?;
+        let mut part = PartFile::create(&files::part_file(&folder, &header.name, number), &header)?;
         // Rows of the tracker from before this time do not belong to the take.
         let begin_s = self.phases.reader.now_s();
         let span = Span::new(Phase::Take, number, header.seconds);

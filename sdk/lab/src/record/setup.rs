@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use htex_author::Exploration;
 use htex_format::Quantity;
 
-use crate::record::coverage::Required;
-use crate::record::error::RecordError;
-use crate::record::format::Format;
-use crate::record::names;
+use crate::error::LabError;
+use crate::record::coverage::Requirements;
+use crate::record::files::{self, Format};
 
 /// Longest take, seconds.
 pub(crate) const LONGEST_S: f64 = 3600.0;
@@ -35,7 +34,7 @@ pub struct Setup {
     /// paper.
     pub tolerance: f64,
     /// What a take must have to be accepted.
-    pub required: Required,
+    pub required: Requirements,
     /// Largest number of takes that are tried.
     pub attempts: u32,
     pub format: Format,
@@ -60,11 +59,11 @@ pub enum Tare {
 }
 
 /// Refuses values that are out of range; `rate_hz` is the source's rate.
-pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
-    names::check(&setup.name)?;
+pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), LabError> {
+    files::check_name(&setup.name)?;
     let refuse = |what, value: f64, allowed| {
         let value = value.to_string();
-        Err(RecordError::Setup { what, value, allowed })
+        Err(LabError::Setup { what, value, allowed })
     };
     let frames = setup.seconds * rate_hz;
     if !(setup.seconds <= LONGEST_S && frames.round() >= 2.0) {

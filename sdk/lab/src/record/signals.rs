@@ -5,8 +5,8 @@ use htex_base::finding::Notice;
 use htex_device::Channel;
 use htex_format::Quantity;
 
+use crate::error::LabError;
 use crate::record::calibration::{AXES, Calibration};
-use crate::record::error::RecordError;
 
 /// Converts a source's channels in three steps: calibration of six-axis sensors, mapping to roles,
 /// and tare.
@@ -36,15 +36,15 @@ impl Signals {
         calibrations: Vec<Calibration>,
         map: Option<&ColumnMap>,
         quantity: Quantity,
-    ) -> Result<Self, RecordError> {
+    ) -> Result<Self, LabError> {
         if channels.len() < AXES * calibrations.len() {
-            return Err(RecordError::Setup {
+            return Err(LabError::Setup {
                 what: "the number of channels",
                 value: channels.len().to_string(),
                 allowed: "each calibration needs six channels, the first six, the next six and so on",
             });
         }
-        let names = named(channels, calibrations.len());
+        let names = channel_names(channels, calibrations.len());
         let map = RowMap::new(source, &names, map, quantity)?;
         let roles = map.roles();
         let kept: Vec<usize> = (0..roles.len()).filter(|i| roles[*i] != Role::Time).collect();
@@ -128,7 +128,7 @@ impl Signals {
 
 /// Returns the names and units of the channels. Channels of calibrated sensors are replaced by the
 /// sensor's axes.
-fn named(channels: &[Channel], sensors: usize) -> Vec<(String, String)> {
+fn channel_names(channels: &[Channel], sensors: usize) -> Vec<(String, String)> {
     let number = |sensor: usize| (sensors > 1).then_some(sensor + 1);
     let calibrated = (0..sensors).flat_map(|sensor| Calibration::names(number(sensor)));
     let plain = channels

@@ -8,7 +8,7 @@ use std::time::Instant;
 use htex_author::recording::{ColumnMap, ReadOptions, Role, RowMap, read_channels};
 use htex_base::files::bounded_lines;
 
-use crate::record::error::RecordError;
+use crate::error::LabError;
 
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-6;
@@ -23,7 +23,7 @@ pub trait TrackerRows: Send {
     ///
     /// # Errors
     /// If the tracker delivers something that is not a position.
-    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError>;
+    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), LabError>;
 
     /// Called when the source's clock starts again at 0 s, because another source is read or the
     /// same one was restarted. Rows that arrived earlier are dropped.
@@ -44,7 +44,7 @@ impl TableTracker {
     ///
     /// # Errors
     /// If the file cannot be read, or has neither positions nor speeds.
-    pub fn open(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordError> {
+    pub fn open(path: &Path, map: Option<&ColumnMap>) -> Result<Self, LabError> {
         let table = read_channels(path, &ReadOptions::default())?;
         let names: Vec<(String, String)> =
             table.names.iter().map(|name| (name.clone(), String::new())).collect();
@@ -70,7 +70,7 @@ impl TrackerRows for TableTracker {
         self.signals.clone()
     }
 
-    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError> {
+    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), LabError> {
         while self.columns[0].get(self.next).is_some_and(|t| *t <= now_s) {
             rows.extend(self.columns.iter().map(|column| column[self.next]));
             self.next += 1;
@@ -122,14 +122,14 @@ impl TrackerRows for LineTracker {
         [Role::X, Role::Y].map(pair).to_vec()
     }
 
-    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError> {
+    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), LabError> {
         let now = Instant::now();
         while let Ok((arrived, line, text)) = self.lines.try_recv() {
             if text.trim().is_empty() {
                 continue;
             }
             let Some([x, y]) = position(&text) else {
-                return Err(RecordError::TrackerLine {
+                return Err(LabError::TrackerLine {
                     name: self.name.clone(),
                     line,
                     text: htex_base::finding::plain(&text).into_owned(),

@@ -8,15 +8,14 @@ use htex_base::files::{AtFile, OwnFolder};
 use htex_format::Quantity;
 use serde_json::{Value, json};
 
+use crate::error::LabError;
 use crate::record::data::{TakeData, TakeHeader};
-use crate::record::error::RecordError;
-use crate::record::format::{Format, Outcome};
+use crate::record::files::{self, Format, Outcome};
 use crate::record::judge::Verdict;
-use crate::record::names;
 
 /// The files that were written for a take. Arguments with which `htex fit` reads it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Written {
+pub(crate) struct TakeFiles {
     pub(crate) recording: PathBuf,
     /// Arguments of `htex fit` that read it.
     pub(crate) fit: Vec<String>,
@@ -26,14 +25,14 @@ pub(crate) struct Written {
 /// then renamed.
 ///
 /// # Errors
-/// [`RecordError::File`].
+/// [`LabError::File`].
 pub(crate) fn write_take(
     folder: &Path,
     data: &TakeData,
     outcome: Outcome,
     verdict: &Verdict,
-) -> Result<Written, RecordError> {
-    let stem = names::stem(&data.header.name, data.header.number);
+) -> Result<TakeFiles, LabError> {
+    let stem = files::stem(&data.header.name, data.header.number);
     let own = OwnFolder::private(folder);
     write_signals(&own, outcome.folder(), &stem, data, &|fit| {
         json!({
@@ -52,14 +51,14 @@ pub(crate) fn write_take(
 /// with which `htex fit` reads the recording.
 ///
 /// # Errors
-/// [`RecordError::File`].
+/// [`LabError::File`].
 pub(crate) fn write_signals(
     own: &OwnFolder,
     inside: &Path,
     stem: &str,
     data: &TakeData,
     beside: &dyn Fn(&[String]) -> Value,
-) -> Result<Written, RecordError> {
+) -> Result<TakeFiles, LabError> {
     let header = &data.header;
     let name = inside.join(format!("{stem}.{}", header.format.extension()));
     let recording = own.path().join(&name);
@@ -82,7 +81,7 @@ pub(crate) fn write_signals(
     })?;
     // The JSON comes last, so that it never describes a recording that is not there.
     put(&inside.join(format!("{stem}.json")), &|file| file.write_all(beside.as_bytes()))?;
-    Ok(Written { recording, fit })
+    Ok(TakeFiles { recording, fit })
 }
 
 /// Returns the flags for what the format itself does not state.

@@ -1,13 +1,15 @@
 //! Cuts records into hits or windows, counts the usable ones and averages them.
 
-use super::baseline::Baseline;
-use super::error::{Channel, RecordProblem, ResponseError};
+use htex_dsp::fft::RealFft;
+use num_complex::Complex;
+
 use super::frames::{Weights, farthest, spread, windows};
 use super::hits::hits;
-use super::options::{Excitation, ResponseOptions};
+use super::overload::Baseline;
 use super::pieces::{Cut, Piece};
-use super::record::Record;
-use super::spectra::Spectra;
+use super::record::{Channel, Record};
+use super::settings::ResponseSettings;
+use crate::error::LabError;
 
 /// The final part of a window, relative to its length, that must be quiet.
 const END: f64 = 0.05;
@@ -30,18 +32,18 @@ fn outlasts(output: &[f64], before: usize) -> bool {
 pub(crate) fn cut(
     record: &Record,
     len: usize,
-    options: &ResponseOptions,
-) -> Result<Vec<Cut>, ResponseError> {
+    settings: &ResponseSettings,
+) -> Result<Vec<Cut>, LabError> {
     if record.samples() < len {
-        return Err(ResponseError::Short {
+        return Err(LabError::Short {
             file: record.file().to_owned(),
             duration_s: record.samples() as f64 / record.rate_hz(),
-            window_s: options.window_s,
+            window_s: settings.window_s,
         });
     }
-    Ok(match &options.excitation {
-        Excitation::Hits(hit) => hits(record, len, hit, options),
-        Excitation::Continuous => windows(record, len, options),
+    Ok(match settings.hits() {
+        Some(hit) => hits(record, len, &hit, settings),
+        None => windows(record, len, settings),
     })
 }
 
@@ -49,18 +51,18 @@ pub(crate) fn cut(
 pub(crate) fn count_used(
     records: &[Record],
     cuts: &[Vec<Cut>],
-    options: &ResponseOptions,
-) -> Result<usize, ResponseError> {
+    settings: &ResponseSettings,
+) -> Result<usize, LabError> {
     let pieces = || cuts.iter().flatten().map(|cut| &cut.piece);
-    let (found, is_hits) = (pieces().count(), matches!(options.excitation, Excitation::Hits(_)));
+    let (found, is_hits) = (pieces().count(), !settings.continuous);
     if let (0, Some(first)) = (found, records.first()) {
-        let rest = Baseline::of(first.channel(Channel::Input));
+        let rest = Baseline::find(first.channel(Channel::Input));
         let (largest, noise) = (rest.largest, rest.noise);
-        return Err(RecordProblem::NoHits { largest, noise }.of(first.file()));
+        return Err(LabError::NoHits { file: first.file().to_owned(), largest, noise });
     }
     match pieces().filter(|piece| piece.thrown_out.is_none()).count() {
         used if used >= 2 => Ok(used),
-        used => Err(ResponseError::TooFew {
+        used => Err(LabError::TooFew {
             what: if is_hits { "hits" } else { "windows" },
             found,
             used,
@@ -75,15 +77,15 @@ pub(crate) fn average(
     records: &[Record],
     cuts: &[Vec<Cut>],
     len: usize,
-    options: &ResponseOptions,
+    settings: &ResponseSettings,
 ) -> (Spectra, usize) {
     let [x, y] = [Channel::Input, Channel::Output].map(|channel| scale_of(records, channel));
     let mut spectra = Spectra::new(len);
     let mut outlasting = 0;
     for (record, cuts) in records.iter().zip(cuts) {
-        let weights = match &options.excitation {
-            Excitation::Hits(hit) => Weights::of_hits(len, record.rate_hz(), hit),
-            Excitation::Continuous => Weights::hann(len),
+        let weights = match settings.hits() {
+            Some(hit) => Weights::for_hits(len, record.rate_hz(), &hit),
+            None => Weights::hann(len),
         };
         for cut in cuts.iter().filter(|cut| cut.piece.thrown_out.is_none()) {
             let input = weights.apply(record, Channel::Input, cut, x);
@@ -99,6 +101,48 @@ pub(crate) fn average(
 /// Returns the largest distance from rest. The channel is divided by it so that no power overflows
 /// or underflows.
 pub(crate) fn scale_of(records: &[Record], channel: Channel) -> f64 {
-    let largest = records.iter().map(|record| Baseline::of(record.channel(channel)).largest);
+    let largest = records.iter().map(|record| Baseline::find(record.channel(channel)).largest);
     largest.fold(0.0, f64::max)
+}
+
+/// Averaged auto and cross spectra of input and output at each bin. A common factor is left out,
+/// because only ratios are used (Bendat & Piersol, section 11.5).
+#[derive(Debug)]
+pub(crate) struct Spectra {
+    fft: RealFft,
+    bins: [Vec<Complex<f64>>; 2],
+    /// Auto spectrum of the input.
+    pub(crate) gxx: Vec<f64>,
+    /// Auto spectrum of the output.
+    pub(crate) gyy: Vec<f64>,
+    /// Cross spectrum: the mean of the conjugate of the input times the output.
+    pub(crate) gxy: Vec<Complex<f64>>,
+}
+
+impl Spectra {
+    /// Creates empty sums for windows of `len` samples.
+    pub(crate) fn new(len: usize) -> Self {
+        let fft = RealFft::new(len);
+        let bins = [fft.make_bins(), fft.make_bins()];
+        let count = bins[0].len();
+        Self {
+            fft,
+            bins,
+            gxx: vec![0.0; count],
+            gyy: vec![0.0; count],
+            gxy: vec![Complex::ZERO; count],
+        }
+    }
+
+    /// Adds a window.
+    pub(crate) fn add(&mut self, input: &[f64], output: &[f64]) {
+        let [x, y] = &mut self.bins;
+        self.fft.forward(input, x);
+        self.fft.forward(output, y);
+        for (bin, (x, y)) in x.iter().zip(y.iter()).enumerate() {
+            self.gxx[bin] += x.norm_sqr();
+            self.gyy[bin] += y.norm_sqr();
+            self.gxy[bin] += x.conj() * y;
+        }
+    }
 }

@@ -2,23 +2,23 @@
 
 use std::f64::consts::PI;
 
-use super::error::Channel;
-use super::options::{HitOptions, ResponseOptions};
 use super::overload::Overloads;
 use super::pieces::{Cut, Piece, Reason};
+use super::record::Channel;
 use super::record::Record;
+use super::settings::{HitSettings, ResponseSettings};
 
 /// Level of a window's drive (RMS), relative to the strongest window, below which it counts as
 /// silent.
 const SILENT: f64 = 0.1;
 
 /// Cuts a continuous drive into windows of `len` samples with half overlap.
-pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) -> Vec<Cut> {
+pub(crate) fn windows(record: &Record, len: usize, settings: &ResponseSettings) -> Vec<Cut> {
     let input = record.channel(Channel::Input);
     let overloads = [
         // A square drive repeats its extremes, so only a given limit counts for the input.
-        Overloads::find_given(record, Channel::Input, options.input_limit),
-        Overloads::find(record, Channel::Output, options.output_limit),
+        Overloads::find_given(record, Channel::Input, settings.input_limit),
+        Overloads::find(record, Channel::Output, settings.output_limit),
     ];
     // The first start that is too late, so that a record of exactly one window has one.
     let last = (input.len() + 1).saturating_sub(len);
@@ -78,7 +78,7 @@ impl Weights {
 
     /// Weights for hits: a force window and an exponential window. The mean before the trigger is
     /// removed.
-    pub(crate) fn of_hits(len: usize, rate_hz: f64, hit: &HitOptions) -> Self {
+    pub(crate) fn for_hits(len: usize, rate_hz: f64, hit: &HitSettings) -> Self {
         let before = (hit.pre_trigger_s * rate_hz).round() as usize;
         let after_s = |at: usize| at.saturating_sub(before) as f64 / rate_hz;
         let exponential =

@@ -2,13 +2,10 @@
 
 use std::ops::Range;
 
-use super::baseline::Baseline;
-use super::double::contacts;
-use super::error::Channel;
-use super::options::{HitOptions, ResponseOptions};
-use super::overload::Overloads;
+use super::overload::{Baseline, Overloads};
 use super::pieces::{Cut, Piece, Reason};
-use super::record::Record;
+use super::record::{Channel, Record};
+use super::settings::{HitSettings, ResponseSettings};
 
 /// Smallest ratio to the noise of a hit's level, and of a second contact's level. Normal noise at a
 /// sample rate of 1 GHz exceeds it less than once a day.
@@ -22,17 +19,17 @@ pub(crate) const ABOVE_NOISE: f64 = 8.0;
 pub(crate) fn hits(
     record: &Record,
     len: usize,
-    hit: &HitOptions,
-    options: &ResponseOptions,
+    hit: &HitSettings,
+    settings: &ResponseSettings,
 ) -> Vec<Cut> {
     let input = record.channel(Channel::Input);
-    let rest = Baseline::of(input);
+    let rest = Baseline::find(input);
     let least = ABOVE_NOISE * rest.noise;
     let level = (hit.trigger * rest.largest).max(least);
     let before = (hit.pre_trigger_s * record.rate_hz()).round() as usize;
     let overloads = [
-        Overloads::find(record, Channel::Input, options.input_limit),
-        Overloads::find(record, Channel::Output, options.output_limit),
+        Overloads::find(record, Channel::Input, settings.input_limit),
+        Overloads::find(record, Channel::Output, settings.output_limit),
     ];
     let mut found = Vec::new();
     let mut from = 0;
@@ -100,4 +97,27 @@ impl Window<'_> {
         let second_s = self.record.second(self.inside.start + second);
         Some(Reason::DoubleHit { second_s })
     }
+}
+
+/// Returns the samples at which contacts begin. A contact is a rise by at least `rise` above the
+/// lowest value since the last contact faded by as much, and to at least `rise` above rest. `pulse`
+/// is measured from the level at rest, with the hit in the positive direction.
+pub(crate) fn contacts(pulse: impl Iterator<Item = f64>, rise: f64) -> Vec<usize> {
+    let mut found = Vec::new();
+    let (mut lowest, mut highest, mut is_in_contact) = (0.0_f64, 0.0_f64, false);
+    for (at, value) in pulse.enumerate() {
+        if is_in_contact {
+            highest = highest.max(value);
+            if value <= highest - rise {
+                (is_in_contact, lowest) = (false, value);
+            }
+        } else {
+            lowest = lowest.min(value);
+            if value >= (lowest + rise).max(rise) {
+                (is_in_contact, highest) = (true, value);
+                found.push(at);
+            }
+        }
+    }
+    found
 }

@@ -17,43 +17,32 @@
 //!   Trans. Audio Electroacoust. 15, 1967: overlapping windows.
 //!
 //! ```
-//! use htex_lab::response::{Record, ResponseOptions, measure};
+//! use htex_lab::response::{Record, ResponseSettings, measure};
 //! // Five hits of 1 ms on a rig that doubles the force, 0.4 s apart, at 2 kHz.
 //! let input: Vec<f64> = (0..4400).map(|i| if i % 800 == 400 { 3.0 } else { 0.0 }).collect();
 //! let output = input.iter().map(|x| 2.0 * x).collect();
 //! let record = Record::new("hits.csv", 2000.0, input, output)?;
-//! let response = measure(&[record], &ResponseOptions::default().with_window_s(0.2))?;
+//! let settings = ResponseSettings { window_s: 0.2, ..Default::default() };
+//! let response = measure(&[record], &settings)?;
 //! assert_eq!((response.averages, response.resolution_hz), (5, 5.0));
 //! assert!(response.magnitude.iter().all(|gain| (gain - 2.0).abs() < 1e-12));
-//! # Ok::<(), htex_lab::response::ResponseError>(())
+//! # Ok::<(), htex_lab::LabError>(())
 //! ```
 
 mod average;
-mod baseline;
-mod double;
-mod error;
 mod estimator;
 mod frames;
 mod hits;
 mod measure;
-mod measured;
-mod notices;
-mod options;
 mod overload;
-mod peak;
 mod picture;
 mod pieces;
 mod record;
 mod settings;
-mod spectra;
 
-pub use error::{Channel, RecordProblem, ResponseError};
 pub use estimator::Estimator;
-pub use measure::measure;
-pub use measured::MeasuredResponse;
-pub use options::{Excitation, HitOptions, ResponseOptions};
-pub use peak::Peak;
+pub use measure::{MeasuredResponse, Peak, measure};
 pub use picture::response_picture;
 pub use pieces::{Piece, Reason};
-pub use record::{Record, column_map};
+pub use record::{Channel, Record, column_map};
 pub use settings::ResponseSettings;

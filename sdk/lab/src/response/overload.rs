@@ -1,11 +1,10 @@
-//! Finds samples at the limit of a sensor, amplifier or converter.
+//! Finds a signal's level at rest, its noise, and samples at the limit of a sensor, amplifier or
+//! converter.
 
 use std::ops::Range;
 
-use super::baseline::Baseline;
-use super::error::Channel;
 use super::pieces::Reason;
-use super::record::Record;
+use super::record::{Channel, Record};
 
 /// Number of equal samples in a row, at a channel's highest or lowest value, from which the channel
 /// counts as clipped. The top of a pulse may repeat a converter's code two or three times without
@@ -58,15 +57,15 @@ impl Overloads {
 }
 
 fn repeated(values: &[f64]) -> Vec<Range<usize>> {
-    let baseline = Baseline::of(values);
+    let baseline = Baseline::find(values);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let is_away = |value: f64| (value - baseline.level).abs() >= AWAY * baseline.largest;
-    let of = |extreme: f64| {
+    let runs_at = |extreme: f64| {
         if is_away(extreme) { runs(values, IN_A_ROW, |value| value == extreme) } else { Vec::new() }
     };
-    let mut stretches = of(high);
-    stretches.extend(of(low));
+    let mut stretches = runs_at(high);
+    stretches.extend(runs_at(low));
     stretches.sort_unstable_by_key(|stretch| stretch.start);
     stretches
 }
@@ -89,4 +88,39 @@ fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range
         }
     }
     found
+}
+
+/// Ratio of the standard deviation of normal noise to its median absolute deviation.
+const NORMAL: f64 = 1.482_602_218_505_602;
+
+/// A signal's level at rest and its noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Baseline {
+    /// The median.
+    pub(crate) level: f64,
+    /// RMS of the noise, from the median absolute deviation. Hits do not influence it as long as
+    /// they fill less than half of the recording.
+    pub(crate) noise: f64,
+    /// Largest distance from the level.
+    pub(crate) largest: f64,
+}
+
+impl Baseline {
+    /// Finds the baseline of a signal. Without samples, all values are zero.
+    pub(crate) fn find(values: &[f64]) -> Self {
+        let level = median(values.to_vec());
+        let deviations: Vec<f64> = values.iter().map(|value| (value - level).abs()).collect();
+        let largest = deviations.iter().copied().fold(0.0, f64::max);
+        let noise = NORMAL * median(deviations);
+        Self { level, noise, largest }
+    }
+}
+
+/// The upper median.
+fn median(mut values: Vec<f64>) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

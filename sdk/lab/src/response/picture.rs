@@ -2,7 +2,7 @@
 
 use htex_author::report::{Axis, Plot, Series, series_color, stacked};
 
-use super::measured::MeasuredResponse;
+use super::measure::MeasuredResponse;
 
 /// Size of the magnitude plot, and height of the other two plots, pixels.
 const WIDTH: f64 = 760.0;

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::error::Channel;
+use super::record::Channel;
 
 /// A hit, or a window of a continuous drive: a part of a recording that is transformed.
 #[derive(Debug, Clone, PartialEq, Serialize)]

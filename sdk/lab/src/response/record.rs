@@ -3,12 +3,35 @@
 use htex_author::Recording;
 use htex_author::recording::{ColumnMap, MapEntry, ReadError, ReadProblem, Role};
 
-use super::error::{Channel, RecordProblem, ResponseError};
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::error::LabError;
 
 /// Highest sample rate, hertz, and largest magnitude of a sample; the same limits as for
 /// recordings.
 const MOST_HZ: f64 = 1e9;
 const LARGEST: f64 = 1e12;
+
+/// One of the two signals of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// The force of the hammer, or the drive of the display.
+    Input,
+    /// The response of the rig or the display.
+    Output,
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Input => "input",
+            Self::Output => "output",
+        })
+    }
+}
 
 /// Input and output of a setup, recorded together.
 ///
@@ -34,12 +57,10 @@ impl Record {
         rate_hz: f64,
         input: Vec<f64>,
         output: Vec<f64>,
-    ) -> Result<Self, ResponseError> {
-        let file = file.into();
-        match check(rate_hz, &input, &output) {
-            Err(problem) => Err(problem.of(file)),
-            Ok(()) => Ok(Self { file, rate_hz, start_s: 0.0, input, output }),
-        }
+    ) -> Result<Self, LabError> {
+        let record = Self { file: file.into(), rate_hz, start_s: 0.0, input, output };
+        record.check()?;
+        Ok(record)
     }
 
     /// Creates a record from a recording that was read with [`column_map`]: its first axis is the
@@ -47,7 +68,7 @@ impl Record {
     ///
     /// # Errors
     /// The errors of [`Self::new`], and an error if the recording does not have two axes.
-    pub fn from_recording(recording: Recording) -> Result<Self, ResponseError> {
+    pub fn from_recording(recording: Recording) -> Result<Self, LabError> {
         let start_s = recording.second(0);
         let signals = recording.axes.len();
         let file = recording.source;
@@ -57,7 +78,7 @@ impl Record {
                 let record = Self::new(file, recording.rate_hz, input, output)?;
                 Ok(Self { start_s, ..record })
             }
-            _ => Err(RecordProblem::Signals { signals }.of(file)),
+            _ => Err(LabError::Signals { file, signals }),
         }
     }
 
@@ -90,32 +111,33 @@ impl Record {
             Channel::Output => &self.output,
         }
     }
-}
 
-fn check(rate_hz: f64, input: &[f64], output: &[f64]) -> Result<(), RecordProblem> {
-    if !(rate_hz > 0.0 && rate_hz <= MOST_HZ) {
-        return Err(RecordProblem::Rate { rate_hz });
+    fn check(&self) -> Result<(), LabError> {
+        let (file, rate_hz) = (self.file.clone(), self.rate_hz);
+        let (input, output) = (self.input.len(), self.output.len());
+        if !(rate_hz > 0.0 && rate_hz <= MOST_HZ) {
+            return Err(LabError::Rate { file, rate_hz });
+        }
+        if input != output {
+            return Err(LabError::Lengths { file, input, output });
+        }
+        self.check_channel(Channel::Input)?;
+        self.check_channel(Channel::Output)
     }
-    if input.len() != output.len() {
-        let (input, output) = (input.len(), output.len());
-        return Err(RecordProblem::Lengths { input, output });
-    }
-    check_channel(Channel::Input, input)?;
-    check_channel(Channel::Output, output)
-}
 
-fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> {
-    // NaN does not pass this comparison either.
-    let is_sound = |value: &f64| value.abs() <= LARGEST;
-    if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
-        let value = values[sample];
-        return Err(RecordProblem::Sample { channel, sample, value });
+    fn check_channel(&self, channel: Channel) -> Result<(), LabError> {
+        let (file, values) = (self.file.clone(), self.channel(channel));
+        // NaN does not pass this comparison either.
+        let is_sound = |value: &f64| value.abs() <= LARGEST;
+        if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
+            return Err(LabError::Sample { file, channel, sample, value: values[sample] });
+        }
+        let value = values.first().copied().unwrap_or(0.0);
+        if values.iter().all(|other| *other == value) {
+            return Err(LabError::Constant { file, channel, value });
+        }
+        Ok(())
     }
-    let value = values.first().copied().unwrap_or(0.0);
-    if values.iter().all(|other| *other == value) {
-        return Err(RecordProblem::Constant { channel, value });
-    }
-    Ok(())
 }
 
 /// Returns the map with which a recording's input and output are read. `input` and `output` are
@@ -125,7 +147,7 @@ fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> 
 /// ```
 /// let map = htex_lab::response::column_map("hammer_V:22.5", "fx1+fx2", None)?;
 /// assert_eq!(map.entries().len(), 2);
-/// # Ok::<(), htex_lab::response::ResponseError>(())
+/// # Ok::<(), htex_lab::LabError>(())
 /// ```
 ///
 /// # Errors
@@ -135,7 +157,7 @@ pub fn column_map(
     input: &str,
     output: &str,
     others: Option<&ColumnMap>,
-) -> Result<ColumnMap, ResponseError> {
+) -> Result<ColumnMap, LabError> {
     let mut entries = vec![
         entry(Channel::Input, Role::LateralX, input)?,
         entry(Channel::Output, Role::LateralY, output)?,
@@ -147,16 +169,16 @@ pub fn column_map(
             "the map's {} is not used here: input and output are given by themselves, with their scales",
             axis.role
         );
-        return Err(ResponseError::Columns { problem });
+        return Err(LabError::Columns { problem });
     }
     entries.extend(others.iter().cloned());
-    ColumnMap::new(entries).map_err(|error| ResponseError::Columns { problem: problem_of(error) })
+    ColumnMap::new(entries).map_err(|error| LabError::Columns { problem: problem_of(error) })
 }
 
 /// Uses a scale of 1 if none is given, because the unit of a column does not matter here.
-fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseError> {
+fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, LabError> {
     let mut entry = MapEntry::parse(role, text)
-        .map_err(|error| ResponseError::Column { channel, problem: problem_of(error) })?;
+        .map_err(|error| LabError::Column { channel, problem: problem_of(error) })?;
     entry.scale = entry.scale.or(Some(1.0));
     Ok(entry)
 }

@@ -1,17 +1,16 @@
-//! Settings of measuring a response by name, for the command's flags and the Python package's
-//! keywords.
+//! Settings of measuring a response: the command's flags and the Python package's keywords.
 
+use htex_base::finding::Hint;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
-use super::{Estimator, Excitation, HitOptions, ResponseOptions};
+use super::Estimator;
+use crate::error::LabError;
 
-/// Settings of measuring a response. An absent setting has its default.
-///
-/// ```
-/// use htex_lab::response::{ResponseOptions, ResponseSettings};
-/// let usual = ResponseOptions::from(&ResponseSettings::default());
-/// assert_eq!(usual, ResponseOptions::default());
-/// ```
+/// Smallest number of samples in a window.
+const FEWEST_SAMPLES: f64 = 16.0;
+
+/// Settings of measuring a frequency response.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -75,14 +74,36 @@ pub struct ResponseSettings {
     pub exponential_s: Option<f64>,
 }
 
+/// How the hits of a hammer are found and cut out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct HitSettings {
+    /// Part of the window before the trigger, seconds. The mean of each channel in that part is
+    /// removed.
+    pub(crate) pre_trigger_s: f64,
+    /// Level at which a hit starts, relative to the largest input of its recording. The level used
+    /// is at least 8 times the noise.
+    pub(crate) trigger: f64,
+    /// Size of a second contact in the window, relative to the hit, from which the hit counts as a
+    /// double hit. The size used is at least 8 times the noise.
+    pub(crate) double: f64,
+    /// Force window: the input is kept until this time after the trigger, seconds, and then fades
+    /// to zero over a quarter of that time (half a cosine). It removes the noise of the input
+    /// between hits.
+    pub(crate) force_window_s: Option<f64>,
+    /// Exponential window: both channels are multiplied by `exp(-t / this)` after the trigger,
+    /// seconds. It forces responses that outlast the window to end, and raises their damping by its
+    /// inverse, in 1/s.
+    pub(crate) exponential_s: Option<f64>,
+}
+
 impl Default for ResponseSettings {
+    /// Hits, H1, windows of 1 s, 20 to 1000 Hz.
     fn default() -> Self {
-        let usual = ResponseOptions::default();
         Self {
-            estimator: usual.estimator,
-            window_s: usual.window_s,
-            low_hz: usual.low_hz,
-            high_hz: usual.high_hz,
+            estimator: Estimator::H1,
+            window_s: 1.0,
+            low_hz: 20.0,
+            high_hz: 1000.0,
             input_limit: None,
             output_limit: None,
             continuous: false,
@@ -95,30 +116,102 @@ impl Default for ResponseSettings {
     }
 }
 
-impl From<&ResponseSettings> for ResponseOptions {
-    fn from(settings: &ResponseSettings) -> Self {
-        let usual = HitOptions::default();
-        let hits = HitOptions {
-            pre_trigger_s: settings.pre_trigger_s.unwrap_or(usual.pre_trigger_s),
-            trigger: settings.trigger.unwrap_or(usual.trigger),
-            double: settings.double.unwrap_or(usual.double),
-            force_window_s: settings.force_window_s,
-            exponential_s: settings.exponential_s,
-        };
-        Self {
-            excitation: if settings.continuous {
-                Excitation::Continuous
-            } else {
-                Excitation::Hits(hits)
-            },
-            estimator: settings.estimator,
-            window_s: settings.window_s,
-            low_hz: settings.low_hz,
-            high_hz: settings.high_hz,
-            input_limit: settings.input_limit,
-            output_limit: settings.output_limit,
-        }
+impl ResponseSettings {
+    /// Returns how hits are cut out; `None` for a continuous drive.
+    pub(crate) fn hits(&self) -> Option<HitSettings> {
+        (!self.continuous).then(|| HitSettings {
+            pre_trigger_s: self.pre_trigger_s.unwrap_or(0.02),
+            trigger: self.trigger.unwrap_or(0.1),
+            double: self.double.unwrap_or(0.1),
+            force_window_s: self.force_window_s,
+            exponential_s: self.exponential_s,
+        })
     }
+
+    /// Returns the settings with their defaults, as JSON. Those of hits are in `excitation.hits`;
+    /// for a continuous drive, `excitation` is `continuous`.
+    pub fn resolved(&self) -> Value {
+        let excitation = self.hits().map_or(json!("continuous"), |hits| json!({ "hits": hits }));
+        json!({
+            "excitation": excitation,
+            "estimator": self.estimator,
+            "window_s": self.window_s,
+            "low_hz": self.low_hz,
+            "high_hz": self.high_hz,
+            "input_limit": self.input_limit,
+            "output_limit": self.output_limit,
+        })
+    }
+
+    /// Returns the number of samples in a window. Refuses settings with which no recording can be
+    /// measured.
+    pub(crate) fn check(&self, rate_hz: f64) -> Result<usize, LabError> {
+        let samples = (self.window_s * rate_hz).round();
+        require(
+            ("the window (s)", &["window"]),
+            self.window_s,
+            (FEWEST_SAMPLES..1e15).contains(&samples),
+            &format!("a window needs {FEWEST_SAMPLES} samples or more, at {rate_hz} Hz"),
+        )?;
+        require(
+            ("the lowest frequency (Hz)", &["low"]),
+            self.low_hz,
+            self.low_hz >= 0.0 && self.low_hz < rate_hz / 2.0,
+            "it must be 0 or more, and below half of the sample rate",
+        )?;
+        require(
+            ("the highest frequency (Hz)", &["high"]),
+            self.high_hz,
+            self.high_hz > self.low_hz && self.high_hz.is_finite(),
+            "it must be finite and above the lowest",
+        )?;
+        positive(("the limit of the input", &["input_limit"]), self.input_limit)?;
+        positive(("the limit of the output", &["output_limit"]), self.output_limit)?;
+        if let Some(hits) = self.hits() {
+            hits.check(self.window_s)?;
+        }
+        Ok(samples as usize)
+    }
+}
+
+impl HitSettings {
+    fn check(&self, window_s: f64) -> Result<(), LabError> {
+        require(
+            ("the time before the trigger (s)", &["pre_trigger"]),
+            self.pre_trigger_s,
+            (0.0..0.5 * window_s).contains(&self.pre_trigger_s),
+            "it must be 0 or more, and below half of the window",
+        )?;
+        let trigger: SettingName = ("the trigger", &["trigger"]);
+        for (option, level) in
+            [(trigger, self.trigger), (("the level of a double hit", &["double"]), self.double)]
+        {
+            let is_relative = level > 0.0 && level < 1.0;
+            require(option, level, is_relative, "it is relative and must be between 0 and 1")?;
+        }
+        positive(("the force window (s)", &["force_window"]), self.force_window_s)?;
+        positive(("the exponential window (s)", &["exponential"]), self.exponential_s)
+    }
+}
+
+/// The words for a setting, and its name.
+type SettingName = (&'static str, &'static [&'static str; 1]);
+
+fn positive(option: SettingName, value: Option<f64>) -> Result<(), LabError> {
+    let value = value.unwrap_or(1.0);
+    require(option, value, value.is_finite() && value > 0.0, "it must be finite and above 0")
+}
+
+fn require(
+    (option, name): SettingName,
+    value: f64,
+    holds: bool,
+    problem: &str,
+) -> Result<(), LabError> {
+    if holds {
+        return Ok(());
+    }
+    Err(LabError::Option { option, hint: Hint::new(name), value, problem: problem.to_owned() })
 }
 
 #[cfg(feature = "clap")]

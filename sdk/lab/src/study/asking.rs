@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::study::error::StudyError;
+use crate::error::LabError;
 use crate::study::file::{Attribute, GainMethod, Phase, Scale};
 use crate::study::gain::GainKey;
 use crate::study::lines::{FeltFile, OutputLevels};
@@ -110,7 +110,7 @@ pub trait Clock {
 
 /// How something was played.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Played {
+pub struct Playback {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
     /// Levels that the device was given.
@@ -123,7 +123,7 @@ pub struct Played {
 
 /// Plays trials: a renderer and a device.
 pub trait Rig {
-    type Error: From<StudyError> + std::fmt::Display;
+    type Error: From<LabError> + std::fmt::Display;
 
     /// Plays a stimulus. Calls `ends` for each block and stops as soon as possible once it returns
     /// true.
@@ -134,7 +134,7 @@ pub trait Rig {
         &mut self,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
-    ) -> Result<Played, Self::Error>;
+    ) -> Result<Playback, Self::Error>;
 
     /// Returns what the device was given in the last [`Self::play`] that ended with an error, and
     /// the drive of a display in volts. `None` if the device was not opened.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use htex_base::files::AtFile;
 use htex_base::finding::as_text;
 
-use crate::study::error::StudyError;
+use crate::error::LabError;
 use crate::study::lines::{Answer, FeltFile, Header, Line};
 use crate::study::log;
 
@@ -58,10 +58,10 @@ pub enum OffTarget {
 /// selects the one whose ratings are exported.
 ///
 /// # Errors
-/// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they belong to
+/// [`LabError::NoAnswers`] if the folder has none; [`LabError::OtherVersion`] if they belong to
 /// several versions of a study, or to both simulated and real participants;
-/// [`StudyError::Attribute`]; and errors of reading.
-pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, StudyError> {
+/// [`LabError::Attribute`]; and errors of reading.
+pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, LabError> {
     let sessions = sessions_of(folder)?;
     let answers = sessions.iter().flat_map(|session| &session.answers);
     let all: BTreeSet<String> = answers.map(|answer| answer.attribute.clone()).collect();
@@ -77,7 +77,7 @@ pub(crate) struct Answers {
 }
 
 /// Reads the answers of all participants in a folder. All must belong to one version of a study.
-pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
+pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, LabError> {
     let mut sessions = Vec::new();
     for file in files(folder)? {
         let (header, lines) = log::read(&file)?;
@@ -94,7 +94,7 @@ pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
     Ok(sessions)
 }
 
-fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+fn files(folder: &Path) -> Result<Vec<PathBuf>, LabError> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).reading(folder)? {
         let path = entry.reading(folder)?.path();
@@ -105,13 +105,13 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     // A folder lists its files in any order, and the table must not depend on it.
     files.sort();
     if files.is_empty() {
-        Err(StudyError::NoAnswers { folder: folder.to_owned() })
+        Err(LabError::NoAnswers { folder: folder.to_owned() })
     } else {
         Ok(files)
     }
 }
 
-fn same_study(sessions: &[Answers]) -> Result<(), StudyError> {
+fn same_study(sessions: &[Answers]) -> Result<(), LabError> {
     let Some(first) = sessions.first() else {
         return Ok(());
     };
@@ -130,12 +130,12 @@ fn same_study(sessions: &[Answers]) -> Result<(), StudyError> {
             continue;
         };
         let file = file.clone();
-        return Err(StudyError::OtherVersion { file, changed });
+        return Err(LabError::OtherVersion { file, changed });
     }
     Ok(())
 }
 
-fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyError> {
+fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, LabError> {
     let only = all.first().filter(|_| all.len() == 1);
     let found = match wanted {
         Some(wanted) => all.get(wanted),
@@ -145,13 +145,11 @@ fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyE
         Some(found) => Ok(found.clone()),
         // There is nothing to export yet.
         None if all.is_empty() => Ok(String::new()),
-        None => {
-            Err(StudyError::Attribute { known: Vec::from_iter(all.iter().cloned()).join(", ") })
-        }
+        None => Err(LabError::Attribute { known: Vec::from_iter(all.iter().cloned()).join(", ") }),
     }
 }
 
-fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export, StudyError> {
+fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export, LabError> {
     let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
     csv.write_record(COLUMNS).writing(folder)?;
     let (mut ratings, mut off_target) = (0, 0);

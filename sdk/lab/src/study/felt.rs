@@ -19,13 +19,14 @@ use htex_device::{DeviceError, Input};
 use htex_format::Quantity;
 use serde_json::json;
 
+use crate::error::LabError;
 use crate::record::{
-    Format, Inputs, Reader, RecordError, Required, Signals, TakeData, TakeHeader, TrackerRows,
-    judge, write_signals,
+    Format, Inputs, Reader, Requirements, Signals, TakeData, TakeHeader, TrackerRows, judge,
+    write_signals,
 };
-use crate::study::asking::Played;
-use crate::study::error::StudyError;
+use crate::study::asking::Playback;
 use crate::study::lines::{FeltFile, SourceUsed};
+use crate::study::log::file_hash;
 use crate::study::stimulus::Stimulus;
 
 /// Folder for a participant's recordings.
@@ -73,12 +74,12 @@ pub struct Felt {
 
 /// A recording in progress.
 struct Running {
-    shared: Arc<Shared>,
-    thread: JoinHandle<(Inputs, Result<TakeData, RecordError>)>,
+    shared: Arc<ThreadState>,
+    thread: JoinHandle<(Inputs, Result<TakeData, LabError>)>,
 }
 
 #[derive(Default)]
-struct Shared {
+struct ThreadState {
     stop: AtomicBool,
     failed: AtomicBool,
     /// Seconds until the first played sample reaches the display.
@@ -91,7 +92,7 @@ impl Felt {
     /// sample rate.
     ///
     /// # Errors
-    /// [`RecordError::File`], and [`RecordError::Setup`] if the format cannot have this sample
+    /// [`LabError::File`], and [`LabError::Setup`] if the format cannot have this sample
     /// rate.
     pub fn new(
         setup: FeltSetup,
@@ -99,7 +100,7 @@ impl Felt {
         rate_hz: f64,
         signals: Signals,
         tracker: Option<Box<dyn TrackerRows>>,
-    ) -> Result<Self, RecordError> {
+    ) -> Result<Self, LabError> {
         setup.format.check(rate_hz)?;
         let own = OwnFolder::private(&setup.folder);
         let inside = Path::new(&setup.participant).join(FOLDER);
@@ -129,12 +130,12 @@ impl Felt {
     ///
     /// # Errors
     /// If the source cannot be opened or started, or has another sample rate than before.
-    pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), RecordError> {
+    pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), LabError> {
         // A recording that was not finished may still run.
         self.abort();
         let mut source = (self.open)()?;
         if source.stream().rate_hz != self.rate_hz {
-            return Err(RecordError::Setup {
+            return Err(LabError::Setup {
                 what: "the sample rate of the source",
                 value: source.stream().rate_hz.to_string(),
                 allowed: "it is the one that it had at the beginning of the session",
@@ -152,7 +153,7 @@ impl Felt {
             self.inputs = Some(inputs);
             return Err(error.into());
         }
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(ThreadState::default());
         if self.setup.is_fast {
             let _ = shared.lead_s.set(0.0);
         }
@@ -187,7 +188,7 @@ impl Felt {
             target_speed_mm_s: setup.target.speed_mm_s.filter(|_| moves),
             target_force_n: setup.target.force_n.filter(|_| normal.is_some()),
             tolerance: TOLERANCE,
-            required: Required::NOTHING,
+            required: Requirements::NOTHING,
             format: setup.format,
         }
     }
@@ -217,17 +218,17 @@ impl Felt {
     /// disk. `None` if nothing was recorded.
     ///
     /// # Errors
-    /// The errors of the source, and [`RecordError::File`].
+    /// The errors of the source, and [`LabError::File`].
     pub fn finish(
         &mut self,
         stimulus: &Stimulus,
-        played: &Played,
-    ) -> Result<Option<FeltFile>, StudyError> {
+        played: &Playback,
+    ) -> Result<Option<FeltFile>, LabError> {
         // `end` is called even if nothing is recorded, because it joins a thread that may run.
         let (Some(name), Some(data)) = (&stimulus.felt, self.end()) else {
             return Ok(None);
         };
-        let data = data?;
+        let data = data.map_err(LabError::felt)?;
         let verdict = judge(&data);
         let participant = &self.setup.participant;
         let own = OwnFolder::private(&self.setup.folder);
@@ -249,11 +250,12 @@ impl Felt {
                 "verdict": verdict,
                 "fit": fit.iter().map(|text| within(&self.setup.folder, text)).collect::<Vec<_>>(),
             })
-        })?;
+        })
+        .map_err(LabError::felt)?;
         let file = written.recording.file_name().unwrap_or_default();
         Ok(Some(FeltFile {
             file: format!("{participant}/{FOLDER}/{}", file.to_string_lossy()),
-            blake3: hash(&written.recording)?,
+            blake3: file_hash(&written.recording)?,
             compared: data.header.target_speed_mm_s.or(data.header.target_force_n).is_some(),
             off_target: verdict.reasons,
         }))
@@ -267,7 +269,7 @@ impl Felt {
         let _ = self.end();
     }
 
-    fn end(&mut self) -> Option<Result<TakeData, RecordError>> {
+    fn end(&mut self) -> Option<Result<TakeData, LabError>> {
         let running = self.running.take()?;
         let (inputs, data) = running.thread.join().ok()?;
         self.inputs = Some(inputs);
@@ -287,27 +289,25 @@ fn within(folder: &Path, text: &str) -> String {
     inner.map_or_else(|_| text.to_owned(), |path| path.display().to_string())
 }
 
-/// Returns the BLAKE3 hash of a recording, hexadecimal.
-pub(crate) fn hash(file: &Path) -> Result<String, StudyError> {
-    let bytes = std::fs::read(file).reading(file)?;
-    Ok(blake3::hash(&bytes).to_hex().to_string())
-}
-
 fn read(
     mut reader: Reader,
     header: TakeHeader,
-    shared: &Shared,
-) -> (Inputs, Result<TakeData, RecordError>) {
+    shared: &ThreadState,
+) -> (Inputs, Result<TakeData, LabError>) {
     let mut data = TakeData::empty(header);
-    let taken = take(&mut reader, &mut data, shared);
+    let taken = read_take(&mut reader, &mut data, shared);
     let stopped = reader.source.finish();
-    let result = taken.and(stopped.map_err(RecordError::from));
+    let result = taken.and(stopped.map_err(LabError::from));
     shared.failed.store(result.is_err(), Ordering::Release);
     (reader.inputs, result.map(|()| data))
 }
 
 /// Reads until the recording is complete or no longer wanted.
-fn take(reader: &mut Reader, data: &mut TakeData, shared: &Shared) -> Result<(), RecordError> {
+fn read_take(
+    reader: &mut Reader,
+    data: &mut TakeData,
+    shared: &ThreadState,
+) -> Result<(), LabError> {
     let frames = data.header.frames();
     let mut begin = None;
     while data.frames() < frames && !shared.stop.load(Ordering::Acquire) {
@@ -341,10 +341,10 @@ fn lead(reader: &Reader, begin_s: f64, data: &TakeData) -> usize {
 }
 
 /// Adds to the error of a source that ended how much was recorded until then.
-fn after(error: RecordError, data: &TakeData) -> RecordError {
+fn after(error: LabError, data: &TakeData) -> LabError {
     match error {
-        RecordError::Ended { seconds, kept, .. } => {
-            RecordError::Ended { after_s: data.recorded_s(), seconds, kept }
+        LabError::Ended { seconds, kept, .. } => {
+            LabError::Ended { after_s: data.recorded_s(), seconds, kept }
         }
         error => error,
     }

@@ -11,11 +11,11 @@ use htex_base::finding::as_text;
 use htex_dsp::Band;
 use htex_format::{Asset, Condition, Quantity};
 
+use crate::error::LabError;
 use crate::record::{TakeHeader, header_beside, settings_of};
-use crate::study::error::StudyError;
 use crate::study::export::{OffTarget, sessions_of};
-use crate::study::felt::hash;
 use crate::study::lines::FeltFile;
+use crate::study::log::file_hash;
 
 /// Participant and model in the lines of the real textures.
 const RECORDED: &str = "recorded";
@@ -47,13 +47,13 @@ impl Reference {
     /// Reads the spectrum of a recording. With `strict`, any problem of its signals is an error.
     ///
     /// # Errors
-    /// [`StudyError::Content`] if it cannot be read as a texture from 20 to 1000 Hz.
-    pub fn of_recording(
+    /// [`LabError::Content`] if it cannot be read as a texture from 20 to 1000 Hz.
+    pub fn from_recording(
         take: &Take,
         file: &Path,
         options: &SpectrumOptions,
         strict: bool,
-    ) -> Result<Self, StudyError> {
+    ) -> Result<Self, LabError> {
         let reading = read_take(take, options, strict).map_err(ContentError::in_file(file))?;
         Ok(Self::average(&[reading.part], options).map_err(ContentError::in_file(file))?)
     }
@@ -62,8 +62,8 @@ impl Reference {
     /// or else at its first condition.
     ///
     /// # Errors
-    /// [`StudyError::Content`] if the asset cannot be read or does not have the spectrum.
-    pub fn of_asset(file: &Path, motion: Exploration) -> Result<Self, StudyError> {
+    /// [`LabError::Content`] if the asset cannot be read or does not have the spectrum.
+    pub fn from_asset(file: &Path, motion: Exploration) -> Result<Self, LabError> {
         let asset = Asset::open(file).map_err(ContentError::in_file(file))?;
         let conditions = asset.manifest.conditions.iter().enumerate();
         let off = |condition: &Condition| {
@@ -108,15 +108,15 @@ impl Reference {
 /// by name.
 ///
 /// # Errors
-/// The errors of [`crate::study::export()`]; [`StudyError::NotRecorded`]; and
-/// [`StudyError::Content`] if a recording is not the one of its trial or has no spectrum, or if the
+/// The errors of [`crate::study::export()`]; [`LabError::NotRecorded`]; and
+/// [`LabError::Content`] if a recording is not the one of its trial or has no spectrum, or if the
 /// spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,
     options: &SpectrumOptions,
     off_target: OffTarget,
-) -> Result<FeltSpectra, StudyError> {
+) -> Result<FeltSpectra, LabError> {
     let mut rows = Vec::new();
     let (mut textures, mut quantities) = (BTreeSet::new(), BTreeSet::new());
     let (mut recordings, mut off, mut warnings) = (0, 0, Vec::new());
@@ -166,7 +166,7 @@ pub fn felt_spectra(
         }
     }
     if recordings + off == 0 {
-        return Err(StudyError::NotRecorded { folder: folder.to_owned() });
+        return Err(LabError::NotRecorded { folder: folder.to_owned() });
     }
     for texture in &textures {
         let Some(reference) = recorded.get(texture) else {
@@ -191,19 +191,19 @@ fn part(
     folder: &Path,
     felt: &FeltFile,
     options: &SpectrumOptions,
-) -> Result<SegmentSpectra, StudyError> {
+) -> Result<SegmentSpectra, LabError> {
     let file: PathBuf = felt.file.split('/').fold(folder.to_owned(), |path, part| path.join(part));
     let other = |problem: &str| {
         let problem = format!(
             "it is not the recording that was made in the trial ({problem}); restore it from a copy"
         );
-        StudyError::from(ContentError::new(&file, problem))
+        LabError::from(ContentError::new(&file, problem))
     };
     // The name comes from the answers, and they may come from somebody else.
     if felt.file.split('/').any(|part| matches!(part, "" | "." | "..")) {
         return Err(other("its name leaves the folder of answers"));
     }
-    if hash(&file)? != felt.blake3 {
+    if file_hash(&file)? != felt.blake3 {
         return Err(other("its hash is another one"));
     }
     let beside = file.with_extension("json");
@@ -211,11 +211,11 @@ fn part(
         .reading(&beside)?
         .ok_or("it does not describe a recording")
         .map_err(ContentError::in_file(&beside))?;
-    let take = take(&file, &header).map_err(ContentError::in_file(&file))?;
+    let take = open_take(&file, &header).map_err(ContentError::in_file(&file))?;
     Ok(read_take(&take, options, false).map_err(ContentError::in_file(&file))?.part)
 }
 
-fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
+fn open_take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
     let options = settings_of(file, header).read_options(1)?.into_iter().next().unwrap_or_default();
     // All of a participant's motion is read. The tolerance of 10 % only applies to recordings of
     // textures.
@@ -228,7 +228,7 @@ fn row(participant: &str, texture: &str, model: &str, spectrum: &Reference) -> V
     names.into_iter().chain(magnitudes).collect()
 }
 
-fn table(folder: &Path, rows: &[Vec<String>]) -> Result<String, StudyError> {
+fn table(folder: &Path, rows: &[Vec<String>]) -> Result<String, LabError> {
     let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
     let names = ["participant", "texture", "model"].map(str::to_owned);
     let grid = Band::TACTILE.grid_hz();

@@ -21,16 +21,16 @@ pub enum Line {
     Header(Box<Header>),
     /// The start of a session. Sessions with a simulated clock, which has no date, are not recorded
     /// here.
-    Session(Began),
+    Session(SessionStart),
     /// A key press while the level of a texture rises until it is felt, in the training and in the
     /// gain matching.
     Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
     /// A key press in the gain matching.
-    Gain(Matched),
+    Gain(GainPress),
     /// Something that played was stopped before its end.
-    Stopped(Stopped),
+    Stopped(Stop),
     /// A rest that has ended.
     Rest {
         /// Number of trials before it.
@@ -85,7 +85,7 @@ pub struct Simulated {
 /// The start of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Began {
+pub struct SessionStart {
     /// Date and time in UTC: `2026-11-25T10:25:25Z`.
     pub date: String,
     /// Time, milliseconds, as in ratings.
@@ -256,7 +256,7 @@ pub struct Answer {
 /// A key press in the gain matching.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Matched {
+pub struct GainPress {
     pub texture: String,
     pub key: GainKey,
     /// The gain after the key press, decibels relative to the maximum.
@@ -333,7 +333,7 @@ pub struct OutputLevels {
 /// Something that played was stopped before its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Stopped {
+pub struct Stop {
     pub phase: Phase,
     pub texture: String,
     pub model: String,

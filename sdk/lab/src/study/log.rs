@@ -1,13 +1,17 @@
 //! The file with one participant's answers: append-only, and on disk before the next trial.
 
+use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use htex_base::files::{AtFile, FileError, OwnFolder};
 
-use crate::study::error::StudyError;
-use crate::study::lines::{Header, Line, SourceUsed};
+use crate::error::LabError;
+use crate::study::Study;
+use crate::study::lines::{DeviceUsed, Header, Line, SourceUsed, VERSION};
+use crate::study::plan::ParticipantPlan;
+use crate::study::read::files_of;
 
 /// Returns the path of a participant's answers in a folder: `P07.jsonl`.
 pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
@@ -31,10 +35,10 @@ impl Log {
     /// belong to this session. A link is never followed.
     ///
     /// # Errors
-    /// [`StudyError::OtherVersion`] if the answers were begun with another header;
-    /// [`StudyError::Busy`] while another program has them open; [`StudyError::Line`] if a line is
+    /// [`LabError::OtherVersion`] if the answers were begun with another header;
+    /// [`LabError::Busy`] while another program has them open; [`LabError::Line`] if a line is
     /// damaged; and errors of the file system, including for a link or a pipe.
-    pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), StudyError> {
+    pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), LabError> {
         let (folder, name) = place(path).reading(path)?;
         let mut file = match folder.open_to_append(&name) {
             Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -47,8 +51,7 @@ impl Log {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                let file = path.to_owned();
-                return Err(StudyError::Busy { file });
+                return Err(LabError::busy(path, "running this participant"));
             }
             Err(TryLockError::Error(error)) => return Err(FileError::reading(path, error).into()),
         }
@@ -69,9 +72,9 @@ impl Log {
     /// Appends a line and returns once it is on disk.
     ///
     /// # Errors
-    /// [`StudyError::File`]. The line may then be incomplete; it is removed when the file is opened
+    /// [`LabError::File`]. The line may then be incomplete; it is removed when the file is opened
     /// again.
-    pub fn append(&mut self, line: &Line) -> Result<(), StudyError> {
+    pub fn append(&mut self, line: &Line) -> Result<(), LabError> {
         let text = text(line).writing(&self.path)?;
         let synced = self.whole_lines().and_then(|()| {
             self.file.write_all(text.as_bytes())?;
@@ -97,7 +100,7 @@ impl Log {
 
 /// Reads the header and the lines of a file of answers. Leaves out an incomplete last line, which a
 /// running or killed session may leave.
-pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), StudyError> {
+pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), LabError> {
     let bytes = std::fs::read(path).reading(path)?;
     let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
     parse(path, &bytes[..whole])
@@ -115,7 +118,7 @@ fn place(path: &Path) -> io::Result<(OwnFolder, PathBuf)> {
 
 /// Writes the header under a temporary name and then renames the file, so that no file is without a
 /// header. Returns once it is on disk.
-fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
+fn begin(path: &Path, header: &Header) -> Result<(), LabError> {
     let begun = place(path).and_then(|(folder, name)| {
         let text = text(&Line::Header(Box::new(header.clone())))?;
         folder.replace(&name, |file| file.write_all(text.as_bytes()))
@@ -123,9 +126,9 @@ fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
     Ok(begun.writing(path)?)
 }
 
-fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
+fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), LabError> {
     let damaged =
-        |line: usize, problem: String| StudyError::Line { file: path.to_owned(), line, problem };
+        |line: usize, problem: String| LabError::Line { file: path.to_owned(), line, problem };
     let mut lines = bytes
         .split(|b| *b == b'\n')
         .enumerate()
@@ -144,7 +147,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
 }
 
 /// Compares everything in two headers except the program and the date.
-fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyError> {
+fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), LabError> {
     let changed = if begun.htex_answers != now.htex_answers {
         format!("the file has version {}", begun.htex_answers)
     } else if begun.participant != now.participant {
@@ -164,7 +167,7 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyEr
     } else {
         return Ok(());
     };
-    Err(StudyError::OtherVersion { file: path.to_owned(), changed })
+    Err(LabError::OtherVersion { file: path.to_owned(), changed })
 }
 
 /// Returns how two sources differ.
@@ -188,4 +191,44 @@ pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a s
     let mut names = begun.files.keys().chain(now.files.keys());
     let differs = |name: &&String| begun.files.get(*name) != now.files.get(*name);
     names.find(differs).map(String::as_str)
+}
+
+impl Header {
+    /// Creates the header of a participant's session. `path` is the study's file. The contents of
+    /// this file and of all files that it names are hashed.
+    ///
+    /// # Errors
+    /// [`LabError::File`] if one of the files cannot be read.
+    pub fn new(
+        study: &Study,
+        path: &Path,
+        plan: &ParticipantPlan,
+        device: DeviceUsed,
+        tool: String,
+    ) -> Result<Self, LabError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut files = BTreeMap::from([("study".to_owned(), file_hash(path)?)]);
+        for file in files_of(study) {
+            let name = format!("file {}", file.display());
+            files.insert(name, file_hash(&folder.join(&file))?);
+        }
+        Ok(Self {
+            htex_answers: VERSION.to_owned(),
+            study: study.name.clone(),
+            participant: plan.participant.clone(),
+            files,
+            device,
+            begun: None,
+            ratings: plan.trials.len() * study.attributes.len(),
+            source: None,
+            tool,
+            simulated: None,
+        })
+    }
+}
+
+/// Returns the BLAKE3 hash of a file, hexadecimal.
+pub(crate) fn file_hash(file: &Path) -> Result<String, LabError> {
+    let bytes = std::fs::read(file).reading(file)?;
+    Ok(blake3::hash(&bytes).to_hex().to_string())
 }

@@ -12,7 +12,7 @@
 //!
 //! From a study to ratings:
 //!
-//! 1. `read`, `check`: read `study.toml` and check the files it names. Problems become findings.
+//! 1. `read`: reads `study.toml` and checks the files it names. Problems become findings.
 //!    Motion, device and assets are checked by the rules of scenes.
 //! 2. `plan`: the order for every participant, determined only by the file.
 //! 3. `session`: one participant's way through the plan. The same function computes the `progress`,
@@ -23,19 +23,14 @@
 //! 5. `export`: the table of all ratings. `felt_spectra`: the table of what the participants felt.
 
 mod asking;
-mod check;
 mod date;
-mod error;
 mod export;
 mod felt;
 mod felt_spectra;
 mod file;
 mod gain;
-mod header;
 mod lines;
 mod log;
-mod meter;
-mod order;
 mod page;
 mod plan;
 mod progress;
@@ -47,9 +42,8 @@ mod session;
 mod simulated;
 mod stimulus;
 
-pub use asking::{Asker, Clock, Key, Played, Rig, View};
+pub use asking::{Asker, Clock, Key, Playback, Rig, View};
 pub use date::utc;
-pub use error::StudyError;
 pub use export::{Export, OffTarget, export};
 pub use felt::{Felt, FeltSetup, OpenSource};
 pub use felt_spectra::{FeltSpectra, Reference, felt_spectra};
@@ -59,17 +53,16 @@ pub use file::{
 };
 pub use gain::{GainKey, Match};
 pub use lines::{
-    Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, OutputLevels, Rise, Simulated,
-    SourceUsed, StopReason, Stopped, answers_schema,
+    Answer, DeviceUsed, FeltFile, GainPress, Header, Line, OutputLevels, Rise, SessionStart,
+    Simulated, SourceUsed, Stop, StopReason, answers_schema,
 };
 pub use log::{Log, participant_file};
-pub use meter::Meter;
-pub use page::{Page, PageOptions, Touch, Touched};
+pub use page::{Page, PageOptions, Touch, TouchMotion};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use progress::Step;
-pub use read::{check_files, files_of, read_study, study_schema};
+pub use read::{check_files, read_study, study_schema};
 pub use rules::{RULES, findings_page};
-pub use run::{Ended, run};
-pub use session::{Presented, Session};
+pub use run::{SessionEnd, run};
+pub use session::{Presentation, Session};
 pub use simulated::SimulatedParticipant;
-pub use stimulus::{Stimulus, full_drive, scene_of, set_gain};
+pub use stimulus::{Meter, Stimulus, full_drive, scene_of, set_gain};

@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::error::LabError;
 use crate::page::{Content, LocalPage};
 use crate::study::asking::{Asker, Key, View};
-use crate::study::error::StudyError;
 use crate::study::gain::{GainKey, takes};
 
 /// A page that has not reported its finger for this long may be gone. Its finger counts as lifted.
@@ -32,7 +32,7 @@ pub struct PageOptions {
 
 /// Motion of the finger on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touched {
+pub struct TouchMotion {
     /// Speed, mm/s; negative to the left; NaN if the page did not report one.
     pub speed_mm_s: f64,
     /// Whether the finger is on the page.
@@ -41,11 +41,11 @@ pub struct Touched {
 
 /// The finger on a page.
 #[derive(Clone)]
-pub struct Touch(Arc<Asked>);
+pub struct Touch(Arc<PageState>);
 
 impl Touch {
     /// Returns its current motion; `None` if the page has not reported for 300 ms.
-    pub fn now(&self) -> Option<Touched> {
+    pub fn now(&self) -> Option<TouchMotion> {
         let state = self.0.lock();
         let (touched, at) = state.touched?;
         (touched.is_down && at.elapsed() < SILENT).then_some(touched)
@@ -54,12 +54,12 @@ impl Touch {
 
 /// A page that is served as long as this value lives.
 pub struct Page {
-    asked: Arc<Asked>,
+    asked: Arc<PageState>,
     served: LocalPage,
 }
 
 /// What is being asked, shared by the server's thread and the session's thread.
-struct Asked(Mutex<State>);
+struct PageState(Mutex<State>);
 
 struct State {
     options: PageOptions,
@@ -77,17 +77,17 @@ struct State {
     /// Whether a tab has stopped the session.
     is_stopped: bool,
     /// The last motion and its time.
-    touched: Option<(Touched, Instant)>,
+    touched: Option<(TouchMotion, Instant)>,
 }
 
 impl Page {
     /// Serves the page on this machine.
     ///
     /// # Errors
-    /// [`StudyError::Page`] if the port is taken or there are no random numbers.
-    pub fn open(options: PageOptions) -> Result<Self, StudyError> {
+    /// [`LabError::Page`] if the port is taken or there are no random numbers.
+    pub fn open(options: PageOptions) -> Result<Self, LabError> {
         let port = options.port;
-        let asked = Arc::new(Asked(Mutex::new(State::new(options))));
+        let asked = Arc::new(PageState(Mutex::new(State::new(options))));
         Ok(Self { served: LocalPage::open(port, Arc::clone(&asked))?, asked })
     }
 
@@ -122,17 +122,17 @@ impl Drop for Page {
     }
 }
 
-impl Asked {
+impl PageState {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Content for Asked {
+impl Content for PageState {
     const HTML: &'static str = include_str!("page.html");
     const REQUESTS: &'static [&'static str] = &["key", "motion"];
 
-    fn take(&self, request: &str, body: &Value) {
+    fn handle(&self, request: &str, body: &Value) {
         let mut state = self.lock();
         match request {
             "key" => state.press(body),
@@ -148,7 +148,7 @@ impl Content for Asked {
 
 /// The state in the form that the page receives.
 #[derive(Serialize)]
-struct Shown<'a> {
+struct PageReply<'a> {
     step: u64,
     view: &'a View,
     done: usize,
@@ -185,7 +185,7 @@ impl State {
 
     fn reply(&mut self) -> Value {
         self.seen = self.step;
-        json!(Shown {
+        json!(PageReply {
             step: self.step,
             view: &self.view,
             done: self.done,
@@ -215,7 +215,7 @@ impl State {
     fn touch(&mut self, body: &Value) {
         let speed_mm_s = body.get("speed_mm_s").and_then(Value::as_f64);
         let is_down = body.get("down").and_then(Value::as_bool).unwrap_or(false);
-        let touched = Touched { speed_mm_s: speed_mm_s.unwrap_or(f64::NAN), is_down };
+        let touched = TouchMotion { speed_mm_s: speed_mm_s.unwrap_or(f64::NAN), is_down };
         self.touched = Some((touched, Instant::now()));
     }
 }

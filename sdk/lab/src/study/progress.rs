@@ -6,7 +6,7 @@
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
-use crate::study::lines::{Answer, Line, Matched, Rise, Stopped};
+use crate::study::lines::{Answer, GainPress, Line, Rise, Stop};
 use crate::study::plan::{ParticipantPlan, Trial};
 
 /// Largest allowed difference between the level that a line states and the level that its key
@@ -194,7 +194,7 @@ impl Progress {
         level.ok_or_else(wrong)?.press(line.key, line.gain_db, line.reference_rms)
     }
 
-    fn press(&mut self, line: &Matched) -> Result<(), String> {
+    fn press(&mut self, line: &GainPress) -> Result<(), String> {
         let wrong = || format!("this key for {} does not come next", line.texture);
         let mut open = self.gains.iter_mut();
         let level = open.find(|level| !level.matching.is_found());
@@ -261,7 +261,7 @@ fn gains(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
 }
 
 /// Checks that the line stops what currently plays.
-fn stops(step: &Step, line: &Stopped) -> Result<(), String> {
+fn stops(step: &Step, line: &Stop) -> Result<(), String> {
     let is_this = match step {
         Step::Rate(phase, trial, _) => {
             (*phase, &trial.texture, &trial.model) == (line.phase, &line.texture, &line.model)

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use crate::study::asking::{Asker, Clock, Key, Played, Rig, View};
-use crate::study::error::StudyError;
+use crate::error::LabError;
+use crate::study::asking::{Asker, Clock, Key, Playback, Rig, View};
 use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
 use crate::study::lines::StopReason;
 use crate::study::plan::Trial;
 use crate::study::progress::Step;
-use crate::study::session::{Presented, Session};
+use crate::study::session::{Presentation, Session};
 use crate::study::simulated::SimulatedParticipant;
 use crate::study::stimulus::Stimulus;
 
@@ -22,7 +22,7 @@ const MOST_REPEATS: u32 = 2;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ended {
+pub enum SessionEnd {
     /// The session is over.
     Done,
     /// It was left before its end, and continues when it is run again.
@@ -32,14 +32,14 @@ pub enum Ended {
 /// Runs a session to its end, or until it is left. Each answer is on disk before the next trial.
 ///
 /// # Errors
-/// [`StudyError`], and errors of the rig.
+/// [`LabError`], and errors of the rig.
 pub fn run<R: Rig>(
     session: &mut Session<'_>,
     rig: &mut R,
     asker: &mut dyn Asker,
     clock: &mut dyn Clock,
     simulated: Option<&SimulatedParticipant>,
-) -> Result<Ended, R::Error> {
+) -> Result<SessionEnd, R::Error> {
     clock.go_on_at(session.last_ms());
     if let Some(date) = clock.date() {
         session.begin(date, clock.now_ms())?;
@@ -51,7 +51,7 @@ pub fn run<R: Rig>(
         clock,
         simulated,
         felt: None,
-        presented: Presented::default(),
+        presented: Presentation::default(),
         notice: None,
     };
     loop {
@@ -63,11 +63,11 @@ pub fn run<R: Rig>(
             Step::Rest { seconds, .. } => run.rest(seconds)?,
             Step::Done => {
                 run.show(&View::Done);
-                return Ok(Ended::Done);
+                return Ok(SessionEnd::Done);
             }
         };
         if !goes_on {
-            return Ok(Ended::Left);
+            return Ok(SessionEnd::Left);
         }
     }
 }
@@ -82,7 +82,7 @@ struct Run<'r, 's, R: Rig> {
     /// being matched.
     felt: Option<(Phase, String)>,
     /// How the trial that was felt last was played.
-    presented: Presented,
+    presented: Presentation,
     /// Notice for the next view.
     notice: Option<String>,
 }
@@ -144,7 +144,7 @@ impl<R: Rig> Run<'_, '_, R> {
     /// Plays a trial to its end, and starts it again if the device ran dry; false if the session is
     /// left.
     fn play(&mut self, phase: Phase, stimulus: &Stimulus) -> Result<bool, R::Error> {
-        self.presented = Presented::default();
+        self.presented = Presentation::default();
         let mut left = false;
         let played = loop {
             if !self.ready(phase, &stimulus.texture) {
@@ -166,7 +166,7 @@ impl<R: Rig> Run<'_, '_, R> {
         if left || self.rig.is_interrupted() {
             return self.stopped(left, played);
         }
-        self.presented = Presented {
+        self.presented = Presentation {
             drive_v: played.drive_v,
             output: Some(played.output),
             stops: self.session.stops(),
@@ -178,10 +178,10 @@ impl<R: Rig> Run<'_, '_, R> {
     }
 
     /// Records that something was left while it played. Returns false, which ends the session.
-    fn stopped(&mut self, left: bool, played: Played) -> Result<bool, R::Error> {
+    fn stopped(&mut self, left: bool, played: Playback) -> Result<bool, R::Error> {
         let reason = if left { StopReason::Left } else { StopReason::Interrupted };
         let at_ms = self.clock.now_ms();
-        let Played { drive_v, output, .. } = played;
+        let Playback { drive_v, output, .. } = played;
         self.session.stopped(reason, drive_v, Some(output), at_ms)?;
         Ok(false)
     }
@@ -197,13 +197,13 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(())
     }
 
-    /// Plays once. `None` if the device ran dry and it must be played again; [`Presented::repeats`]
+    /// Plays once. `None` if the device ran dry and it must be played again; [`Presentation::repeats`]
     /// counts this.
     fn attempt(
         &mut self,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut(&mut dyn Asker) -> bool,
-    ) -> Result<Option<Played>, R::Error> {
+    ) -> Result<Option<Playback>, R::Error> {
         let asker = &mut *self.asker;
         let error = match self.rig.play(stimulus, &mut || ends(&mut *asker)) {
             Err(error) => error,
@@ -215,7 +215,7 @@ impl<R: Rig> Run<'_, '_, R> {
         }
         if self.presented.repeats == MOST_REPEATS {
             let (times, error) = (MOST_REPEATS + 1, error.to_string());
-            return Err(StudyError::RanDry { times, error }.into());
+            return Err(LabError::RanDry { times, error }.into());
         }
         self.presented.repeats += 1;
         self.say(format!("the device ran dry, and {} is played again ({error})", stimulus.file));
@@ -248,7 +248,7 @@ impl<R: Rig> Run<'_, '_, R> {
         if let Some(simulated) = self.simulated {
             let (texture, model) = (&trial.texture, &trial.model);
             let error_db = self.rig.band_error_db(texture, model).ok_or_else(|| {
-                StudyError::NoBandError { texture: texture.clone(), model: model.clone() }
+                LabError::NoBandError { texture: texture.clone(), model: model.clone() }
             })?;
             let response_ms = simulated.response_ms(phase, trial, &asked.name);
             self.clock.pass(Duration::from_millis(response_ms));
@@ -283,7 +283,7 @@ impl<R: Rig> Run<'_, '_, R> {
             }
             self.felt = Some(this);
         }
-        self.presented = Presented::default();
+        self.presented = Presentation::default();
         let (key, played) = match self.simulated {
             Some(simulated) => {
                 let seconds = self.session.study().trial_s;
@@ -312,7 +312,7 @@ impl<R: Rig> Run<'_, '_, R> {
         &mut self,
         stimulus: &Stimulus,
         matching: &Match,
-    ) -> Result<(Option<GainKey>, Played), R::Error> {
+    ) -> Result<(Option<GainKey>, Playback), R::Error> {
         self.show(&View::Matching {
             texture: stimulus.texture.clone(),
             method: matching.method(),

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
+use crate::error::LabError;
 use crate::study::Study;
-use crate::study::asking::Played;
-use crate::study::error::StudyError;
+use crate::study::asking::Playback;
 use crate::study::file::Phase;
 use crate::study::gain::{GainKey, Match};
 use crate::study::lines::{
-    Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, OutputLevels, Rise, StopReason,
-    Stopped,
+    Answer, DeviceUsed, FeltFile, GainPress, Header, Line, OutputLevels, Rise, SessionStart, Stop,
+    StopReason,
 };
 use crate::study::log::{Log, participant_file};
 use crate::study::plan::{ParticipantPlan, Trial};
@@ -32,7 +32,7 @@ pub struct Session<'a> {
 
 /// How a trial was played before it was rated.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Presented {
+pub struct Presentation {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
     /// Levels that the device was given.
@@ -49,19 +49,19 @@ impl<'a> Session<'a> {
     /// Opens a session in a folder: a new session, or one that continues where it ended.
     ///
     /// # Errors
-    /// The errors of [`Log::open`], and [`StudyError::Line`] if a line does not belong to the plan.
+    /// The errors of [`Log::open`], and [`LabError::Line`] if a line does not belong to the plan.
     pub fn open(
         study: &'a Study,
         plan: &'a ParticipantPlan,
         folder: &Path,
         header: &Header,
-    ) -> Result<Self, StudyError> {
+    ) -> Result<Self, LabError> {
         let path = participant_file(folder, &plan.participant);
         let (log, lines) = Log::open(&path, header)?;
         let mut progress = Progress::new(study, plan);
         for (i, line) in lines.iter().enumerate() {
             let applied = progress.apply(study, plan, line);
-            applied.map_err(|problem| StudyError::Line {
+            applied.map_err(|problem| LabError::Line {
                 file: path.clone(),
                 // The header is line 1 of the file.
                 line: i + 2,
@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns the time of the last line, milliseconds; 0 before the first.
-    pub fn last_ms(&self) -> u64 {
+    pub(crate) fn last_ms(&self) -> u64 {
         self.progress.last_ms()
     }
 
@@ -133,7 +133,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns what plays while the level of a texture rises or its gain is matched.
-    pub fn matching_stimulus(
+    pub(crate) fn matching_stimulus(
         &self,
         phase: Phase,
         texture: &str,
@@ -171,9 +171,9 @@ impl<'a> Session<'a> {
     /// Records that a session begins at a date ([`crate::study::utc`]), with its device.
     ///
     /// # Errors
-    /// [`StudyError::File`].
-    pub fn begin(&mut self, date: String, at_ms: u64) -> Result<(), StudyError> {
-        self.record(Line::Session(Began {
+    /// [`LabError::File`].
+    pub fn begin(&mut self, date: String, at_ms: u64) -> Result<(), LabError> {
+        self.record(Line::Session(SessionStart {
             date,
             at_ms,
             device: self.device.clone(),
@@ -185,15 +185,15 @@ impl<'a> Session<'a> {
     /// Records a rating for the current step, and how its trial was played.
     ///
     /// # Errors
-    /// [`StudyError::File`], and [`StudyError::Line`] if the current step does not accept this
+    /// [`LabError::File`], and [`LabError::Line`] if the current step does not accept this
     /// rating.
     pub fn rate(
         &mut self,
         rating: u8,
         response_ms: u64,
         at_ms: u64,
-        presented: Presented,
-    ) -> Result<(), StudyError> {
+        presented: Presentation,
+    ) -> Result<(), LabError> {
         let Step::Rate(phase, trial, attribute) = self.step() else {
             return Err(self.misplaced("no trial is rated now"));
         };
@@ -226,7 +226,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The errors of [`Self::rate`].
-    pub fn press(&mut self, key: GainKey, played: &Played, at_ms: u64) -> Result<(), StudyError> {
+    pub fn press(&mut self, key: GainKey, played: &Playback, at_ms: u64) -> Result<(), LabError> {
         let Step::Match { phase, texture, model, mut matching } = self.step() else {
             return Err(self.misplaced("no gain is matched now"));
         };
@@ -253,7 +253,7 @@ impl<'a> Session<'a> {
                 simulated,
             })
         } else {
-            Line::Gain(Matched {
+            Line::Gain(GainPress {
                 texture,
                 key,
                 gain_db,
@@ -279,7 +279,7 @@ impl<'a> Session<'a> {
         drive_v: Option<f64>,
         output: Option<OutputLevels>,
         at_ms: u64,
-    ) -> Result<(), StudyError> {
+    ) -> Result<(), LabError> {
         let (phase, texture, model, gain_db) = match self.step() {
             Step::Rate(phase, trial, _) => {
                 let gain_db = self.stimulus(phase, &trial).gain_db;
@@ -290,7 +290,7 @@ impl<'a> Session<'a> {
             }
             Step::Rest { .. } | Step::Done => return Err(self.misplaced("nothing plays now")),
         };
-        self.record(Line::Stopped(Stopped {
+        self.record(Line::Stopped(Stop {
             phase,
             texture,
             model,
@@ -307,7 +307,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// The errors of [`Self::rate`].
-    pub fn rested(&mut self, at_ms: u64) -> Result<(), StudyError> {
+    pub fn rested(&mut self, at_ms: u64) -> Result<(), LabError> {
         let Step::Rest { after, .. } = self.step() else {
             return Err(self.misplaced("there is no rest now"));
         };
@@ -316,15 +316,15 @@ impl<'a> Session<'a> {
     }
 
     /// Applies the line before writing it, so that only valid lines are written.
-    fn record(&mut self, line: Line) -> Result<(), StudyError> {
+    fn record(&mut self, line: Line) -> Result<(), LabError> {
         let applied = self.progress.apply(self.study, self.plan, &line);
         applied.map_err(|problem| self.misplaced(&problem))?;
         self.log.append(&line)
     }
 
-    fn misplaced(&self, problem: &str) -> StudyError {
+    fn misplaced(&self, problem: &str) -> LabError {
         // The line is not in the file, so it has no number.
-        StudyError::Line { file: self.log.path().to_owned(), line: 0, problem: problem.to_owned() }
+        LabError::Line { file: self.log.path().to_owned(), line: 0, problem: problem.to_owned() }
     }
 }
 

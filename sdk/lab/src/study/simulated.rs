@@ -64,7 +64,7 @@ impl SimulatedParticipant {
 
     /// Returns its next key while a texture's gain is matched. It wants a different gain for each
     /// texture.
-    pub fn gain_key(&self, texture: &str, matching: &Match) -> GainKey {
+    pub(crate) fn gain_key(&self, texture: &str, matching: &Match) -> GainKey {
         let mut dice = Dice::new(self.seed, &["gain", &self.name, texture]);
         let share = (dice.bits() >> 11) as f64 / (1u64 << 53) as f64;
         let wanted_db = GAIN_DB.0 + share * (GAIN_DB.1 - GAIN_DB.0);

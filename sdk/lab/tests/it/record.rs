@@ -7,7 +7,8 @@ use std::fs;
 
 use htex_author::Exploration;
 use htex_author::recording::{ReadOptions, read_recording};
-use htex_lab::record::{Format, Guidance, KnownTake, Outcome, RecordError, Required};
+use htex_lab::LabError;
+use htex_lab::record::{Format, Guidance, KnownTake, Outcome, Requirements};
 use recording::{RATE_HZ, Settings, record, source, sweeps, take};
 
 #[test]
@@ -56,9 +57,9 @@ fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
     let source = source(folder.path(), &[lifted.collect(), whole.clone()].concat());
     let guidance =
         Guidance { speed_mm_s: Some(80.0), force_n: Some(0.4), tolerance: 0.1, stroke_mm: 80.0 };
-    let required = Required {
-        on_target: Required::USUAL_ON_TARGET,
-        sweeps: Required::usual_sweeps(&guidance, 10.0),
+    let required = Requirements {
+        on_target: Requirements::USUAL_ON_TARGET,
+        sweeps: Requirements::usual_sweeps(&guidance, 10.0),
     };
     assert_eq!(required.sweeps, 4);
     let settings = Settings {
@@ -97,7 +98,7 @@ fn when_no_take_keeps_to_its_target_that_is_an_error_and_all_are_kept_aside() {
         ..Settings::default()
     };
     let error = record(folder.path(), &source, &settings).unwrap_err();
-    assert!(matches!(error, RecordError::OffTarget { attempts: 2, .. }), "{error}");
+    assert!(matches!(error, LabError::OffTarget { attempts: 2, .. }), "{error}");
     assert!(folder.path().join("rejected/take-002.csv").exists());
 }
 
@@ -108,13 +109,11 @@ fn a_source_that_ends_and_a_person_who_leaves_lose_nothing() {
     let long = Settings { seconds: 6.0, ..Settings::default() };
     let error = record(folder.path(), &source, &long).unwrap_err();
     let text = error.to_string();
-    let RecordError::Ended { after_s, kept: Some(kept), .. } = error else {
-        unreachable!("{text}")
-    };
+    let LabError::Ended { after_s, kept: Some(kept), .. } = error else { unreachable!("{text}") };
     assert!((after_s - 4.0).abs() < 0.01 && text.contains("incomplete"), "{text}");
     assert_eq!(read_recording(&kept, &ReadOptions::default()).unwrap().samples(), 8_000);
     let left = Settings { stop_after: 80, ..Settings::default() };
-    let RecordError::Left { kept: Some(kept) } = record(folder.path(), &source, &left).unwrap_err()
+    let LabError::Left { kept: Some(kept) } = record(folder.path(), &source, &left).unwrap_err()
     else {
         unreachable!("it was left")
     };

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::recording::{ReadOptions, read_recording};
 use htex_format::Quantity;
-use htex_lab::record::{Format, Outcome, PartFile, Required, TakeHeader, read_part, recover};
+use htex_lab::record::{Format, Outcome, PartFile, Requirements, TakeHeader, read_part, recover};
 use proptest::prelude::*;
 use recording::{RATE_HZ, Settings, record, sweeps};
 
@@ -30,7 +30,7 @@ fn header(seconds: f64) -> TakeHeader {
         target_speed_mm_s: None,
         target_force_n: None,
         tolerance: 0.1,
-        required: Required::NOTHING,
+        required: Requirements::NOTHING,
         format: Format::Csv,
     }
 }

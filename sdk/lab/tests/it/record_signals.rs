@@ -8,7 +8,8 @@ use std::path::Path;
 use htex_author::Exploration;
 use htex_author::recording::{ReadOptions, read_recording};
 use htex_format::Quantity;
-use htex_lab::record::{Calibration, RecordError, Signals, TableTracker, Tare};
+use htex_lab::LabError;
+use htex_lab::record::{Calibration, Signals, TableTracker, Tare};
 use recording::{RATE_HZ, Settings, record, record_with, sweeps};
 
 #[test]
@@ -57,7 +58,7 @@ fn a_sensor_that_drifts_is_tared_before_each_take() {
         .map(|value| (value.as_f64().unwrap() * 1e9).round() / 1e9);
     assert_eq!(offsets, [0.25, 0.8]);
     let once = record(folder.path(), &source, &settings(Tare::Once));
-    assert!(matches!(once, Err(RecordError::OffTarget { .. })), "{once:?}");
+    assert!(matches!(once, Err(LabError::OffTarget { .. })), "{once:?}");
 }
 
 #[test]
@@ -85,7 +86,7 @@ fn a_tracker_is_recorded_beside_and_gives_the_speed() {
         ..Settings::default()
     };
     let error = record(folder.path(), &source, &settings).unwrap_err();
-    assert!(matches!(error, RecordError::NotMeasured { what: "speed", .. }), "{error}");
+    assert!(matches!(error, LabError::NotMeasured { what: "speed", .. }), "{error}");
     let tracker = TableTracker::open(&tracker, None).unwrap();
     let taken = record_with(folder.path(), &source, &settings, Some(Box::new(tracker))).unwrap();
     let speed = taken.verdict.speed_mm_s.unwrap();

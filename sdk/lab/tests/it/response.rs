@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 
 use htex_author::recording::response_from_bytes;
 use htex_dsp::noise::GaussianNoise;
+use htex_lab::LabError;
 use htex_lab::response::{
-    Channel, Estimator, Excitation, HitOptions, MeasuredResponse, Reason, Record, RecordProblem,
-    ResponseError, ResponseOptions, measure,
+    Channel, Estimator, MeasuredResponse, Reason, Record, ResponseSettings, measure,
 };
 
 const RATE_HZ: f64 = 10_000.0;
@@ -66,8 +66,11 @@ fn noisy(signal: &[f64], relative_db: f64, seed: u64) -> Vec<f64> {
     signal.iter().map(|x| x + rms * f64::from(noise.next_sample())).collect()
 }
 
-fn hits(options: HitOptions) -> ResponseOptions {
-    ResponseOptions::default().with_excitation(Excitation::Hits(options))
+/// Returns the default settings with a change.
+fn with(change: impl FnOnce(&mut ResponseSettings)) -> ResponseSettings {
+    let mut settings = ResponseSettings::default();
+    change(&mut settings);
+    settings
 }
 
 /// Records ten hits of a rig, with noise 30 dB below the signal on both channels.
@@ -90,8 +93,9 @@ fn a_resonance_is_recovered_through_noise() {
         let (peak_hz, peak) = rig.peak();
         let record = ten_hits(&rig, seed);
         for estimator in [Estimator::H1, Estimator::H2, Estimator::Hv] {
-            for hit in [HitOptions::default(), HitOptions::default().with_force_window_s(0.005)] {
-                let options = hits(hit).with_estimator(estimator);
+            for force_window_s in [None, Some(0.005)] {
+                let options =
+                    ResponseSettings { estimator, force_window_s, ..ResponseSettings::default() };
                 let measured = measure(std::slice::from_ref(&record), &options).unwrap();
                 assert_eq!((measured.averages, measured.resolution_hz), (10, 1.0));
                 let found = measured.peak.unwrap();
@@ -110,7 +114,7 @@ fn without_noise_the_coherence_is_one_and_the_file_is_read_back() {
     let input = pulses(4.0, &[(0.2, 10.0), (1.4, 12.0), (2.6, 9.0)]);
     let output = rig.filter(&input);
     let record = Record::new("clean.csv", RATE_HZ, input, output).unwrap();
-    let measured = measure(&[record], &ResponseOptions::default()).unwrap();
+    let measured = measure(&[record], &ResponseSettings::default()).unwrap();
     assert!(measured.coherence.iter().all(|c| (c - 1.0).abs() < 1e-9));
     assert!(measured.relative_error.iter().all(|e| *e < 1e-4));
     // The phase of a resonance turns by half a turn, and crosses -90 degrees at its frequency.
@@ -137,7 +141,7 @@ fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     let output = noisy(&rig.filter(&input), -30.0, 7);
     let input: Vec<f64> = noisy(&input, -40.0, 8).iter().map(|x| x.min(15.0)).collect();
     let record = Record::new("hits.csv", RATE_HZ, input, output).unwrap();
-    let measured = measure(std::slice::from_ref(&record), &ResponseOptions::default()).unwrap();
+    let measured = measure(std::slice::from_ref(&record), &ResponseSettings::default()).unwrap();
     let reasons: Vec<(f64, Option<&Reason>)> =
         measured.pieces.iter().map(|piece| (piece.time_s, piece.thrown_out.as_ref())).collect();
     assert_eq!(reasons.len(), 6, "{reasons:?}");
@@ -154,7 +158,7 @@ fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     assert_eq!(measured.averages, 3);
 
     // With a limit for the input, hits that reach it are also thrown out.
-    let options = ResponseOptions::default().with_limits(10.5, None);
+    let options = with(|settings| settings.input_limit = Some(10.5));
     let limited = measure(&[record], &options).unwrap();
     assert_eq!(limited.averages, 2);
     let reason = &limited.pieces[4].thrown_out;
@@ -173,10 +177,9 @@ fn estimators_are_biased_as_their_theory_says() {
     let (rough_in, rough_out) = (noisy(&clean, quarter, 11), noisy(&gained, quarter, 12));
     let gain = |input: &Vec<f64>, output: &Vec<f64>, estimator| {
         let record = Record::new("drive.csv", RATE_HZ, input.clone(), output.clone()).unwrap();
-        let options = ResponseOptions::default()
-            .with_excitation(Excitation::Continuous)
-            .with_estimator(estimator)
-            .with_window_s(0.2);
+        let options = with(|settings| {
+            (settings.continuous, settings.estimator, settings.window_s) = (true, estimator, 0.2);
+        });
         let measured: MeasuredResponse = measure(&[record], &options).unwrap();
         assert!(measured.pieces.iter().all(|piece| piece.thrown_out.is_none()));
         measured.magnitude.iter().sum::<f64>() / measured.magnitude.len() as f64
@@ -209,9 +212,9 @@ fn an_exponential_window_raises_the_damping_by_its_inverse() {
         Record::new("long.csv", RATE_HZ, input, output).unwrap()
     };
     let records = [10.0, 12.0].map(record);
-    let plain = measure(&records, &ResponseOptions::default()).unwrap();
+    let plain = measure(&records, &ResponseSettings::default()).unwrap();
     assert!(plain.warnings.iter().any(|w| w.contains("has not died out")), "{:?}", plain.warnings);
-    let windowed = measure(&records, &hits(HitOptions::default().with_exponential_s(0.1))).unwrap();
+    let windowed = measure(&records, &with(|settings| settings.exponential_s = Some(0.1))).unwrap();
     let damping = 0.002 + 10.0 / (2.0 * PI * 180.0);
     let expected = 1.0 / (2.0 * damping * (1.0 - damping * damping).sqrt());
     let found = windowed.peak.unwrap().magnitude;
@@ -224,10 +227,10 @@ fn an_exponential_window_raises_the_damping_by_its_inverse() {
 fn what_cannot_be_measured_is_named() {
     let pulse = |hits: &[(f64, f64)]| pulses(3.0, hits);
     let record = |input: Vec<f64>| Record::new("a.csv", RATE_HZ, input.clone(), input);
-    let fails = |input: Vec<f64>, options: ResponseOptions| {
+    let fails = |input: Vec<f64>, options: ResponseSettings| {
         measure(&[record(input).unwrap()], &options).unwrap_err().to_string()
     };
-    let default = ResponseOptions::default;
+    let default = ResponseSettings::default;
 
     let few = fails(pulse(&[(0.5, 10.0)]), default());
     assert!(few.starts_with("1 of 1 hits can be used, and coherence needs at least 2"), "{few}");
@@ -237,45 +240,36 @@ fn what_cannot_be_measured_is_named() {
     let noise = (0..30_000).map(|_| f64::from(noise.next_sample())).collect();
     let none = fails(noise, default());
     assert!(none.starts_with("a.csv: no hit found: the largest input is"), "{none}");
-    let short = fails(pulse(&[(0.5, 10.0)]), default().with_window_s(5.0));
+    let short = fails(pulse(&[(0.5, 10.0)]), with(|settings| settings.window_s = 5.0));
     assert!(short.starts_with("a.csv lasts 3.000 s, less than one window of 5 s"), "{short}");
 
     let constant = record(vec![0.5; 100]).unwrap_err().to_string();
     assert!(constant.starts_with("a.csv: the input is 0.5 at every sample"), "{constant}");
     let lengths = Record::new("a.csv", RATE_HZ, vec![0.0, 1.0], vec![0.0]).unwrap_err();
-    assert!(matches!(
-        lengths,
-        ResponseError::Record { problem: RecordProblem::Lengths { input: 2, output: 1 }, .. }
-    ));
+    assert!(matches!(lengths, LabError::Lengths { input: 2, output: 1, .. }));
     let missing = Record::new("a.csv", RATE_HZ, vec![0.0, 1.0], vec![0.0, f64::NAN]).unwrap_err();
-    assert!(matches!(
-        missing,
-        ResponseError::Record {
-            problem: RecordProblem::Sample { channel: Channel::Output, sample: 1, .. },
-            ..
-        }
-    ));
+    assert!(matches!(missing, LabError::Sample { channel: Channel::Output, sample: 1, .. }));
     let input = pulse(&[(0.5, 10.0), (1.7, 10.0)]);
     let two = [5_000.0, RATE_HZ]
         .map(|rate| Record::new("r.csv", rate, input.clone(), input.clone()).unwrap());
-    assert!(matches!(measure(&two, &default()), Err(ResponseError::Rates { .. })));
-    assert!(matches!(measure(&[], &default()), Err(ResponseError::Nothing)));
+    assert!(matches!(measure(&two, &default()), Err(LabError::Rates { .. })));
+    assert!(matches!(measure(&[], &default()), Err(LabError::NoRecord)));
 
     for options in [
-        default().with_window_s(f64::NAN),
-        default().with_window_s(1e-4),
-        default().with_band_hz(-1.0, 1000.0),
-        default().with_band_hz(6000.0, 7000.0),
-        default().with_band_hz(20.0, 20.5),
-        default().with_limits(0.0, None),
-        hits(HitOptions::default().with_levels(1.0, 0.1)),
-        hits(HitOptions::default().with_pre_trigger_s(0.5)),
-        hits(HitOptions::default().with_force_window_s(f64::INFINITY)),
+        with(|settings| settings.window_s = f64::NAN),
+        with(|settings| settings.window_s = 1e-4),
+        with(|settings| settings.low_hz = -1.0),
+        with(|settings| (settings.low_hz, settings.high_hz) = (6000.0, 7000.0)),
+        with(|settings| settings.high_hz = 20.5),
+        with(|settings| settings.input_limit = Some(0.0)),
+        with(|settings| settings.trigger = Some(1.0)),
+        with(|settings| settings.pre_trigger_s = Some(0.5)),
+        with(|settings| settings.force_window_s = Some(f64::INFINITY)),
     ] {
         let result = measure(&two[1..], &options);
-        assert!(matches!(result, Err(ResponseError::Option { .. })), "{options:?}: {result:?}");
+        assert!(matches!(result, Err(LabError::Option { .. })), "{options:?}: {result:?}");
     }
     let tiny: Vec<f64> = input.iter().map(|x| x * 1e-11).collect();
     let tiny = Record::new("t.csv", RATE_HZ, input, tiny).unwrap();
-    assert!(matches!(measure(&[tiny], &default()), Err(ResponseError::Magnitude { .. })));
+    assert!(matches!(measure(&[tiny], &default()), Err(LabError::Magnitude { .. })));
 }

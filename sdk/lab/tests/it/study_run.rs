@@ -5,9 +5,10 @@ use std::fs;
 use std::time::Duration;
 
 use htex_base::finding::Findings;
+use htex_lab::LabError;
 use htex_lab::study::{
-    Asker, Clock, DeviceUsed, Ended, FeltFile, GainKey, Header, Key, OutputLevels, Plan, Played,
-    Rig, Session, Stimulus, Study, StudyError, View, export, read_study, run,
+    Asker, Clock, DeviceUsed, FeltFile, GainKey, Header, Key, OutputLevels, Plan, Playback, Rig,
+    Session, SessionEnd, Stimulus, Study, View, export, read_study, run,
 };
 use tempfile::TempDir;
 
@@ -59,7 +60,7 @@ enum Failing {
     #[error("the buffer is empty")]
     Dry,
     #[error(transparent)]
-    Study(#[from] StudyError),
+    Study(#[from] LabError),
 }
 
 impl Rig for TestRig {
@@ -69,7 +70,7 @@ impl Rig for TestRig {
         &mut self,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
-    ) -> Result<Played, Failing> {
+    ) -> Result<Playback, Failing> {
         let (file, gain_db) = (stimulus.file.clone(), stimulus.gain_db);
         self.played.push((file, gain_db));
         if stimulus.seconds.is_none() {
@@ -94,7 +95,7 @@ impl Rig for TestRig {
             }
         };
         let (drive_v, output) = levels(stimulus);
-        Ok(Played { drive_v, output, reference_rms: 0.1, felt })
+        Ok(Playback { drive_v, output, reference_rms: 0.1, felt })
     }
 
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)> {
@@ -183,7 +184,7 @@ struct Place {
 
 /// How a session went.
 struct Went {
-    ended: Result<Ended, Failing>,
+    ended: Result<SessionEnd, Failing>,
     asker: Willing,
     told: Vec<String>,
     played: Vec<(String, Option<f64>)>,
@@ -248,7 +249,7 @@ fn a_trial_in_which_the_device_runs_dry_is_repeated_three_times_at_most() {
     assert_eq!(lines[2]["reason"], "ran_dry");
     assert_eq!((&lines[4]["repeats"], &lines[4]["stops"]), (&2.into(), &2.into()));
     // Running the same command again continues the session.
-    assert_eq!(place.run(&[OnTarget]).ended.unwrap(), Ended::Done);
+    assert_eq!(place.run(&[OnTarget]).ended.unwrap(), SessionEnd::Done);
     let lines = place.lines();
     assert_eq!((lines.len(), &lines[9]["stops"]), (10, &3.into()));
 }
@@ -261,10 +262,10 @@ fn every_phase_starts_weak_and_says_what_the_device_was_given() {
     let place = Place::with(&STUDY.replace("phases = ['testing']", phases));
     let leaving = Willing { leaves: true, ..Willing::default() };
     let went = place.run_with(&[], leaving);
-    assert_eq!(went.ended.unwrap(), Ended::Left);
+    assert_eq!(went.ended.unwrap(), SessionEnd::Left);
     let mut played = went.played;
     let went = place.run(&[]);
-    assert_eq!(went.ended.unwrap(), Ended::Done);
+    assert_eq!(went.ended.unwrap(), SessionEnd::Done);
     played.extend(went.played);
     let rise = |name: &'static str| [-20.0, -16.0, -12.0].map(|gain_db| (name, gain_db));
     let mut expected = rise("rise-cloth").to_vec();
@@ -306,7 +307,7 @@ fn every_phase_starts_weak_and_says_what_the_device_was_given() {
 fn a_trial_off_its_target_is_said_at_once_kept_and_marked() {
     let place = Place::new();
     let went = place.run(&[Fate::OffTarget, Fate::OnTarget]);
-    assert_eq!(went.ended.unwrap(), Ended::Done);
+    assert_eq!(went.ended.unwrap(), SessionEnd::Done);
     let said = format!("trial-0001 was off its target: {REASON}");
     assert_eq!(went.told, std::slice::from_ref(&said));
     assert_eq!(went.asker.notices, [said]);

@@ -5,9 +5,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use htex_base::finding::Findings;
+use htex_lab::LabError;
 use htex_lab::study::{
-    DeviceUsed, GainKey, Header, OutputLevels, Phase, Plan, Played, Presented, Session,
-    SimulatedParticipant, Step, Study, StudyError, export, read_study,
+    DeviceUsed, GainKey, Header, OutputLevels, Phase, Plan, Playback, Presentation, Session,
+    SimulatedParticipant, Step, Study, export, read_study,
 };
 use tempfile::TempDir;
 
@@ -60,10 +61,10 @@ impl Place {
         let header =
             Header::new(&self.study, &self.path("study.toml"), own, device, "test".to_owned());
         let simulated = simulated.map(|seed| SimulatedParticipant::new(seed, "P01").header());
-        header.unwrap().with_simulated(simulated)
+        Header { simulated, ..header.unwrap() }
     }
 
-    fn open(&self) -> Result<Session<'_>, StudyError> {
+    fn open(&self) -> Result<Session<'_>, LabError> {
         let own = &self.plan.participants[0];
         Session::open(&self.study, own, self.folder.path(), &self.header(None))
     }
@@ -77,7 +78,7 @@ impl Place {
 fn act(session: &mut Session<'_>) -> bool {
     match session.step() {
         Step::Rate(_, trial, _) => {
-            session.rate((trial.number % 7) as u8, 1, 2, Presented::default()).unwrap()
+            session.rate((trial.number % 7) as u8, 1, 2, Presentation::default()).unwrap()
         }
         Step::Match { matching, .. } => {
             let gain_db = matching.gain_db();
@@ -87,7 +88,7 @@ fn act(session: &mut Session<'_>) -> bool {
                 (false, gain_db) if gain_db < -2.0 => GainKey::Accept,
                 (false, _) => GainKey::Weaker,
             };
-            let played = Played {
+            let played = Playback {
                 drive_v: None,
                 output: OutputLevels::default(),
                 reference_rms: 0.5,
@@ -263,7 +264,7 @@ fn a_file_that_is_not_ours_is_not_changed() {
     assert!(text.starts_with(&own) && text.lines().count() == own.lines().count() + 1);
 }
 
-fn rows(folder: &Path, attribute: Option<&str>) -> Result<String, StudyError> {
+fn rows(folder: &Path, attribute: Option<&str>) -> Result<String, LabError> {
     Ok(export(folder, attribute)?.csv)
 }
 

@@ -54,10 +54,12 @@ fn build(
     neutral: bool,
 ) -> Result<Box<dyn Stage>, UnusableRates> {
     let (from, to, top) = rates(required, played);
-    Ok(Box::new(match neutral {
-        true => Resampling(None),
-        false if played.own_rate => Resampling(Resampler::of_own_rate(from, to, top)?),
-        false => Resampling(Resampler::new(from, to, top)?),
+    Ok(Box::new(if neutral {
+        Resampling(None)
+    } else if played.own_rate {
+        Resampling(Resampler::of_own_rate(from, to, top)?)
+    } else {
+        Resampling(Resampler::new(from, to, top)?)
     }))
 }
 

@@ -326,10 +326,11 @@ impl World {
 
     /// Handles the return of the main thread's call.
     fn returned(&mut self, request: Request) {
-        match self.emergency {
+        if self.emergency {
             // The session notices the emergency, and ends.
-            true => self.device_failed(request),
-            false => self.main = Thread::Serving(request, 0),
+            self.device_failed(request);
+        } else {
+            self.main = Thread::Serving(request, 0);
         }
     }
 
@@ -404,11 +405,11 @@ impl World {
     /// Writes zero in the guardian, or prints the warning.
     fn guardian_zero(&mut self) -> bool {
         let writes = self.driver == Driver::Works && !self.guardian_zero_fails;
-        match writes {
-            true => self.output = Output::Zero,
+        if writes {
+            self.output = Output::Zero;
+        } else if self.driver != Driver::Hangs {
             // A call that does not return prints nothing.
-            false if self.driver == Driver::Hangs => {}
-            false => self.said = Some(0),
+            self.said = Some(0);
         }
         writes
     }

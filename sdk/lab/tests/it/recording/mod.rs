@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use htex_author::Exploration;
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_format::Quantity;
+use htex_lab::LabError;
 use htex_lab::record::{
-    Format, Moment, Next, RecordError, Recorded, Replay, Required, Session, Setup, Signals, Tare,
+    Format, Moment, Next, Replay, Requirements, Session, Setup, Signals, TakeReport, Tare,
     TrackerRows,
 };
 
@@ -20,7 +21,7 @@ pub struct Settings {
     pub seconds: f64,
     pub tare: Tare,
     pub target: Exploration,
-    pub required: Required,
+    pub required: Requirements,
     pub attempts: u32,
     pub format: Format,
     pub stop_after: usize,
@@ -33,7 +34,7 @@ impl Default for Settings {
             seconds: 4.0,
             tare: Tare::Never,
             target: Exploration::default(),
-            required: Required::NOTHING,
+            required: Requirements::NOTHING,
             attempts: 3,
             format: Format::Csv,
             stop_after: usize::MAX,
@@ -74,7 +75,7 @@ pub fn rows(options: &SimulationOptions) -> Vec<String> {
     csv.lines().skip(2).map(row).collect()
 }
 
-pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<Recorded, RecordError> {
+pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<TakeReport, LabError> {
     record_with(folder, source, settings, None)
 }
 
@@ -84,7 +85,7 @@ pub fn session(
     source: &Path,
     settings: &Settings,
     tracker: Option<Box<dyn TrackerRows>>,
-) -> Result<Session, RecordError> {
+) -> Result<Session, LabError> {
     let source = open(source);
     let channels = &source.stream().channels;
     let signals = Signals::new("source.csv", channels, Vec::new(), None, Quantity::LateralForce)?;
@@ -113,7 +114,7 @@ pub fn record_with(
     source: &Path,
     settings: &Settings,
     tracker: Option<Box<dyn TrackerRows>>,
-) -> Result<Recorded, RecordError> {
+) -> Result<TakeReport, LabError> {
     let mut session = session(folder, source, settings, tracker)?;
     let mut moments = 0;
     let mut watch = |_: &Moment<'_>| {

@@ -1,8 +1,85 @@
-//! Names of the files of takes.
+//! Formats and names of the files of takes, and outcomes of takes.
 
 use std::path::{Path, PathBuf};
 
-use crate::record::error::RecordError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::LabError;
+
+/// File format of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// Text with names, units and all digits. It can be read without further settings.
+    #[default]
+    Csv,
+    /// A NumPy array (frames, signals) of f8.
+    Npy,
+    /// 32-bit floats. The value 1 means one newton, or one unit of the signal.
+    Wav,
+}
+
+#[cfg(feature = "clap")]
+impl clap::ValueEnum for Format {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Csv, Self::Npy, Self::Wav]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(self.extension().into())
+    }
+}
+
+/// Outcome of a take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// It kept to its target.
+    Kept,
+    /// It left its target; it was moved to the folder `rejected`.
+    Rejected,
+    /// It was cut short; it was moved to the folder `incomplete`.
+    Incomplete,
+}
+
+impl Format {
+    /// Refuses a sample rate that files of this format cannot have.
+    ///
+    /// # Errors
+    /// [`LabError::Setup`].
+    pub(crate) fn check(self, rate_hz: f64) -> Result<(), LabError> {
+        let is_whole = rate_hz.fract() == 0.0 && rate_hz <= f64::from(u32::MAX);
+        if self == Self::Wav && !is_whole {
+            Err(LabError::Setup {
+                what: "the sample rate",
+                value: rate_hz.to_string(),
+                allowed: "a WAV has a whole number of hertz; record CSV or NPY",
+            })
+        } else {
+            Ok(())
+        }
+    }
+
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+            Self::Wav => "wav",
+        }
+    }
+}
+
+impl Outcome {
+    /// Returns the subfolder for takes with this outcome; empty for the folder itself.
+    pub(crate) fn folder(self) -> &'static Path {
+        Path::new(match self {
+            Self::Kept => "",
+            Self::Rejected => REJECTED,
+            Self::Incomplete => INCOMPLETE,
+        })
+    }
+}
 
 /// Folder for takes that left their target.
 pub(crate) const REJECTED: &str = "rejected";
@@ -11,8 +88,8 @@ pub(crate) const INCOMPLETE: &str = "incomplete";
 /// Extension of the file for a take that is being recorded.
 const PART: &str = "part";
 
-/// Pattern of the names that [`check`] allows.
-pub(crate) const PATTERN: &str = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$";
+/// Pattern of the names that [`check_name`] allows.
+pub(crate) const NAME_PATTERN: &str = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$";
 
 /// Returns the file name of a take without extension: `vinyl-007`.
 pub(crate) fn stem(name: &str, number: u32) -> String {
@@ -20,18 +97,18 @@ pub(crate) fn stem(name: &str, number: u32) -> String {
 }
 
 /// Returns the path of a take's part file.
-pub(crate) fn part(folder: &Path, name: &str, number: u32) -> PathBuf {
+pub(crate) fn part_file(folder: &Path, name: &str, number: u32) -> PathBuf {
     folder.join(format!("{}.{PART}", stem(name, number)))
 }
 
 /// Refuses names that cannot be part of a file name on every system.
-pub(crate) fn check(name: &str) -> Result<(), RecordError> {
+pub(crate) fn check_name(name: &str) -> Result<(), LabError> {
     let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'.');
     let is_sound = name.bytes().all(allowed) && !name.starts_with(['.', '-']);
     if is_sound && (1..=100).contains(&name.len()) {
         Ok(())
     } else {
-        Err(RecordError::Setup {
+        Err(LabError::Setup {
             what: "the name of the takes",
             value: format!("{name:?}"),
             allowed: "it has 1 to 100 of the characters a-z, A-Z, 0-9, `_`, `-` and `.`, and begins with a letter, digit or `_`",
@@ -63,7 +140,7 @@ fn number(stem: &str, name: &str) -> Option<u32> {
 }
 
 /// Returns the part files of a folder, sorted by name.
-pub(crate) fn parts(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+pub(crate) fn part_files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     // Hidden files are unfinished ones of `OwnFolder`, and not takes.
     let is_part = |path: &PathBuf| {
         let is_hidden =

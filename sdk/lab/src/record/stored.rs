@@ -3,12 +3,18 @@
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use htex_author::recording::read_recording;
 use htex_author::settings::ReadingSettings;
-use htex_base::files::{ContentError, open_regular};
+use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_base::files::{ContentError, open_regular, read_regular};
+use htex_format::Quantity;
+use serde::Deserialize;
 use serde_json::Value;
 
+use crate::error::LabError;
 use crate::record::data::TakeHeader;
-use crate::record::error::RecordError;
+use crate::record::files::{self, Outcome};
+use crate::record::live::LiveSpectrum;
 use crate::record::write::reading;
 
 /// Largest JSON file that is read, bytes. The JSON of a take has a few thousand.
@@ -27,15 +33,15 @@ impl KnownTake {
     /// or if it belongs to a recording in another format.
     ///
     /// # Errors
-    /// [`RecordError::Content`] if the JSON describes a take but has another version or unknown
+    /// [`LabError::Content`] if the JSON describes a take but has another version or unknown
     /// keys.
     ///
     /// ```
     /// // Not a take: nothing is known but the file itself.
     /// assert_eq!(htex_lab::record::KnownTake::find("other.npy".as_ref())?, None);
-    /// # Ok::<(), htex_lab::record::RecordError>(())
+    /// # Ok::<(), htex_lab::LabError>(())
     /// ```
-    pub fn find(file: &Path) -> Result<Option<Self>, RecordError> {
+    pub fn find(file: &Path) -> Result<Option<Self>, LabError> {
         let beside = file.with_extension("json");
         let header = match header(&beside) {
             Ok(Some(header)) => header,
@@ -47,10 +53,12 @@ impl KnownTake {
         let recording = file.with_extension(header.format.extension());
         let extension = file.extension().unwrap_or_default();
         let is_its = extension.eq_ignore_ascii_case(header.format.extension());
-        let recording = match is_its {
-            true => file.to_owned(),
-            false if beside == file => recording,
-            false => return Ok(None),
+        let recording = if is_its {
+            file.to_owned()
+        } else if beside == file {
+            recording
+        } else {
+            return Ok(None);
         };
         let settings = settings(&recording, &header);
         Ok(Some(Self { recording, settings }))
@@ -103,4 +111,32 @@ fn tracker(recording: &Path) -> Option<PathBuf> {
     let name = Path::new(recording.file_name()?).with_extension("csv");
     let tracker = recording.parent()?.join("tracker").join(name);
     tracker.is_file().then_some(tracker)
+}
+
+/// The parts of the JSON next to a recording that are needed here.
+#[derive(Deserialize)]
+struct Beside {
+    outcome: Outcome,
+    take: TakeHeader,
+}
+
+/// Returns the texture spectrum of the newest accepted take with this name, as `htex fit` would
+/// read it. `None` if the folder has no such take of this quantity, or if its files can no longer
+/// be read.
+pub(crate) fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
+    let number = files::kept_number(folder, name)?;
+    let stem = files::stem(name, number);
+    let beside = folder.join(format!("{stem}.json"));
+    let beside = read_regular(&beside, MOST_BYTES).ok()?;
+    let Beside { outcome, take } = serde_json::from_slice(&beside).ok()?;
+    if outcome != Outcome::Kept || take.quantity != quantity {
+        return None;
+    }
+    let file = folder.join(format!("{stem}.{}", take.format.extension()));
+    let options = settings(&file, &take).read_options(1).ok()?.pop()?;
+    let take =
+        Take { recording: read_recording(&file, &options).ok()?, given: Exploration::default() };
+    let reading = read_take(&take, &SpectrumOptions::default(), false).ok()?;
+    let texture = TextureSpectrum::average(&[reading.part], Averaging::Rms).ok()?;
+    Some(LiveSpectrum::from_texture(&texture))
 }

@@ -4,17 +4,19 @@
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 
+use crate::failure::Result;
+
 /// Arguments with the names of those that were given.
-pub(crate) struct Given<T> {
+pub(crate) struct ExplicitArgs<T> {
     pub(crate) values: T,
     /// Their names as keywords, e.g. `full_scale` for `--full-scale`.
     pub(crate) settings: Vec<String>,
 }
 
-impl<T: Args> Given<T> {
+impl<T: Args> ExplicitArgs<T> {
     fn settings_of(matches: &ArgMatches) -> Vec<String> {
         // The parsed command has further arguments. This one has only the arguments of `T`.
-        let command = T::augment_args(Command::new("given"));
+        let command = T::augment_args(Command::new("explicit"));
         let given = command.get_arguments().filter(|argument| {
             let source = matches.value_source(argument.get_id().as_str());
             source == Some(ValueSource::CommandLine)
@@ -24,7 +26,7 @@ impl<T: Args> Given<T> {
     }
 }
 
-impl<T: Args> FromArgMatches for Given<T> {
+impl<T: Args> FromArgMatches for ExplicitArgs<T> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         Ok(Self { settings: Self::settings_of(matches), values: T::from_arg_matches(matches)? })
     }
@@ -35,7 +37,7 @@ impl<T: Args> FromArgMatches for Given<T> {
     }
 }
 
-impl<T: Args> Args for Given<T> {
+impl<T: Args> Args for ExplicitArgs<T> {
     fn augment_args(command: Command) -> Command {
         T::augment_args(command)
     }

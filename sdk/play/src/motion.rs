@@ -97,7 +97,7 @@ impl Motion {
 
     /// Returns whether a finger can move like this: speed and force are at most [`MOST_SPEED_MM_S`]
     /// and [`MOST_FORCE_N`]. A voice treats other motions as failed readings and ignores them.
-    pub fn is_plausible(&self) -> bool {
+    pub(crate) fn is_plausible(&self) -> bool {
         self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 

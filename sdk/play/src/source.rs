@@ -131,7 +131,7 @@ impl SampleSource {
     }
 
     /// Returns the duration of all samples rendered so far, seconds.
-    pub fn rendered_s(&self) -> f64 {
+    pub(crate) fn rendered_s(&self) -> f64 {
         self.frames as f64 / self.rate_hz
     }
 

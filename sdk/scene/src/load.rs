@@ -183,9 +183,9 @@ impl Scene {
         finish(scene, findings)
     }
 
-    /// Plans the scene for a program that takes samples at `rate_hz`, 100 Hz to 1 MHz, itself, in the
-    /// textures' unit. Neither the scene's device nor costs measured on this machine influence the
-    /// plan.
+    /// Plans the scene for a program that takes samples at `rate_hz`, 100 Hz to 1 MHz, itself, in
+    /// the textures' unit. Neither the scene's device nor costs measured on this machine influence
+    /// the plan.
     ///
     /// # Errors
     /// See [`SceneError`].

@@ -51,7 +51,8 @@ const UNKNOWN: htex_motion = htex_motion {
 // The upper end leaves room for later fields, and refuses a size that was never set.
 const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_mm)..=256;
 
-/// Returns the motions of a caller, which may have been compiled against a shorter or longer struct.
+/// Returns the motions of a caller, which may have been compiled against a shorter or longer
+/// struct.
 ///
 /// # Safety
 /// As [`slice`], with the size that the first motion states. The motions exist as long as the

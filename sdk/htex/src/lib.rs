@@ -16,14 +16,16 @@
 //!
 //! | feature | default | adds |
 //! |---|---|---|
-//! | `wasm` | yes | runs models that are embedded in textures, in a sandbox; without it the program is smaller and plays only representations of built-in models |
+//! | `wasm` | yes | models that are embedded in textures, in a sandbox |
 //! | `write` | yes | `format::Asset::write` and `to_bytes` |
-//! | `author` | | `author`: reads recordings and makes textures; `author::simulate` simulates recordings |
-//! | `library` | | `library`: files with thousands of textures; `Texture::from_library` opens one of them |
-//! | `storage` | | `library::storage`, which opens files by path or URI, and `Library::open_located`; includes `library` |
+//! | `author` | | `author`: makes textures from recordings, and simulates recordings |
+//! | `library` | | `library`: files with thousands of textures; `Texture::from_library` |
+//! | `storage` | | `library::storage`: files by path or URI; `Library::open_located` |
 //! | `cloud` | | web servers and object stores for `storage` |
+//! | `scene` | | `Scene` and `scene`: plans and renders scenes; `device`: plays them |
 //! | `audio` | | nothing in the library; the sound card of the example `live` |
-//! | `scene` | | `Scene` and `scene`: plans and renders scenes; `device`: the devices that play them |
+//!
+//! Without `wasm` a program is smaller, and plays only representations of built-in models.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

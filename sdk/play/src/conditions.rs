@@ -47,7 +47,7 @@ impl Conditions {
     ///
     /// # Errors
     /// When the stored triangles are invalid: [`htex_format::check_triangles`].
-    pub fn for_representation(
+    pub(crate) fn for_representation(
         representation: &Representation,
         conditions: &[Condition],
         law: Law,

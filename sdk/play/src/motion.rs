@@ -55,9 +55,9 @@ impl Motion {
         Self::new(self.speed_mm_s.abs(), self.force_n)
     }
 
-    /// Returns whether a finger can move like this, in either direction: all numbers are finite, the
-    /// force is not negative, the speed is at most 1000 mm/s and the force at most 20 N. Otherwise
-    /// the reading has failed.
+    /// Returns whether a finger can move like this, in either direction: all numbers are finite,
+    /// the force is not negative, the speed is at most 1000 mm/s and the force at most 20 N.
+    /// Otherwise the reading has failed.
     pub fn is_reading(&self) -> bool {
         let unsigned = Self { speed_mm_s: self.speed_mm_s.abs(), ..*self };
         unsigned.checked().is_ok() && unsigned.is_plausible()
@@ -97,7 +97,7 @@ impl Motion {
 
     /// Returns whether a finger can move like this: speed and force are at most [`MOST_SPEED_MM_S`]
     /// and [`MOST_FORCE_N`]. A voice treats other motions as failed readings and ignores them.
-    pub fn is_plausible(&self) -> bool {
+    pub(crate) fn is_plausible(&self) -> bool {
         self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 

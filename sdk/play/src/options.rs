@@ -94,9 +94,9 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets the largest absolute value of a sample after the gain, in the asset's unit; above 0. The
-    /// gain drops at once when a sample would exceed the limit, and recovers within 50 ms (to 1/e).
-    /// `None` for no limit.
+    /// Sets the largest absolute value of a sample after the gain, in the asset's unit; above 0.
+    /// The gain drops at once when a sample would exceed the limit, and recovers within 50 ms (to
+    /// 1/e). `None` for no limit.
     #[must_use]
     pub fn with_limit(mut self, limit: impl Into<Option<f64>>) -> Self {
         self.limit = limit.into();

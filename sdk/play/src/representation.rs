@@ -269,8 +269,8 @@ impl<'a> Representation<'a> {
     /// when no motion is given: its first condition, or its strongest if the first is silent. A
     /// condition is silent if its level is 0, or if a finger does not slide at its stated speed or
     /// force. The strongest condition is the one with the highest level among those that are not
-    /// silent; of equal ones it is the first. If all are silent, the first condition is the default.
-    /// Loads no model.
+    /// silent; of equal ones it is the first. If all are silent, the first condition is the
+    /// default. Loads no model.
     pub fn default_condition(&self) -> usize {
         let at = &self.data().at;
         let default = default_condition(at, &self.texture.manifest().conditions);

@@ -131,7 +131,7 @@ impl SampleSource {
     }
 
     /// Returns the duration of all samples rendered so far, seconds.
-    pub fn rendered_s(&self) -> f64 {
+    pub(crate) fn rendered_s(&self) -> f64 {
         self.frames as f64 / self.rate_hz
     }
 
@@ -140,8 +140,8 @@ impl SampleSource {
     /// It may precede the samples rendered so far, because a resampler reads ahead; the position is
     /// then advanced by the time rendered ahead. The speed is negative while the position
     /// decreases; an unknown position counts as 0. Numbers are clamped to the ranges of the model
-    /// ABI. A known place is passed on unchanged; without one the model receives a path along x. Does not allocate, lock or do I/O
-    /// if the model keeps to the ABI.
+    /// ABI. A known place is passed on unchanged; without one the model receives a path along x.
+    /// Does not allocate, lock or do I/O if the model keeps to the ABI.
     ///
     /// # Errors
     /// When a number is not finite, or the model refuses the motion; the source then continues

@@ -120,10 +120,10 @@ impl Voice {
     /// Outside the recorded conditions, frequencies and level follow the asset's law
     /// ([`Law`](crate::Law)), starting at the nearest recorded motion. Frequencies are at least
     /// 1/16 and at most 8 times the recorded ones, and never exceed half the sample rate. The level
-    /// is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded one. A finger
-    /// that does not slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these effects
-    /// can be switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a
-    /// motion.
+    /// is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded one. A
+    /// finger that does not slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these
+    /// effects can be switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them
+    /// for a motion.
     ///
     /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
     /// voice then holds the last good motion for at most 100 ms, and is silent after that until the
@@ -271,10 +271,10 @@ impl Voice {
         self.rate_hz
     }
 
-    /// Returns an endless iterator over the next samples, in the asset's unit. It renders one sample
-    /// at a time and none ahead, so that the voice continues after the last sample that was taken;
-    /// [`Self::render`] is faster. Does not allocate, lock or do I/O. If the model fails, the
-    /// iterator returns the error and then ends.
+    /// Returns an endless iterator over the next samples, in the asset's unit. It renders one
+    /// sample at a time and none ahead, so that the voice continues after the last sample that was
+    /// taken; [`Self::render`] is faster. Does not allocate, lock or do I/O. If the model fails,
+    /// the iterator returns the error and then ends.
     ///
     /// ```no_run
     /// use htex::{Texture, VoiceOptions};
@@ -324,9 +324,9 @@ impl Voice {
 
     /// Returns the envelope of what was rendered since the last call, or since the start: the
     /// level, the mean frequency, and the mean square in each of the voice's bands
-    /// ([`VoiceOptions::with_envelope_bands`]). The mean squares are in the squared unit and are written
-    /// to `bands`, which may be empty. All effects, the gain and the limiter are included. The
-    /// level is exact. Frequency and bands lag by some 20 ms, because they are computed from
+    /// ([`VoiceOptions::with_envelope_bands`]). The mean squares are in the squared unit and are
+    /// written to `bands`, which may be empty. All effects, the gain and the limiter are included.
+    /// The level is exact. Frequency and bands lag by some 20 ms, because they are computed from
     /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
     ///
     /// ```no_run

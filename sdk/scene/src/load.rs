@@ -60,10 +60,10 @@ impl Place<'_> {
 /// A scene with its files.
 ///
 /// ```no_run
-/// let scene = htex::Scene::open("two.scene.json")?;
+/// let scene = htex_scene::Scene::open("two.scene.json")?;
 /// let mut block = [0.0; 64];
 /// let frames = scene.renderer(20_000.0)?.render(&mut block)?; // in the textures' unit
-/// # Ok::<(), htex::scene::SceneError>(())
+/// # Ok::<(), htex_scene::SceneError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Scene {
@@ -183,9 +183,9 @@ impl Scene {
         finish(scene, findings)
     }
 
-    /// Plans the scene for a program that takes samples at `rate_hz`, 100 Hz to 1 MHz, itself, in the
-    /// textures' unit. Neither the scene's device nor costs measured on this machine influence the
-    /// plan.
+    /// Plans the scene for a program that takes samples at `rate_hz`, 100 Hz to 1 MHz, itself, in
+    /// the textures' unit. Neither the scene's device nor costs measured on this machine influence
+    /// the plan.
     ///
     /// # Errors
     /// See [`SceneError`].
@@ -207,7 +207,7 @@ impl Scene {
     }
 
     /// Makes a renderer for a program that takes samples at `rate_hz` itself, in the textures' unit
-    /// ([`Self::plan`]). For a device, use [`crate::plan`] and [`Renderer::new`].
+    /// ([`Self::plan`]). For a device, use [`crate::plan()`] and [`Renderer::new`].
     ///
     /// # Errors
     /// See [`SceneError`].

@@ -43,8 +43,8 @@ samples = voice.render(20_000)  # one second`,
     },
     {
       language: "Rust",
-      text: `let asset = htex::Texture::open("${file}")?;
-let mut voice = asset.voice(&htex::VoiceOptions::default())?;
+      text: `let texture = htex::Texture::open("${file}")?;
+let mut voice = texture.voice(&htex::VoiceOptions::default())?;
 let mut block = [0.0f32; 256];
 voice.set_motion(htex::Motion::new(${decimal(mmS)}, ${decimal(newtons)}))?; // mm/s, N
 voice.render(&mut block)?;`,

@@ -90,7 +90,8 @@ impl<'a> Played<'a> {
     }
 
     /// Returns the magnitudes at a motion, as a recording of the voice would read them. Where
-    /// frequencies are scaled, it returns the same magnitudes as [`htex_play::Representation::magnitude`].
+    /// frequencies are scaled, it returns the same magnitudes as
+    /// [`htex_play::Representation::magnitude`].
     fn magnitude(
         &self,
         [speed, force]: [f64; 2],

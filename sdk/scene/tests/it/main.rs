@@ -11,3 +11,4 @@ mod exploration;
 mod hostile;
 mod kept_gains;
 mod parsimony;
+mod without_device;

@@ -5,8 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use htex_device::{
-    Capabilities, DeviceError, Devices, Direction, Output, Quantity, Search, Settings,
-    StreamFormat,
+    Capabilities, DeviceError, Devices, Direction, Output, Quantity, Search, Settings, StreamFormat,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;

@@ -27,6 +27,7 @@ static const char DESCRIPTOR[] =
     "\"fields\":["
     "{\"name\":\"centre_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":5,\"max\":2000,\"store\":{\"type\":\"f32\"},"
+    "\"usual\":{\"min\":20,\"max\":1000,\"scale\":\"log\"},"
     "\"description\":\"Frequency of the resonance; lies in the band.\"},"
     "{\"name\":\"bandwidth_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":20,\"max\":2000,\"store\":{\"type\":\"f32\"},"

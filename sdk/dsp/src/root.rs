@@ -17,14 +17,14 @@ pub fn sqrt(x: f64) -> f64 {
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 #[inline(always)]
-pub fn sqrt_f32(x: f32) -> f32 {
+pub(crate) fn sqrt_f32(x: f32) -> f32 {
     use core::arch::wasm32::{f32x4_extract_lane, f32x4_splat, f32x4_sqrt};
     f32x4_extract_lane::<0>(f32x4_sqrt(f32x4_splat(x)))
 }
 
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 #[inline(always)]
-pub fn sqrt_f32(x: f32) -> f32 {
+pub(crate) fn sqrt_f32(x: f32) -> f32 {
     #[cfg(feature = "std")]
     return x.sqrt();
     #[cfg(not(feature = "std"))]

@@ -30,7 +30,7 @@ impl Uniform {
     }
 
     /// The next 64 random bits.
-    pub fn next_bits(&mut self) -> u64 {
+    pub(crate) fn next_bits(&mut self) -> u64 {
         self.0.next_u64()
     }
 

@@ -15,11 +15,11 @@
 //! laboratory that has measured its participants should use its own [`Listener`].
 
 /// Frequency up to which the threshold is constant, hertz.
-pub const FLAT_HZ: f64 = 40.0;
+const FLAT_HZ: f64 = 40.0;
 /// Frequency of the smallest threshold, hertz.
-pub const MOST_SENSITIVE_HZ: f64 = 250.0;
+const MOST_SENSITIVE_HZ: f64 = 250.0;
 /// The smallest threshold, metres, peak.
-pub const SMALLEST_THRESHOLD_M: f64 = 1e-7;
+const SMALLEST_THRESHOLD_M: f64 = 1e-7;
 /// Exponents of the frequency in the threshold: −12 dB and +9 dB per octave.
 const FALL: f64 = -2.0;
 const RISE: f64 = 1.5;

@@ -1,4 +1,7 @@
 //! Decimal texts of numbers that parse to exactly the same bits; computed at compile time.
+//!
+//! It is the project's own because no formatter of the standard library or of a package runs at
+//! compile time. A module thus contains a descriptor's text and no code that writes it.
 
 use crate::decimal::Decimal;
 

@@ -215,7 +215,19 @@ fn invalid_descriptors() {
     let negative = [("descriptor", "(i64.const -8)")];
     let growing = [("descriptor", "(i64.extend_i32_u (i32.add (local.get 1) (i32.const 9)))")];
     let valid = text("1.0.0", &[], "");
+    let option = |name: &str| {
+        let values = vec!["0"; 40].join(",");
+        format!(
+            r#"{{"name":"{name}","unit":"1","min":0,"max":1,"default":0,"sweep":[{values}],"description":"O."}}"#
+        )
+    };
+    let sweeps = format!(
+        r#"{{"id":"{ID}","name":"H","version":"1.0.0","summary":"S.","fields":[{{"name":"x","unit":"1","kind":{{"type":"scalar"}},"min":0,"max":1,"store":{{"type":"f32"}},"description":"X."}}],"options":[{},{}]}}"#,
+        option("a"),
+        option("b")
+    );
     let cases = [
+        (with_descriptor(&sweeps, &[], ""), "1600 combinations"),
         (text("1.0.0", &giant, ""), "1000000000 bytes"),
         (text("1.0.0", &negative, ""), "no reason given"),
         (text("1.0.0", &growing, ""), "in the next"),

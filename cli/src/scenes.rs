@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_base::finding::Notice;
 use htex_device::{AdapterEntry, Capabilities, DeviceError, Devices, SettingKind, Settings};
 use htex_host::Registry;
 use htex_scene::file::{Constant, Motion};
@@ -186,8 +187,8 @@ impl Loader {
         load: impl FnOnce(&Surroundings<'_>) -> Result<Scene, htex_scene::SceneError>,
     ) -> Result<Ready> {
         let scene = load(&self.around()).map_err(for_file(file))?;
-        let notes = scene.notes.iter().map(ToString::to_string);
-        let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
+        let new = scene.notes.iter().filter(|note| told.insert(note.to_string()));
+        let new: Vec<Notice> = new.map(|note| Notice::new(note.to_string(), note.hint)).collect();
         warn(&new);
         let device = self.devices.find_output(&scene.file.device.adapter)?.clone();
         let capabilities = capabilities(&device, &scene.settings, &self.devices)?;

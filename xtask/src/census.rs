@@ -103,12 +103,12 @@ fn source(path: &Path) -> Result<Source> {
         |part: &std::ffi::OsStr| ["tests", "benches", "fuzz"].iter().any(|name| part == *name);
     let is_test = path.iter().any(is_test_part) || path.ends_with("tests.rs");
     let words = words(file.to_token_stream());
-    let mut found = Found::default();
+    let mut found = FileCount::default();
     found.visit_file(&file);
     let test_lines = if is_test { text.lines().count() } else { found.test_lines };
     WithoutTests.visit_file_mut(&mut file);
     // Visited twice: the lines of tests are counted before tests are removed, names after.
-    let mut kept = Found::default();
+    let mut kept = FileCount::default();
     kept.visit_file(&file);
     Ok(Source {
         path: path.to_owned(),
@@ -205,14 +205,14 @@ fn attributes(item: &syn::Item) -> &[syn::Attribute] {
 
 /// What is counted in a file.
 #[derive(Default)]
-struct Found {
+struct FileCount {
     test_lines: usize,
     errors: Vec<String>,
     contexts: Vec<String>,
     public: Vec<String>,
 }
 
-impl Found {
+impl FileCount {
     fn add(&mut self, visibility: &syn::Visibility, name: &syn::Ident) {
         if matches!(visibility, syn::Visibility::Public(_)) {
             self.public.push(name.to_string());
@@ -220,7 +220,7 @@ impl Found {
     }
 }
 
-impl<'a> Visit<'a> for Found {
+impl<'a> Visit<'a> for FileCount {
     fn visit_item(&mut self, item: &'a syn::Item) {
         if is_test_item(attributes(item)) {
             use syn::spanned::Spanned;

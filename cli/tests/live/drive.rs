@@ -106,7 +106,8 @@ fn a_scene_never_overrides_the_rig() {
     let alone = Bench::new(json!({ "duration_s": 1 }));
     let mut play = alone.0.command(&["play", SCENE, "--set", &driver]);
     play.env("NIDAQMX_SIM_RECORD", alone.0.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
-    alone.fails(&mut play, &["DEVICE_HARDWARE", &format!("--profile {PAPER}"), "amplifier_gain"]);
+    let profile = format!("`profile {PAPER}`");
+    alone.fails(&mut play, &["DEVICE_HARDWARE", &profile, "(see --profile", "amplifier_gain"]);
     assert!(!alone.0.path(RECORD).exists());
     // Anyone may lower the limit; the smallest holds.
     for (asked, given, holds) in

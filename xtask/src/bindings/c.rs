@@ -64,7 +64,7 @@ pub extern \"C\" fn other_sum(numbers: *const f64, count: usize) -> f64 {
 }
 ";
 
-struct Installed {
+struct Installation {
     folder: PathBuf,
     prefix: PathBuf,
     asset: PathBuf,
@@ -73,7 +73,7 @@ struct Installed {
 pub(super) fn test(folder: &Path) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let capi = fs_err::canonicalize(workspace().join("sdk/capi"))?;
-    let installed = Installed {
+    let installed = Installation {
         asset: capi.join("../../examples/scenes/vinyl.htex"),
         prefix: folder.join("prefix"),
         folder: folder.clone(),
@@ -120,7 +120,7 @@ fn other(folder: &Path) -> Result<()> {
 }
 
 /// The installed library allocates nothing in real-time calls, and SDL 2 plays it.
-fn examples(installed: &Installed, capi: &Path) -> Result<()> {
+fn examples(installed: &Installation, capi: &Path) -> Result<()> {
     let real_time = capi.join("tests/hosts/real_time.c");
     let flags = "$(pkg-config --cflags --libs htex-whole) -lm";
     run(&mut installed.shell(&format!(
@@ -141,7 +141,7 @@ fn examples(installed: &Installed, capi: &Path) -> Result<()> {
 
 /// The FMOD plugin contains the static library and exports only its own names. The host of its
 /// tests, which stands in for FMOD, plays it.
-fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
+fn fmod(installed: &Installation, capi: &Path) -> Result<()> {
     let tests = capi.join("tests");
     let (prefix, headers) = (installed.prefix.display(), tests.join("fmod"));
     run(program("cmake", &installed.folder)
@@ -164,7 +164,7 @@ fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
 
 /// The libraries export only the names in the header. In the shared libraries, these names have a
 /// version.
-fn names(installed: &Installed) -> Result<()> {
+fn names(installed: &Installation) -> Result<()> {
     for folder in ["lib", "lib/whole"] {
         let lib = installed.prefix.join(folder);
         for (file, flags) in [("libhtex.a", "-g"), ("libhtex.so", "-D")] {
@@ -213,7 +213,7 @@ fn sizes(lib: &Path) -> Result<()> {
     Ok(())
 }
 
-impl Installed {
+impl Installation {
     /// Returns a shell command that finds the library through pkg-config.
     fn shell(&self, line: &str) -> std::process::Command {
         let mut shell = program("sh", &self.folder);

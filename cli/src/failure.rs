@@ -14,15 +14,13 @@ use crate::located::named;
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     #[error(transparent)]
-    Author(#[from] htex_author::AuthorError),
+    Author(AuthorError),
     #[error(transparent)]
     Recording(#[from] htex_author::recording::ReadError),
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
     #[error(transparent)]
     Device(#[from] htex_device::DeviceError),
-    #[error(transparent)]
-    Tradeoff(#[from] htex_author::tradeoff::TradeoffError),
     #[cfg(feature = "lab")]
     #[error(transparent)]
     Response(#[from] htex_lab::response::ResponseError),
@@ -157,7 +155,6 @@ impl Failure {
     fn flags(&self) -> Option<String> {
         let flags = flags_of(match self {
             Self::Author(error) => error.hint(),
-            Self::Tradeoff(error) => error.hint(),
             Self::Recording(error) => error.hint(),
             #[cfg(feature = "lab")]
             Self::Response(error) => error.hint(),
@@ -188,7 +185,7 @@ fn shown_line(line: &str) -> String {
 
 impl From<htex_format::WriteError> for Failure {
     fn from(error: htex_format::WriteError) -> Self {
-        Self::Author(error.into())
+        Self::Author(AuthorError::Asset(error))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The name of this program, and conversion of settings errors to errors about its flags.
 
-use htex_author::settings::SettingsError;
+use htex_author::AuthorError;
 
 use crate::failure::Failure;
 
@@ -9,20 +9,23 @@ pub(crate) fn tool() -> String {
     concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned()
 }
 
-impl From<SettingsError> for Failure {
+impl From<AuthorError> for Failure {
     /// A setting becomes a flag of this program. A file that cannot be read is not a matter of
     /// flags.
-    fn from(error: SettingsError) -> Self {
+    fn from(error: AuthorError) -> Self {
         match error {
-            SettingsError::Model(error) => Self::Model(error),
-            SettingsError::Response(error) => Self::Recording(*error),
-            SettingsError::Grid(error) => Self::Usage(format!("--{error}")),
-            SettingsError::Map { keyword, text, error } => {
+            AuthorError::Model(error) => Self::Model(error),
+            AuthorError::Read(error) => Self::Recording(error),
+            AuthorError::Map { keyword, text, error } => {
                 let flag = keyword.replace('_', "-");
                 Self::Usage(format!("--{flag} {text}: {error}"))
             }
-            SettingsError::Trackers { .. } => Self::Usage(format!("--tracker: {error}")),
-            usage => Self::Usage(format!("--{usage}")),
+            AuthorError::Trackers { .. } => Self::Usage(format!("--tracker: {error}")),
+            AuthorError::GridText { .. }
+            | AuthorError::ModelNotFitted { .. }
+            | AuthorError::OptionForm { .. }
+            | AuthorError::Metadata { .. } => Self::Usage(format!("--{error}")),
+            error => Self::Author(error),
         }
     }
 }

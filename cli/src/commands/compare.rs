@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{
-    CompareError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, read_take,
+    AuthorError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, segment_take,
 };
 use htex_base::finding::{Notice, plain};
 use htex_format::Measure;
@@ -135,13 +135,11 @@ impl Compare {
     ) -> Result<Vec<ComparedModel>, Failure> {
         let asset = self.player.open(&self.other)?;
         compare(&asset, spectrum, found).map_err(|error| match error {
-            CompareError::Quantities { held, .. } => {
+            AuthorError::OtherQuantity { held, .. } => {
                 Failure::Usage(format!("{error}; give --quantity {held}"))
             }
-            CompareError::Play(error) => error.of(&self.other),
-            CompareError::Model(error) => error.into(),
-            CompareError::Measure(error) => error.into(),
-            error => Failure::Other(error.to_string()),
+            AuthorError::Play(error) => error.of(&self.other),
+            error => error.into(),
         })
     }
 
@@ -180,11 +178,11 @@ impl Compare {
     ) -> Result<(TextureSpectrum, Exploration, Vec<Notice>), Failure> {
         let take = self.reading.read_among(recording)?;
         let options = self.reading.spectrum_options()?;
-        let reading = read_take(&take, &options, self.reading.strict())?;
+        let reading = segment_take(&take, &options, self.reading.strict())?;
         note(&reading.notes);
         Ok((
-            TextureSpectrum::average(&[reading.part], options.averaging)?,
-            reading.condition,
+            TextureSpectrum::average(&[reading.spectra], options.averaging)?,
+            reading.motion,
             reading.warnings,
         ))
     }

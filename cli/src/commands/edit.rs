@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::settings::Metadata;
-use htex_author::{EditError, edit};
+use htex_author::{AuthorError, edit};
 
 use crate::assets::AssetSummary;
 use crate::bounded::read_asset;
@@ -67,7 +67,7 @@ impl Edit {
         checked(&metadata)?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
         let asset = edited.map_err(|error| match error {
-            EditError::Read(error) => error.of(&self.asset),
+            AuthorError::ReadAsset(error) => error.of(&self.asset),
             lost => Failure::Other(format!("{}: {lost}", shown(&self.asset))),
         })?;
         let output = self.output.as_ref().unwrap_or(&self.asset);

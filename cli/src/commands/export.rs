@@ -115,7 +115,7 @@ struct Written<'a> {
 impl Export {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
-        let format = Format::named(&self.to).ok_or_else(unknown)?;
+        let format = Format::find(&self.to).ok_or_else(unknown)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
         let exported =
             if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };

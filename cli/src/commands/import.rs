@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::{AtFile, read_regular};
-use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, SignalSettings, imported};
+use htex_exchange::{Format, MOST_BYTES, Physical, Profile, SignalSettings, imported};
 use htex_format::{Quantity, license_file, read_license_file};
 
 use crate::assets::AssetSummary;
@@ -122,7 +122,7 @@ impl Import {
         })
     }
 
-    fn write(&self, imported: htex_exchange::Imported) -> Result<Exit, Failure> {
+    fn write(&self, imported: htex_exchange::ImportedAsset) -> Result<Exit, Failure> {
         let fit = &self.given.values.fit;
         let bytes = imported.to_bytes()?;
         write_file(&self.output, &bytes)?;
@@ -146,16 +146,5 @@ impl Import {
         let text = summary.to_text();
         print(&format!("imported {}\n{text}", shown(&self.file)))?;
         all_named_were_fitted(fit, &imported.skipped)
-    }
-}
-
-impl From<ImportError> for Failure {
-    fn from(error: ImportError) -> Self {
-        match error {
-            ImportError::Exchange(error) => error.into(),
-            ImportError::Settings(error) => error.into(),
-            ImportError::Author(error) => error.into(),
-            error => Self::Other(error.to_string()),
-        }
     }
 }

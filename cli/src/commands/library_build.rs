@@ -9,7 +9,7 @@ use htex_author::FeltShare;
 use htex_base::finding::{Severity, plain};
 use htex_base::storage::Location;
 use htex_build::{
-    Build as Recipe, BuildError, BuildOptions, Built, Destination, FindingShare, Job, Report,
+    Build as Recipe, BuildError, BuildOptions, Destination, FindingShare, Job, Report,
     Status, TextureReport, Why, named_briefly, report_failure,
 };
 use serde::Serialize;
@@ -152,14 +152,6 @@ impl Build {
 
     fn build(&self) -> Result<Exit, Failure> {
         let start = Instant::now();
-        let options = BuildOptions::new(tool())
-            .with_jobs(self.jobs.map_or(0, usize::from))
-            .with_keep_going(self.keep_going)
-            .with_limits(WasmLimit::all(&self.wasm_limit))
-            .with_plugins(self.plugin.clone())
-            .with_prune(self.prune)
-            .with_no_removals(self.no_removals)
-            .with_browser_package(self.browser_package.clone());
         let to = Destination::parse(&self.output, self.work.as_deref())
             .map_err(of_file(&self.recipe))?;
         if to.remote().is_none() && self.work.is_some() {
@@ -167,7 +159,17 @@ impl Build {
                 "--work goes with a URI after -o; a build of this machine works in its own folder";
             return Err(Failure::Usage(sentence.to_owned()));
         }
-        let options = options.with_published(to.remote());
+        let options = BuildOptions {
+            jobs: self.jobs.map_or(0, usize::from),
+            keep_going: self.keep_going,
+            limits: WasmLimit::all(&self.wasm_limit),
+            plugins: self.plugin.clone(),
+            prune: self.prune,
+            no_removals: self.no_removals,
+            browser_package: self.browser_package.clone(),
+            published: to.remote().cloned(),
+            ..BuildOptions::new(tool())
+        };
         let mut build =
             Recipe::open(&self.recipe, to.folder(), options).map_err(of_file(&self.recipe))?;
         let work = Work::of(&build);
@@ -216,12 +218,11 @@ impl Build {
 
     fn report(
         &self,
-        built: &Built,
+        report: &Report,
         to: &Destination,
         work: &Work,
         seconds: f64,
     ) -> Result<Exit, Failure> {
-        let report = &built.report;
         let results = to.results();
         let left_out: Vec<&TextureReport> =
             report.textures.iter().filter(|texture| texture.status == Status::LeftOut).collect();

@@ -179,7 +179,7 @@ pub fn sliding(recording: &Recording) -> Vec<bool> {
 }
 
 /// Returns the number of samples in a segment at a sample rate: 4000 at 20 kHz.
-pub fn segment_len(rate_hz: f64) -> usize {
+pub(crate) fn segment_len(rate_hz: f64) -> usize {
     (rate_hz / SEGMENTS_PER_S).round().max(1.0) as usize
 }
 
@@ -196,7 +196,7 @@ fn resultant(recording: &Recording) -> Sums {
         let squares = centred.iter().map(|(x, mean)| (x[at] - mean).powi(2));
         squares.sum::<f64>().sqrt()
     };
-    Sums::of((0..recording.samples()).map(length))
+    Sums::new((0..recording.samples()).map(length))
 }
 
 /// The length of the signal vector, and its mean, which is the threshold that separates sweeps.

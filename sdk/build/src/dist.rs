@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use htex_base::files::{AtFile, OwnFolder};
 
 use crate::BuildError;
-use crate::kept::inside;
+use crate::state::inside;
 
 /// Name of the folder for files that are being written, in the folder of stored data.
 const PARTS: &str = "parts";

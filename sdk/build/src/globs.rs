@@ -14,8 +14,8 @@ use htex_base::storage::Location;
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::elsewhere::joined;
 use crate::error::at_place;
+use crate::remote::joined;
 
 /// Characters that make a text a glob.
 const GLOB: [char; 4] = ['*', '?', '[', '{'];

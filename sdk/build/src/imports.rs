@@ -4,9 +4,7 @@
 
 use std::path::Path;
 
-use htex_exchange::{
-    ExchangeError, Format, ImportError, Missing, Physical, Profile, Reads, SignalSettings,
-};
+use htex_exchange::{ExchangeError, Format, Missing, Physical, Profile, Reads, SignalSettings};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -210,9 +208,9 @@ fn keys<T: Serialize>(settings: &T, before: &str) -> Vec<String> {
 }
 
 /// Returns the error of a refused import, in terms of the keys of recipes.
-pub(crate) fn refused(error: ImportError) -> Box<dyn std::error::Error> {
+pub(crate) fn refused(error: ExchangeError) -> Box<dyn std::error::Error> {
     match error {
-        ImportError::Exchange(error @ ExchangeError::Missing { .. }) => by_keys(&error).into(),
+        ExchangeError::Missing { .. } => by_keys(&error).into(),
         error => error.into(),
     }
 }

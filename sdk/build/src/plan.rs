@@ -7,12 +7,12 @@ use globset::GlobSet;
 use htex_author::settings::Metadata;
 
 use crate::BuildError;
-use crate::elsewhere::Elsewhere;
 use crate::error::at_place;
 use crate::globs::glob_set;
 use crate::imports::{FileKind, check_files};
 use crate::inputs::{Input, MOST_RECORDINGS, Missing, inputs, slashed, too_many};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
+use crate::remote::RemoteFiles;
 use crate::template::{Fields, fill};
 
 /// The textures of a recipe.
@@ -82,7 +82,7 @@ impl Plan {
         recipe: &Recipe,
         folder: &Path,
         output: &Path,
-        elsewhere: &Elsewhere,
+        remote: &RemoteFiles,
         missing: Missing,
     ) -> Result<Self, BuildError> {
         check_name("library.name", &recipe.library.name)?;
@@ -100,7 +100,7 @@ impl Plan {
         for (i, rule) in recipe.textures.iter().enumerate() {
             let place = format!("textures[{i}]");
             let settings = rule.settings.clone().over(recipe.defaults.clone());
-            for input in inputs(rule, &place, (folder, output), elsewhere, missing)? {
+            for input in inputs(rule, &place, (folder, output), remote, missing)? {
                 let planned = planned(rule, &settings, &overrides, input, &place)?;
                 check_once(&mut known, &planned, &place)?;
                 gather(&mut textures, planned, &place)?;

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::elsewhere::elsewhere;
 use crate::error::at_place;
 use crate::hashes::{Stamp, hash_local};
-use crate::kept::Kept;
+use crate::remote::remote_location;
+use crate::state::StateFolder;
 
 /// File that lists what was copied, in the folder of stored data.
 const PUBLISHED: &str = "published.json";
@@ -66,7 +66,7 @@ impl Destination {
     /// # Errors
     /// The URI is malformed or read-only, or there is no `work` and the environment names no cache.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
-        let Some(location) = elsewhere(Path::new(argument))? else {
+        let Some(location) = remote_location(Path::new(argument))? else {
             let location = Location::parse(argument)?;
             let folder = location.local().unwrap_or(Path::new(argument)).to_owned();
             return Ok(Self { folder, remote: None });
@@ -150,13 +150,13 @@ struct Publishing<'a> {
     folder: &'a Path,
     to: &'a Location,
     storage: Storage,
-    kept: Kept,
+    kept: StateFolder,
     before: Published,
 }
 
 impl<'a> Publishing<'a> {
     fn new(folder: &'a Path, to: &'a Location) -> Result<Self, BuildError> {
-        let kept = Kept::new(folder)?;
+        let kept = StateFolder::new(folder)?;
         let before = kept
             .get(PUBLISHED, MOST_BYTES)
             .and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
@@ -207,7 +207,7 @@ impl<'a> Publishing<'a> {
         let entries = self.storage.list(self.to, "**/*")?;
         let named = entries.into_iter().filter_map(|entry| {
             let uri = entry.location.to_string();
-            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref(), entry.modified);
+            let stamp = Stamp::remote(entry.bytes, entry.etag.as_deref(), entry.modified);
             Some((uri.strip_prefix(&prefix)?.to_owned(), stamp))
         });
         Ok(named.collect())

@@ -22,7 +22,7 @@ const NAMED: usize = 3;
 pub(crate) fn textures_before(
     dist: &Dist,
     library: &str,
-    elsewhere: Option<&Location>,
+    remote: Option<&Location>,
 ) -> BTreeSet<String> {
     let report = previous(dist);
     let file = report.as_ref().map(|report| report.library.file.clone());
@@ -32,7 +32,7 @@ pub(crate) fn textures_before(
     let mut names = in_library(dist, Path::new(&file));
     names.extend(report.iter().flat_map(built));
     if names.is_empty() {
-        names.extend(elsewhere.and_then(report_at).iter().flat_map(built));
+        names.extend(remote.and_then(report_at).iter().flat_map(built));
     }
     names
 }

@@ -107,12 +107,10 @@ pub enum ExchangeError {
     /// The scene cannot be played.
     #[error("{problem}")]
     Scene { problem: String },
-    /// The signal cannot be read as a recording, or no model could be fitted to it.
+    /// The signal is not a valid recording, a setting of the fit cannot be used, no model could be
+    /// fitted to it, or the asset cannot be written.
     #[error(transparent)]
     Author(#[from] AuthorError),
-    /// The signal is not a valid recording.
-    #[error(transparent)]
-    Recording(#[from] htex_author::recording::RecordingError),
 }
 
 /// A fact that a format does not contain and the user has to give.

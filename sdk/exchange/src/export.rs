@@ -4,9 +4,9 @@ use htex_play::Asset;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
-use crate::format::{Format, WriteSignal, Writes};
+use crate::format::{Format, RATE_HZ, WriteSignal, Writes};
 use crate::heard::{Path, Playing, SceneSound, Source};
-use crate::job::{AssetJob, Coding, Job, RATE_HZ};
+use crate::job::{Coding, Job};
 use crate::loss::{Loss, loss};
 use crate::map;
 use crate::profile::Profile;
@@ -84,7 +84,7 @@ impl<'a> Export<'a> {
         self
     }
 
-    fn rate_hz(&self) -> f64 {
+    pub(crate) fn rate_hz(&self) -> f64 {
         self.rate_hz.unwrap_or(RATE_HZ)
     }
 
@@ -127,6 +127,20 @@ pub struct Exported {
     pub notes: Vec<String>,
 }
 
+impl Exported {
+    /// A file that holds the asset itself, which loses nothing.
+    pub(crate) fn of_asset(format: &Format, bytes: Vec<u8>) -> Self {
+        Self {
+            bytes,
+            format: format.name,
+            played: None,
+            lost: None,
+            loses: format.loses,
+            notes: Vec::new(),
+        }
+    }
+}
+
 /// How an actuator plays a file, according to its profile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
@@ -156,33 +170,13 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
             };
             of_signal(Playing { source, seconds }, export, write, profile)
         }
-        Some(Writes::Asset(write)) => Ok(Exported {
-            bytes: write(&AssetJob {
-                format: format.name,
-                asset,
-                file: export.file,
-                extension: export.extension,
-            })?,
-            format: format.name,
-            played: None,
-            lost: None,
-            loses: format.loses,
-            notes: Vec::new(),
-        }),
+        Some(Writes::Asset(write)) => Ok(Exported::of_asset(format, write(asset, export)?)),
         Some(Writes::Map) => {
             let motion = match export.path {
                 Path::Condition(motion) => motion,
                 Path::Stroke(_) => None,
             };
-            let printed = map::written(asset, export.model, motion)?;
-            Ok(Exported {
-                bytes: printed.bytes,
-                format: format.name,
-                played: None,
-                lost: printed.lost,
-                loses: format.loses,
-                notes: printed.notes,
-            })
+            map::export(asset, export, motion)
         }
         None => Err(not_written(format)),
     }
@@ -204,19 +198,15 @@ pub fn export_scene(
             let playing = Playing { source: Source::Scene(scene), seconds: scene.seconds };
             of_signal(playing, export, write, profile)
         }
-        Some(Writes::Asset(_) | Writes::Map) => Err(ExchangeError::Cannot {
-            format: format.name,
-            problem: "it holds an asset, and a scene is none; export the scene's assets".to_owned(),
-        }),
+        Some(Writes::Asset(_) | Writes::Map) => {
+            Err(format.cannot("it holds an asset, and a scene is none; export the scene's assets"))
+        }
         None => Err(not_written(format)),
     }
 }
 
 fn not_written(format: &Format) -> ExchangeError {
-    ExchangeError::Cannot {
-        format: format.name,
-        problem: format!("it is not written; there are {}", crate::exported().join(", ")),
-    }
+    format.cannot(format!("it is not written; there are {}", crate::exported().join(", ")))
 }
 
 fn of_signal(
@@ -227,14 +217,7 @@ fn of_signal(
 ) -> Result<Exported, ExchangeError> {
     export.check_numbers(&playing)?;
     let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
-    let job = Job {
-        format: export.format.name,
-        playing,
-        profile,
-        rate_hz: export.rate_hz(),
-        coding: export.coding.unwrap_or_default(),
-        extension: export.extension,
-    };
+    let job = Job { export, playing, profile };
     let written = write(&job)?;
     if written.heard.samples.iter().all(|x| *x == 0.0) {
         let problem = match job.playing.source {
@@ -243,7 +226,7 @@ fn of_signal(
             }
             Source::Scene(_) => "the scene is silent",
         };
-        return Err(job.cannot(problem.to_owned()));
+        return Err(job.cannot(problem));
     }
     let lost = loss(&written.heard, &written.drive, profile)?;
     if let Some(db) = lost.sensation_db.filter(|db| *db <= 0.0) {

@@ -122,7 +122,7 @@ impl Profile {
 
     /// Returns its strongest peak acceleration at a frequency, m/s².
     #[must_use]
-    pub fn strongest_at(&self, hertz: f64) -> f64 {
+    pub(crate) fn strongest_at(&self, hertz: f64) -> f64 {
         self.strongest_m_s2.value * self.response(hertz)
     }
 

@@ -6,7 +6,7 @@ use htex::Quantity;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::read_regular;
 use htex_exchange::{
-    Coding, ExchangeError, Export, FORMATS, Format, Import, ImportError, MOST_BYTES, PROFILES,
+    Coding, ExchangeError, Export, FORMATS, Format, Import, MOST_BYTES, PROFILES,
     Physical, Profile, Stroke, Writes,
 };
 use htex_format::{license_file, read_license_file};
@@ -130,7 +130,7 @@ impl Importing {
 
 impl Exporting {
     fn export(&self, texture: &Texture) -> PyResult<htex_exchange::Exported> {
-        let format = Format::named(&self.to)
+        let format = Format::find(&self.to)
             .ok_or_else(|| unknown("to", &self.to, &htex_exchange::exported().join(", ")))?;
         let mut export = Export::new(format);
         export.path = self.path(texture)?;
@@ -199,14 +199,4 @@ fn keyword(setting: &str) -> String {
         other => other,
     };
     format!("`{name}`")
-}
-
-impl IntoPyErr for ImportError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Exchange(error) => error.into_py_err(),
-            Self::Author(error) => error.into_py_err(),
-            other => option(other.to_string()),
-        }
-    }
 }

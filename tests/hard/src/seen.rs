@@ -65,7 +65,7 @@ pub fn fit(model: &LoadedModel, magnitude: &[f64]) -> Result<Fit, HostError> {
 /// Fits every model except those named, and runs every operation on the parameters. Returns the
 /// largest sample relative to its RMS. If anything fails, returns NaN and prints a line to standard
 /// output.
-pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
+pub(crate) fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
     let magnitude = spectrum(signal);
     let (mut largest, mut failed) = (0.0, false);
     for model in models() {
@@ -84,7 +84,7 @@ pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
 }
 
 /// As [`every_model_but`], without exceptions.
-pub fn every_model(signal: &[f64]) -> f64 {
+pub(crate) fn every_model(signal: &[f64]) -> f64 {
     every_model_but(&[], signal)
 }
 
@@ -94,7 +94,7 @@ pub fn refusal(name: &str, signal: &[f64]) -> String {
 }
 
 /// The models' refusals, if all refuse with the same status.
-pub fn refusal_of_all(signal: &[f64]) -> String {
+pub(crate) fn refusal_of_all(signal: &[f64]) -> String {
     let magnitude = spectrum(signal);
     let said = |model: &LoadedModel| told(fit(model, &magnitude));
     let all: Vec<String> = models().iter().map(said).collect();

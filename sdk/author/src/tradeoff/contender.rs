@@ -1,13 +1,13 @@
 //! Contenders: everything that can be fitted to a recording, stored and played.
 
-use crate::{Level, TextureSpectrum, stored_fields, stored_level};
+use crate::{AuthorError, Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
 use htex_format::{StoredAs, StoredField, round_within, stored_bytes};
 use htex_host::{Fit, HostError, LoadedModel};
 
 use crate::tradeoff::baseline::quantise;
 use crate::tradeoff::setting::Keep;
-use crate::tradeoff::{Setting, Subject, TradeoffError};
+use crate::tradeoff::{Setting, Subject};
 
 /// What is measured: a model with a setting, or a baseline.
 #[derive(Debug, Clone)]
@@ -60,7 +60,7 @@ impl Contender {
         subject: &Subject,
         spectrum: &TextureSpectrum,
         fit: &Fit,
-    ) -> Result<Stored, TradeoffError> {
+    ) -> Result<Stored, AuthorError> {
         let (parameters, bytes) = match &self.kind {
             ContenderKind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());

@@ -2,8 +2,9 @@
 
 use htex_host::{Knob, Knobs, LoadedModel, Registry};
 
+use crate::AuthorError;
+use crate::tradeoff::Setting;
 use crate::tradeoff::knobs::{PLAYING, few, of_range};
-use crate::tradeoff::{Setting, TradeoffError};
 
 /// Returns the settings of a model's fit options, the defaults first. A quick sweep varies only one
 /// knob at a time.
@@ -56,7 +57,7 @@ fn alone(model: &LoadedModel, knobs: Option<&Knobs>, quick: bool) -> Vec<(String
 ///
 /// # Errors
 /// When the table of knobs has an invalid value.
-pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
+pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, AuthorError> {
     let mut settings = Vec::new();
     for knob in PLAYING {
         let values = if quick { few(knob.values) } else { knob.values.to_vec() };

@@ -14,10 +14,10 @@ pub(super) struct Controls {
 }
 
 impl Controls {
-    pub(super) fn of(entries: &[Entry]) -> Self {
+    pub(super) fn new(entries: &[Entry]) -> Self {
         Self {
-            intensity: Control::of(entries, INTENSITY_CONTROL, 1.0),
-            sharpness: Control::of(entries, SHARPNESS_CONTROL, 0.0),
+            intensity: Control::new(entries, INTENSITY_CONTROL, 1.0),
+            sharpness: Control::new(entries, SHARPNESS_CONTROL, 0.0),
         }
     }
 
@@ -67,7 +67,7 @@ struct Control {
 }
 
 impl Control {
-    fn of(entries: &[Entry], id: &str, usual: f64) -> Self {
+    fn new(entries: &[Entry], id: &str, usual: f64) -> Self {
         let mut curves: Vec<Vec<Point>> =
             entries.iter().filter_map(|entry| own_curve(entry, id)).collect();
         // Files may list curves in any order. The sort is stable: of equal starts, the later entry

@@ -13,7 +13,7 @@ use serde_json::Value;
 use textures::texture;
 
 fn of<'a>(format: &str) -> Export<'a> {
-    Export::new(Format::named(format).unwrap())
+    Export::new(Format::find(format).unwrap())
 }
 
 /// Checks a file against the rules of its format.

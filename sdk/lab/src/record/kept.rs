@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use htex_author::recording::read_recording;
-use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, segment_take};
 use htex_base::files::read_regular;
 use htex_format::Quantity;
 use serde::Deserialize;
@@ -38,7 +38,7 @@ pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<Li
     let options = settings_of(&file, &take).read_options(1).ok()?.pop()?;
     let take =
         Take { recording: read_recording(&file, &options).ok()?, given: Exploration::default() };
-    let reading = read_take(&take, &SpectrumOptions::default(), false).ok()?;
-    let texture = TextureSpectrum::average(&[reading.part], Averaging::Rms).ok()?;
+    let reading = segment_take(&take, &SpectrumOptions::default(), false).ok()?;
+    let texture = TextureSpectrum::average(&[reading.spectra], Averaging::Rms).ok()?;
     Some(LiveSpectrum::of(&texture))
 }

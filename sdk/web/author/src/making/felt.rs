@@ -1,7 +1,7 @@
 //! What a fingertip feels: the difference between two textures, and the detection threshold.
 
 use htex::{Asset, AssetData};
-use htex_author::by_hand::ByHandError;
+use htex_author::AuthorError;
 use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
 use htex_dsp::vibrotactile::Listener;
 use serde::Serialize;
@@ -77,7 +77,7 @@ fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refu
             .motion(model, speed, force)
             .and_then(|motion| asset.magnitude(model, Some(motion), &grid)),
     };
-    Ok((asset, magnitude.map_err(ByHandError::from)?))
+    Ok((asset, magnitude.map_err(AuthorError::from)?))
 }
 
 /// Returns the magnitudes at which sinusoids of given frequencies reach the detection threshold.

@@ -9,8 +9,8 @@ use htex_author::FeltShare;
 use htex_base::finding::{Severity, plain};
 use htex_base::storage::Location;
 use htex_build::{
-    Build as Recipe, BuildError, BuildOptions, Destination, FindingShare, Job, Report,
-    Status, TextureReport, Why, named_briefly, report_failure,
+    Build as Recipe, BuildError, BuildOptions, Destination, FindingShare, Job, Report, Status,
+    TextureReport, Why, named_briefly, report_failure,
 };
 use serde::Serialize;
 

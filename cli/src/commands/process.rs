@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::recording::format_names;
-use htex_author::{SegmentedTake, Recording, TextureSpectrum, segment_take};
+use htex_author::{Recording, SegmentedTake, TextureSpectrum, segment_take};
 use serde_json::{Value, json};
 
 use crate::exit::Exit;

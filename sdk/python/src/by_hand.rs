@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use htex::Quantity;
 use htex_author::by_hand::{self, ByHand, MixedAsset};
-use htex_author::settings::Metadata;
 use htex_author::edit as edited;
+use htex_author::settings::Metadata;
 use htex_format::Condition;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;

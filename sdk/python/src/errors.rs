@@ -5,8 +5,8 @@ use std::path::Path;
 
 use htex::format::{ReadError, WriteError};
 use htex::host::HostError;
-use htex_author::{AuthorError, AuthorErrorKind};
 use htex_author::recording::{ReadError as RecordingReadError, ReadProblem};
+use htex_author::{AuthorError, AuthorErrorKind};
 use htex_scene::{LoadError, SceneError as PlayError};
 use pyo3::exceptions::PyOSError;
 use pyo3::import_exception;

@@ -6,8 +6,8 @@ use htex::Quantity;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::read_regular;
 use htex_exchange::{
-    Coding, ExchangeError, Export, FORMATS, Format, Import, MOST_BYTES, PROFILES,
-    Physical, Profile, Stroke, Writes,
+    Coding, ExchangeError, Export, FORMATS, Format, Import, MOST_BYTES, PROFILES, Physical,
+    Profile, Stroke, Writes,
 };
 use htex_format::{license_file, read_license_file};
 use pyo3::prelude::*;

@@ -7,7 +7,8 @@ use htex_author::recording::{
 };
 use htex_author::settings::ReadingSettings;
 use htex_author::{
-    AuthorError, Exploration, Recording, SegmentedTake, SpectrumOptions, Take, TextureSpectrum, segment_take,
+    AuthorError, Exploration, Recording, SegmentedTake, SpectrumOptions, Take, TextureSpectrum,
+    segment_take,
 };
 use htex_lab::record::KnownTake;
 use pyo3::prelude::*;

@@ -1,9 +1,7 @@
 //! Simulated recordings.
 
 use htex_author::settings::GivenLaw;
-use htex_author::simulate::{
-    Departures, FreeMotion, Simulation, SimulationOptions, Surface,
-};
+use htex_author::simulate::{Departures, FreeMotion, Simulation, SimulationOptions, Surface};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;

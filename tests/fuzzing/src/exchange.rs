@@ -1,7 +1,7 @@
 //! Third-party texture formats.
 
-use htex_exchange::haptic::Metadata;
 use htex_exchange::Naming;
+use htex_exchange::haptic::Metadata;
 use htex_exchange::hatt::{asset, read};
 use htex_exchange::{
     Ahap, Export, Format, Haptic, Hjif, Import, MOST_S, PROFILES, Pattern, Physical, combined,

@@ -7,7 +7,7 @@ use htex_author::recording::{
 };
 use htex_author::{
     Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take, TextureSpectrum,
-    segment_take, recording_findings,
+    recording_findings, segment_take,
 };
 use htex_scene::Trace;
 

@@ -104,7 +104,8 @@ fn signals_of_others() -> Vec<Seed> {
             frequency_hz: 150.0,
         }],
     };
-    let haptic = htex_exchange::Haptic::from_pattern(&pattern, profile, Default::default()).to_bytes();
+    let haptic =
+        htex_exchange::Haptic::from_pattern(&pattern, profile, Default::default()).to_bytes();
     let ahap = htex_exchange::Ahap::from_pattern(&pattern, profile).to_bytes();
     let controls = br#"{"Version": 1.0, "Metadata": {"Project": "seed"}, "Pattern": [
         {"Event": {"Time": 0.0, "EventType": "HapticContinuous", "EventDuration": 0.3, "EventParameters": [

@@ -3,7 +3,9 @@
 use std::error::Error;
 
 use htex_author::recording::RecordingError;
-use htex_author::{Exploration, Recording, SegmentedTake, SpectrumOptions, Take, segment_take, velocity};
+use htex_author::{
+    Exploration, Recording, SegmentedTake, SpectrumOptions, Take, segment_take, velocity,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::record::coverage::{Coverage, Target};

@@ -5,7 +5,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use htex_author::recording::read_recording;
-use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, segment_take};
+use htex_author::{
+    Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, segment_take,
+};
 use htex_base::files::{AtFile, ContentError};
 use htex_base::finding::as_text;
 use htex_dsp::Band;

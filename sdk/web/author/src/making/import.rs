@@ -5,8 +5,8 @@ use std::path::Path;
 use htex::host::Registry;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_exchange::{
-    ExchangeError, FORMATS, Format, Import, ImportedAsset, MOST_BYTES, Missing, PROFILES,
-    Physical, Profile, Reads, missing,
+    ExchangeError, FORMATS, Format, Import, ImportedAsset, MOST_BYTES, Missing, PROFILES, Physical,
+    Profile, Reads, missing,
 };
 use htex_format::Condition;
 use serde::Serialize;

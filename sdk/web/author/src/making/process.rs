@@ -1,7 +1,7 @@
 //! Reads a recording: its columns, signals, spectrum and findings.
 
 use htex_author::recording::{Preview, preview};
-use htex_author::{SegmentedTake, Recording, TextureSpectrum, segment_take};
+use htex_author::{Recording, SegmentedTake, TextureSpectrum, segment_take};
 use serde::Serialize;
 
 use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
@@ -124,10 +124,7 @@ impl<'a> Processed<'a> {
             segments: spectrum.segments,
             from_sweeps: read.spectra.segments.from_sweeps,
             read_s: stretches.map(second).collect(),
-            condition: Condition {
-                speed: read.motion.speed_mm_s,
-                force: read.motion.force_n,
-            },
+            condition: Condition { speed: read.motion.speed_mm_s, force: read.motion.force_n },
             speed_spread: read.spread.speed_mm_s,
             force_spread: read.spread.force_n,
             findings: describe::findings(&read.findings),

@@ -22,12 +22,12 @@
 //! ```no_run
 //! use htex_build::{Build, BuildOptions};
 //!
-//! let options = BuildOptions::new("my-pipeline 1.0").with_keep_going(true);
+//! let options = BuildOptions { keep_going: true, ..BuildOptions::new("my-pipeline 1.0") };
 //! let mut build = Build::open("library.toml".as_ref(), "dist".as_ref(), options)?;
 //! println!("{} of {} textures to fit", build.pending().len(), build.plan().textures.len());
 //! build.run(&|job| println!("{}", job.texture))?;
-//! let built = build.finish()?;
-//! println!("{} textures", built.report.library.textures);
+//! let report = build.finish()?;
+//! println!("{} textures", report.library.textures);
 //! # Ok::<(), htex_build::BuildError>(())
 //! ```
 #![forbid(unsafe_code)]

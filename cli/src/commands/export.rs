@@ -3,8 +3,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use htex_base::files::{AtFile, read_regular};
 use htex_exchange::{
-    Coding, ExchangeError, Exported, Format, Loss, MOST_BYTES, Path, Played, Profile, Stroke,
-    Writes, exported, profile_names,
+    ActuatorPlay, Coding, ExchangeError, ExportedFile, Format, Loss, MOST_BYTES, Path, Profile,
+    Stroke, Writes, exported, profile_names,
 };
 use htex_format::Measure;
 use serde::Serialize;
@@ -109,7 +109,7 @@ struct Written<'a> {
     file: String,
     bytes: usize,
     #[serde(flatten)]
-    exported: &'a Exported,
+    exported: &'a ExportedFile,
 }
 
 impl Export {
@@ -124,7 +124,7 @@ impl Export {
         Ok(Exit::SUCCESS)
     }
 
-    fn of_asset(&self, format: &'static Format) -> Result<Exported, Failure> {
+    fn of_asset(&self, format: &'static Format) -> Result<ExportedFile, Failure> {
         let inputs = [&self.asset].into_iter().chain(&self.given.values.stroke);
         check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
         let asset = self.player.open(&self.asset)?;
@@ -135,7 +135,7 @@ impl Export {
         htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))
     }
 
-    fn of_scene(&self, format: &'static Format) -> Result<Exported, Failure> {
+    fn of_scene(&self, format: &'static Format) -> Result<ExportedFile, Failure> {
         format.check_export_of_scene(self.given.settings.iter().map(String::as_str))?;
         let scene = Scene::open(&self.asset, &self.player, self.given.values.seconds)?;
         // Only the loaded scene knows which other files it reads.
@@ -188,7 +188,7 @@ impl Export {
         }
     }
 
-    fn tell(&self, exported: &Exported) -> Result<(), Failure> {
+    fn tell(&self, exported: &ExportedFile) -> Result<(), Failure> {
         if self.json {
             return print_json(&Written {
                 file: self.output.display().to_string(),
@@ -210,11 +210,11 @@ impl Export {
     }
 }
 
-fn played(played: &Played) -> String {
+fn played(played: &ActuatorPlay) -> String {
     format!(", {} s for {}", played.seconds, played.profile)
 }
 
-fn limited(played: &Played) -> String {
+fn limited(played: &ActuatorPlay) -> String {
     format!("; the actuator is too weak in {:.0} % of the time", 100.0 * played.limited)
 }
 
@@ -248,7 +248,7 @@ impl From<ExchangeError> for Failure {
             | Rights { .. }
             | UnknownFormat { .. }
             | UnknownProfile { .. }
-            | NoSamples { .. }) => Self::Usage(error.told(&flag)),
+            | NoSamples { .. }) => Self::Usage(error.message_with(&flag)),
             error => Self::Other(error.to_string()),
         }
     }

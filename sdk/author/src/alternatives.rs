@@ -19,7 +19,7 @@ const LIMIT_DB: f64 = 12.0;
 const BAND_LIMIT_DB: f64 = 24.0;
 
 /// A fit that was tried, with its nine-band RMS error in decibels.
-struct Tried {
+struct TrialFit {
     name: String,
     error_db: f64,
 }
@@ -45,7 +45,7 @@ pub(crate) fn warning<'a>(
     }
     let try_one = |model: &LoadedModel, options: Vec<f64>, name: String| {
         let error_db = error_of(model, &options, one, level)?;
-        (error_db < nine_band_db).then_some(Tried { name, error_db })
+        (error_db < nine_band_db).then_some(TrialFit { name, error_db })
     };
     let own = other_options(choice).into_iter();
     let best_option = best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
@@ -84,7 +84,7 @@ fn worst_band_db(quality: &Quality) -> f64 {
     bands.fold(0.0, |worst, error| worst.max(error.abs()))
 }
 
-fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
+fn best(tried: impl Iterator<Item = TrialFit>) -> Option<TrialFit> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 

@@ -171,7 +171,7 @@ impl Curve {
     }
 
     /// Interpolates linearly at an octave inside the curve.
-    fn at(&self, octave: f64) -> f64 {
+    fn value_at(&self, octave: f64) -> f64 {
         let place = ((octave - self.low) * POINTS).max(0.0);
         let i = (place as usize).min(self.values.len().saturating_sub(2));
         let part = place - i as f64;
@@ -199,7 +199,7 @@ fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
     }
     let rows: Vec<Vec<f64>> = shifted()
         .map(|(curve, shift)| {
-            let value = |i: usize| curve.at(low + i as f64 / POINTS - shift);
+            let value = |i: usize| curve.value_at(low + i as f64 / POINTS - shift);
             let row: Vec<f64> = (0..points as usize).map(value).collect();
             let mean = row.iter().sum::<f64>() / points;
             // Without its mean, a row no longer contains the level.

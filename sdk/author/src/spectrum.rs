@@ -352,7 +352,7 @@ fn inverse_response(
     let values: Vec<Complex<f64>> = band
         .grid_hz()
         .iter()
-        .map(|&f| response.at(f))
+        .map(|&f| response.value_at(f))
         .map(|(re, im)| Complex::new(re, im))
         .collect();
     let largest = response.largest_in(band);
@@ -387,7 +387,7 @@ pub(crate) fn inverse_at(
 ) -> Vec<Complex<f64>> {
     let floor = RESPONSE_FLOOR * response.largest_in(band);
     let at = |hz: f64| {
-        let (re, im) = response.at(hz);
+        let (re, im) = response.value_at(hz);
         inverse(Complex::new(re, im), floor)
     };
     frequency_hz.map(at).collect()

@@ -44,7 +44,7 @@ pub(crate) fn assemble(
     textures_before: &BTreeSet<String>,
 ) -> Result<Report, BuildError> {
     let file = format!("{}.htexlib", plan.library);
-    let path = dist.at(Path::new(&file))?;
+    let path = dist.path_of(Path::new(&file))?;
     let found = |key: &str, texture: &PlannedTexture| {
         made(key).ok_or_else(|| {
             BuildError::Damaged(format!("{}: it was kept and is gone", texture.name))
@@ -96,7 +96,7 @@ pub(crate) fn assemble(
             // writer's files.
             let part = parts.join(&file);
             let mut writer =
-                Writer::create(&dist.at(&part)?, &plan.library).map_err(at_place(&library))?;
+                Writer::create(&dist.path_of(&part)?, &plan.library).map_err(at_place(&library))?;
             // The recipe's gate has already decided about licences.
             writer.allow_unlicensed();
             let planned = jobs.iter().zip(&plan.textures).zip(&textures);
@@ -228,7 +228,7 @@ fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
     let entry = package.join("index.js");
     if !entry.is_file() {
         let problem = "there is no index.js; give the folder of the browser package";
-        return Err(BuildError::at(package.display(), problem));
+        return Err(BuildError::at_place(package.display(), problem));
     }
     for file in WalkDir::new(package).follow_links(true) {
         let file = file.reading(package)?;

@@ -38,7 +38,7 @@ impl Dist {
 
     /// Returns the path of a file that is not written by [`Self::put`]. None of the folders above
     /// it is a link.
-    pub(crate) fn at(&self, file: &Path) -> Result<PathBuf, BuildError> {
+    pub(crate) fn path_of(&self, file: &Path) -> Result<PathBuf, BuildError> {
         let at = self.own.at(file);
         Ok(at.writing(self.own.path().join(file))?)
     }

@@ -20,7 +20,7 @@ pub fn report_failure(output: &Path, program: &str, error: &[String]) -> Result<
     let dist = Dist::new(output);
     // The folder may come from somebody else, so a link in it is not followed.
     let is_folder = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_dir());
-    if !dist.at(Path::new(STATE)).is_ok_and(|kept| is_folder(&kept)) {
+    if !dist.path_of(Path::new(STATE)).is_ok_and(|kept| is_folder(&kept)) {
         return Ok(false);
     }
     let _lock = match StateFolder::new(output)?.claim() {

@@ -56,12 +56,12 @@ pub(crate) fn inputs(
         ([], Some(table)) => tabulated(&joined(folder, table), place, folder, remote, missing)?,
         ([], None) => {
             let problem = "it names no recordings; give `recordings` (a glob) or `table` (a CSV)";
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
         (_, Some(_)) => {
             let problem =
                 "`recordings` and `table` both say where recordings are; give one of them";
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
         (_, None) => recordings(&rule.recordings, place, (folder, output), remote)?,
     };
@@ -96,7 +96,7 @@ fn recordings(
     if here.is_empty() && away.is_empty() {
         let globs = globs.join(", ");
         let problem = format!("no file matches {globs} in {}", folder.display());
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
     let mut found: Vec<Input> = here.into_iter().map(input).collect();
     found.extend(away.into_values());
@@ -107,7 +107,7 @@ pub(crate) fn too_many(place: &str) -> BuildError {
     let problem = format!(
         "it names more than {MOST_RECORDINGS} recordings, which is the most of a recipe; divide it into several"
     );
-    BuildError::at(place, problem)
+    BuildError::at_place(place, problem)
 }
 
 /// Returns the remote files that match a glob. The glob is a URI, or a path relative to the folder
@@ -133,7 +133,7 @@ fn globbed_remote(
     let found = globs::matching(listed, pattern, place)?;
     if found.is_empty() {
         let problem = format!("no file matches {pattern} in {}", below.display());
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
     let inputs = found.into_iter().map(|(uri, inside)| remote_input(uri, &inside));
     Ok(inputs.collect())
@@ -159,7 +159,7 @@ fn tabulated(
     let column = headers.iter().position(|name| name == "recording");
     let column = column.ok_or_else(|| {
         let problem = format!("{shown}: it has no column `recording` with the files");
-        BuildError::at(&place, problem)
+        BuildError::at_place(&place, problem)
     })?;
     let beside = folder_of(table);
     let mut inputs = Vec::new();
@@ -174,7 +174,7 @@ fn tabulated(
         if !is_away && missing == Missing::Error && !file.is_file() {
             let line = row.position().map_or(0, csv::Position::line);
             let problem = format!("{shown}, line {line}: there is no file {}", file.display());
-            return Err(BuildError::at(&place, problem));
+            return Err(BuildError::at_place(&place, problem));
         }
         let mut input = if is_away {
             remote_input(file, Path::new(cell))
@@ -187,7 +187,7 @@ fn tabulated(
         inputs.push(input);
     }
     if inputs.is_empty() {
-        return Err(BuildError::at(&place, format!("{shown}: it has no rows")));
+        return Err(BuildError::at_place(&place, format!("{shown}: it has no rows")));
     }
     Ok(inputs)
 }
@@ -232,7 +232,7 @@ fn named_groups(
     let path = &input.path;
     let groups = pattern.captures(path).ok_or_else(|| {
         let problem = format!("`{path}` does not match `{pattern}`; change it, or the globs");
-        BuildError::at(format!("{place}.pattern"), problem)
+        BuildError::at_place(format!("{place}.pattern"), problem)
     })?;
     for name in pattern.capture_names().flatten() {
         let value = groups.name(name).map_or("", |group| group.as_str());

@@ -58,7 +58,7 @@ impl NamedPlugins {
             if is_remote(file) {
                 let problem =
                     "it is a URI; download it, see that it is what you want, and name the file";
-                return Err(BuildError::at("--plugin", problem));
+                return Err(BuildError::at_place("--plugin", problem));
             }
             Ok(file.canonicalize().reading(file)?)
         });

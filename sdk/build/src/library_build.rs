@@ -307,7 +307,7 @@ impl Build {
         if self.options.keep_going {
             return Ok(Some(made));
         }
-        Err(BuildError::at(&job.texture, problem))
+        Err(BuildError::at_place(&job.texture, problem))
     }
 
     /// Writes an error, line by line, into the report of this build's folder, together with what an
@@ -327,7 +327,7 @@ impl Build {
     pub fn finish(self) -> Result<Report, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
-            return Err(BuildError::at(&self.jobs[*i].1.texture, problem));
+            return Err(BuildError::at_place(&self.jobs[*i].1.texture, problem));
         }
         let made = |key: &str| match self.unkept.get(key) {
             Some(made) => Some(made.clone()),

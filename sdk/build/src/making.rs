@@ -74,7 +74,7 @@ impl Job {
     }
 
     fn fitted(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
-        let takes = self.recordings.iter().map(|recording| self.take(recording));
+        let takes = self.recordings.iter().map(|recording| self.read_take(recording));
         let request = self.request(registry)?;
         let takes = takes.collect::<Result<Vec<Take>, _>>()?;
         let mut fitted = match self.kind {
@@ -114,7 +114,7 @@ impl Job {
     }
 
     /// Reads a recording, or a signal.
-    fn take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+    fn read_take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
         if self.kind == FileKind::Signal {
             return self.signal(recording);
         }

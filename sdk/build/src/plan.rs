@@ -88,11 +88,11 @@ impl Plan {
         check_name("library.name", &recipe.library.name)?;
         if recipe.library.name.contains('/') {
             let problem = "`/` is not possible in the name of a file; leave it out";
-            return Err(BuildError::at("library.name", problem));
+            return Err(BuildError::at_place("library.name", problem));
         }
         if recipe.textures.is_empty() {
             let problem = "there is none; add a [[textures]] with `recordings`";
-            return Err(BuildError::at("textures", problem));
+            return Err(BuildError::at_place("textures", problem));
         }
         let overrides = Overrides::new(recipe)?;
         let mut textures: BTreeMap<String, PlannedTexture> = BTreeMap::new();
@@ -140,7 +140,7 @@ impl<'a> Overrides<'a> {
         for (i, (set, _)) in self.0.iter().enumerate() {
             if !textures.keys().any(|name| set.is_match(name)) {
                 let problem = "no texture has such a name; correct it, or leave the override out";
-                return Err(BuildError::at(format!("overrides[{i}].textures"), problem));
+                return Err(BuildError::at_place(format!("overrides[{i}].textures"), problem));
             }
         }
         Ok(())
@@ -270,7 +270,7 @@ fn check_once(
                 slashed(&recording.file),
                 planned.name
             );
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
     }
     Ok(())
@@ -298,7 +298,7 @@ fn gather(
             file(&planned),
             planned.name
         );
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
     known.recordings.extend(planned.recordings);
     Ok(())
@@ -314,7 +314,7 @@ fn check_folders(textures: &[PlannedTexture]) -> Result<(), BuildError> {
         let (folder, inside) = (format!("{}.htex/", pair[0].name), &pair[1].name);
         if inside.starts_with(&folder) {
             let problem = format!("{} and {inside} cannot both be files; rename one", pair[0].name);
-            return Err(BuildError::at("textures", problem));
+            return Err(BuildError::at_place("textures", problem));
         }
     }
     Ok(())

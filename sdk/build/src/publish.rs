@@ -46,14 +46,14 @@ pub struct Destination {
 
 /// What was copied, by its path in the folder of the results.
 #[derive(Debug, Default, Serialize, Deserialize)]
-struct Published {
+struct PublishedFiles {
     /// The URI of the folder.
     to: String,
-    files: BTreeMap<String, Copied>,
+    files: BTreeMap<String, CopiedFile>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Copied {
+struct CopiedFile {
     blake3: String,
     there: Stamp,
 }
@@ -139,7 +139,7 @@ fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
         .ok_or_else(|| {
             let problem =
                 "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
-            BuildError::at(location, problem)
+            BuildError::at_place(location, problem)
         })?;
     let hash = blake3::hash(location.to_string().as_bytes()).to_hex();
     Ok(cache.join("htex").join("builds").join(&hash[..16]))
@@ -151,7 +151,7 @@ struct Publishing<'a> {
     to: &'a Location,
     storage: Storage,
     kept: StateFolder,
-    before: Published,
+    before: PublishedFiles,
 }
 
 impl<'a> Publishing<'a> {
@@ -159,7 +159,7 @@ impl<'a> Publishing<'a> {
         let kept = StateFolder::new(folder)?;
         let before = kept
             .get(PUBLISHED, MOST_BYTES)
-            .and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
+            .and_then(|bytes| serde_json::from_slice::<PublishedFiles>(&bytes).ok());
         Ok(Self {
             folder,
             to,
@@ -256,9 +256,9 @@ impl<'a> Publishing<'a> {
         let there = self.there()?;
         let files = here.into_iter().filter_map(|(name, blake3)| {
             let there = *there.get(&name)?;
-            Some((name, Copied { blake3, there }))
+            Some((name, CopiedFile { blake3, there }))
         });
-        let published = Published { to: self.to.to_string(), files: files.collect() };
+        let published = PublishedFiles { to: self.to.to_string(), files: files.collect() };
         self.kept.put(PUBLISHED, &serde_json::to_vec(&published)?)
     }
 }

@@ -175,7 +175,7 @@ impl RemoteFiles {
         let (found, copy) = self.fetch(location)?;
         if found != blake3 {
             let problem = "it changed while it was used; start again when it is complete";
-            return Err(BuildError::at(location, problem));
+            return Err(BuildError::at_place(location, problem));
         }
         Ok(copy)
     }
@@ -183,7 +183,7 @@ impl RemoteFiles {
     /// Reads a text file.
     pub(crate) fn text(&self, location: &Location) -> Result<String, BuildError> {
         let bytes = self.storage()?.read(location, MOST_TEXT_BYTES)?;
-        String::from_utf8(bytes).map_err(|_| BuildError::at(location, "it is not UTF-8 text"))
+        String::from_utf8(bytes).map_err(|_| BuildError::at_place(location, "it is not UTF-8 text"))
     }
 
     /// Removes all copies.
@@ -266,7 +266,7 @@ struct CopiesIn {
 /// Returns the name of the file. Its copy has the same name, because readers and provenance depend
 /// on it.
 fn file_name(location: &Location) -> Result<String, BuildError> {
-    location
-        .file_name()
-        .ok_or_else(|| BuildError::at(location, "it has no file name at its end; name a file"))
+    location.file_name().ok_or_else(|| {
+        BuildError::at_place(location, "it has no file name at its end; name a file")
+    })
 }

@@ -47,7 +47,7 @@ pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
 /// repairs it.
 fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
     let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());
-    let path = dist.at(file).ok().filter(|path| is_file(path));
+    let path = dist.path_of(file).ok().filter(|path| is_file(path));
     let library = path.and_then(|path| Library::open(&path).ok());
     let entries = library.iter().flat_map(Library::entries);
     entries.map_while(Result::ok).map(|entry| entry.name).collect()

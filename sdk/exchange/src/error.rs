@@ -130,12 +130,12 @@ impl ExchangeError {
     /// ```
     /// use htex_exchange::{Format, Physical};
     /// let error = Physical::default().check(Format::of_file("tap.ahap")?).unwrap_err();
-    /// let told = error.told(&|setting| format!("--{}", setting.replace('_', "-")));
+    /// let told = error.message_with(&|setting| format!("--{}", setting.replace('_', "-")));
     /// assert!(told.ends_with("give --full-scale, --speed and --force"));
     /// # Ok::<(), htex_exchange::ExchangeError>(())
     /// ```
     #[must_use]
-    pub fn told(&self, named: &dyn Fn(&str) -> String) -> String {
+    pub fn message_with(&self, named: &dyn Fn(&str) -> String) -> String {
         match self {
             Self::Missing { format, missing } => not_said(format, missing, named),
             Self::Unused { format, way, setting, takes } => {

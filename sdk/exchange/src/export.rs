@@ -111,13 +111,13 @@ impl<'a> Export<'a> {
 /// An exported file, with a report of what is lost.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
-pub struct Exported {
+pub struct ExportedFile {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
     /// How an actuator played the file; `None` if no actuator plays it.
     #[serde(flatten)]
-    pub played: Option<Played>,
+    pub played: Option<ActuatorPlay>,
     /// How much of the texture is lost; `None` if the file holds the whole texture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<Loss>,
@@ -127,7 +127,7 @@ pub struct Exported {
     pub notes: Vec<String>,
 }
 
-impl Exported {
+impl ExportedFile {
     /// A file that holds the asset itself, which loses nothing.
     pub(crate) fn of_asset(format: &Format, bytes: Vec<u8>) -> Self {
         Self {
@@ -144,7 +144,7 @@ impl Exported {
 /// How an actuator plays a file, according to its profile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
-pub struct Played {
+pub struct ActuatorPlay {
     pub profile: String,
     pub seconds: f64,
     /// Fraction of the time in which the actuator is too weak.
@@ -157,7 +157,7 @@ pub struct Played {
 /// # Errors
 /// When the format cannot be written or does not take a setting, a number is out of range, the
 /// actuator cannot play such files, or the asset cannot be played.
-pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeError> {
+pub fn export(asset: &Asset, export: &Export<'_>) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;
     match format.writes {
@@ -170,7 +170,7 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
             };
             of_signal(Playing { source, seconds }, export, write, profile)
         }
-        Some(Writes::Asset(write)) => Ok(Exported::of_asset(format, write(asset, export)?)),
+        Some(Writes::Asset(write)) => Ok(ExportedFile::of_asset(format, write(asset, export)?)),
         Some(Writes::Map) => {
             let motion = match export.path {
                 Path::Condition(motion) => motion,
@@ -190,7 +190,7 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,
-) -> Result<Exported, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export_of_scene(export.given())?;
     match format.writes {
@@ -214,7 +214,7 @@ fn of_signal(
     export: &Export<'_>,
     write: WriteSignal,
     profile: &'static str,
-) -> Result<Exported, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
     export.check_numbers(&playing)?;
     let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
     let job = Job { export, playing, profile };
@@ -237,9 +237,9 @@ fn of_signal(
             below(db)
         )));
     }
-    Ok(Exported {
+    Ok(ExportedFile {
         lost: Some(lost),
-        played: Some(Played {
+        played: Some(ActuatorPlay {
             profile: profile.name.clone(),
             seconds: job.playing.seconds,
             limited: written.limited,

@@ -231,7 +231,7 @@ pub fn recording_of(
         warnings.push(format!("Its {seconds:.3} s are repeated {times} times."));
         samples = samples.repeat(times);
     }
-    let recording = Recording::of(physical.quantity, file, RATE_HZ, vec![samples]);
+    let recording = Recording::from_axes(physical.quantity, file, RATE_HZ, vec![samples]);
     let mut recording = recording.map_err(AuthorError::from)?;
     recording.file = RecordedFile::of_bytes(bytes);
     recording.warnings = warnings.into_iter().map(Into::into).collect();

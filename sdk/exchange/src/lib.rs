@@ -64,7 +64,7 @@ pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
 #[cfg(feature = "export")]
-pub use export::{Export, Exported, Played, export, export_scene};
+pub use export::{ActuatorPlay, Export, ExportedFile, export, export_scene};
 #[cfg(feature = "export")]
 pub use format::Writes;
 pub use format::{Format, Naming, RATE_HZ, Reads, Sampling, Signal};
@@ -83,7 +83,7 @@ pub use json::MOST_BYTES;
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
 pub use physical::{Physical, missing};
-pub use profile::{Kind, PROFILES, Profile, Sourced, profile_names, profiles_table};
+pub use profile::{Kind, PROFILES, Profile, SourcedValue, profile_names, profiles_table};
 pub use rights::RightsPlace;
 pub use settings::SignalSettings;
 #[cfg(feature = "export")]

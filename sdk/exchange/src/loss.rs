@@ -34,7 +34,7 @@ pub struct Loss {
 /// the sample rate of what was heard.
 pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
     let samples = vec![heard.samples.clone()];
-    let recording = Recording::of(heard.quantity, "the asset", heard.rate_hz, samples)
+    let recording = Recording::from_axes(heard.quantity, "the asset", heard.rate_hz, samples)
         .map_err(AuthorError::from)?;
     let options = SpectrumOptions::default()
         .with_segments(SegmentChoice::Windows)

@@ -58,11 +58,11 @@ pub(crate) fn ahap(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     })
 }
 
-type Read = (Vec<u8>, Vec<Pattern>);
+type ReadBack = (Vec<u8>, Vec<Pattern>);
 
 fn one_envelope(
     job: &Job<'_>,
-    written: impl Fn(&Pattern) -> Result<Read, ExchangeError>,
+    written: impl Fn(&Pattern) -> Result<ReadBack, ExchangeError>,
 ) -> Result<WrittenSignal, ExchangeError> {
     let heard = job.playing.heard(RATE_HZ, job.point_s(MANY))?;
     let mut reduced = one_tone(&heard, job.profile, false);

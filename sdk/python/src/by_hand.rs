@@ -99,7 +99,7 @@ impl Made {
         let name = metadata.name.as_deref().unwrap_or("texture");
         let (speed_mm_s, force_n) = self.at;
         let mut texture = ByHand::new(name, self.level_rms, TOOL)
-            .at(Condition { speed_mm_s, force_n, ..Condition::default() })
+            .with_condition(Condition { speed_mm_s, force_n, ..Condition::default() })
             .with_quantity(quantity);
         texture.values = self.parameters;
         let mut asset = by_hand::make(model, &texture).map_err(raised)?;

@@ -129,7 +129,7 @@ impl Importing {
 }
 
 impl Exporting {
-    fn export(&self, texture: &Texture) -> PyResult<htex_exchange::Exported> {
+    fn export(&self, texture: &Texture) -> PyResult<htex_exchange::ExportedFile> {
         let format = Format::find(&self.to)
             .ok_or_else(|| unknown("to", &self.to, &htex_exchange::exported().join(", ")))?;
         let mut export = Export::new(format);
@@ -184,7 +184,7 @@ impl IntoPyErr for ExchangeError {
             Self::Play(error) => error.into_py_err(),
             Self::Author(error) => error.into_py_err(),
             Self::File { .. } => Refused::new_err(self.to_string()),
-            other => option(other.told(&keyword)),
+            other => option(other.message_with(&keyword)),
         }
     }
 }

@@ -42,7 +42,7 @@ impl Read for Input<'_> {
 }
 
 /// An input whose first bytes have been read.
-pub(crate) struct Opened<'a> {
+pub(crate) struct InputFile<'a> {
     /// Its path, needed for the extension.
     pub(crate) path: PathBuf,
     /// The first bytes.
@@ -50,7 +50,7 @@ pub(crate) struct Opened<'a> {
     rest: Input<'a>,
 }
 
-impl Opened<'static> {
+impl InputFile<'static> {
     /// Opens a file with a size limit.
     pub(crate) fn file(path: &Path) -> Result<Self, Fault> {
         let file = File::open(path)?;
@@ -68,7 +68,7 @@ impl Opened<'static> {
     }
 }
 
-impl<'a> Opened<'a> {
+impl<'a> InputFile<'a> {
     /// Uses bytes in place of a file; `path` is not opened.
     pub(crate) fn bytes(path: &Path, bytes: &'a [u8]) -> Result<Self, Fault> {
         Self::new(path, Input::Bytes(bytes))
@@ -153,7 +153,7 @@ mod tests {
             let mut file = tempfile::tempfile().unwrap();
             io::copy(&mut io::repeat(b'1').take(bytes), &mut file).unwrap();
             file.seek(SeekFrom::Start(0)).unwrap();
-            let opened = Opened::limited(Path::new("pipe.csv"), file, limit);
+            let opened = InputFile::limited(Path::new("pipe.csv"), file, limit);
             let mut all = Vec::new();
             opened.ok()?.stream().read_to_end(&mut all).ok()
         };

@@ -90,13 +90,13 @@ pub(crate) fn every_model(signal: &[f64]) -> f64 {
 
 /// The error with which a model refuses to fit a signal; a text if it does not refuse.
 pub fn refusal(name: &str, signal: &[f64]) -> String {
-    told(fit(&model(name), &spectrum(signal)))
+    outcome_text(fit(&model(name), &spectrum(signal)))
 }
 
 /// The models' refusals, if all refuse with the same status.
 pub(crate) fn refusal_of_all(signal: &[f64]) -> String {
     let magnitude = spectrum(signal);
-    let said = |model: &LoadedModel| told(fit(model, &magnitude));
+    let said = |model: &LoadedModel| outcome_text(fit(model, &magnitude));
     let all: Vec<String> = models().iter().map(said).collect();
     match all.iter().find(|text| !text.contains("CannotFit")) {
         Some(other) => other.clone(),
@@ -105,7 +105,7 @@ pub(crate) fn refusal_of_all(signal: &[f64]) -> String {
 }
 
 /// Status and message of an error; a text if there was none.
-pub fn told<T>(result: Result<T, HostError>) -> String {
+pub fn outcome_text<T>(result: Result<T, HostError>) -> String {
     match result {
         Ok(_) => "it was done".to_owned(),
         Err(HostError::Call { status, message, .. }) => format!("{status:?}: {message}"),

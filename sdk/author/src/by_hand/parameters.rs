@@ -54,7 +54,7 @@ impl ByHand {
 
     /// Sets speed and force.
     #[must_use]
-    pub fn at(mut self, condition: Condition) -> Self {
+    pub fn with_condition(mut self, condition: Condition) -> Self {
         self.condition = condition;
         self
     }

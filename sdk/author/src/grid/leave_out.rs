@@ -28,7 +28,7 @@ pub(crate) fn left_out(
     for block in blocks {
         let fits: Result<Vec<_>, _> = block.rest.iter().map(&mut fit).collect();
         // If the model cannot be fitted to the rest of the recording, this block gives no error.
-        let Some(played) = fits.ok().and_then(|fits| Played::new(model, block, fits)) else {
+        let Some(played) = fits.ok().and_then(|fits| HeldOutGrid::new(model, block, fits)) else {
             continue;
         };
         for held in &block.held_out {
@@ -51,14 +51,14 @@ pub(crate) fn left_out(
 }
 
 /// The conditions of a grid fitted without a block of time, as a player plays them.
-struct Played<'a> {
+struct HeldOutGrid<'a> {
     model: &'a LoadedModel,
     mesh: Mesh,
     motions: Motions,
     fits: Vec<ConditionFit>,
 }
 
-impl<'a> Played<'a> {
+impl<'a> HeldOutGrid<'a> {
     fn new(model: &'a LoadedModel, block: &LeftOutBlock, fits: Vec<ConditionFit>) -> Option<Self> {
         let levels: Vec<f64> = fits.iter().map(|fit| fit.level_rms).collect();
         let (mesh, motions) = mesh_of(&block.rest, &levels, block.law)?;

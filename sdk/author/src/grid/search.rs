@@ -12,7 +12,7 @@ use super::lines::Lines;
 use super::paths::{Paths, Window};
 use super::played::PlayedSpectra;
 use super::request::Grid;
-use super::slopes::{Read, corrected, read_around};
+use super::slopes::{WindowSpectrum, corrected, read_around};
 use crate::conditions::{ConditionSpectrum, four_digits};
 use crate::findings::quantile;
 use crate::law::law;
@@ -29,7 +29,7 @@ const COMPARED_RATIO: f64 = 1.19;
 const WORTH_DB: f64 = 0.02;
 
 /// The cells and their spectra for one choice of lines.
-pub(super) struct Gathered {
+pub(super) struct CellSpectra {
     pub(super) lines: Lines,
     pub(super) cells: Vec<Cell>,
     pub(super) spectra: Vec<Option<TextureSpectrum>>,
@@ -39,7 +39,7 @@ pub(super) struct Gathered {
 
 /// The chosen lines and their error.
 pub(super) struct SearchResult {
-    pub(super) gathered: Gathered,
+    pub(super) gathered: CellSpectra,
     /// RMS error of what is played for left-out blocks, in third octaves, decibels.
     pub(super) left_out_rms_db: Option<f64>,
     /// The same error when one condition serves all motions.
@@ -85,7 +85,7 @@ impl<'a> Search<'a> {
         let one_condition_rms_db = self.one_condition_db(&compared)?;
         let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
         let ratios = if is_chosen { &SPEED_RATIOS[..] } else { &[COMPARED_RATIO] };
-        let mut best: Option<(Gathered, f64)> = None;
+        let mut best: Option<(CellSpectra, f64)> = None;
         for ratio in ratios {
             let lines = Lines::choose(grid, &self.motions, *ratio)?;
             let cells = gather(&lines, &self.motions, &all);
@@ -121,7 +121,7 @@ impl<'a> Search<'a> {
     }
 
     /// Averages the windows of all cells, once over the whole time and once without each block.
-    fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<Gathered, AuthorError> {
+    fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<CellSpectra, AuthorError> {
         let folds = self.folds.iter();
         let cells_without: Vec<Vec<Cell>> =
             folds.map(|fold| gather(&lines, &self.motions, &fold.known)).collect();
@@ -135,11 +135,11 @@ impl<'a> Search<'a> {
                 spectra.push(cells.get(i).and_then(|cell| self.spectrum(&reads, cell)));
             }
         }
-        Ok(Gathered { lines, cells, spectra, without })
+        Ok(CellSpectra { lines, cells, spectra, without })
     }
 
     /// Averages the windows of a cell, corrected to its crossing; `None` if there are too few.
-    fn spectrum(&self, reads: &[Read], cell: &Cell) -> Option<TextureSpectrum> {
+    fn spectrum(&self, reads: &[WindowSpectrum], cell: &Cell) -> Option<TextureSpectrum> {
         let used = cell.used()?;
         let kind = self.kind;
         let corrected = corrected(reads, cell, &used, kind.band);
@@ -153,7 +153,7 @@ impl<'a> Search<'a> {
 
     /// Returns the error of a grid: each block of time is compared with what the grid fitted
     /// without it plays.
-    fn error_db(&self, gathered: &Gathered, compared: &[Vec<HeldOutWindows>]) -> Option<f64> {
+    fn error_db(&self, gathered: &CellSpectra, compared: &[Vec<HeldOutWindows>]) -> Option<f64> {
         let mut errors = Vec::new();
         for (spectra, held) in gathered.without.iter().zip(compared) {
             let played = PlayedSpectra::new(gathered.conditions(spectra), self.kind.contact)?;
@@ -191,7 +191,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the chosen grid fitted without each block of time, together with the blocks.
-    fn left_out(&mut self, gathered: &Gathered) -> Result<Vec<LeftOutBlock>, AuthorError> {
+    fn left_out(&mut self, gathered: &CellSpectra) -> Result<Vec<LeftOutBlock>, AuthorError> {
         // Gathered again, because the blocks for models belong to the conditions of the chosen
         // lines.
         let all_held_out = self.all_held_out(&gathered.cells)?;
@@ -205,7 +205,7 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Gathered {
+impl CellSpectra {
     /// Returns the cells that have one of these spectra, as conditions.
     fn conditions(&self, spectra: &[Option<TextureSpectrum>]) -> Vec<ConditionSpectrum> {
         let both = self.cells.iter().zip(spectra);

@@ -126,7 +126,7 @@ impl Departures {
 
     /// Describes the departures for the header of a file, each after a comma; empty if there are
     /// none.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn description(&self) -> String {
         let usual = Self::default();
         let parts = [
             ("frequency ~ speed^", self.frequency_speed, usual.frequency_speed, ""),

@@ -27,7 +27,7 @@ pub(crate) enum ContenderKind {
 }
 
 /// The stored data needed for playing.
-pub(crate) struct Stored {
+pub(crate) struct StoredData {
     pub(crate) parameters: Vec<f64>,
     pub(crate) level_rms: f64,
     pub(crate) bytes: usize,
@@ -60,14 +60,14 @@ impl Contender {
         subject: &Subject,
         spectrum: &TextureSpectrum,
         fit: &Fit,
-    ) -> Result<Stored, AuthorError> {
+    ) -> Result<StoredData, AuthorError> {
         let (parameters, bytes) = match &self.kind {
             ContenderKind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());
                 self.keep(&mut fields);
                 let parameters = round_within(&fields, model.descriptor(), &fit.parameters)?;
                 let (reference, level) = (spectrum.as_ref(), Level::default());
-                return Ok(Stored {
+                return Ok(StoredData {
                     level_rms: stored_level(model, fit, &parameters, reference, level)?,
                     bytes: stored_bytes(&fields, &parameters)?,
                     parameters,
@@ -76,7 +76,7 @@ impl Contender {
             ContenderKind::Quantised => quantise(&spectrum.magnitude),
             ContenderKind::Recording => (Vec::new(), subject.bytes),
         };
-        Ok(Stored { parameters, level_rms: fit.level_rms, bytes })
+        Ok(StoredData { parameters, level_rms: fit.level_rms, bytes })
     }
 
     fn keep(&self, fields: &mut [StoredField]) {

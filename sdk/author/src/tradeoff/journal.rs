@@ -51,9 +51,9 @@ impl Journal {
     /// Reading stops at a truncated line.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), AuthorError> {
         let key = &format!("{HEAD}{key}");
-        self.entries = self.kept(self.read(key))?;
+        self.entries = self.with_path(self.read(key))?;
         // The rest of a truncated line must go: appending to it would spoil the next entry too.
-        let file = self.kept(self.rewrite(key))?;
+        let file = self.with_path(self.rewrite(key))?;
         self.file = Some(Mutex::new(file));
         Ok(())
     }
@@ -104,7 +104,7 @@ impl Journal {
             let mut file = file.lock().map_err(|_| io::Error::other("a thread panicked"))?;
             file.write_all(line.as_bytes())
         };
-        self.kept(self.file.as_ref().map_or(Ok(()), write))
+        self.with_path(self.file.as_ref().map_or(Ok(()), write))
     }
 
     /// Removes the file, once the results are written elsewhere.
@@ -113,7 +113,7 @@ impl Journal {
     /// When it cannot be removed.
     pub fn discard(self) -> Result<(), AuthorError> {
         let removed = self.place().and_then(|(own, name)| own.remove(&name));
-        self.kept(removed)
+        self.with_path(removed)
     }
 
     /// The file's folder, which must exist, and the file's name in it.
@@ -130,7 +130,7 @@ impl Journal {
     }
 
     /// Adds the file's name to an error.
-    fn kept<T>(&self, result: io::Result<T>) -> Result<T, AuthorError> {
+    fn with_path<T>(&self, result: io::Result<T>) -> Result<T, AuthorError> {
         result.map_err(|error| AuthorError::Journal { path: self.path.clone(), error })
     }
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::tradeoff::Subject;
 use crate::tradeoff::accuracy::{Accuracy, accuracy};
-use crate::tradeoff::contender::{Contender, ContenderKind, Stored};
+use crate::tradeoff::contender::{Contender, ContenderKind, StoredData};
 
 /// Number of renderings that are measured, each with another seed.
 const SEEDS: u64 = 3;
@@ -74,13 +74,13 @@ impl Contender {
     pub(crate) fn rendered(
         &self,
         subject: &Subject,
-        stored: &Stored,
+        stored: &StoredData,
         quick: bool,
-    ) -> Result<Rendered, AuthorError> {
+    ) -> Result<RenderedSpectra, AuthorError> {
         let rate_hz = self.setting.output_rate_hz;
         let seconds = if quick { QUICK_SECONDS } else { SECONDS };
         let mut samples = vec![0.0; (seconds * rate_hz).min(MOST_SAMPLES) as usize];
-        let mut rendered = Rendered { spectra: Vec::new(), kept_bytes: 0 };
+        let mut rendered = RenderedSpectra { spectra: Vec::new(), kept_bytes: 0 };
         for seed in 1..=SEEDS {
             let mut sound = self.sound(subject, stored, seed)?;
             samples.chunks_mut(self.setting.block_samples).try_for_each(&mut sound.render)?;
@@ -98,7 +98,7 @@ impl Contender {
 
     /// Returns the magnitudes as a recording of the voice would read them; for a baseline, its own
     /// magnitudes.
-    fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, AuthorError> {
+    fn magnitude(&self, subject: &Subject, stored: &StoredData) -> Result<Vec<f64>, AuthorError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
             ContenderKind::Model(model, _) => {
@@ -111,7 +111,7 @@ impl Contender {
     }
 }
 
-pub(crate) struct Rendered {
+pub(crate) struct RenderedSpectra {
     pub(crate) spectra: Vec<Vec<f64>>,
     kept_bytes: usize,
 }

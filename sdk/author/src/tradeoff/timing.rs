@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::AuthorError;
 use crate::tradeoff::Subject;
-use crate::tradeoff::contender::{Contender, Stored};
+use crate::tradeoff::contender::{Contender, StoredData};
 use crate::tradeoff::sound::Sound;
 
 /// Number of samples in a run; also in the warm-up before it, which fills the caches.
@@ -82,7 +82,7 @@ pub(crate) fn time(
 
 struct Playing<'a> {
     one: &'a Contender,
-    stored: Stored,
+    stored: StoredData,
     sound: Sound,
 }
 

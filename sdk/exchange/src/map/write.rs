@@ -9,7 +9,7 @@ use htex_play::{Asset, Motion};
 use super::MODEL;
 use super::image::{Image, read, to_bytes};
 use crate::error::{ExchangeError, Fault};
-use crate::export::{Export, Exported};
+use crate::export::{Export, ExportedFile};
 use crate::format::Format;
 use crate::loss::Loss;
 
@@ -30,7 +30,7 @@ pub(crate) fn export(
     asset: &Asset,
     export: &Export<'_>,
     motion: Option<Motion>,
-) -> Result<Exported, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
     let (format, model) = (export.format, export.model);
     let Some((parameters, level_rms)) = own(asset, model)? else {
         return export_fit(asset, export, motion);
@@ -42,7 +42,7 @@ pub(crate) fn export(
     }
     let (bytes, white) = image(format, &parameters, level_rms, &Rights::of(asset.manifest()))?;
     let notes = vec![said(&parameters, white, asset)];
-    Ok(Exported { notes, ..Exported::of_asset(format, bytes) })
+    Ok(ExportedFile { notes, ..ExportedFile::of_asset(format, bytes) })
 }
 
 /// The parameters and the level of a texture that is a map. They come from the model that is named,
@@ -58,7 +58,7 @@ fn export_fit(
     asset: &Asset,
     export: &Export<'_>,
     motion: Option<Motion>,
-) -> Result<Exported, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
     let (format, model) = (export.format, export.model);
     let band = asset.band();
     let frequency_hz = band.grid_hz();
@@ -101,13 +101,13 @@ fn export_fit(
     };
     let rights = Rights::of(asset.manifest());
     let (bytes, white) = image(format, &fit.parameters, fit.level_rms, &rights)?;
-    Ok(Exported {
+    Ok(ExportedFile {
         lost: Some(loss(&reference, shape, fit.level_rms)?),
         notes: vec![
             said(&fit.parameters, white, asset),
             "It is one row, which repeats: it is felt along the row alone, and as the texture at that speed alone.".to_owned(),
         ],
-        ..Exported::of_asset(format, bytes)
+        ..ExportedFile::of_asset(format, bytes)
     })
 }
 

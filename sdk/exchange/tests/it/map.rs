@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use htex_exchange::map::{Image, read};
 use htex_exchange::{
-    Export, Exported, Format, Import, ImportedAsset, Path, Physical, export, import, missing,
+    Export, ExportedFile, Format, Import, ImportedAsset, Path, Physical, export, import, missing,
 };
 use htex_play::{Asset, Motion, Registry, VoiceOptions};
 use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
@@ -61,7 +61,7 @@ fn opened(imported: &ImportedAsset) -> Asset {
     Asset::from_bytes(&imported.to_bytes().unwrap()).unwrap()
 }
 
-fn exported(asset: &Asset) -> Exported {
+fn exported(asset: &Asset) -> ExportedFile {
     export(asset, &Export::new(Format::find("png").unwrap())).unwrap()
 }
 

@@ -116,7 +116,7 @@ fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     let axes =
         texture_axes(&data.header.signals).iter().map(|at| data.signals[*at].clone()).collect();
     let (name, rate_hz) = (data.header.name.as_str(), data.header.rate_hz);
-    let mut recording = Recording::of(data.header.quantity, name, rate_hz, axes)?;
+    let mut recording = Recording::from_axes(data.header.quantity, name, rate_hz, axes)?;
     if let Some(normal) = of("normal") {
         recording = recording.with_normal(normal)?;
     }

@@ -220,7 +220,7 @@ impl From<ExchangeError> for Refusal {
         match error {
             ExchangeError::Author(error) => error.into(),
             ExchangeError::File { .. } => Self::file(error),
-            other => Self::argument(other.told(&|setting| named(setting).to_owned())),
+            other => Self::argument(other.message_with(&|setting| named(setting).to_owned())),
         }
     }
 }

@@ -5,7 +5,6 @@ use std::fmt::Display;
 use std::path::Path;
 
 use htex_author::AuthorError;
-use htex_author::settings::SettingsError;
 use htex_base::files::FileError;
 use htex_base::finding::{Finding, Hint, listed, plain};
 use htex_base::storage::{StorageError, StorageProblem};
@@ -53,15 +52,13 @@ pub(crate) enum Failure {
     #[error("{file}: {error}")]
     InFile { file: String, error: Box<Failure> },
     #[error(transparent)]
-    Author(#[from] AuthorError),
+    Author(AuthorError),
     #[error(transparent)]
     Recording(#[from] htex_author::recording::ReadError),
     #[error(transparent)]
     Model(#[from] HostError),
     #[error(transparent)]
     Device(#[from] DeviceError),
-    #[error(transparent)]
-    Tradeoff(#[from] htex_author::tradeoff::TradeoffError),
     #[error(transparent)]
     Storage(#[from] StorageError),
     #[error("{}{}", .0, flag_of(.0))]
@@ -175,7 +172,6 @@ impl Failure {
     fn flags(&self) -> Option<String> {
         let flags = flags_for(match self.cause() {
             Self::Author(error) => error.hint(),
-            Self::Tradeoff(error) => error.hint(),
             Self::Recording(error) => error.hint(),
             #[cfg(feature = "lab")]
             Self::Lab(error) => error.hint(),
@@ -260,7 +256,7 @@ impl From<htex::Error> for Failure {
 
 impl From<htex_format::WriteError> for Failure {
     fn from(error: htex_format::WriteError) -> Self {
-        Self::Author(error.into())
+        Self::Author(AuthorError::Asset(error))
     }
 }
 
@@ -270,19 +266,23 @@ impl From<htex_format::ReadError> for Failure {
     }
 }
 
-impl From<SettingsError> for Failure {
+impl From<AuthorError> for Failure {
     /// A setting becomes a flag of this program. A file that cannot be read is not a matter of
     /// flags.
-    fn from(error: SettingsError) -> Self {
+    fn from(error: AuthorError) -> Self {
         match error {
-            SettingsError::Model(error) => Self::Model(error),
-            SettingsError::Response(error) => Self::Recording(*error),
-            SettingsError::Map { keyword, text, error } => {
+            AuthorError::Model(error) => Self::Model(error),
+            AuthorError::Read(error) => Self::Recording(error),
+            AuthorError::Map { keyword, text, error } => {
                 let flag = keyword.replace('_', "-");
                 Self::Usage(format!("--{flag} {text}: {error}"))
             }
-            SettingsError::Trackers { .. } => Self::Usage(format!("--tracker: {error}")),
-            usage => Self::Usage(format!("--{usage}")),
+            AuthorError::Trackers { .. } => Self::Usage(format!("--tracker: {error}")),
+            AuthorError::GridText { .. }
+            | AuthorError::ModelNotFitted { .. }
+            | AuthorError::OptionForm { .. }
+            | AuthorError::Metadata { .. } => Self::Usage(format!("--{error}")),
+            error => Self::Author(error),
         }
     }
 }

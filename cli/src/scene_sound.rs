@@ -143,5 +143,7 @@ fn load(
     device: &DeviceOverride,
     told: &RefCell<BTreeSet<String>>,
 ) -> Result<Ready> {
-    loader.load(file, &mut told.borrow_mut(), |around| htex_scene::Scene::open_with(file, around, device))
+    loader.load(file, &mut told.borrow_mut(), |around| {
+        htex_scene::Scene::open_with(file, around, device)
+    })
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{
-    CompareError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, read_take,
+    AuthorError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, segment_take,
 };
 use htex_base::finding::{Notice, plain};
 use htex_format::Measure;
@@ -130,13 +130,11 @@ impl Compare {
     ) -> Result<Vec<ComparedModel>> {
         let asset = self.player.open(&self.other)?;
         compare(&asset, spectrum, found).map_err(|error| match error {
-            CompareError::Quantities { held, .. } => {
+            AuthorError::OtherQuantity { held, .. } => {
                 Failure::Usage(format!("{error}; give --quantity {held}"))
             }
-            CompareError::Play(error) => Failure::from(error).in_file(&self.other),
-            CompareError::Model(error) => error.into(),
-            CompareError::Measure(error) => error.into(),
-            error => Failure::other(error),
+            AuthorError::Play(error) => Failure::from(error).in_file(&self.other),
+            error => error.into(),
         })
     }
 
@@ -169,11 +167,11 @@ impl Compare {
     fn spectrum(&self, recording: &Path) -> Result<(TextureSpectrum, Exploration, Vec<Notice>)> {
         let take = self.reading.read_among(recording)?;
         let options = self.reading.spectrum_options()?;
-        let reading = read_take(&take, &options, self.reading.strict())?;
+        let reading = segment_take(&take, &options, self.reading.strict())?;
         note(&reading.notes);
         Ok((
-            TextureSpectrum::average(&[reading.part], options.averaging)?,
-            reading.condition,
+            TextureSpectrum::average(&[reading.spectra], options.averaging)?,
+            reading.motion,
             reading.warnings,
         ))
     }

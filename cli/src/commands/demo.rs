@@ -194,14 +194,15 @@ impl DemoTexture {
 }
 
 fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest> {
-    Ok(AssetRequest::new(name)
-        .with_license("CC0-1.0".to_owned())
-        .with_author("htex demo".to_owned())
-        .with_tags(vec!["simulated".to_owned()])
+    let mut request = AssetRequest::new(name)
         .with_models(FitSettings::default().models(&Registry::builtin())?)
-        .with_spectrum(SpectrumOptions::default().with_response(rig.clone()))
-        .with_recorded_options(BTreeMap::from([("frf".to_owned(), RIG.to_owned())]))
-        .with_tool(tool()))
+        .with_spectrum(SpectrumOptions::default().with_response(rig.clone()));
+    request.license = Some("CC0-1.0".to_owned());
+    request.author = Some("htex demo".to_owned());
+    request.tags = vec!["simulated".to_owned()];
+    request.recorded_options = BTreeMap::from([("frf".to_owned(), RIG.to_owned())]);
+    request.tool = tool();
+    Ok(request)
 }
 
 fn play(asset: &htex::Texture, model: &str, file: &Path, wav: OutputFile<'_>) -> Result<()> {

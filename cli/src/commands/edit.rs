@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::settings::Metadata;
-use htex_author::{EditError, edit};
+use htex_author::{AuthorError, edit};
 
 use crate::assets::{check_metadata, read_asset, write_and_show};
 use crate::commands::validate::{refuse_library, refuse_more};
@@ -63,7 +63,7 @@ impl Edit {
         check_metadata(&metadata)?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
         let failure = |error| match error {
-            EditError::Read(error) => Failure::from(error),
+            AuthorError::ReadAsset(error) => Failure::from(error),
             lost => Failure::other(lost),
         };
         let asset = edited.map_err(|error| failure(error).in_file(&self.asset))?;

@@ -5,8 +5,8 @@ use clap::Args;
 use htex_base::files::{AtFile, read_regular};
 use htex_base::finding::plain;
 use htex_exchange::{
-    Coding, ExchangeError, Exported, Format, Loss, MOST_BYTES, Path, Played, Profile, Stroke,
-    Writes, exported, profile_names,
+    ActuatorPlay, Coding, ExchangeError, ExportedFile, Format, Loss, MOST_BYTES, Path, Profile,
+    Stroke, Writes, exported, profile_names,
 };
 use htex_format::Measure;
 use serde::Serialize;
@@ -92,13 +92,13 @@ struct ExportReport<'a> {
     file: String,
     bytes: usize,
     #[serde(flatten)]
-    exported: &'a Exported,
+    exported: &'a ExportedFile,
 }
 
 impl Export {
     pub(crate) fn run(self) -> Result {
         let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
-        let format = Format::named(&self.to).ok_or_else(unknown)?;
+        let format = Format::find(&self.to).ok_or_else(unknown)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
         let exported =
             if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };
@@ -110,7 +110,7 @@ impl Export {
         show(&ExportReport { file, bytes, exported: &exported }, self.json)
     }
 
-    fn of_asset(&self, format: &'static Format) -> Result<Exported> {
+    fn of_asset(&self, format: &'static Format) -> Result<ExportedFile> {
         let inputs = [&self.asset].into_iter().chain(&self.given.values.stroke);
         check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
         let asset = self.player.open(&self.asset)?;
@@ -121,7 +121,7 @@ impl Export {
         htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))
     }
 
-    fn of_scene(&self, format: &'static Format) -> Result<Exported> {
+    fn of_scene(&self, format: &'static Format) -> Result<ExportedFile> {
         format.check_export_of_scene(self.given.settings.iter().map(String::as_str))?;
         let scene = Scene::open(&self.asset, &self.player, self.given.values.seconds)?;
         // Only the loaded scene knows which other files it reads.
@@ -191,11 +191,11 @@ impl Display for ExportReport<'_> {
     }
 }
 
-fn played_text(played: &Played) -> String {
+fn played_text(played: &ActuatorPlay) -> String {
     format!(", {} s for {}", played.seconds, played.profile)
 }
 
-fn limited(played: &Played) -> String {
+fn limited(played: &ActuatorPlay) -> String {
     format!("; the actuator is too weak in {:.0} % of the time", 100.0 * played.limited)
 }
 
@@ -229,7 +229,7 @@ impl From<ExchangeError> for Failure {
             | Rights { .. }
             | UnknownFormat { .. }
             | UnknownProfile { .. }
-            | NoSamples { .. }) => Self::Usage(error.told(&flag)),
+            | NoSamples { .. }) => Self::Usage(error.message_with(&flag)),
             error => Self::other(error),
         }
     }

@@ -4,7 +4,7 @@ use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::report::{TextureReport, texture_report};
 use htex_author::settings::{FitSettings, Metadata};
-use htex_author::{AssetRequest, EmbedError, FittedAsset, embed_plugins, fit_asset};
+use htex_author::{AssetRequest, AuthorError, FittedAsset, embed_plugins, fit_asset};
 use htex_base::files::{AtFile, FileError};
 use htex_host::Registry;
 
@@ -145,8 +145,8 @@ impl Fit {
         // Only models that were fitted can be embedded, so this follows the fit.
         let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
         embedded.map_err(|error| match error {
-            EmbedError::Read { file, error } => FileError::reading(file, error).into(),
-            EmbedError::NotFitted { file, model } => {
+            AuthorError::Module { file, error } => FileError::reading(file, error).into(),
+            AuthorError::ModuleNotFitted { file, model } => {
                 let file = file.display();
                 Failure::Usage(format!(
                     "--embed-plugin {file}: {model} was not fitted; add it to --model"

@@ -3,13 +3,13 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::{AtFile, read_regular};
-use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, SignalSettings, imported};
+use htex_exchange::{Format, MOST_BYTES, Physical, Profile, SignalSettings, imported};
 use htex_format::{Quantity, license_file, read_license_file};
 
 use crate::assets::{AssetSummary, check_metadata};
 use crate::commands::fit::all_named_were_fitted;
 use crate::explicit_args::ExplicitArgs;
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::invocation::tool;
 use crate::located;
 use crate::output::{note, print, show, shown, warn, write_file};
@@ -118,7 +118,7 @@ impl Import {
         })
     }
 
-    fn write(&self, imported: htex_exchange::Imported) -> Result {
+    fn write(&self, imported: htex_exchange::ImportedAsset) -> Result {
         let bytes = imported.to_bytes()?;
         write_file(&self.output, &bytes)?;
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &imported.asset)
@@ -137,16 +137,5 @@ impl Import {
         }
         show(&summary, self.json)?;
         all_named_were_fitted(&self.given.values.fit, &imported.skipped)
-    }
-}
-
-impl From<ImportError> for Failure {
-    fn from(error: ImportError) -> Self {
-        match error {
-            ImportError::Exchange(error) => error.into(),
-            ImportError::Settings(error) => error.into(),
-            ImportError::Author(error) => error.into(),
-            error => Self::Other(error.to_string()),
-        }
     }
 }

@@ -9,8 +9,8 @@ use clap::Args;
 use htex_author::FeltShare;
 use htex_base::finding::{Severity, plain};
 use htex_build::{
-    Build as Recipe, BuildError, BuildOptions, Built, Destination, FindingShare, Job, Report,
-    Status, TextureReport, Why, named_briefly, report_failure,
+    Build as Recipe, BuildError, BuildOptions, Destination, FindingShare, Job, Report, Status,
+    TextureReport, Why, named_briefly, report_failure,
 };
 use serde::{Serialize, Serializer};
 use serde_json::json;
@@ -148,14 +148,6 @@ impl Build {
 
     fn build(&self) -> Result {
         let start = Instant::now();
-        let options = BuildOptions::new(tool())
-            .with_jobs(self.jobs.map_or(0, usize::from))
-            .with_keep_going(self.keep_going)
-            .with_limits(WasmLimit::all(&self.wasm_limit))
-            .with_plugins(self.plugin.clone())
-            .with_prune(self.prune)
-            .with_no_removals(self.no_removals)
-            .with_browser_package(self.browser_package.clone());
         let to = Destination::parse(&self.output, self.work.as_deref())
             .map_err(for_file(&self.recipe))?;
         if to.remote().is_none() && self.work.is_some() {
@@ -163,7 +155,17 @@ impl Build {
                 "--work goes with a URI after -o; a build of this machine works in its own folder",
             ));
         }
-        let options = options.with_published(to.remote());
+        let options = BuildOptions {
+            jobs: self.jobs.map_or(0, usize::from),
+            keep_going: self.keep_going,
+            limits: WasmLimit::all(&self.wasm_limit),
+            plugins: self.plugin.clone(),
+            prune: self.prune,
+            no_removals: self.no_removals,
+            browser_package: self.browser_package.clone(),
+            published: to.remote().cloned(),
+            ..BuildOptions::new(tool())
+        };
         let mut build =
             Recipe::open(&self.recipe, to.folder(), options).map_err(for_file(&self.recipe))?;
         let work = Work::new(&build);
@@ -186,8 +188,7 @@ impl Build {
         show(&DryRun { build, work }, self.json)
     }
 
-    fn report(&self, built: &Built, to: &Destination, work: &Work, seconds: f64) -> Result {
-        let report = &built.report;
+    fn report(&self, report: &Report, to: &Destination, work: &Work, seconds: f64) -> Result {
         let results = to.results();
         let left_out: Vec<&TextureReport> =
             report.textures.iter().filter(|texture| texture.status == Status::LeftOut).collect();

@@ -70,7 +70,7 @@ impl Make {
             .unwrap_or_default();
         let stem = self.output.file_stem().unwrap_or_default();
         let mut texture = ByHand::new(stem.to_string_lossy(), self.level, tool())
-            .at(Condition {
+            .with_condition(Condition {
                 speed_mm_s: at.speed_mm_s,
                 force_n: at.force_n,
                 ..Condition::default()

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::recording::format_names;
-use htex_author::{Reading, Recording, TextureSpectrum, read_take};
+use htex_author::{Recording, SegmentedTake, TextureSpectrum, segment_take};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
@@ -44,11 +44,11 @@ impl Process {
         check_outputs(self.svg.as_deref(), inputs)?;
         let take = self.reading.read_one(&self.recording)?;
         let options = self.reading.spectrum_options()?;
-        let reading = read_take(&take, &options, self.reading.strict())?;
-        let part = std::slice::from_ref(&reading.part);
+        let reading = segment_take(&take, &options, self.reading.strict())?;
+        let part = std::slice::from_ref(&reading.spectra);
         let spectrum = TextureSpectrum::average(part, options.averaging)?;
         if let Some(svg) = &self.svg {
-            let picture = recording_plot(&take.recording, &reading.part.segments).to_svg();
+            let picture = recording_plot(&take.recording, &reading.spectra.segments).to_svg();
             write_file(svg, picture.as_bytes())?;
         }
         if !self.json {
@@ -61,22 +61,22 @@ impl Process {
 }
 
 /// Says where the segments come from.
-fn origin(reading: &Reading) -> &'static str {
-    if reading.part.segments.from_sweeps { "sweeps" } else { "windows" }
+fn origin(reading: &SegmentedTake) -> &'static str {
+    if reading.spectra.segments.from_sweeps { "sweeps" } else { "windows" }
 }
 
 /// Returns the segments that are used, in seconds of the file.
-fn stretches_s(recording: &Recording, reading: &Reading) -> Vec<[f64; 2]> {
-    let stretches = reading.part.segments.stretches().into_iter();
+fn stretches_s(recording: &Recording, reading: &SegmentedTake) -> Vec<[f64; 2]> {
+    let stretches = reading.spectra.segments.stretches().into_iter();
     stretches.map(|part| [part.start, part.end].map(|at| recording.second(at))).collect()
 }
 
 /// Describes the number and position of the segments that are used, and the spread of the motion in
 /// them.
-fn seconds_read(recording: &Recording, reading: &Reading) -> String {
+fn seconds_read(recording: &Recording, reading: &SegmentedTake) -> String {
     let stretches = stretches_s(recording, reading);
     let named: Vec<String> = stretches.iter().map(|[a, b]| format!("{a:.2}-{b:.2}")).collect();
-    let count = reading.part.segments.starts.len();
+    let count = reading.spectra.segments.starts.len();
     let mut text =
         format!("{count} segments of 0.2 s from {}, s: {}", origin(reading), named.join(", "));
     let spread = &reading.spread;
@@ -93,14 +93,14 @@ fn seconds_read(recording: &Recording, reading: &Reading) -> String {
 /// The spectrum of a recording, and what was read of it.
 struct RecordingSpectrum<'a> {
     recording: &'a Recording,
-    reading: Reading,
+    reading: SegmentedTake,
     spectrum: TextureSpectrum,
 }
 
 impl Serialize for RecordingSpectrum<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { recording, reading, spectrum } = self;
-        let segments = &reading.part.segments;
+        let segments = &reading.spectra.segments;
         json!({
             "rate_hz": recording.rate_hz,
             "segments": spectrum.segments,
@@ -113,9 +113,9 @@ impl Serialize for RecordingSpectrum<'_> {
             "unit": spectrum.quantity.unit(),
             "frequency_hz": spectrum.frequency_hz,
             "magnitude": spectrum.magnitude,
-            "speed_mm_s": reading.condition.speed_mm_s,
+            "speed_mm_s": reading.motion.speed_mm_s,
             "speed_spread_mm_s": reading.spread.speed_mm_s,
-            "force_n": reading.condition.force_n,
+            "force_n": reading.motion.force_n,
             "force_spread_n": reading.spread.force_n,
             "repeatability_rms_db": spectrum.repeatability_rms_db,
             "simulated": recording.simulated,

@@ -254,7 +254,8 @@ const MOST_TOML_BYTES: u64 = 1 << 20;
 #[cfg(feature = "build")]
 fn validate_recipe(path: &Path) -> Result<Report> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
-    let options = BuildOptions::new(crate::invocation::tool()).with_limits(WasmLimit::all(&[]));
+    let limits = WasmLimit::all(&[]);
+    let options = BuildOptions { limits, ..BuildOptions::new(crate::invocation::tool()) };
     // If it cannot be read, `check` says why.
     let text = htex_base::files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
     let is_study = |line: &str| line.trim_start().starts_with("htex_study");

@@ -4,11 +4,11 @@
 use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};
 
-use crate::conditions::Group;
-use crate::level::{Level, stored_level};
+use crate::conditions::ConditionSpectrum;
+use crate::fit::fit_condition;
+use crate::level::Level;
+use crate::measure::{agreement, read_spectrum};
 use crate::request::ModelRequest;
-use crate::stored::stored_fields;
-use crate::{agreement, read_spectrum};
 
 /// Nine-band RMS error above which a warning is given, decibels.
 const LIMIT_DB: f64 = 12.0;
@@ -19,17 +19,17 @@ const LIMIT_DB: f64 = 12.0;
 const BAND_LIMIT_DB: f64 = 24.0;
 
 /// A fit that was tried, with its nine-band RMS error in decibels.
-struct Tried {
+struct TrialFit {
     name: String,
     error_db: f64,
 }
 
 /// Returns a warning if a representation exceeds an error limit at one of its `measured`
 /// conditions. Besides the model's own options it tries each of `models` at its default options.
-pub(crate) fn warning(
+pub(crate) fn warning<'a>(
     choice: &ModelRequest,
-    measured: &[(&Quality, &Group)],
-    models: &[LoadedModel],
+    measured: &[(&Quality, &ConditionSpectrum)],
+    models: impl Iterator<Item = &'a LoadedModel>,
     level: Level,
 ) -> Option<String> {
     let error_db = |quality: &Quality| quality.get(Measure::NineBand).unwrap_or(0.0);
@@ -37,21 +37,24 @@ pub(crate) fn warning(
     let excess = |quality: &Quality| {
         (error_db(quality) / LIMIT_DB).max(worst_band_db(quality) / BAND_LIMIT_DB)
     };
-    let worst =
-        |a: &&(&Quality, &Group), b: &&(&Quality, &Group)| excess(a.0).total_cmp(&excess(b.0));
-    let (quality, group) = *measured.iter().max_by(worst)?;
+    let (quality, one) = *measured.iter().max_by(|a, b| excess(a.0).total_cmp(&excess(b.0)))?;
     let nine_band_db = error_db(quality);
     let worst_db = worst_band_db(quality);
     if nine_band_db <= LIMIT_DB && worst_db <= BAND_LIMIT_DB {
         return None;
     }
     let try_one = |model: &LoadedModel, options: Vec<f64>, name: String| {
-        let error_db = error_of(model, &options, group, level)?;
-        (error_db < nine_band_db).then_some(Tried { name, error_db })
+        let error_db = error_of(model, &options, one, level)?;
+        (error_db < nine_band_db).then_some(TrialFit { name, error_db })
     };
     let own = other_options(choice).into_iter();
     let best_option = best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
-    let others = models.iter().filter(|m| m.id() != choice.model.id());
+    let mut tried = vec![choice.model.id()];
+    let others = models.filter(|model| {
+        let is_new = !tried.contains(&model.id());
+        tried.push(model.id());
+        is_new
+    });
     let best_model = best(others.filter_map(|model| {
         let name = format!("the model {}", model.short_name());
         try_one(model, model.descriptor().default_options(), name)
@@ -81,7 +84,7 @@ fn worst_band_db(quality: &Quality) -> f64 {
     bands.fold(0.0, |worst, error| worst.max(error.abs()))
 }
 
-fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
+fn best(tried: impl Iterator<Item = TrialFit>) -> Option<TrialFit> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 
@@ -115,15 +118,16 @@ fn other_values(option: &FitOption) -> Vec<f64> {
 
 /// Returns the nine-band RMS error of a model's stored fit, measured on the magnitudes that a
 /// recording of the voice would read. `None` if the model cannot be fitted.
-fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
-    let reference = group.spectrum.as_ref();
-    let input = group.spectrum.fit_input(options, group.condition);
-    let fit = model.fit(&input).ok()?;
-    let fields = stored_fields(model.descriptor());
+fn error_of(
+    model: &LoadedModel,
+    options: &[f64],
+    one: &ConditionSpectrum,
+    level: Level,
+) -> Option<f64> {
+    let reference = one.spectrum.as_ref();
     // Compared as an asset stores it, because the error to beat was measured like that too.
-    let stored = htex_format::round_within(&fields, model.descriptor(), &fit.parameters).ok()?;
-    let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
-    let magnitude = read_spectrum(model, &stored, level_rms, reference).ok()?;
+    let fit = fit_condition(model, options, one, level).ok()?;
+    let magnitude = read_spectrum(model, &fit.stored, fit.level_rms, reference).ok()?;
     let error = agreement(reference, &magnitude).get(Measure::NineBand);
     error.filter(|error| error.is_finite())
 }

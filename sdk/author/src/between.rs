@@ -13,11 +13,10 @@
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Exponent, ExponentSource, Law};
-use htex_host::FitCondition;
 use htex_play::Mesh;
 
 use crate::TextureSpectrum;
-use crate::conditions::{Group, Grouped, four_digits};
+use crate::conditions::{ConditionSpectrum, four_digits};
 
 /// Smallest frequency exponent at which lines move enough to need conditions in between.
 const LEAST_EXPONENT: f64 = 0.5;
@@ -27,46 +26,38 @@ const RATIO: f64 = 1.2;
 /// Largest number of conditions that are added.
 const MOST: usize = 64;
 
-/// Adds conditions between recorded conditions of the same force, if the measured law moves
+/// Returns conditions between recorded conditions of the same force, if the measured law moves
 /// frequencies.
-pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
+pub(crate) fn conditions(recorded: &[ConditionSpectrum], law: &Law) -> Vec<ConditionSpectrum> {
     let Exponent { exponent, source, .. } = law.frequency_speed;
     if source != ExponentSource::Measured || exponent < LEAST_EXPONENT {
-        return;
+        return Vec::new();
     }
-    // A copy, because the conditions that are added below must not become neighbours themselves.
-    let recorded = grouped.conditions.clone();
-    let mut left = MOST;
-    for pair in neighbours(&recorded) {
-        for motion in inner(&recorded, pair).into_iter().take(left) {
-            left -= 1;
-            let [slow, fast] = pair.map(|i| Recorded::new(&grouped.groups[i], &recorded[i]));
-            let spectrum = slow.mixed(&fast, motion, exponent);
+    let between = |pair: [usize; 2]| {
+        let [slow, fast] = pair.map(|i| &recorded[i]);
+        inner(&slow.condition, &fast.condition).into_iter().map(move |motion| {
+            let spectrum = mixed([slow, fast], motion, exponent);
             let [speed_mm_s, force_n] = motion.map(|x| Some(four_digits(x)));
-            grouped.conditions.push(Condition {
-                speed_mm_s,
-                force_n,
-                repeatability_rms_db: None,
-                segments: Some(0),
-            });
-            grouped
-                .groups
-                .push(Group { spectrum, condition: FitCondition { speed_mm_s, force_n } });
-        }
-    }
+            let condition =
+                Condition { speed_mm_s, force_n, repeatability_rms_db: None, segments: Some(0) };
+            ConditionSpectrum { condition, spectrum }
+        })
+    };
+    neighbours(recorded).into_iter().flat_map(between).take(MOST).collect()
 }
 
 /// Pairs of conditions at one force with no third speed between them, the slower one first.
-fn neighbours(conditions: &[Condition]) -> Vec<[usize; 2]> {
-    let known = |i: usize| conditions[i].speed_mm_s.zip(conditions[i].force_n);
-    let mut order: Vec<usize> = (0..conditions.len()).filter(|i| known(*i).is_some()).collect();
+fn neighbours(recorded: &[ConditionSpectrum]) -> Vec<[usize; 2]> {
+    let known = |i: usize| recorded[i].condition.speed_mm_s.zip(recorded[i].condition.force_n);
+    let mut order: Vec<usize> = (0..recorded.len()).filter(|i| known(*i).is_some()).collect();
     htex_dsp::order::sort_by(&mut order, |a, b| {
         known(*a).partial_cmp(&known(*b)).unwrap_or(std::cmp::Ordering::Equal)
     });
     let next = |at: usize| {
-        let force = conditions[order[at]].force_n?;
-        let same =
-            |i: &&usize| conditions[**i].force_n.is_some_and(|f| Condition::is_same(f, force));
+        let force = recorded[order[at]].condition.force_n?;
+        let same = |i: &&usize| {
+            recorded[**i].condition.force_n.is_some_and(|f| Condition::is_same(f, force))
+        };
         let next = order[at + 1..].iter().find(same)?;
         Some([order[at], *next])
     };
@@ -75,12 +66,11 @@ fn neighbours(conditions: &[Condition]) -> Vec<[usize; 2]> {
 
 /// Motions (speed, force) between two conditions. Their speeds divide the ratio of the two speeds
 /// into equal factors.
-fn inner(conditions: &[Condition], [slow, fast]: [usize; 2]) -> Vec<[f64; 2]> {
-    let at = |of: fn(&Condition) -> Option<f64>| {
-        [slow, fast].map(|i| of(&conditions[i]).filter(|x| *x > 0.0))
+fn inner(slow: &Condition, fast: &Condition) -> Vec<[f64; 2]> {
+    let both = |of: fn(&Condition) -> Option<f64>| {
+        of(slow).zip(of(fast)).filter(|(a, b)| *a > 0.0 && *b > 0.0)
     };
-    let ([Some(from), Some(to)], [Some(light), Some(firm)]) =
-        (at(|c| c.speed_mm_s), at(|c| c.force_n))
+    let (Some((from, to)), Some((light, firm))) = (both(|c| c.speed_mm_s), both(|c| c.force_n))
     else {
         return Vec::new();
     };
@@ -93,80 +83,69 @@ fn inner(conditions: &[Condition], [slow, fast]: [usize; 2]) -> Vec<[f64; 2]> {
     (1..steps).map(motion).collect()
 }
 
-/// A recorded spectrum and its motion.
-struct Recorded<'a> {
-    spectrum: &'a TextureSpectrum,
-    motion: [f64; 2],
+/// Returns the spectrum at a motion between two recorded conditions. Both spectra are moved there
+/// and mixed with the weights and the level that a player would use. Where one of them has moved
+/// out of the band, only the other one counts.
+fn mixed(both: [&ConditionSpectrum; 2], motion: [f64; 2], exponent: f64) -> TextureSpectrum {
+    let motions =
+        both.map(|one| [one.condition.speed_mm_s, one.condition.force_n].map(|x| x.unwrap_or(1.0)));
+    // The player's own mesh, so that the added condition lies on what the player would play between
+    // the two.
+    let mesh = Mesh::new(&motions);
+    let mut weights = [0.0; 2];
+    for (i, weight) in mesh.weights(motion[0], motion[1]).iter() {
+        weights[i] = weight;
+    }
+    let factors = motions.map(|own| libm::pow(motion[0] / own[0], exponent));
+    let moved = [0, 1].map(|i| moved(&both[i].spectrum, factors[i]));
+    let power = |bin: usize| match [moved[0][bin], moved[1][bin]] {
+        [Some(a), Some(b)] => weights[0] * a + weights[1] * b,
+        [Some(one), None] | [None, Some(one)] => one,
+        [None, None] => 0.0,
+    };
+    let bins = 0..both[0].spectrum.magnitude.len();
+    let mut magnitude: Vec<f64> = bins.map(|bin| power(bin).sqrt()).collect();
+    let level: f64 = both
+        .iter()
+        .zip(weights)
+        .map(|(one, weight)| weight * level_rms(&one.spectrum.magnitude))
+        .sum();
+    // A player mixes levels, which gives another level than mixing powers.
+    let now = level_rms(&magnitude);
+    if now > 0.0 {
+        magnitude.iter_mut().for_each(|m| *m *= level / now);
+    }
+    let nearest = usize::from(weights[0] < weights[1]);
+    let spectrum = &both[nearest].spectrum;
+    TextureSpectrum {
+        magnitude,
+        segments: 0,
+        repeatability_rms_db: None,
+        signal: faster(&spectrum.signal, factors[nearest]),
+        ..spectrum.clone()
+    }
 }
 
-impl<'a> Recorded<'a> {
-    fn new(group: &'a Group, condition: &Condition) -> Self {
-        let known = [condition.speed_mm_s, condition.force_n].map(|x| x.unwrap_or(1.0));
-        Self { spectrum: &group.spectrum, motion: known }
-    }
-
-    /// Returns the spectrum at a motion between this one and another. Both spectra are moved there
-    /// and mixed with the weights and the level that a player would use. Where one of them has
-    /// moved out of the band, only the other one counts.
-    fn mixed(&self, other: &Self, motion: [f64; 2], exponent: f64) -> TextureSpectrum {
-        // The player's own mesh, so that the added condition lies on what the player would play
-        // between the two.
-        let mesh = Mesh::new(&[self.motion, other.motion]);
-        let mut weights = [0.0; 2];
-        for (i, weight) in mesh.weights(motion[0], motion[1]).iter() {
-            weights[i] = weight;
+/// Returns the power in each bin after all frequencies are multiplied by `factor`; `None` where
+/// nothing was recorded.
+fn moved(spectrum: &TextureSpectrum, factor: f64) -> Vec<Option<f64>> {
+    let (grid, magnitude) = (&spectrum.frequency_hz, &spectrum.magnitude);
+    let power = |at: usize| magnitude[at] * magnitude[at];
+    // Frequencies stretched by `factor` spread the same power over `factor` times as many bins.
+    let of = |hz: &f64| {
+        let from = hz / factor;
+        let above = grid.partition_point(|f| *f < from);
+        if above == grid.len() {
+            return None;
         }
-        let both = [self, other];
-        let moved = both.map(|one| one.moved(libm::pow(motion[0] / one.motion[0], exponent)));
-        let bins = self.spectrum.magnitude.len();
-        let power = |bin: usize| match [moved[0][bin], moved[1][bin]] {
-            [Some(a), Some(b)] => weights[0] * a + weights[1] * b,
-            [Some(one), None] | [None, Some(one)] => one,
-            [None, None] => 0.0,
-        };
-        let mut magnitude: Vec<f64> = (0..bins).map(|bin| power(bin).sqrt()).collect();
-        let level: f64 = both
-            .iter()
-            .zip(weights)
-            .map(|(one, weight)| weight * level_rms(&one.spectrum.magnitude))
-            .sum();
-        // A player mixes levels, which gives another level than mixing powers.
-        let now = level_rms(&magnitude);
-        if now > 0.0 {
-            magnitude.iter_mut().for_each(|m| *m *= level / now);
+        if grid[above] == from {
+            return Some(power(above) / factor);
         }
-        let nearest = if weights[0] >= weights[1] { self } else { other };
-        let factor = libm::pow(motion[0] / nearest.motion[0], exponent);
-        TextureSpectrum {
-            magnitude,
-            segments: 0,
-            repeatability_rms_db: None,
-            signal: faster(&nearest.spectrum.signal, factor),
-            ..nearest.spectrum.clone()
-        }
-    }
-
-    /// Returns the power in each bin after all frequencies are multiplied by `factor`; `None` where
-    /// nothing was recorded.
-    fn moved(&self, factor: f64) -> Vec<Option<f64>> {
-        let (grid, magnitude) = (&self.spectrum.frequency_hz, &self.spectrum.magnitude);
-        let power = |at: usize| magnitude[at] * magnitude[at];
-        // Frequencies stretched by `factor` spread the same power over `factor` times as many bins.
-        let of = |hz: &f64| {
-            let from = hz / factor;
-            let above = grid.partition_point(|f| *f < from);
-            if above == grid.len() {
-                return None;
-            }
-            if grid[above] == from {
-                return Some(power(above) / factor);
-            }
-            let below = above.checked_sub(1)?;
-            let part = (from - grid[below]) / (grid[above] - grid[below]);
-            Some(((1.0 - part) * power(below) + part * power(above)) / factor)
-        };
-        grid.iter().map(of).collect()
-    }
+        let below = above.checked_sub(1)?;
+        let part = (from - grid[below]) / (grid[above] - grid[below]);
+        Some(((1.0 - part) * power(below) + part * power(above)) / factor)
+    };
+    grid.iter().map(of).collect()
 }
 
 /// Returns a signal played faster by `factor`, with linear interpolation between samples.

@@ -9,7 +9,7 @@ use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::spectrum::Complex;
 
-use crate::averaging::{Averaging, average};
+use crate::spectrum::{Averaging, average};
 
 /// Shortest and longest block, in segments of 0.2 s: 0.2 to 1 s.
 const BLOCK: [f64; 2] = [1.0, 5.0];

@@ -2,11 +2,10 @@
 //! or of another recording.
 
 use htex_dsp::vibrotactile::Listener;
-use htex_format::{Measure, Quality, Quantity};
-use htex_host::HostError;
+use htex_format::{Measure, Quality};
 use serde::Serialize;
 
-use crate::fit::read_and_measure;
+use crate::measure::measure;
 use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt};
 
 /// How a spectrum differs from a recording's spectrum.
@@ -40,29 +39,6 @@ pub struct ComparedModel {
     pub model: String,
     #[serde(flatten)]
     pub difference: Difference,
-}
-
-/// Why an asset cannot be compared with a recording.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// The asset and the recording hold different quantities.
-    #[error("the asset holds {held}, the recording is read as {recorded}")]
-    Quantities {
-        /// The asset's quantity.
-        held: Quantity,
-        /// The recording's quantity.
-        recorded: Quantity,
-    },
-    /// A representation cannot be read.
-    #[error(transparent)]
-    Play(#[from] htex_play::Error),
-    /// A model refuses the parameters.
-    #[error(transparent)]
-    Model(#[from] HostError),
-    /// A model's rendered samples cannot be measured.
-    #[error(transparent)]
-    Measure(#[from] AuthorError),
 }
 
 impl Difference {
@@ -106,10 +82,10 @@ pub fn compare(
     asset: &htex_play::Texture,
     reference: &TextureSpectrum,
     found: Exploration,
-) -> Result<Vec<ComparedModel>, CompareError> {
+) -> Result<Vec<ComparedModel>, AuthorError> {
     let (held, recorded) = (asset.quantity(), reference.quantity);
     if held != recorded {
-        return Err(CompareError::Quantities { held, recorded });
+        return Err(AuthorError::OtherQuantity { held, recorded });
     }
     let motion = found
         .speed_mm_s
@@ -120,7 +96,7 @@ pub fn compare(
         let (parameters, level_rms) = playable.parameters(motion)?;
         let model = playable.model()?;
         let of = reference.as_ref();
-        let (magnitude, quality) = read_and_measure(&model, &parameters, level_rms, of)?;
+        let (magnitude, quality) = measure(&model, &parameters, level_rms, of)?;
         Ok(ComparedModel {
             model: representation.model.clone(),
             difference: Difference::new(reference, level_rms, &magnitude, quality),

@@ -1,34 +1,84 @@
-//! Grouping of recordings by exploration condition.
+//! The second stage of a fit: the spectra of recordings at the same speed and force are averaged to
+//! the spectrum of one condition.
 
 use htex_base::finding::{Finding, Findings, Notice};
-use htex_format::{Condition, Source};
+use htex_format::{Condition, Contact, Law, Source};
 use htex_host::FitCondition;
 
 use crate::findings::{differing, level_of};
-use crate::reading::{read_take, refuse, sentences};
-use crate::recording_finding::RecordingFinding;
-use crate::spectrum::SegmentSpectra;
-use crate::take::{Take, source_of};
-use crate::warnings::Warnings;
-use crate::{AuthorError, Exploration, SpectrumOptions, TextureSpectrum};
+use crate::law::law;
+use crate::spectrum::{Averaging, SegmentSpectra};
+use crate::take::{SegmentedTake, refuse, sentence};
+use crate::{AuthorError, Exploration, TextureSpectrum, between};
 
 /// The spectrum of one condition.
-pub(crate) struct Group {
+#[derive(Debug, Clone)]
+pub(crate) struct ConditionSpectrum {
+    pub(crate) condition: Condition,
     pub(crate) spectrum: TextureSpectrum,
-    /// The motion at which it was recorded, as far as it is known.
-    pub(crate) condition: FitCondition,
 }
 
-/// The spectra of all conditions.
-pub(crate) struct Grouped {
-    pub(crate) groups: Vec<Group>,
-    pub(crate) conditions: Vec<Condition>,
+impl ConditionSpectrum {
+    /// Returns the motion at which it was recorded, as far as it is known.
+    pub(crate) fn motion(&self) -> FitCondition {
+        let Condition { speed_mm_s, force_n, .. } = self.condition;
+        FitCondition { speed_mm_s, force_n }
+    }
+}
+
+/// The spectra of all conditions of an asset.
+pub(crate) struct ConditionSpectra {
+    /// Recorded conditions, and after them those computed between recorded ones.
+    pub(crate) all: Vec<ConditionSpectrum>,
+    pub(crate) contact: Contact,
+    pub(crate) law: Law,
+    pub(crate) recordings: RecordingsReport,
+}
+
+/// A finding of one of several recordings.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RecordingFinding {
+    /// The recording's name, as in its warnings.
+    pub recording: String,
+    pub finding: Finding,
+}
+
+/// What an asset states about its recordings.
+#[derive(Default)]
+pub(crate) struct RecordingsReport {
     pub(crate) sources: Vec<Source>,
-    pub(crate) warnings: Vec<Notice>,
-    pub(crate) notes: Vec<Notice>,
+    /// Whether a recording is simulated.
+    pub(crate) simulated: bool,
+    pub(crate) warnings: Warnings,
+    pub(crate) notes: Warnings,
     pub(crate) findings: Vec<RecordingFinding>,
 }
 
+impl RecordingsReport {
+    /// Adds what is said about one recording.
+    pub(crate) fn add(
+        &mut self,
+        source: Source,
+        simulated: bool,
+        [warnings, notes]: [Vec<Notice>; 2],
+        findings: Vec<Finding>,
+    ) {
+        self.warnings.add(&source.file, warnings);
+        self.notes.add(&source.file, notes);
+        self.add_findings(&source.file, findings);
+        self.simulated |= simulated;
+        self.sources.push(source);
+    }
+
+    pub(crate) fn add_findings(&mut self, recording: &str, findings: Vec<Finding>) {
+        let recording = || recording.to_owned();
+        let named = findings.into_iter();
+        self.findings
+            .extend(named.map(|finding| RecordingFinding { recording: recording(), finding }));
+    }
+}
+
+/// The takes of one condition.
 struct Gathering {
     condition: Exploration,
     parts: Vec<SegmentSpectra>,
@@ -46,75 +96,78 @@ impl Gathering {
     }
 }
 
-/// Computes the recordings' spectra and averages the spectra of each condition.
-pub(crate) fn group_takes(
-    takes: &[Take],
-    options: &SpectrumOptions,
-    strict: bool,
-) -> Result<Grouped, AuthorError> {
-    let (mut gatherings, mut sources) = (Vec::<Gathering>::new(), Vec::new());
-    let (mut warnings, mut notes) = (Warnings::default(), Warnings::default());
-    let mut findings = Vec::new();
-    for take in takes {
-        let reading = read_take(take, options, strict)?;
-        let (condition, part) = (reading.condition, reading.part);
-        warnings.add(&take.recording.source, reading.warnings);
-        notes.add(&take.recording.source, reading.notes);
-        findings.extend(RecordingFinding::all(&take.recording.source, reading.findings));
-        sources.push(source_of(take, part.spectra.len()));
-        // The first recording of a condition decides its speed and force, so the order of
-        // recordings can matter where they lie close together.
-        match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
-            Some(gathering) => {
-                gathering.parts.push(part);
-                gathering.names.push(take.recording.source.clone());
+impl ConditionSpectra {
+    /// Averages the spectra of each condition, estimates the law of the texture from them, and adds
+    /// conditions between recorded ones where the law moves frequencies.
+    ///
+    /// # Errors
+    /// When quantities or bands differ, or only some conditions have a known speed and force. With
+    /// `strict`, also when the levels of a condition's recordings differ.
+    pub(crate) fn new(
+        takes: Vec<SegmentedTake>,
+        averaging: Averaging,
+        strict: bool,
+    ) -> Result<Self, AuthorError> {
+        let contact = contact(takes.iter().map(|take| take.simulated));
+        let mut gatherings = Vec::<Gathering>::new();
+        let mut recordings = RecordingsReport::default();
+        for take in takes {
+            let (condition, part, name) = (take.motion, take.spectra, take.source.file.clone());
+            let notices = [take.warnings, take.notes];
+            recordings.add(take.source, take.simulated, notices, take.findings);
+            // The first recording of a condition decides its speed and force, so the order of
+            // recordings can matter where they lie close together.
+            match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
+                Some(gathering) => {
+                    gathering.parts.push(part);
+                    gathering.names.push(name);
+                }
+                None => {
+                    gatherings.push(Gathering { condition, parts: vec![part], names: vec![name] });
+                }
             }
-            None => gatherings.push(Gathering {
-                condition,
-                parts: vec![part],
-                names: vec![take.recording.source.clone()],
-            }),
         }
-    }
-    // Only after all recordings, because a level differs from the median of its whole condition.
-    for (name, found) in gatherings.iter().flat_map(Gathering::differing) {
-        if strict {
-            refuse(name, &found)?;
+        // Only after all recordings, because a level differs from the median of its whole
+        // condition.
+        for (name, found) in gatherings.iter().flat_map(Gathering::differing) {
+            if strict {
+                refuse(name, &found)?;
+            }
+            recordings.warnings.add(name, found.iter().map(|f| sentence(name, f)).collect());
+            recordings.add_findings(name, found);
         }
-        warnings.add(name, sentences(name, &found, false).collect());
-        findings.extend(RecordingFinding::all(name, found));
-    }
-    check_known(&gatherings)?;
-    let (mut groups, mut conditions) = (Vec::new(), Vec::new());
-    for gathering in gatherings {
-        let spectrum = TextureSpectrum::average(&gathering.parts, options.averaging)?;
-        let condition = FitCondition {
-            speed_mm_s: gathering.condition.speed_mm_s.map(four_digits),
-            force_n: gathering.condition.force_n.map(four_digits),
+        check_known(&gatherings)?;
+        let mut all = Vec::new();
+        for Gathering { condition, parts, .. } in gatherings {
+            let spectrum = TextureSpectrum::average(&parts, averaging)?;
+            let condition = Condition {
+                speed_mm_s: condition.speed_mm_s.map(four_digits),
+                force_n: condition.force_n.map(four_digits),
+                repeatability_rms_db: spectrum.repeatability_rms_db,
+                segments: None,
+            };
+            all.push(ConditionSpectrum { condition, spectrum });
+        }
+        let differ = |of: fn(&TextureSpectrum, &TextureSpectrum) -> bool| {
+            all.windows(2).any(|pair| of(&pair[0].spectrum, &pair[1].spectrum))
         };
-        conditions.push(Condition {
-            speed_mm_s: condition.speed_mm_s,
-            force_n: condition.force_n,
-            repeatability_rms_db: spectrum.repeatability_rms_db,
-            segments: None,
-        });
-        groups.push(Group { spectrum, condition });
+        if differ(|a, b| a.quantity != b.quantity) {
+            return Err(AuthorError::QuantitiesDiffer);
+        }
+        if differ(|a, b| a.band != b.band) {
+            return Err(AuthorError::BandsDiffer);
+        }
+        let law = law(&all, contact);
+        let between = between::conditions(&all, &law);
+        all.extend(between);
+        Ok(Self { all, contact, law, recordings })
     }
-    let first = groups.first().map(|group| group.spectrum.quantity);
-    if groups.iter().any(|group| Some(group.spectrum.quantity) != first) {
-        return Err(AuthorError::QuantitiesDiffer);
-    }
-    if groups.windows(2).any(|pair| pair[0].spectrum.band != pair[1].spectrum.band) {
-        return Err(AuthorError::BandsDiffer);
-    }
-    Ok(Grouped {
-        groups,
-        conditions,
-        sources,
-        warnings: warnings.into_notices(),
-        notes: notes.into_notices(),
-        findings,
-    })
+}
+
+/// What slid over the surface, as far as the recordings show it: the simulator always uses a
+/// finger.
+pub(crate) fn contact(mut simulated: impl Iterator<Item = bool>) -> Contact {
+    if simulated.all(|is| is) { Contact::Finger } else { Contact::Unknown }
 }
 
 /// Whether two recordings have the same condition.
@@ -143,4 +196,47 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
 pub(crate) fn four_digits(x: f64) -> f64 {
     // By way of text: the nearest number to four digits has the shortest form in the manifest.
     format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// Warnings of several recordings, in the order in which they first occurred. Equal warnings become
+/// one sentence that names the recordings.
+#[derive(Debug, Default)]
+pub(crate) struct Warnings(Vec<Warning>);
+
+#[derive(Debug)]
+struct Warning {
+    /// The warning as it was first given.
+    notice: Notice,
+    /// The sentence without the recording's name.
+    text: String,
+    recordings: Vec<String>,
+}
+
+impl Warnings {
+    pub(crate) fn add(&mut self, recording: &str, notices: Vec<Notice>) {
+        let name = format!("{recording}: ");
+        for notice in notices {
+            let text = notice.text.strip_prefix(&name).unwrap_or(&notice.text);
+            match self.0.iter_mut().find(|warning| warning.text == text) {
+                Some(warning) => warning.recordings.push(recording.to_owned()),
+                None => self.0.push(Warning {
+                    text: text.to_owned(),
+                    recordings: vec![recording.to_owned()],
+                    notice,
+                }),
+            }
+        }
+    }
+
+    /// Returns the warnings, each once.
+    pub(crate) fn into_notices(self) -> Vec<Notice> {
+        let notice = |Warning { notice, text, recordings }| match recordings.len() {
+            1 => notice,
+            n => Notice {
+                text: format!("{n} recordings ({}): {text}", recordings.join(", ")),
+                ..notice
+            },
+        };
+        self.0.into_iter().map(notice).collect()
+    }
 }

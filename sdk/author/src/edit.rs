@@ -1,33 +1,21 @@
 //! Editing an asset's metadata without a new fit.
 
-use htex_format::{Asset, Limits, ReadError};
+use htex_format::{Asset, Limits};
 use serde_json::Value;
 
+use crate::AuthorError;
 use crate::settings::Metadata;
-
-/// Why an asset cannot be edited.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum EditError {
-    /// The bytes are not a valid asset.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// Saving would lose entries that the manifest does not name, or manifest keys that this
-    /// program does not know.
-    #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
-    Lost { lost: Vec<String> },
-}
 
 /// Reads an asset and changes its metadata. Parameters, recorded spectra, embedded models and their
 /// signatures are kept.
 ///
 /// # Errors
 /// When the bytes are not a valid asset, or saving it would lose data.
-pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, EditError> {
+pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
     let mut asset = Asset::from_bytes(bytes)?;
     let lost = lost(bytes, &asset);
     if !lost.is_empty() {
-        return Err(EditError::Lost { lost });
+        return Err(AuthorError::EditLoses { lost });
     }
     metadata.apply(&mut asset.manifest);
     Ok(asset)

@@ -5,40 +5,30 @@ use std::path::{Path, PathBuf};
 use htex_format::{Asset, Plugin};
 use htex_host::{LoadedModel, Origin, Registry};
 
-/// Why modules cannot be embedded into an asset.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum EmbedError {
-    /// The file is not a WASM module.
-    #[error("{file}: only WASM modules can be embedded")]
-    NoModule { file: PathBuf },
-    /// The module's model is not fitted.
-    #[error("{file}: {model} was not fitted; fit it, too")]
-    NotFitted { file: PathBuf, model: String },
-    /// The file cannot be read.
-    #[error("cannot read {file}: {error}")]
-    Read { file: PathBuf, error: std::io::Error },
-}
+use crate::AuthorError;
 
 /// Embeds the modules of fitted models into an asset, and signs them with an ed25519 secret key if
 /// one is given. `registry` must have loaded the models from these files.
 ///
 /// # Errors
-/// See [`EmbedError`].
+/// See [`AuthorError`].
 pub fn embed_plugins(
     asset: &mut Asset,
     registry: &Registry,
     files: &[PathBuf],
     secret_key: Option<&[u8; 32]>,
-) -> Result<(), EmbedError> {
+) -> Result<(), AuthorError> {
     for file in files {
         let model = model_of(registry, file)?;
         let representations = &asset.manifest.representations;
         if !representations.iter().any(|r| r.model == model.id()) {
-            return Err(EmbedError::NotFitted { file: file.clone(), model: model.id().to_owned() });
+            return Err(AuthorError::ModuleNotFitted {
+                file: file.clone(),
+                model: model.id().to_owned(),
+            });
         }
-        let module =
-            std::fs::read(file).map_err(|error| EmbedError::Read { file: file.clone(), error })?;
+        let module = std::fs::read(file)
+            .map_err(|error| AuthorError::Module { file: file.clone(), error })?;
         let plugin = Plugin::new(model.id(), &model.descriptor().version, &module);
         asset.manifest.plugins.push(match secret_key {
             Some(key) => plugin.signed(key),
@@ -50,8 +40,8 @@ pub fn embed_plugins(
 }
 
 /// Returns the model that was loaded from a module file.
-fn model_of<'a>(registry: &'a Registry, file: &Path) -> Result<&'a LoadedModel, EmbedError> {
+fn model_of<'a>(registry: &'a Registry, file: &Path) -> Result<&'a LoadedModel, AuthorError> {
     let of_file = |m: &&LoadedModel| matches!(m.origin(), Origin::Wasm(path) if path == file);
     let model = registry.models().iter().find(of_file);
-    model.ok_or_else(|| EmbedError::NoModule { file: file.to_owned() })
+    model.ok_or_else(|| AuthorError::NoModule { file: file.to_owned() })
 }

@@ -1,13 +1,15 @@
-//! Errors of the authoring pipeline.
+//! The error of this crate.
 
+use std::io;
 use std::path::PathBuf;
 
 use htex_base::finding::{Finding, Hint, listed};
+use htex_format::Quantity;
 use htex_host::HostError;
+use htex_recording::{ReadError, hertz};
 
-use htex_recording::hertz;
-
-/// An error of the authoring pipeline. Each message says what is wrong, where, and what to do.
+/// An error of reading, fitting, making, comparing or simulating textures. Each message says what is
+/// wrong, where, and what to do. [`Self::kind`] says what an error is about.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AuthorError {
@@ -182,16 +184,222 @@ pub enum AuthorError {
     },
     /// A recording could not be read.
     #[error(transparent)]
-    Read(#[from] htex_recording::ReadError),
-    /// The asset could not be encoded.
+    Read(#[from] ReadError),
+    /// The parameters or the asset cannot be written.
     #[error(transparent)]
     Asset(#[from] htex_format::WriteError),
-    /// A file could not be written.
-    #[error("cannot write {path}: {error}")]
-    Write { path: PathBuf, error: std::io::Error },
+    /// The bytes are not a valid asset.
+    #[error(transparent)]
+    ReadAsset(#[from] htex_format::ReadError),
+    /// A representation cannot be read or played.
+    #[error(transparent)]
+    Play(#[from] htex_play::Error),
+    /// Saving an edited asset would lose entries that its manifest does not name, or manifest keys
+    /// that this program does not know.
+    #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
+    EditLoses { lost: Vec<String> },
+    /// The asset and the recording hold different quantities.
+    #[error("the asset holds {held}, the recording is read as {recorded}")]
+    OtherQuantity {
+        /// The asset's quantity.
+        held: Quantity,
+        /// The recording's quantity.
+        recorded: Quantity,
+    },
+
+    /// A map of columns cannot be read.
+    #[error("{keyword} {text}: {error}")]
+    Map {
+        /// Its name: `map` or `tracker_map`.
+        keyword: &'static str,
+        text: String,
+        /// What is wrong with it.
+        error: Box<ReadError>,
+    },
+    /// The number of trackers is neither one nor the number of recordings.
+    #[error("{trackers} trackers for {recordings} recordings; give one for each, or one for all")]
+    Trackers {
+        /// Number of trackers that are given.
+        trackers: usize,
+        recordings: usize,
+    },
+    /// An option names a model that is not being fitted.
+    #[error("option {model}.{name}: no such model is fitted; there are {}", .fitted.join(", "))]
+    ModelNotFitted {
+        /// The model that the option names.
+        model: String,
+        name: String,
+        /// Short names of the models that are being fitted.
+        fitted: Vec<String>,
+    },
+    /// An option is not of the form `MODEL.NAME=VALUE`.
+    #[error("option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6")]
+    OptionForm { text: String },
+    /// Metadata that asset validation would reject.
+    #[error("{field}: {problem}")]
+    Metadata {
+        field: &'static str,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
+
+    /// A file to embed is not a WASM module.
+    #[error("{file}: only WASM modules can be embedded")]
+    NoModule { file: PathBuf },
+    /// The model of a module to embed is not fitted.
+    #[error("{file}: {model} was not fitted; fit it, too")]
+    ModuleNotFitted { file: PathBuf, model: String },
+    /// A module to embed cannot be read.
+    #[error("cannot read {file}: {error}")]
+    Module { file: PathBuf, error: io::Error },
+
+    /// The model has no parameter of this name.
+    #[error("{model} has no parameter {name:?}; it has {there}")]
+    UnknownParameter {
+        model: String,
+        name: String,
+        /// The model's parameters, with units and ranges.
+        there: String,
+    },
+    /// A parameter has no value.
+    #[error("{model} needs a value for {missing}")]
+    MissingParameter {
+        model: String,
+        /// The parameters without a value, with units and ranges.
+        missing: String,
+    },
+    /// A value is outside its parameter's range, or the parameter has too many values.
+    #[error("{name} = {value}: {problem}")]
+    ParameterValue {
+        name: String,
+        value: String,
+        /// What is allowed.
+        problem: String,
+    },
+    /// The level is not a valid number for its quantity.
+    #[error("a level of {level_rms} {unit}: it is from 0 to {most}")]
+    LevelRange {
+        /// The level, in the quantity's unit.
+        level_rms: f64,
+        unit: &'static str,
+        /// The largest level allowed for the quantity.
+        most: f64,
+    },
+    /// The model's parameters do not include the level, and no level is given.
+    #[error(
+        "{model} needs a level: the RMS of the texture in the band, in the unit of its quantity"
+    )]
+    NoLevel { model: String },
+    /// The band is invalid.
+    #[error("the band is {low_hz} to {high_hz} Hz; its edges ascend, above 0 and up to 20,000 Hz")]
+    Band { low_hz: f64, high_hz: f64 },
+    /// The texture has no model, or a model has no condition.
+    #[error(
+        "the texture has no model, or none has parameters at a condition; give one of each at least"
+    )]
+    NoParameters,
+    /// Only some conditions of a texture made by hand have a speed or a force.
+    #[error(
+        "some conditions have only a speed or only a force; give both for every condition, or neither"
+    )]
+    PartialConditions,
+    /// The textures cannot be mixed.
+    #[error("{a} and {b} cannot be mixed: {problem}")]
+    NotMixable {
+        a: String,
+        b: String,
+        /// What differs.
+        problem: String,
+    },
+    /// The weight of a mixture is not between 0 and 1.
+    #[error(
+        "a weight of {weight}: it is from 0, all of the first texture, to 1, all of the second"
+    )]
+    Weight { weight: f64 },
+
+    /// The journal of a sweep could not be written. Points that were finished are in it.
+    #[error("cannot keep finished points in {path}: {error}")]
+    Journal { path: PathBuf, error: io::Error },
+    /// Nothing can be held out of a recording.
+    #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
+    NothingHeldOut { recording: String, reason: &'static str },
+    /// A knob of a sweep does not have this value.
+    #[error("knob {name}: `{value}` is not one of its values")]
+    Knob { name: String, value: String },
+
+    /// No simulated surface has this name.
+    #[error(
+        "unknown surface {text:?}; the surfaces are sandpaper, fine-fabric, coarse-fabric, corrugated-paper and vinyl"
+    )]
+    UnknownSurface {
+        /// The given name, at most 40 characters.
+        text: String,
+    },
+    /// An option of a simulation is out of range.
+    #[error("{option} is {value}; it must lie in {low}..={high}")]
+    SimulationRange {
+        /// Name of the option, including its unit.
+        option: &'static str,
+        value: f64,
+        low: f64,
+        high: f64,
+    },
+    /// The true spectrum of sweeps is not known, only that of a free motion.
+    #[error(
+        "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
+    )]
+    NoTruth,
+    /// The spectrum changes during the simulation, so it has no single true value.
+    #[error("the true spectrum is known without drift and lifts only; leave them out")]
+    UnsteadyTruth,
+}
+
+/// What an [`AuthorError`] is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AuthorErrorKind {
+    /// The recording, or how the recordings go together.
+    Recording,
+    /// A given setting, parameter or option.
+    Setting,
+    /// A model, or all models.
+    Model,
+    /// An asset.
+    Asset,
+    /// The system: a file cannot be read or written.
+    File,
 }
 
 impl AuthorError {
+    /// Returns what the error is about.
+    pub fn kind(&self) -> AuthorErrorKind {
+        match self {
+            Self::Model(_) | Self::NothingFitted { .. } => AuthorErrorKind::Model,
+            Self::Asset(_) | Self::ReadAsset(_) | Self::Play(_) | Self::EditLoses { .. } => {
+                AuthorErrorKind::Asset
+            }
+            Self::Module { .. } | Self::Journal { .. } => AuthorErrorKind::File,
+            Self::RateTooLow { .. }
+            | Self::TooShort { .. }
+            | Self::NoSegments { .. }
+            | Self::Response { .. }
+            | Self::BandsDiffer
+            | Self::QuantitiesDiffer
+            | Self::OffTarget { .. }
+            | Self::Strict { .. }
+            | Self::Condition { .. }
+            | Self::NoMotion { .. }
+            | Self::NothingSteady { .. }
+            | Self::GridConstant { .. }
+            | Self::GridFew { .. }
+            | Self::GridEmpty { .. }
+            | Self::Recording(_)
+            | Self::UnknownConditions { .. }
+            | Self::Read(_) => AuthorErrorKind::Recording,
+            _ => AuthorErrorKind::Setting,
+        }
+    }
+
     pub fn hint(&self) -> Hint {
         Hint::new(match self {
             Self::NoSegments { .. } => &["segments windows"],

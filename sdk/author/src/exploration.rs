@@ -74,7 +74,7 @@ pub struct Spread {
 }
 
 /// A motion signal that the recording contains: its name, unit, samples and target.
-pub(crate) struct Known<'a> {
+pub(crate) struct MotionSignal<'a> {
     what: &'static str,
     signal: &'static str,
     unit: &'static str,
@@ -85,26 +85,28 @@ pub(crate) struct Known<'a> {
 }
 
 /// Returns the recording's speed and normal force, each if the recording contains it.
-pub(crate) fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
+pub(crate) fn motion_signals(
+    recording: &Recording,
+    target: Exploration,
+) -> [Option<MotionSignal<'_>>; 2] {
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
-    let make = |what, signal, unit, values, target| Known {
+    let make = |what, signal, unit, values, target| MotionSignal {
         what,
         signal,
         unit,
         values,
         target,
-        average: Sums::of(values.iter().copied()),
+        average: Sums::new(values.iter().copied()),
         half,
     };
-    let speed = recording.speed_mm_s.as_deref();
-    let force = recording.normal_n.as_deref();
+    let (speed, force) = (recording.speed_mm_s.as_deref(), recording.normal_n.as_deref());
     [
         speed.map(|values| make("scanning speed", "speed", "mm/s", values, target.speed_mm_s)),
         force.map(|values| make("normal force", "normal", "N", values, target.force_n)),
     ]
 }
 
-impl Known<'_> {
+impl MotionSignal<'_> {
     /// Returns the lowest and the highest of the averages within a segment.
     fn range(&self, start: usize, len: usize) -> [f64; 2] {
         let averages = (start..start + len).map(|at| self.average.mean_around(at, self.half));
@@ -116,9 +118,7 @@ impl Known<'_> {
     /// Returns the mean over a segment, if the averages stay within the fraction `part` of it.
     pub(crate) fn steady_mean(&self, start: usize, len: usize, part: f64) -> Option<f64> {
         let mean = self.average.mean(start, start + len);
-        let [low, high] = self.range(start, len);
-        let is_near = |value: f64| (value - mean).abs() <= part * mean.abs();
-        (is_near(low) && is_near(high)).then_some(mean)
+        is_near(mean, part, self.range(start, len)).then_some(mean)
     }
 
     fn spread(&self, segments: &Segments) -> [f64; 2] {
@@ -132,91 +132,11 @@ impl Known<'_> {
         quantile(0.5, starts.len() * len, |at| self.values[starts[at / len] + at % len])
     }
 
-    fn keeps_to(&self, target: f64, [low, high]: [f64; 2]) -> bool {
-        let near = |value: f64| (value - target).abs() <= TOLERANCE * target.abs();
-        near(low) && near(high)
-    }
-
     /// Whether a segment stays within the tolerance of the target, if there is one.
     fn is_on_target(&self, start: usize, len: usize) -> bool {
-        self.target.is_none_or(|target| self.keeps_to(target, self.range(start, len)))
+        self.target.is_none_or(|target| is_near(target, TOLERANCE, self.range(start, len)))
     }
-}
 
-/// Removes the segments in which the speed or force differs from its target by more than 10 %.
-///
-/// # Errors
-/// When the target is out of range, or no segment remains.
-pub(crate) fn keep_on_target(
-    recording: &Recording,
-    segments: &mut Segments,
-    target: Exploration,
-    findings: &mut Findings,
-) -> Result<(), AuthorError> {
-    target.check()?;
-    if target == Exploration::default() {
-        return Ok(());
-    }
-    let known = known(recording, target);
-    // Messages compare the target with all segments, not with those that are left.
-    let of_all = segments.clone();
-    let is_on_target = |start: &usize| {
-        let mut known = known.iter().flatten();
-        known.all(|one| one.is_on_target(*start, of_all.len))
-    };
-    (segments.starts, segments.off_target) = of_all.starts.iter().partition(|s| is_on_target(s));
-    let off = segments.off_target.len();
-    if off == 0 {
-        return Ok(());
-    }
-    let comparison: Vec<String> =
-        known.iter().flatten().filter_map(|one| one.comparison(&of_all)).collect();
-    let comparison = comparison.join("; ");
-    if segments.starts.is_empty() {
-        return Err(AuthorError::OffTarget {
-            source_name: recording.source.clone(),
-            segments: off,
-            comparison,
-        });
-    }
-    findings.add(
-        RECORDING_OFF_TARGET,
-        "",
-        format!(
-            "{off} of {} segments left out because they differ from their target by more than 10 %: {comparison}",
-            of_all.starts.len()
-        ),
-    );
-    Ok(())
-}
-
-/// Returns speed and force over the segments, and the range of the measured ones. Given values take
-/// precedence; otherwise these are the medians of the measured signals. A deviation of more than 10
-/// % from a median is a finding.
-///
-/// # Errors
-/// When a value is out of range.
-pub(crate) fn exploration(
-    recording: &Recording,
-    segments: &Segments,
-    given: Exploration,
-    findings: &mut Findings,
-) -> Result<(Exploration, Spread), AuthorError> {
-    let (mut found, mut spread) = (given, Spread::default());
-    let [speed, force] = known(recording, given);
-    if let Some(speed) = speed {
-        spread.speed_mm_s = Some(speed.spread(segments));
-        found.speed_mm_s = speed.value(segments, findings);
-    }
-    if let Some(force) = force {
-        spread.force_n = Some(force.spread(segments));
-        found.force_n = force.value(segments, findings);
-    }
-    found.check()?;
-    Ok((found, spread))
-}
-
-impl Known<'_> {
     /// Returns the target, or else the median. Adds a finding if the motion is not steady about the
     /// median.
     fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
@@ -225,7 +145,7 @@ impl Known<'_> {
         }
         let median = self.median(segments)?;
         let [low, high] = self.spread(segments);
-        if !self.keeps_to(median, [low, high]) {
+        if !is_near(median, TOLERANCE, [low, high]) {
             let (what, unit) = (self.what, self.unit);
             findings.add(RECORDING_UNSTEADY, format!("/{}", self.signal), format!(
                 "the {what} differs from its median of {median:.4} {unit} by more than 10 %: from {low:.4} to {high:.4} {unit}; \
@@ -244,4 +164,90 @@ impl Known<'_> {
             self.what
         ))
     }
+}
+
+/// Whether a range stays within the fraction `part` of a value.
+fn is_near(value: f64, part: f64, range: [f64; 2]) -> bool {
+    range.iter().all(|end| (end - value).abs() <= part * value.abs())
+}
+
+/// The segments in which a recording is read, and the finger's motion in them.
+pub(crate) struct SegmentMotion {
+    pub(crate) segments: Segments,
+    /// Speed and force: the targets, or else the medians of the measured signals.
+    pub(crate) motion: Exploration,
+    pub(crate) spread: Spread,
+    /// The finding that segments are left out because they are off their target.
+    pub(crate) off_target: Findings,
+    /// The findings that the motion differs from its median by more than 10 %.
+    pub(crate) unsteady: Findings,
+}
+
+impl SegmentMotion {
+    /// Leaves out the segments in which the speed or force differs from its target by more than
+    /// 10 %, and measures the motion in the others.
+    ///
+    /// # Errors
+    /// When the target or a measured value is out of range, or no segment remains.
+    pub(crate) fn new(
+        recording: &Recording,
+        all: Segments,
+        target: Exploration,
+    ) -> Result<Self, AuthorError> {
+        target.check()?;
+        let signals = motion_signals(recording, target);
+        let mut off_target = Findings::default();
+        let segments = on_target(&recording.source, all, &signals, &mut off_target)?;
+        let (mut motion, mut spread) = (target, Spread::default());
+        let mut unsteady = Findings::default();
+        let [speed, force] = signals;
+        if let Some(speed) = speed {
+            spread.speed_mm_s = Some(speed.spread(&segments));
+            motion.speed_mm_s = speed.value(&segments, &mut unsteady);
+        }
+        if let Some(force) = force {
+            spread.force_n = Some(force.spread(&segments));
+            motion.force_n = force.value(&segments, &mut unsteady);
+        }
+        motion.check()?;
+        Ok(Self { segments, motion, spread, off_target, unsteady })
+    }
+}
+
+/// Leaves out the segments that are off their target.
+fn on_target(
+    source: &str,
+    mut segments: Segments,
+    signals: &[Option<MotionSignal<'_>>; 2],
+    findings: &mut Findings,
+) -> Result<Segments, AuthorError> {
+    let signals = || signals.iter().flatten();
+    let is_on_target =
+        |start: &usize| signals().all(|signal| signal.is_on_target(*start, segments.len));
+    let (kept, off): (Vec<usize>, Vec<usize>) =
+        segments.starts.iter().copied().partition(is_on_target);
+    if off.is_empty() {
+        return Ok(segments);
+    }
+    // Messages compare the target with all segments, not with those that are left.
+    let compared = signals().filter_map(|signal| signal.comparison(&segments));
+    let comparison = compared.collect::<Vec<_>>().join("; ");
+    if kept.is_empty() {
+        return Err(AuthorError::OffTarget {
+            source_name: source.to_owned(),
+            segments: off.len(),
+            comparison,
+        });
+    }
+    findings.add(
+        RECORDING_OFF_TARGET,
+        "",
+        format!(
+            "{} of {} segments left out because they differ from their target by more than 10 %: {comparison}",
+            off.len(),
+            segments.starts.len()
+        ),
+    );
+    (segments.starts, segments.off_target) = (kept, off);
+    Ok(segments)
 }

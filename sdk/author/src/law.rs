@@ -12,10 +12,9 @@
 //! falls to a quarter of the difference without a shift, or of the difference at the assumed
 //! exponent.
 
-use std::borrow::Borrow;
-
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 
+use crate::conditions::ConditionSpectrum;
 use crate::spectrum::TextureSpectrum;
 
 /// Smallest error assumed for a recorded level, decibels.
@@ -34,26 +33,20 @@ const LEAST_OCTAVES: f64 = 1.0;
 
 /// Estimates the law of conditions from their spectra. Exponents that the spectra do not determine
 /// keep their assumed values.
-pub(crate) fn law<S: Borrow<TextureSpectrum>>(
-    conditions: &[Condition],
-    spectra: &[S],
-    contact: Contact,
-) -> Law {
-    let spectra: Vec<&TextureSpectrum> = spectra.iter().map(Borrow::borrow).collect();
-    let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
+pub(crate) fn law(all: &[ConditionSpectrum], contact: Contact) -> Law {
+    let quantity = all.first().map_or(Quantity::default(), |one| one.spectrum.quantity);
     let mut law = Law::assumed(quantity, contact);
-    let [speeds, forces] = [speed, force].map(|of| logarithms(conditions, of));
-    let levels: Vec<f64> =
-        spectra.iter().map(|s| libm::log(htex_dsp::grid::level_rms(&s.magnitude))).collect();
-    for (exponent, estimate) in [&mut law.level_speed, &mut law.level_force]
-        .into_iter()
-        .zip(level_exponents(&levels, [speeds.as_deref(), forces.as_deref()]))
-    {
-        measured(exponent, estimate);
-    }
+    let logarithms = |of: fn(&Condition) -> Option<f64>| logarithms(all, of);
+    let [speeds, forces] = [logarithms(|c| c.speed_mm_s), logarithms(|c| c.force_n)];
+    let level = |one: &ConditionSpectrum| htex_dsp::grid::level_rms(&one.spectrum.magnitude);
+    let levels: Vec<f64> = all.iter().map(|one| libm::log(level(one))).collect();
+    let [by_speed, by_force] = level_exponents(&levels, [speeds.as_deref(), forces.as_deref()]);
+    measured(&mut law.level_speed, by_speed);
+    measured(&mut law.level_force, by_force);
     if let Some(speeds) = &speeds {
         let assumed = law.frequency_speed.exponent;
-        measured(&mut law.frequency_speed, frequency_exponent(&spectra, speeds, assumed));
+        let curves: Vec<Curve> = all.iter().map(|one| Curve::new(&one.spectrum)).collect();
+        measured(&mut law.frequency_speed, frequency_exponent(&curves, speeds, assumed));
     }
     // This weighs the estimates against the assumptions. The frequency exponent decides which
     // levels are assumed, so all three go together.
@@ -68,19 +61,10 @@ fn measured(exponent: &mut Exponent, estimate: Option<[f64; 2]>) {
     }
 }
 
-fn speed(condition: &Condition) -> Option<f64> {
-    condition.speed_mm_s
-}
-
-fn force(condition: &Condition) -> Option<f64> {
-    condition.force_n
-}
-
 /// Returns the logarithms of all speeds or forces, if all are known and they are not all the same.
-fn logarithms(conditions: &[Condition], of: fn(&Condition) -> Option<f64>) -> Option<Vec<f64>> {
-    let known = |condition| of(condition).filter(|x| *x > 0.0);
-    let all: Option<Vec<f64>> = conditions.iter().map(known).collect();
-    let all = all?;
+fn logarithms(all: &[ConditionSpectrum], of: fn(&Condition) -> Option<f64>) -> Option<Vec<f64>> {
+    let known = |one: &ConditionSpectrum| of(&one.condition).filter(|x| *x > 0.0);
+    let all: Vec<f64> = all.iter().map(known).collect::<Option<_>>()?;
     let [low, high] = [
         all.iter().copied().fold(f64::INFINITY, f64::min),
         all.iter().copied().fold(0.0, f64::max),
@@ -131,16 +115,11 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
 
 /// Returns the exponent of frequencies over the speed with its standard error, if the spectra
 /// determine it.
-fn frequency_exponent(
-    spectra: &[&TextureSpectrum],
-    speeds: &[f64],
-    assumed: f64,
-) -> Option<[f64; 2]> {
-    let curves: Vec<Curve> = spectra.iter().map(|s| Curve::new(s)).collect();
+fn frequency_exponent(curves: &[Curve], speeds: &[f64], assumed: f64) -> Option<[f64; 2]> {
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     let octaves: Vec<f64> =
         speeds.iter().map(|speed| (speed - mean) / std::f64::consts::LN_2).collect();
-    let differ = |a: f64| difference(&curves, &octaves, a);
+    let differ = |a: f64| difference(curves, &octaves, a);
     let all: Vec<(f64, Difference)> = TRIED
         .map(|hundredths| f64::from(hundredths) / 100.0)
         .filter_map(|a| Some((a, differ(a)?)))
@@ -192,7 +171,7 @@ impl Curve {
     }
 
     /// Interpolates linearly at an octave inside the curve.
-    fn at(&self, octave: f64) -> f64 {
+    fn value_at(&self, octave: f64) -> f64 {
         let place = ((octave - self.low) * POINTS).max(0.0);
         let i = (place as usize).min(self.values.len().saturating_sub(2));
         let part = place - i as f64;
@@ -220,7 +199,7 @@ fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
     }
     let rows: Vec<Vec<f64>> = shifted()
         .map(|(curve, shift)| {
-            let value = |i: usize| curve.at(low + i as f64 / POINTS - shift);
+            let value = |i: usize| curve.value_at(low + i as f64 / POINTS - shift);
             let row: Vec<f64> = (0..points as usize).map(value).collect();
             let mean = row.iter().sum::<f64>() / points;
             // Without its mean, a row no longer contains the level.

@@ -1,26 +1,28 @@
 //! Authoring: makes fitted and measured texture assets from recordings.
 //!
-//! The pipeline is [`recording::read_recording`], [`segment_spectra`],
-//! [`TextureSpectrum::average`], [`fit_asset`]. Definitions follow the paper's section Texture
+//! [`fit_asset`] goes through four stages. Each is a function that gets what the one before it
+//! returned; only the first reads a recording. The definitions follow the paper's section Texture
 //! processing. Where the paper is silent, the documentation of the option says what is done.
 //!
-//! From a recording to an asset:
-//!
-//! 1. `segments` finds segments of 0.2 s: one in each complete sweep (by mean threshold), or
-//!    half-overlapping windows. `findings` reports problems of the signals, with stable codes
-//!    (`spec/recording-findings.md`). `reading` combines both.
-//! 2. `spectrum` removes the mean, applies a Hann window and an FFT, folds two axes into one,
-//!    divides by the setup's response and averages. `blocks` separates odd from even blocks of
-//!    time: two readings that share no sample.
-//! 3. `conditions` averages recordings with the same speed and force; others become further
-//!    conditions. `grid`, on request, takes many conditions from a free motion: windows of `steady`
-//!    motion, `lines` of speed and force, `cells` around their crossings, and spectra over equal
-//!    `paths`, corrected by `slopes`.
-//! 4. `fit` fits each model at each condition. Parameters are rounded as the file stores them. The
-//!    *rounded* parameters get a `level` and are measured, by magnitude (`metrics`) and by samples
-//!    (`rendered`). Where band errors are large, other options and models are tried and listed
-//!    (`alternatives`). In a grid, each condition is also predicted from its neighbours, by the
-//!    player's mesh.
+//! 1. `take`, a [`Take`] to a [`SegmentedTake`] ([`segment_take`]). `segments` chooses segments of
+//!    0.2 s: one in each complete sweep (by mean threshold), or half-overlapping windows.
+//!    `exploration` leaves out segments that are off their speed and force, and measures the motion
+//!    in the others. `spectrum` removes the mean, applies a Hann window and an FFT, folds two axes
+//!    into one and divides by the setup's response. `findings` reports problems of the signals,
+//!    with stable codes (`spec/recording-findings.md`). It gets the options of the spectrum.
+//! 2. `conditions`, the segmented takes to the spectrum of each condition. Recordings with the same
+//!    speed and force are averaged ([`TextureSpectrum::average`]); others become further conditions.
+//!    `blocks` separates odd from even blocks of time: two readings that share no sample. `law`
+//!    estimates how frequencies and level follow the motion, and `between` adds conditions that the
+//!    law computes. It gets the kind of average. For recordings of a free motion, `grid` replaces
+//!    both stages: it reads windows of steady motion around the crossings of lines of speed and
+//!    force.
+//! 3. `fit`, the conditions to the parameters of each model. Parameters are rounded as the file
+//!    stores them. The *rounded* parameters get a `level` and are measured by magnitude and by
+//!    samples (`measure`). Where band errors are large, other options and models are tried and
+//!    listed (`alternatives`). In a grid, each condition is also predicted from its neighbours, by
+//!    the player's mesh. It gets the models with their options, and the source of the level.
+//! 4. `asset`, all of this to a [`FittedAsset`]. It gets name, licence, author and tags.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
@@ -38,7 +40,7 @@
 #![forbid(unsafe_code)]
 
 mod alternatives;
-mod averaging;
+mod asset;
 mod between;
 mod blocks;
 pub mod by_hand;
@@ -54,12 +56,9 @@ mod fit;
 pub mod grid;
 mod law;
 mod level;
-mod metrics;
+mod measure;
 mod odd_and_even;
-mod reading;
 mod recorded;
-mod recording_finding;
-mod rendered;
 #[allow(clippy::disallowed_methods, reason = "digits of a picture reach no asset")]
 pub mod report;
 mod request;
@@ -67,34 +66,30 @@ mod segments;
 pub mod settings;
 pub mod simulate;
 mod spectrum;
-mod stored;
 mod take;
 pub mod tradeoff;
-mod warnings;
 
-pub use averaging::Averaging;
-pub use compare::{CompareError, ComparedModel, Difference, FeltDifference, compare};
-pub use edit::{EditError, edit};
-pub use embed::{EmbedError, embed_plugins};
-pub use error::AuthorError;
+pub use asset::{FittedAsset, fit_asset, fit_asset_watched, new_asset};
+pub use compare::{ComparedModel, Difference, FeltDifference, compare};
+pub use conditions::RecordingFinding;
+pub use edit::edit;
+pub use embed::embed_plugins;
+pub use error::{AuthorError, AuthorErrorKind};
 pub use exploration::{Exploration, Spread};
 pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, FeltShare, felt, threshold_magnitude};
 pub use findings::recording_findings;
-pub use fit::{FittedAsset, fit_asset, fit_asset_watched, measure};
+pub use fit::{representation, stored_fields};
 pub use grid::{CellStatus, Grid, GridCell, GridReport};
 pub use htex_recording as recording;
 pub use htex_recording::{Recording, SetupResponse, velocity};
 pub use level::{Level, stored_level};
-pub use metrics::{Agreement, agreement};
-pub use odd_and_even::{OddAndEven, odd_and_even};
-pub use reading::{Reading, read_take, validate_recording, validate_recording_bytes};
+pub use measure::{Agreement, agreement, read_spectrum, spectrum_of_samples};
+pub(crate) use odd_and_even::{OddAndEven, odd_and_even};
 pub use recorded::RecordedLoop;
-pub use recording_finding::RecordingFinding;
-pub use rendered::{read_spectrum, rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
-pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len, sliding};
+pub(crate) use segments::segment_len;
+pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, sliding};
 pub use spectrum::{
-    SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
+    Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };
-pub use stored::stored_fields;
-pub use take::Take;
+pub use take::{SegmentedTake, Take, segment_take, validate_recording, validate_recording_bytes};

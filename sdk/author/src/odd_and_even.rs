@@ -9,15 +9,15 @@ use crate::{Averaging, SegmentSpectra, TextureSpectrum};
 
 /// The spectra of the odd blocks and of the even blocks.
 #[derive(Debug, Clone)]
-pub struct OddAndEven {
+pub(crate) struct OddAndEven {
     /// The average over the first, third, … block.
-    pub odd: TextureSpectrum,
+    pub(crate) odd: TextureSpectrum,
     /// The average over the second, fourth, … block.
-    pub even: TextureSpectrum,
+    pub(crate) even: TextureSpectrum,
     /// Number of odd and even blocks together.
-    pub blocks: usize,
+    pub(crate) blocks: usize,
     /// Length of the longest block, 0.2 to 1 s.
-    pub block_s: f64,
+    pub(crate) block_s: f64,
 }
 
 /// Cuts what is read of recordings at one condition into equal blocks, as for repeatability
@@ -25,7 +25,7 @@ pub struct OddAndEven {
 /// separately.
 ///
 /// `None` if there are fewer than four blocks, or if quantities or bands differ.
-pub fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<OddAndEven> {
+pub(crate) fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<OddAndEven> {
     let first = parts.first()?;
     let differs =
         |part: &SegmentSpectra| (part.quantity, part.band) != (first.quantity, first.band);
@@ -46,7 +46,7 @@ pub fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<Od
         let own = all.iter().filter(|(.., block)| block % 2 == parity);
         let (spectra, spans): (Vec<_>, Vec<_>) =
             own.map(|(spectrum, span, _)| (*spectrum, *span)).unzip();
-        TextureSpectrum::of(first.quantity, first.band, &spectra, &spans, averaging)
+        TextureSpectrum::from_segments(first.quantity, first.band, &spectra, &spans, averaging)
     };
     let count = 1 + all.iter().map(|(.., block)| *block).max()?;
     let longest = (0..count).map(|number| {

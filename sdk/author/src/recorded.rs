@@ -13,10 +13,9 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_format::Quantity;
 
 use crate::level::recorded_level;
-use crate::reading::read_take;
 use crate::segments::Segments;
 use crate::spectrum::each_frame;
-use crate::take::Take;
+use crate::take::{Take, segment_take};
 use crate::{AuthorError, Exploration, SegmentSpectra, SpectrumOptions, TextureSpectrum};
 
 /// Highest sample rate of a loop, hertz.
@@ -46,16 +45,16 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// As [`read_take`]. Also when the rate is not a multiple of 10 Hz, is not above twice the
+    /// As [`segment_take`]. Also when the rate is not a multiple of 10 Hz, is not above twice the
     /// band's highest frequency, or is above 192 kHz.
-    pub fn of(
+    pub fn new(
         take: &Take,
         options: &SpectrumOptions,
         strict: bool,
         rate_hz: f64,
     ) -> Result<Self, AuthorError> {
-        let reading = read_take(take, options, strict)?;
-        let part = &reading.part;
+        let read = segment_take(take, options, strict)?;
+        let part = &read.spectra;
         let spectrum = TextureSpectrum::average(std::slice::from_ref(part), options.averaging)?;
         let len = frame_len(rate_hz, part.band)?;
         let mut samples = joined(part, len);
@@ -64,7 +63,7 @@ impl RecordedLoop {
         let level_rms = recorded_level(&spectrum.magnitude);
         set_level(&mut samples, level_rms);
         Ok(Self {
-            condition: reading.condition,
+            condition: read.motion,
             quantity: part.quantity,
             segments: samples.len() / (len / 2),
             samples,

@@ -38,9 +38,9 @@ impl ModelRequest {
 /// use htex_host::Registry;
 ///
 /// let registry = Registry::builtin();
-/// let request = AssetRequest::new("linen")
-///     .with_license("CC-BY-4.0".to_owned())
-///     .with_models(registry.by_default().map(ModelRequest::new));
+/// let models = registry.by_default().map(ModelRequest::new);
+/// let mut request = AssetRequest::new("linen").with_models(models);
+/// request.license = Some("CC-BY-4.0".to_owned());
 /// assert_eq!(request.models.len(), registry.by_default().count());
 /// ```
 #[derive(Debug, Clone, Default)]
@@ -79,24 +79,6 @@ impl AssetRequest {
         Self { name: name.into(), ..Self::default() }
     }
 
-    #[must_use]
-    pub fn with_license(mut self, license: impl Into<Option<String>>) -> Self {
-        self.license = license.into();
-        self
-    }
-
-    #[must_use]
-    pub fn with_author(mut self, author: impl Into<Option<String>>) -> Self {
-        self.author = author.into();
-        self
-    }
-
-    #[must_use]
-    pub fn with_tags(mut self, tags: Vec<String>) -> Self {
-        self.tags = tags;
-        self
-    }
-
     /// Sets the models, in the order of the representations.
     #[must_use]
     pub fn with_models(mut self, models: impl IntoIterator<Item = ModelRequest>) -> Self {
@@ -107,19 +89,6 @@ impl AssetRequest {
     #[must_use]
     pub fn with_spectrum(mut self, spectrum: SpectrumOptions) -> Self {
         self.spectrum = spectrum;
-        self
-    }
-
-    #[must_use]
-    pub fn with_level(mut self, level: Level) -> Self {
-        self.level = level;
-        self
-    }
-
-    /// Sets the models to try when a representation has a large band error.
-    #[must_use]
-    pub fn with_alternatives(mut self, alternatives: Vec<LoadedModel>) -> Self {
-        self.alternatives = alternatives;
         self
     }
 
@@ -134,27 +103,6 @@ impl AssetRequest {
     #[must_use]
     pub fn with_grid(mut self, grid: impl Into<Option<Grid>>) -> Self {
         self.grid = grid.into();
-        self
-    }
-
-    /// Sets whether to keep the recorded spectra in the asset.
-    #[must_use]
-    pub fn with_keep_reference(mut self, keep_reference: bool) -> Self {
-        self.keep_reference = keep_reference;
-        self
-    }
-
-    /// Sets the options that differ from their defaults, stored in the provenance.
-    #[must_use]
-    pub fn with_recorded_options(mut self, recorded_options: BTreeMap<String, String>) -> Self {
-        self.recorded_options = recorded_options;
-        self
-    }
-
-    /// Sets program and version, stored in the provenance.
-    #[must_use]
-    pub fn with_tool(mut self, tool: impl Into<String>) -> Self {
-        self.tool = tool.into();
         self
     }
 }

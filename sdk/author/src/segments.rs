@@ -126,7 +126,7 @@ impl Segments {
 /// Chooses the segments of a recording. The result may be empty.
 pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments {
     let len = segment_len(recording.rate_hz);
-    let friction = Friction::of(recording);
+    let friction = Friction::new(recording);
     let samples = friction.samples();
     let Scan { sweeps, sliding } = scan(&friction, len);
     let whole = || {
@@ -173,13 +173,13 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
 /// Returns for each sample whether the finger slides there: the length of the signal vector,
 /// averaged over 50 ms, is at least half of its mean over the recording.
 pub fn sliding(recording: &Recording) -> Vec<bool> {
-    let friction = Friction::of(recording);
+    let friction = Friction::new(recording);
     let slides = |at| friction.slides(friction.smooth(at));
     (0..friction.samples()).map(slides).collect()
 }
 
 /// Returns the number of samples in a segment at a sample rate: 4000 at 20 kHz.
-pub fn segment_len(rate_hz: f64) -> usize {
+pub(crate) fn segment_len(rate_hz: f64) -> usize {
     (rate_hz / SEGMENTS_PER_S).round().max(1.0) as usize
 }
 
@@ -196,7 +196,7 @@ fn resultant(recording: &Recording) -> Sums {
         let squares = centred.iter().map(|(x, mean)| (x[at] - mean).powi(2));
         squares.sum::<f64>().sqrt()
     };
-    Sums::of((0..recording.samples()).map(length))
+    Sums::new((0..recording.samples()).map(length))
 }
 
 /// The length of the signal vector, and its mean, which is the threshold that separates sweeps.
@@ -208,7 +208,7 @@ struct Friction {
 }
 
 impl Friction {
-    fn of(recording: &Recording) -> Self {
+    fn new(recording: &Recording) -> Self {
         let resultant = resultant(recording);
         Self {
             threshold: resultant.mean(0, resultant.samples()),

@@ -7,13 +7,13 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
 use htex_format::Quantity;
 use htex_host::{FitCondition, FitInput};
+use htex_recording::{hertz, raised};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::averaging::{Averaging, average};
 use crate::blocks::{Span, repeatability_rms_db};
-use crate::segments::{SegmentChoice, Segments, choose_segments};
+use crate::segments::{SegmentChoice, Segments, choose_segments, segment_len};
 use crate::{AuthorError, Recording, SetupResponse};
-use htex_recording::hertz;
-use htex_recording::raised;
 
 /// Floor of the setup's response relative to its largest value in the band: -40 dB.
 const RESPONSE_FLOOR: f64 = 0.01;
@@ -23,6 +23,35 @@ const SMALLEST_RESPONSE: f64 = 1e-200;
 const FEWEST_BINS: usize = 3;
 /// Relative error of the grid's frequencies above which a warning is given.
 const GRID_TOLERANCE: f64 = 1e-3;
+
+/// Method of averaging segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Averaging {
+    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The
+    /// mean of noise is 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
+    Magnitude,
+    /// Root of the mean power: the RMS of noise and tones.
+    #[default]
+    Rms,
+    /// Magnitude of the mean of the complex spectra: keeps only what has the same phase in all
+    /// segments.
+    Complex,
+}
+
+impl Averaging {
+    /// All methods, in the order of the command line's help.
+    pub const ALL: &[Self] = &[Self::Magnitude, Self::Rms, Self::Complex];
+
+    /// Returns the name used in recipes and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Magnitude => "magnitude",
+            Self::Rms => "rms",
+            Self::Complex => "complex",
+        }
+    }
+}
 
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
@@ -126,12 +155,12 @@ impl TextureSpectrum {
             parts.iter().flat_map(|part| part.spectra.iter().map(Vec::as_slice)).collect();
         let spans: Vec<Span> = parts.iter().enumerate().flat_map(spans_of).collect();
         let (quantity, band) = (first.quantity, first.band);
-        Ok(Self::of(quantity, band, &all, &spans, averaging))
+        Ok(Self::from_segments(quantity, band, &all, &spans, averaging))
     }
 
     /// Averages spectra on the grid of a band; `spans` says which part of a recording each of them
     /// comes from.
-    pub(crate) fn of(
+    pub(crate) fn from_segments(
         quantity: Quantity,
         band: Band,
         all: &[&[Complex<f64>]],
@@ -176,6 +205,21 @@ impl TextureSpectrum {
     }
 }
 
+/// Returns the average in each of the first `bins` bins.
+pub(crate) fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f64> {
+    let n = all.len() as f64;
+    (0..bins)
+        .map(|k| {
+            let column = all.iter().map(|spectrum| spectrum[k]);
+            match averaging {
+                Averaging::Magnitude => column.map(magnitude).sum::<f64>() / n,
+                Averaging::Rms => (column.map(|x| x.norm_sqr()).sum::<f64>() / n).sqrt(),
+                Averaging::Complex => magnitude(column.sum::<Complex<f64>>() / n),
+            }
+        })
+        .collect()
+}
+
 /// Returns where each segment lies in its recording. The recording's index is `take`.
 pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<Item = Span> {
     let len = part.segments.len as f64;
@@ -192,7 +236,27 @@ pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
 ) -> Result<SegmentSpectra, AuthorError> {
-    spectra_of(recording, options, Trend::Mean, |_| Ok(()))
+    let segments = choose_segments(recording, options.segments);
+    spectra_of_segments(recording, segments, options.response.as_ref())
+}
+
+/// Computes the spectra of the given segments of a recording.
+pub(crate) fn spectra_of_segments(
+    recording: &Recording,
+    segments: Segments,
+    response: Option<&SetupResponse>,
+) -> Result<SegmentSpectra, AuthorError> {
+    let CheckedBand { band, inverse, warnings } = CheckedBand::new(recording, &segments, response)?;
+    let mut spectra = Vec::with_capacity(segments.starts.len());
+    let mut reader = SegmentReader::new(segments.len, band, Trend::Mean);
+    for &start in &segments.starts {
+        let mut bins = reader.read(&recording.axes, start)?;
+        if let Some(inverse) = &inverse {
+            bins.iter_mut().zip(inverse).for_each(|(bin, h)| *bin *= h);
+        }
+        spectra.push(bins);
+    }
+    Ok(SegmentSpectra { quantity: recording.quantity, band, spectra, segments, warnings })
 }
 
 /// The trend removed from a segment before it is windowed.
@@ -203,30 +267,30 @@ pub(crate) enum Trend {
     Linear,
 }
 
-/// Computes the spectra of the segments that `keep` retains.
-pub(crate) fn spectra_of(
-    recording: &Recording,
-    options: &SpectrumOptions,
-    trend: Trend,
-    keep: impl FnOnce(&mut Segments) -> Result<(), AuthorError>,
-) -> Result<SegmentSpectra, AuthorError> {
-    let mut warnings = Vec::new();
-    let band = usable_band(recording, &mut warnings)?;
-    let mut segments = choose_segments(recording, options.segments);
-    keep(&mut segments)?;
-    check_segments(recording, &segments, &mut warnings)?;
-    let inverse =
-        options.response.as_ref().map(|r| inverse_response(r, band, &mut warnings)).transpose()?;
-    let mut spectra = Vec::with_capacity(segments.starts.len());
-    let mut reader = SegmentReader::new(segments.len, band, trend);
-    for &start in &segments.starts {
-        let mut bins = reader.read(&recording.axes, start)?;
-        if let Some(inverse) = &inverse {
-            bins.iter_mut().zip(inverse).for_each(|(bin, h)| *bin *= h);
-        }
-        spectra.push(bins);
+/// The band in which a recording can be read, after the checks that reading needs.
+pub(crate) struct CheckedBand {
+    pub(crate) band: Band,
+    /// `1 / H` of the setup's response on the band's grid.
+    inverse: Option<Vec<Complex<f64>>>,
+    /// Warnings, as sentences.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl CheckedBand {
+    /// # Errors
+    /// When the sample rate leaves no useful band, there is no segment, or the setup's response
+    /// cannot be divided by.
+    pub(crate) fn new(
+        recording: &Recording,
+        segments: &Segments,
+        response: Option<&SetupResponse>,
+    ) -> Result<Self, AuthorError> {
+        let mut warnings = Vec::new();
+        let band = usable_band(recording, &mut warnings)?;
+        check_segments(recording, segments, &mut warnings)?;
+        let inverse = response.map(|r| inverse_response(r, band, &mut warnings)).transpose()?;
+        Ok(Self { band, inverse, warnings })
     }
-    Ok(SegmentSpectra { quantity: recording.quantity, band, spectra, segments, warnings })
 }
 
 fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band, AuthorError> {
@@ -244,7 +308,7 @@ fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band
             hertz(nyquist_hz)
         ));
     }
-    let spacing_hz = rate_hz / crate::segments::segment_len(rate_hz) as f64;
+    let spacing_hz = rate_hz / segment_len(rate_hz) as f64;
     if (spacing_hz / GRID_HZ - 1.0).abs() > GRID_TOLERANCE {
         warnings.push(format!(
             "{source}: {} is not a multiple of 5 Hz: bins are {spacing_hz:.3} Hz apart and are treated as 5 Hz apart",
@@ -289,7 +353,7 @@ fn inverse_response(
     let values: Vec<Complex<f64>> = band
         .grid_hz()
         .iter()
-        .map(|&f| response.at(f))
+        .map(|&f| response.value_at(f))
         .map(|(re, im)| Complex::new(re, im))
         .collect();
     let largest = response.largest_in(band);
@@ -324,7 +388,7 @@ pub(crate) fn inverse_at(
 ) -> Vec<Complex<f64>> {
     let floor = RESPONSE_FLOOR * response.largest_in(band);
     let at = |hz: f64| {
-        let (re, im) = response.at(hz);
+        let (re, im) = response.value_at(hz);
         inverse(Complex::new(re, im), floor)
     };
     frequency_hz.map(at).collect()

@@ -20,12 +20,12 @@ use crate::findings::shares;
 use crate::gates::missed;
 use crate::hashes::Stamp;
 use crate::job::Job;
-use crate::kept::Kept;
+use crate::job_result::JobResult;
 use crate::library_build::BuildOptions;
-use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
 use crate::removed::built;
 use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, felt_shares};
+use crate::state::StateFolder;
 
 pub(crate) const REPORT_FILE: &str = "build-report.json";
 /// Largest size of a report that is read, bytes: a few hundred thousand textures.
@@ -34,33 +34,25 @@ pub(crate) const MOST_REPORT_BYTES: u64 = 1 << 30;
 /// File with facts about the library that was written last, in the folder of stored data.
 const KEPT_LIBRARY: &str = "library.json";
 
-/// A finished build.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct Built {
-    /// The report of the build, as in `build-report.json`.
-    pub report: Report,
-}
-
-/// Writes everything. `made` returns the result of the job with a key.
+/// Writes everything and returns the report. `made` returns the result of the job with a key.
 pub(crate) fn assemble(
     plan: &Plan,
     jobs: &[(String, Job)],
-    made: &(dyn Fn(&str) -> Option<Made> + Sync),
-    (dist, kept): (&Dist, &Kept),
+    made: &(dyn Fn(&str) -> Option<JobResult> + Sync),
+    (dist, kept): (&Dist, &StateFolder),
     options: &BuildOptions,
     textures_before: &BTreeSet<String>,
-) -> Result<Built, BuildError> {
+) -> Result<Report, BuildError> {
     let file = format!("{}.htexlib", plan.library);
-    let path = dist.at(Path::new(&file))?;
+    let path = dist.path_of(Path::new(&file))?;
     let found = |key: &str, texture: &PlannedTexture| {
         made(key).ok_or_else(|| {
             BuildError::Damaged(format!("{}: it was kept and is gone", texture.name))
         })
     };
-    let asset = |job: &Job, made: &Made| match &made.asset[..] {
+    let asset = |job: &Job, made: &JobResult| match &made.asset[..] {
         [] => Ok(Vec::new()),
-        bytes => job.named(bytes),
+        bytes => job.apply_metadata(bytes),
     };
     let library = path.display();
     // Everything is judged once before anything is written, so that a refused build changes
@@ -104,7 +96,7 @@ pub(crate) fn assemble(
             // writer's files.
             let part = parts.join(&file);
             let mut writer =
-                Writer::create(&dist.at(&part)?, &plan.library).map_err(at_place(&library))?;
+                Writer::create(&dist.path_of(&part)?, &plan.library).map_err(at_place(&library))?;
             // The recipe's gate has already decided about licences.
             writer.allow_unlicensed();
             let planned = jobs.iter().zip(&plan.textures).zip(&textures);
@@ -135,7 +127,7 @@ pub(crate) fn assemble(
     dist.put(Path::new("index.html"), page.as_bytes())?;
     put_report(dist, &report)?;
     remove_stale(before, &report, dist, options)?;
-    Ok(Built { report })
+    Ok(report)
 }
 
 /// Adds the licence and author of a texture to its sound. They are added here so that a change of
@@ -154,7 +146,7 @@ fn judged(
     texture: &PlannedTexture,
     key: &str,
     job: &Job,
-    made: &Made,
+    made: &JobResult,
 ) -> Result<TextureReport, BuildError> {
     let asset = match &made.asset[..] {
         [] => None,
@@ -191,22 +183,22 @@ fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
 }
 
 /// Returns the existing library if it has these contents and nobody has written to it since.
-fn kept_library(kept: &Kept, path: &Path, contents: &str) -> Option<KeptLibrary> {
+fn kept_library(kept: &StateFolder, path: &Path, contents: &str) -> Option<KeptLibrary> {
     let bytes = kept.get(KEPT_LIBRARY, MOST_REPORT_BYTES)?;
     let kept: KeptLibrary = serde_json::from_slice(&bytes).ok()?;
-    let same = kept.contents == contents && Stamp::of(path).ok()? == kept.stamp;
+    let same = kept.contents == contents && Stamp::read(path).ok()? == kept.stamp;
     same.then_some(kept)
 }
 
 fn keep_library(
-    kept: &Kept,
+    kept: &StateFolder,
     path: &Path,
     contents: String,
     packed: &PackSummary,
 ) -> Result<KeptLibrary, BuildError> {
     let library = KeptLibrary {
         contents,
-        stamp: Stamp::of(path).reading(path)?,
+        stamp: Stamp::read(path).reading(path)?,
         bytes: packed.bytes,
         blake3: blake3::Hash::from_bytes(packed.blake3).to_hex().to_string(),
     };
@@ -236,7 +228,7 @@ fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
     let entry = package.join("index.js");
     if !entry.is_file() {
         let problem = "there is no index.js; give the folder of the browser package";
-        return Err(BuildError::at(package.display(), problem));
+        return Err(BuildError::at_place(package.display(), problem));
     }
     for file in WalkDir::new(package).follow_links(true) {
         let file = file.reading(package)?;

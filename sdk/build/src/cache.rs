@@ -1,4 +1,4 @@
-//! The cache of job results, by key. Entries are authenticated ([`Kept`]): a result that comes from
+//! The cache of job results, by key. Entries are authenticated ([`StateFolder`]): a result that comes from
 //! somebody else, or that a crash left incomplete, is not used and is made again. Entries are not
 //! flushed to disk one by one.
 //!
@@ -13,8 +13,8 @@ use std::time::{Duration, SystemTime};
 use htex_base::files::AtFile;
 
 use crate::BuildError;
-use crate::kept::{Kept, inside};
-use crate::made::{Made, Outcome};
+use crate::job_result::{JobResult, Outcome};
+use crate::state::{StateFolder, inside};
 
 /// Name of the cache's folder, in the folder of stored data.
 const MADE: &str = "made";
@@ -28,12 +28,12 @@ const RENEWED: Duration = Duration::from_secs(24 * 3600);
 /// The cache of job results.
 #[derive(Debug)]
 pub(crate) struct Cache {
-    kept: Arc<Kept>,
+    kept: Arc<StateFolder>,
 }
 
 impl Cache {
     /// Opens the cache, and creates its folder if it is missing.
-    pub(crate) fn open(kept: Arc<Kept>) -> Result<Self, BuildError> {
+    pub(crate) fn open(kept: Arc<StateFolder>) -> Result<Self, BuildError> {
         let made = kept.own().make_folder(&inside(MADE));
         made.writing(kept.own().path().join(inside(MADE)))?;
         Ok(Self { kept })
@@ -41,9 +41,9 @@ impl Cache {
 
     /// Returns the result for a key; `None` if there is none, or if it is damaged or comes from
     /// somebody else.
-    pub(crate) fn get(&self, key: &str) -> Option<Made> {
+    pub(crate) fn get(&self, key: &str) -> Option<JobResult> {
         let bytes = self.kept.get(&name(key), MOST_BYTES)?;
-        Made::from_bytes(key, &bytes).ok()
+        JobResult::from_bytes(key, &bytes).ok()
     }
 
     /// Returns whether there is a file for a key, even if it cannot be used.
@@ -54,7 +54,7 @@ impl Cache {
 
     /// Stores the result for a key. A refusal is not stored, because its cause may be gone the next
     /// time.
-    pub(crate) fn put(&self, key: &str, made: &Made) -> Result<(), BuildError> {
+    pub(crate) fn put(&self, key: &str, made: &JobResult) -> Result<(), BuildError> {
         if matches!(made.record.outcome, Outcome::Refused(_)) {
             return Ok(());
         }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use htex_base::files::{AtFile, OwnFolder};
 
 use crate::BuildError;
-use crate::kept::inside;
+use crate::state::inside;
 
 /// Name of the folder for files that are being written, in the folder of stored data.
 const PARTS: &str = "parts";
@@ -38,7 +38,7 @@ impl Dist {
 
     /// Returns the path of a file that is not written by [`Self::put`]. None of the folders above
     /// it is a link.
-    pub(crate) fn at(&self, file: &Path) -> Result<PathBuf, BuildError> {
+    pub(crate) fn path_of(&self, file: &Path) -> Result<PathBuf, BuildError> {
         let at = self.own.entry_path(file);
         Ok(at.writing(self.own.path().join(file))?)
     }

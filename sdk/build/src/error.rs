@@ -48,7 +48,7 @@ impl BuildError {
         if textures.is_empty() { Ok(()) } else { Err(Self::Removes { textures }) }
     }
 
-    pub(crate) fn at(place: impl Display, problem: impl Display) -> Self {
+    pub(crate) fn at_place(place: impl Display, problem: impl Display) -> Self {
         Self::At { place: place.to_string(), problem: problem.to_string() }
     }
 }
@@ -67,5 +67,5 @@ impl From<htex_base::files::toml::TomlError> for BuildError {
 
 /// Adds the part of the recipe, the texture or the file to an error.
 pub(crate) fn at_place<E: Display>(place: impl Display) -> impl FnOnce(E) -> BuildError {
-    move |error| BuildError::at(place, error)
+    move |error| BuildError::at_place(place, error)
 }

@@ -7,8 +7,8 @@ use std::path::Path;
 use crate::BuildError;
 use crate::assemble::{previous, put_report};
 use crate::dist::Dist;
-use crate::kept::{KEPT, Kept};
-use crate::report::{LibraryReport, REPORT, Report};
+use crate::report::{REPORT, Report};
+use crate::state::{STATE, StateFolder};
 
 /// Writes an error, line by line, into the report of a folder in which a build has begun. Returns
 /// whether it was written. It is not written if no build has begun there, or while another build
@@ -20,10 +20,10 @@ pub fn report_failure(output: &Path, program: &str, error: &[String]) -> Result<
     let dist = Dist::new(output);
     // The folder may come from somebody else, so a link in it is not followed.
     let is_folder = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_dir());
-    if !dist.at(Path::new(KEPT)).is_ok_and(|kept| is_folder(&kept)) {
+    if !dist.path_of(Path::new(STATE)).is_ok_and(|kept| is_folder(&kept)) {
         return Ok(false);
     }
-    let _lock = match Kept::new(output)?.claim() {
+    let _lock = match StateFolder::new(output)?.claim() {
         Err(BuildError::Locked { .. }) => return Ok(false),
         lock => lock?,
     };
@@ -37,28 +37,7 @@ pub(crate) fn put_failure(dist: &Dist, program: &str, error: &[String]) -> Resul
         report: REPORT.to_owned(),
         program: program.to_owned(),
         error: error.to_vec(),
-        ..previous(dist).unwrap_or_else(of_nothing)
+        ..previous(dist).unwrap_or_default()
     };
     put_report(dist, &report)
-}
-
-/// Returns the report of a folder without a library.
-fn of_nothing() -> Report {
-    Report {
-        report: String::new(),
-        program: String::new(),
-        error: Vec::new(),
-        library: LibraryReport {
-            name: String::new(),
-            file: String::new(),
-            bytes: 0,
-            blake3: String::new(),
-            textures: 0,
-            left_out: 0,
-        },
-        removed: Vec::new(),
-        felt_shares: Default::default(),
-        findings: Default::default(),
-        textures: Vec::new(),
-    }
 }

@@ -4,10 +4,10 @@
 //! again.
 
 use crate::recipe::{Gates, ModelGate};
-use crate::report::{AssetReport, Missed};
+use crate::report::{AssetReport, MissedGate};
 
 /// Returns the gates that an asset misses.
-pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
+pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<MissedGate> {
     let mut missed = Vec::new();
     if let Some(gate) = &gates.max_band_error_db {
         missed.extend(band_errors(gate, asset));
@@ -24,11 +24,11 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
         let reason = format!(
             "a condition has {found} segments of 0.2 s and the gate asks for {least}; record longer, or lower the gate"
         );
-        missed.push(Missed::new("min_segments", reason));
+        missed.push(MissedGate::new("min_segments", reason));
     }
     if gates.license == Some(true) && asset.license.is_none() {
         let reason = "it states no licence; set `license` to an SPDX expression such as CC0-1.0, or `gates.license` to false";
-        missed.push(Missed::new("license", reason));
+        missed.push(MissedGate::new("license", reason));
     }
     if let Some(most) = gates.max_bytes
         && asset.bytes > most
@@ -37,13 +37,13 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
         let reason = format!(
             "it has {found} bytes and the gate allows {most}; fit fewer models, embed no module, or raise the gate"
         );
-        missed.push(Missed::new("max_bytes", reason));
+        missed.push(MissedGate::new("max_bytes", reason));
     }
     missed
 }
 
 /// Returns the findings of the recordings that the gate forbids.
-fn denied(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
+fn denied(gates: &Gates, asset: &AssetReport) -> Vec<MissedGate> {
     let codes = gates.deny.as_deref().unwrap_or_default();
     let found = asset.findings.iter().filter(|f| codes.contains(&f.code));
     let reason = |finding: &crate::FindingReport| {
@@ -54,11 +54,11 @@ fn denied(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
             finding.message
         )
     };
-    found.map(|f| Missed::new("deny", reason(f))).collect()
+    found.map(|f| MissedGate::new("deny", reason(f))).collect()
 }
 
 /// Returns the problem if the repeatability is above the gate or not known.
-fn repeatability(most: f64, asset: &AssetReport) -> Option<Missed> {
+fn repeatability(most: f64, asset: &AssetReport) -> Option<MissedGate> {
     let reason = match asset.repeatability_rms_db {
         None => {
             "its repeatability is not known, since no condition has four blocks of 0.2 s that share no sample; record longer"
@@ -70,11 +70,11 @@ fn repeatability(most: f64, asset: &AssetReport) -> Option<Missed> {
              or more evenly, or raise the gate"
         ),
     };
-    Some(Missed::new("max_repeatability_db", reason))
+    Some(MissedGate::new("max_repeatability_db", reason))
 }
 
 /// Returns the models whose nine-band error is above the gate.
-fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
+fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<MissedGate> {
     let errors = asset.band_error_rms_db.iter();
     let errors: Vec<(&str, f64)> = errors.map(|(id, error)| (&id[..], *error)).collect();
     let above = |model: &str, error: f64, most: f64| {
@@ -87,7 +87,7 @@ fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
 }
 
 /// Returns the models whose difference from the recording is felt more than the gate allows.
-fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
+fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<MissedGate> {
     let felt = asset.felt.iter();
     let errors = felt.map(|(id, felt)| {
         let largest = felt.largest_error_db.max(felt.total_error_db.abs());
@@ -111,11 +111,11 @@ fn by_model(
     errors: &[(&str, f64)],
     key: &str,
     above: &dyn Fn(&str, f64, f64) -> String,
-) -> Vec<Missed> {
+) -> Vec<MissedGate> {
     let compare = |model: &str, error: f64, most: f64| {
         // An error that is not a number must not pass a gate.
         let is_above = error.is_nan() || error > most;
-        is_above.then(|| Missed::new(key, above(model, error, most)))
+        is_above.then(|| MissedGate::new(key, above(model, error, most)))
     };
     match gate {
         ModelGate::All(most) => {
@@ -126,7 +126,9 @@ fn by_model(
             let gates = by_model.iter().filter_map(|(name, most)| {
                 match errors.iter().find(|(id, _)| is_named(id, name)) {
                     Some((model, error)) => compare(model, *error, *most),
-                    None => Some(Missed::new(key, format!("{name} has a gate and was not fitted"))),
+                    None => {
+                        Some(MissedGate::new(key, format!("{name} has a gate and was not fitted")))
+                    }
                 }
             });
             gates.collect()

@@ -14,8 +14,8 @@ use htex_base::storage::Location;
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::elsewhere::joined;
 use crate::error::at_place;
+use crate::remote::joined;
 
 /// Characters that make a text a glob.
 const GLOB: [char; 4] = ['*', '?', '[', '{'];
@@ -33,7 +33,7 @@ const MOST_ENTRIES: usize = 2_000_000;
 pub(crate) fn glob_set<S: AsRef<str>>(globs: &[S], place: &str) -> Result<GlobSet, BuildError> {
     if globs.len() > MOST_GLOBS {
         let problem = format!("it has {} globs and the most is {MOST_GLOBS}", globs.len());
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
     let mut set = GlobSetBuilder::new();
     for glob in globs {
@@ -139,7 +139,7 @@ pub(crate) fn files(
             let problem = format!(
                 "{glob}: more than {MOST_ENTRIES} entries of folders to look at; name a folder with fewer"
             );
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
         let entry = match entry {
             // A link that leads nowhere, or to a folder above it, contains no recordings.

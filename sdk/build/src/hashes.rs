@@ -12,8 +12,8 @@ use htex_base::files::{AtFile, FileError, check_regular_at, open_regular};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
-use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere};
-use crate::kept::Kept;
+use crate::remote::{RemoteFiles, is_remote, remote_location};
+use crate::state::StateFolder;
 
 /// A file that changed this shortly before it was hashed may change again without a new time,
 /// because file systems store times in steps of up to 2 s (FAT).
@@ -40,7 +40,7 @@ impl Stamp {
     /// Returns the stamp of a remote file. Its version is its entity tag, or else the time of its
     /// last change. Without both, the time lies in the far future, so that the file's hash is never
     /// stored for the next build.
-    pub(crate) fn elsewhere(bytes: u64, etag: Option<&str>, modified: Option<SystemTime>) -> Self {
+    pub(crate) fn remote(bytes: u64, etag: Option<&str>, modified: Option<SystemTime>) -> Self {
         let version = |etag: &str| {
             let hash = blake3::hash(etag.as_bytes());
             let first = hash.as_bytes().first_chunk().copied();
@@ -63,7 +63,7 @@ impl Stamp {
     ///
     /// # Errors
     /// Errors of the system, and a file without a time of change.
-    pub fn of(file: &Path) -> io::Result<Self> {
+    pub fn read(file: &Path) -> io::Result<Self> {
         Self::of_metadata(&file.metadata()?)
     }
 
@@ -94,7 +94,7 @@ fn number(_: &Metadata) -> u64 {
 
 /// Hash of a file's contents, and the file's stamp when it was hashed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Hashed {
+pub struct FileHash {
     /// BLAKE3 of the contents, hexadecimal.
     pub blake3: String,
     /// Size and times of the file.
@@ -104,23 +104,23 @@ pub struct Hashed {
 /// Known hashes by path.
 #[derive(Debug)]
 pub(crate) struct Hashes {
-    known: BTreeMap<PathBuf, Hashed>,
-    elsewhere: Arc<Elsewhere>,
+    known: BTreeMap<PathBuf, FileHash>,
+    remote: Arc<RemoteFiles>,
     /// Hashes of the files in this build.
-    used: Mutex<BTreeMap<PathBuf, Hashed>>,
+    used: Mutex<BTreeMap<PathBuf, FileHash>>,
 }
 
 impl Hashes {
     /// Reads the hashes that an earlier build stored. A missing or damaged file holds none.
-    pub(crate) fn open(kept: &Kept, name: &str, elsewhere: Arc<Elsewhere>) -> Self {
+    pub(crate) fn open(kept: &StateFolder, name: &str, remote: Arc<RemoteFiles>) -> Self {
         let known =
             kept.get(name, MOST_BYTES).and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        Self { known: known.unwrap_or_default(), elsewhere, used: Mutex::default() }
+        Self { known: known.unwrap_or_default(), remote, used: Mutex::default() }
     }
 
     /// Starts without hashes of an earlier build.
-    pub(crate) fn new(elsewhere: Arc<Elsewhere>) -> Self {
-        Self { known: BTreeMap::new(), elsewhere, used: Mutex::default() }
+    pub(crate) fn new(remote: Arc<RemoteFiles>) -> Self {
+        Self { known: BTreeMap::new(), remote, used: Mutex::default() }
     }
 
     /// Checks that a file exists and is a regular file, without reading it.
@@ -135,7 +135,7 @@ impl Hashes {
     }
 
     /// Adds hashes of files. They are valid as long as the stamps of the files stay the same.
-    pub(crate) fn add(&self, hashed: impl IntoIterator<Item = (PathBuf, Hashed)>) {
+    pub(crate) fn add(&self, hashed: impl IntoIterator<Item = (PathBuf, FileHash)>) {
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         // The new hashes come last, because they replace the earlier ones.
         used.extend(self.known.clone());
@@ -143,8 +143,8 @@ impl Hashes {
     }
 
     /// Returns the hash of a file. Reads the file only if it has changed since it was last hashed.
-    pub(crate) fn of(&self, path: &Path) -> Result<Hashed, BuildError> {
-        let used = |hashes: &Mutex<BTreeMap<PathBuf, Hashed>>| {
+    pub(crate) fn hash(&self, path: &Path) -> Result<FileHash, BuildError> {
+        let used = |hashes: &Mutex<BTreeMap<PathBuf, FileHash>>| {
             let used = hashes.lock().unwrap_or_else(PoisonError::into_inner);
             used.get(path).cloned()
         };
@@ -154,7 +154,7 @@ impl Hashes {
         let stamp = self.stamp(path)?;
         let hashed = match self.known.get(path) {
             Some(hashed) if hashed.stamp == stamp => hashed.clone(),
-            _ => hash(path, &self.elsewhere)?,
+            _ => hash(path, &self.remote)?,
         };
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         used.insert(path.to_owned(), hashed.clone());
@@ -162,12 +162,12 @@ impl Hashes {
     }
 
     fn stamp(&self, path: &Path) -> Result<Stamp, BuildError> {
-        match elsewhere(path)? {
-            Some(location) => Ok(self.elsewhere.stamp(path, &location)?),
+        match remote_location(path)? {
+            Some(location) => Ok(self.remote.stamp(path, &location)?),
             None => {
                 // A recipe may name a pipe or a device, which must not be read.
                 check_regular_at(path).reading(path)?;
-                let stamp = Stamp::of(path).reading(path)?;
+                let stamp = Stamp::read(path).reading(path)?;
                 if stamp.bytes > MOST_FILE_BYTES {
                     return Err(FileError::reading(path, too_large(stamp.bytes)).into());
                 }
@@ -181,35 +181,35 @@ impl Hashes {
     pub(crate) fn to_keep(&self) -> Vec<u8> {
         let used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let settled = |(path, hashed): &(&PathBuf, &Hashed)| {
+        let settled = |(path, hashed): &(&PathBuf, &FileHash)| {
             let racy_until = hashed.stamp.modified_ns.saturating_add(nanoseconds(RACY));
-            let has_query = is_elsewhere(path) && path.to_string_lossy().contains('?');
+            let has_query = is_remote(path) && path.to_string_lossy().contains('?');
             racy_until < nanoseconds(now) && !has_query
         };
-        let kept: BTreeMap<&PathBuf, &Hashed> = used.iter().filter(settled).collect();
+        let kept: BTreeMap<&PathBuf, &FileHash> = used.iter().filter(settled).collect();
         serde_json::to_vec(&kept).unwrap_or_default()
     }
 }
 
 /// Hashes a local or remote file.
-pub(crate) fn hash(path: &Path, copies: &Elsewhere) -> Result<Hashed, BuildError> {
-    match elsewhere(path)? {
+pub(crate) fn hash(path: &Path, copies: &RemoteFiles) -> Result<FileHash, BuildError> {
+    match remote_location(path)? {
         Some(location) => copies.hash(path, &location),
         None => Ok(hash_local(path).reading(path)?),
     }
 }
 
 /// Hashes a file. It must not change in the meantime.
-pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
+pub(crate) fn hash_local(path: &Path) -> io::Result<FileHash> {
     let mut file = open_regular(path)?;
     let before = Stamp::of_metadata(&file.metadata()?)?;
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(&mut file)?;
     // By the path and not by the open file, so that a replaced file is noticed too.
-    if Stamp::of(path)? != before {
+    if Stamp::read(path)? != before {
         return Err(changed());
     }
-    Ok(Hashed { blake3: hasher.finalize().to_hex().to_string(), stamp: before })
+    Ok(FileHash { blake3: hasher.finalize().to_hex().to_string(), stamp: before })
 }
 
 fn too_large(bytes: u64) -> io::Error {

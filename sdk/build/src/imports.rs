@@ -4,9 +4,7 @@
 
 use std::path::Path;
 
-use htex_exchange::{
-    ExchangeError, Format, ImportError, Missing, Physical, Profile, Reads, SignalSettings,
-};
+use htex_exchange::{ExchangeError, Format, Missing, Physical, Profile, Reads, SignalSettings};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -54,7 +52,7 @@ pub(crate) fn format_of(file: &Path) -> Option<&'static Format> {
 }
 
 impl FileKind {
-    fn of(format: Option<&Format>) -> Self {
+    fn of_format(format: Option<&Format>) -> Self {
         match format.and_then(|format| format.reads) {
             None => Self::Recording,
             Some(Reads::Asset(_) | Reads::Map) => Self::Asset,
@@ -84,7 +82,7 @@ pub(crate) fn check_files(texture: &mut PlannedTexture) -> Result<(), BuildError
 }
 
 fn kind(texture: &PlannedTexture) -> Result<FileKind, String> {
-    let of = |recording: &PlannedRecording| FileKind::of(format_of(&recording.file));
+    let of = |recording: &PlannedRecording| FileKind::of_format(format_of(&recording.file));
     let Some(first) = texture.recordings.first() else {
         return Ok(FileKind::Recording);
     };
@@ -165,7 +163,7 @@ fn check_import(
 
 /// Returns whether the import of a format takes a key of recipes.
 fn takes(format: &Format, key: &str) -> bool {
-    let is_fitted = FileKind::of(Some(format)) == FileKind::Signal;
+    let is_fitted = FileKind::of_format(Some(format)) == FileKind::Signal;
     if let Some(gate) = key.strip_prefix("gates.") {
         return is_fitted || GATES_OF_ALL.contains(&gate);
     }
@@ -210,9 +208,9 @@ fn keys<T: Serialize>(settings: &T, before: &str) -> Vec<String> {
 }
 
 /// Returns the error of a refused import, in terms of the keys of recipes.
-pub(crate) fn refused(error: ImportError) -> Box<dyn std::error::Error> {
+pub(crate) fn refused(error: ExchangeError) -> Box<dyn std::error::Error> {
     match error {
-        ImportError::Exchange(error @ ExchangeError::Missing { .. }) => by_keys(&error).into(),
+        ExchangeError::Missing { .. } => by_keys(&error).into(),
         error => error.into(),
     }
 }
@@ -262,7 +260,7 @@ mod tests {
 
     #[test]
     fn files_are_told_by_their_extension() {
-        let kind = |file: &str| FileKind::of(format_of(Path::new(file)));
+        let kind = |file: &str| FileKind::of_format(format_of(Path::new(file)));
         assert_eq!(kind("a/Models_Felt.xml"), FileKind::Asset);
         assert_eq!(kind("a.b/hum.HAPTIC"), FileKind::Signal);
         assert_eq!(kind("https://example.org/hum.hjif?key=a.xml"), FileKind::Signal);

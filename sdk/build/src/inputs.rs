@@ -8,10 +8,10 @@ use htex_base::storage::Location;
 use regex::Regex;
 
 use crate::BuildError;
-use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined};
 use crate::error::at_place;
 use crate::globs;
 use crate::recipe::Textures;
+use crate::remote::{RemoteFiles, folder_of, is_remote, joined};
 use crate::template::Fields;
 
 /// Largest number of recordings in a recipe. A texture takes about 4.7 kB of memory until it is
@@ -47,23 +47,23 @@ pub(crate) fn inputs(
     rule: &Textures,
     place: &str,
     (folder, output): (&Path, &Path),
-    elsewhere: &Elsewhere,
+    remote: &RemoteFiles,
     missing: Missing,
 ) -> Result<Vec<Input>, BuildError> {
     let pattern = rule.pattern.as_deref().map(Regex::new).transpose();
     let pattern = pattern.map_err(at_place(format!("{place}.pattern")))?;
     let found = match (&rule.recordings[..], &rule.table) {
-        ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere, missing)?,
+        ([], Some(table)) => tabulated(&joined(folder, table), place, folder, remote, missing)?,
         ([], None) => {
             let problem = "it names no recordings; give `recordings` (a glob) or `table` (a CSV)";
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
         (_, Some(_)) => {
             let problem =
                 "`recordings` and `table` both say where recordings are; give one of them";
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
-        (_, None) => recordings(&rule.recordings, place, (folder, output), elsewhere)?,
+        (_, None) => recordings(&rule.recordings, place, (folder, output), remote)?,
     };
     let inputs = found.into_iter();
     inputs.map(|input| named_groups(input, pattern.as_ref(), place)).collect()
@@ -74,7 +74,7 @@ fn recordings(
     globs: &[String],
     place: &str,
     (folder, output): (&Path, &Path),
-    elsewhere: &Elsewhere,
+    remote: &RemoteFiles,
 ) -> Result<Vec<Input>, BuildError> {
     let place = format!("{place}.recordings");
     if globs.len() > MOST_RECORDINGS {
@@ -83,8 +83,8 @@ fn recordings(
     // A file that several globs match counts once.
     let (mut here, mut away) = (BTreeSet::new(), BTreeMap::new());
     for glob in globs {
-        if is_elsewhere(&joined(folder, Path::new(glob))) {
-            let inputs = globbed_elsewhere(glob, &place, folder, elsewhere)?;
+        if is_remote(&joined(folder, Path::new(glob))) {
+            let inputs = globbed_remote(glob, &place, folder, remote)?;
             away.extend(inputs.into_iter().map(|input| (input.file.clone(), input)));
         } else {
             here.extend(globs::files(glob, &place, folder, output)?);
@@ -96,7 +96,7 @@ fn recordings(
     if here.is_empty() && away.is_empty() {
         let globs = globs.join(", ");
         let problem = format!("no file matches {globs} in {}", folder.display());
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
     let mut found: Vec<Input> = here.into_iter().map(input).collect();
     found.extend(away.into_values());
@@ -107,35 +107,35 @@ pub(crate) fn too_many(place: &str) -> BuildError {
     let problem = format!(
         "it names more than {MOST_RECORDINGS} recordings, which is the most of a recipe; divide it into several"
     );
-    BuildError::at(place, problem)
+    BuildError::at_place(place, problem)
 }
 
 /// Returns the remote files that match a glob. The glob is a URI, or a path relative to the folder
 /// of a remote recipe.
-fn globbed_elsewhere(
+fn globbed_remote(
     glob: &str,
     place: &str,
     folder: &Path,
-    elsewhere: &Elsewhere,
+    remote: &RemoteFiles,
 ) -> Result<Vec<Input>, BuildError> {
     let (below, pattern) = globs::split(glob);
-    let below = if is_elsewhere(Path::new(glob)) {
+    let below = if is_remote(Path::new(glob)) {
         PathBuf::from(below)
     } else {
         joined(folder, Path::new(below))
     };
     if !globs::is_glob(glob) {
         let uri = joined(&below, Path::new(pattern));
-        let inside = if is_elsewhere(Path::new(glob)) { pattern } else { glob };
-        return Ok(vec![input_elsewhere(uri, Path::new(inside))]);
+        let inside = if is_remote(Path::new(glob)) { pattern } else { glob };
+        return Ok(vec![remote_input(uri, Path::new(inside))]);
     }
-    let listed = elsewhere.list(&Location::parse(below.as_ref())?, "**/*")?;
+    let listed = remote.list(&Location::parse(below.as_ref())?, "**/*")?;
     let found = globs::matching(listed, pattern, place)?;
     if found.is_empty() {
         let problem = format!("no file matches {pattern} in {}", below.display());
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
-    let inputs = found.into_iter().map(|(uri, inside)| input_elsewhere(uri, &inside));
+    let inputs = found.into_iter().map(|(uri, inside)| remote_input(uri, &inside));
     Ok(inputs.collect())
 }
 
@@ -144,13 +144,13 @@ fn tabulated(
     table: &Path,
     place: &str,
     folder: &Path,
-    elsewhere: &Elsewhere,
+    remote: &RemoteFiles,
     missing: Missing,
 ) -> Result<Vec<Input>, BuildError> {
     let place = format!("{place}.table");
     let shown = table.display();
-    let text = match crate::elsewhere::elsewhere(table)? {
-        Some(location) => elsewhere.text(&location)?.into_bytes(),
+    let text = match crate::remote::remote_location(table)? {
+        Some(location) => remote.text(&location)?.into_bytes(),
         None => read_regular(table, MOST_TABLE_BYTES).reading(table)?,
     };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
@@ -159,7 +159,7 @@ fn tabulated(
     let column = headers.iter().position(|name| name == "recording");
     let column = column.ok_or_else(|| {
         let problem = format!("{shown}: it has no column `recording` with the files");
-        BuildError::at(&place, problem)
+        BuildError::at_place(&place, problem)
     })?;
     let beside = folder_of(table);
     let mut inputs = Vec::new();
@@ -170,14 +170,14 @@ fn tabulated(
         let row = row.map_err(at_place(&in_table))?;
         let cell = row.get(column).unwrap_or_default();
         let file = joined(&beside, Path::new(cell));
-        let is_away = is_elsewhere(&file);
+        let is_away = is_remote(&file);
         if !is_away && missing == Missing::Error && !file.is_file() {
             let line = row.position().map_or(0, csv::Position::line);
             let problem = format!("{shown}, line {line}: there is no file {}", file.display());
-            return Err(BuildError::at(&place, problem));
+            return Err(BuildError::at_place(&place, problem));
         }
         let mut input = if is_away {
-            input_elsewhere(file, Path::new(cell))
+            remote_input(file, Path::new(cell))
         } else {
             input(file.strip_prefix(folder).unwrap_or(&file).to_owned())
         };
@@ -187,7 +187,7 @@ fn tabulated(
         inputs.push(input);
     }
     if inputs.is_empty() {
-        return Err(BuildError::at(&place, format!("{shown}: it has no rows")));
+        return Err(BuildError::at_place(&place, format!("{shown}: it has no rows")));
     }
     Ok(inputs)
 }
@@ -198,7 +198,7 @@ fn input(file: PathBuf) -> Input {
 }
 
 /// Returns a remote recording with the fields of its path in the listed folder.
-fn input_elsewhere(uri: PathBuf, inside: &Path) -> Input {
+fn remote_input(uri: PathBuf, inside: &Path) -> Input {
     let inside = match Location::parse(inside.as_os_str()) {
         Ok(location) if location.local().is_none() => location.file_name().map(PathBuf::from),
         _ => None,
@@ -232,7 +232,7 @@ fn named_groups(
     let path = &input.path;
     let groups = pattern.captures(path).ok_or_else(|| {
         let problem = format!("`{path}` does not match `{pattern}`; change it, or the globs");
-        BuildError::at(format!("{place}.pattern"), problem)
+        BuildError::at_place(format!("{place}.pattern"), problem)
     })?;
     for name in pattern.capture_names().flatten() {
         let value = groups.name(name).map_or("", |group| group.as_str());

@@ -3,7 +3,7 @@
 //! Models that are installed on a machine are not used, and a key contains no paths or times. A key
 //! also does not contain the texture's name and metadata, except for the metadata that decides how
 //! the texture plays (`contact`, `law`). Name and metadata are applied to the fitted asset when the
-//! library is assembled ([`Job::named`]).
+//! library is assembled ([`Job::apply_metadata`]).
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -20,22 +20,22 @@ use htex_host::{Registry, Search, WasmLimits};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
-use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere, joined};
 use crate::error::at_place;
 use crate::gates::check_gates;
-use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
+use crate::hashes::{FileHash, Hashes, Stamp, changed, hash_local};
 use crate::imports::FileKind;
 use crate::inputs::slashed;
-use crate::made::{Made, Outcome};
+use crate::job_result::{JobResult, Outcome};
 use crate::plan::PlannedTexture;
 use crate::recipe::Gates;
+use crate::remote::{RemoteFiles, is_remote, joined, remote_location};
 
 /// Version of the meaning of jobs and their results. Changing it makes everything again.
 const JOB: &str = "htex-job/5";
 
 /// The plugins named by the user and by the recipe, and the location of the recipe.
 #[derive(Debug)]
-pub(crate) struct Named {
+pub(crate) struct NamedPlugins {
     /// Named by the user: absolute paths.
     by_person: Vec<PathBuf>,
     /// Named by the recipe and not by the user.
@@ -45,7 +45,7 @@ pub(crate) struct Named {
     origin: Option<Location>,
 }
 
-impl Named {
+impl NamedPlugins {
     /// # Errors
     /// If the user names a URI, or a file that cannot be found.
     pub(crate) fn new(
@@ -55,10 +55,10 @@ impl Named {
         origin: Option<Location>,
     ) -> Result<Self, BuildError> {
         let found = by_person.iter().map(|file| {
-            if is_elsewhere(file) {
+            if is_remote(file) {
                 let problem =
                     "it is a URI; download it, see that it is what you want, and name the file";
-                return Err(BuildError::at("--plugin", problem));
+                return Err(BuildError::at_place("--plugin", problem));
             }
             Ok(file.canonicalize().reading(file)?)
         });
@@ -123,14 +123,14 @@ pub struct JobFile {
     /// Where the file is: a path or a URI.
     pub path: PathBuf,
     #[serde(flatten)]
-    pub hashed: Hashed,
+    pub hash: FileHash,
 }
 
 impl JobFile {
     /// Returns the file's name without its folder.
     pub fn name(&self) -> String {
         let own = || self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        match elsewhere(&self.path) {
+        match remote_location(&self.path) {
             Ok(Some(location)) => location.file_name().unwrap_or_else(own),
             _ => own(),
         }
@@ -138,20 +138,20 @@ impl JobFile {
 
     /// Returns the path or URI as it is shown in texts.
     fn shown(&self) -> String {
-        match elsewhere(&self.path) {
+        match remote_location(&self.path) {
             Ok(Some(location)) => location.to_string(),
             _ => self.path.display().to_string(),
         }
     }
 
     /// Replaces a remote file by a local copy.
-    fn copy_here(&mut self, copies: &Elsewhere) -> Result<(), BuildError> {
-        let Some(location) = elsewhere(&self.path)? else {
+    fn copy_here(&mut self, copies: &RemoteFiles) -> Result<(), BuildError> {
+        let Some(location) = remote_location(&self.path)? else {
             return Ok(());
         };
-        self.path = copies.copy(&location, &self.hashed.blake3)?;
-        let stamp = Stamp::of(&self.path).reading(&self.path)?;
-        self.hashed.stamp = stamp;
+        self.path = copies.copy(&location, &self.hash.blake3)?;
+        let stamp = Stamp::read(&self.path).reading(&self.path)?;
+        self.hash.stamp = stamp;
         Ok(())
     }
 }
@@ -160,14 +160,14 @@ impl Job {
     /// Returns the job of a texture. This hashes its files.
     pub(crate) fn new(
         texture: &PlannedTexture,
-        named: &Named,
+        named: &NamedPlugins,
         program: &str,
         hashes: &Hashes,
     ) -> Result<Self, BuildError> {
         let folder = &named.folder;
         let file = |path: PathBuf| {
-            let hashed = hashes.of(&path)?;
-            Ok::<_, BuildError>(JobFile { path, hashed })
+            let hash = hashes.hash(&path)?;
+            Ok::<_, BuildError>(JobFile { path, hash })
         };
         let names = told_apart(texture);
         let recordings = texture.recordings.iter().zip(names).map(|(recording, name)| {
@@ -212,7 +212,7 @@ impl Job {
     /// need.
     pub(crate) fn absent(
         texture: &PlannedTexture,
-        named: &Named,
+        named: &NamedPlugins,
         program: &str,
         hashes: &Hashes,
     ) -> Result<(String, Self), BuildError> {
@@ -232,14 +232,9 @@ impl Job {
 
     /// Returns hashes of everything the fit depends on, by name.
     pub(crate) fn parts(&self) -> [(&'static str, String); 5] {
-        let named = |file: &JobFile| (file.name(), file.hashed.blake3.clone());
+        let named = |file: &JobFile| (file.name(), file.hash.blake3.clone());
         let recordings = self.recordings.iter().map(|r| {
-            (
-                (&r.name, &r.file.hashed.blake3),
-                r.tracker.as_ref().map(named),
-                r.speed_mm_s,
-                r.force_n,
-            )
+            ((&r.name, &r.file.hash.blake3), r.tracker.as_ref().map(named), r.speed_mm_s, r.force_n)
         });
         let reading = ReadingSettings { response: None, ..self.reading.clone() };
         let plays = (&self.metadata.contact, &self.metadata.law);
@@ -264,7 +259,7 @@ impl Job {
     pub(crate) fn check(&self, gates: &Gates, workbench: &mut Workbench) -> Result<(), BuildError> {
         // Recordings may be large or remote, and these checks need none of them.
         let without = Self { recordings: Vec::new(), response: None, ..self.clone() };
-        let here = without.copied(&workbench.elsewhere)?;
+        let here = without.copied(&workbench.remote)?;
         let job = here.as_ref().unwrap_or(&without);
         let registry = workbench.registry(job).map_err(at_place("plugins"))?;
         if self.kind == FileKind::Asset {
@@ -284,7 +279,7 @@ impl Job {
     ///
     /// # Errors
     /// If the bytes are not an asset.
-    pub(crate) fn named(&self, bytes: &[u8]) -> Result<Vec<u8>, BuildError> {
+    pub(crate) fn apply_metadata(&self, bytes: &[u8]) -> Result<Vec<u8>, BuildError> {
         let damaged = |problem: String| BuildError::Damaged(format!("{}: {problem}", self.texture));
         let mut asset = Asset::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
         asset.manifest.name.clone_from(&self.texture);
@@ -297,7 +292,7 @@ impl Job {
 
     /// Returns the total size of the recordings, bytes.
     pub fn recording_bytes(&self) -> u64 {
-        self.recordings.iter().map(|r| r.file.hashed.stamp.bytes).sum()
+        self.recordings.iter().map(|r| r.file.hash.stamp.bytes).sum()
     }
 
     /// Reads the recordings, fits the models, and returns the asset. A recording that cannot be
@@ -305,8 +300,8 @@ impl Job {
     ///
     /// # Errors
     /// If a file cannot be read, or differs from the file that was hashed.
-    pub fn run(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
-        let Some(copied) = self.copied(&workbench.elsewhere)? else {
+    pub fn run(&self, workbench: &mut Workbench) -> Result<JobResult, BuildError> {
+        let Some(copied) = self.copied(&workbench.remote)? else {
             return self.run_here(workbench);
         };
         let mut made = copied.run_here(workbench)?;
@@ -321,25 +316,25 @@ impl Job {
     }
 
     /// Returns this job with copies in place of remote files; `None` if it has no remote files.
-    fn copied(&self, elsewhere: &Elsewhere) -> Result<Option<Self>, BuildError> {
-        if !self.files().any(|file| is_elsewhere(&file.path)) {
+    fn copied(&self, remote: &RemoteFiles) -> Result<Option<Self>, BuildError> {
+        if !self.files().any(|file| is_remote(&file.path)) {
             return Ok(None);
         }
         let mut copied = self.clone();
-        copied.files_mut().try_for_each(|file| file.copy_here(elsewhere))?;
+        copied.files_mut().try_for_each(|file| file.copy_here(remote))?;
         copied.reading.response = copied.response.as_ref().map(|file| file.path.clone());
         Ok(Some(copied))
     }
 
-    fn run_here(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
+    fn run_here(&self, workbench: &mut Workbench) -> Result<JobResult, BuildError> {
         self.check_files()?;
         let registry = workbench.registry(self);
-        let made = registry.and_then(|registry| self.made(registry));
+        let made = registry.and_then(|registry| self.make(registry));
         // The files that were read must be the ones that were hashed, because otherwise the key is
         // wrong.
         self.check_files()?;
         match made {
-            Err(error) => Ok(Made::refused(outcome(error)?)),
+            Err(error) => Ok(JobResult::refused(outcome(error)?)),
             Ok(made) => Ok(made),
         }
     }
@@ -361,10 +356,10 @@ impl Job {
     /// contents if these differ.
     fn check_files(&self) -> Result<(), BuildError> {
         for file in self.files() {
-            if Stamp::of(&file.path).reading(&file.path)? == file.hashed.stamp {
+            if Stamp::read(&file.path).reading(&file.path)? == file.hash.stamp {
                 continue;
             }
-            if hash_local(&file.path).reading(&file.path)?.blake3 != file.hashed.blake3 {
+            if hash_local(&file.path).reading(&file.path)?.blake3 != file.hash.blake3 {
                 return Err(FileError::reading(&file.path, changed()).into());
             }
         }
@@ -390,7 +385,7 @@ fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
 pub struct Workbench {
     limits: WasmLimits,
     /// Remote files and their copies.
-    pub(crate) elsewhere: Arc<Elsewhere>,
+    pub(crate) remote: Arc<RemoteFiles>,
     /// The plugins, the number of them that the user named, and the models.
     loaded: Option<(Vec<PathBuf>, usize, Registry)>,
 }
@@ -398,7 +393,7 @@ pub struct Workbench {
 impl Workbench {
     /// Returns a workbench that loads WASM models under `limits`.
     pub fn new(limits: WasmLimits) -> Self {
-        Self { limits, elsewhere: Arc::new(Elsewhere::temporary(None)), loaded: None }
+        Self { limits, remote: Arc::new(RemoteFiles::temporary(None)), loaded: None }
     }
 
     /// Returns a workbench for a job of another process, whose recipe may name its own server.
@@ -408,7 +403,7 @@ impl Workbench {
     pub fn of_job(limits: WasmLimits, job: &Job) -> Result<Self, BuildError> {
         let origin = job.origin.as_ref().map(|origin| Location::parse(origin.as_ref()));
         Ok(Self {
-            elsewhere: Arc::new(Elsewhere::temporary(origin.transpose()?)),
+            remote: Arc::new(RemoteFiles::temporary(origin.transpose()?)),
             ..Self::new(limits)
         })
     }
@@ -457,7 +452,7 @@ fn told_apart(texture: &PlannedTexture) -> Vec<String> {
 
 /// Returns the path of a recording, or its URI without the query.
 pub(crate) fn shown_path(file: &Path) -> PathBuf {
-    match elsewhere(file) {
+    match remote_location(file) {
         Ok(Some(location)) => {
             let text = location.to_string();
             // A location shows its query as `?…`.

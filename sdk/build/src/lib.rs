@@ -22,12 +22,12 @@
 //! ```no_run
 //! use htex_build::{Build, BuildOptions};
 //!
-//! let options = BuildOptions::new("my-pipeline 1.0").with_keep_going(true);
+//! let options = BuildOptions { keep_going: true, ..BuildOptions::new("my-pipeline 1.0") };
 //! let mut build = Build::open("library.toml".as_ref(), "dist".as_ref(), options)?;
 //! println!("{} of {} textures to fit", build.pending().len(), build.plan().textures.len());
 //! build.run(&|job| println!("{}", job.texture))?;
-//! let built = build.finish()?;
-//! println!("{} textures", built.report.library.textures);
+//! let report = build.finish()?;
+//! println!("{} textures", report.library.textures);
 //! # Ok::<(), htex_build::BuildError>(())
 //! ```
 #![forbid(unsafe_code)]
@@ -37,7 +37,6 @@ mod assemble;
 mod cache;
 mod catalogue;
 mod dist;
-mod elsewhere;
 mod error;
 mod failed;
 mod findings;
@@ -47,31 +46,31 @@ mod hashes;
 mod imports;
 mod inputs;
 mod job;
-mod kept;
+mod job_result;
 mod keys;
 mod library_build;
-mod made;
 mod making;
 mod plan;
 mod publish;
 mod reasons;
 mod recipe;
+mod remote;
 mod removed;
 mod report;
 mod rules;
 mod sound;
+mod state;
 mod template;
 mod thumbnail;
 
-pub use assemble::Built;
 pub use error::BuildError;
 pub use failed::report_failure;
 pub use findings::{FindingReport, FindingShare};
-pub use hashes::{Hashed, Stamp};
+pub use hashes::{FileHash, Stamp};
 pub use imports::FileKind;
 pub use job::{Job, JobFile, JobRecording, Workbench};
+pub use job_result::{JobResult, Outcome, Record};
 pub use library_build::{Build, BuildOptions, check, hash_file, remember, unhashed};
-pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;
 pub use reasons::Why;
@@ -80,7 +79,7 @@ pub use recipe::{
 };
 pub use removed::named_briefly;
 pub use report::{
-    AssetReport, LibraryReport, Missed, REPORT, RecordingReport, Report, Status, TextureReport,
+    AssetReport, LibraryReport, MissedGate, REPORT, RecordingReport, Report, Status, TextureReport,
     recipe_schema, report_schema,
 };
 pub use rules::{RECIPE_INVALID, RULES};

@@ -13,28 +13,28 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::BuildError;
-use crate::assemble::{Built, assemble};
+use crate::assemble::assemble;
 use crate::cache::Cache;
 use crate::dist::Dist;
-use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined, origin};
 use crate::error::at_place;
 use crate::failed::put_failure;
-use crate::hashes::{Hashed, Hashes, hash};
+use crate::hashes::{FileHash, Hashes, hash};
 use crate::inputs::Missing;
-use crate::job::{Job, Named, Workbench};
-use crate::kept::Kept;
-use crate::made::{Made, Outcome};
+use crate::job::{Job, NamedPlugins, Workbench};
+use crate::job_result::{JobResult, Outcome};
 use crate::plan::{Plan, PlannedTexture};
 use crate::reasons::{Reasons, Why};
 use crate::recipe::Recipe;
+use crate::remote::{RemoteFiles, folder_of, is_remote, joined, remote_location};
 use crate::removed::textures_before;
+use crate::report::Report;
+use crate::state::StateFolder;
 
 /// File of hashes, in the folder of stored data.
 const HASHES: &str = "files.json";
 
 /// Options of a build.
 #[derive(Debug, Clone)]
-#[non_exhaustive]
 pub struct BuildOptions {
     /// Number of textures that are fitted at the same time; 0 means one for each processor.
     pub jobs: usize,
@@ -76,63 +76,8 @@ impl BuildOptions {
         }
     }
 
-    /// Sets how many textures are fitted at the same time; 0 means one for each processor.
-    #[must_use]
-    pub fn with_jobs(mut self, jobs: usize) -> Self {
-        self.jobs = jobs;
-        self
-    }
-
-    /// Sets whether to leave out a texture that cannot be made, and continue.
-    #[must_use]
-    pub fn with_keep_going(mut self, keep_going: bool) -> Self {
-        self.keep_going = keep_going;
-        self
-    }
-
     fn missing(&self) -> Missing {
         if self.keep_going { Missing::LeftOut } else { Missing::Error }
-    }
-
-    #[must_use]
-    pub fn with_limits(mut self, limits: WasmLimits) -> Self {
-        self.limits = limits;
-        self
-    }
-
-    /// Sets the plugins that the user names.
-    #[must_use]
-    pub fn with_plugins(mut self, plugins: Vec<PathBuf>) -> Self {
-        self.plugins = plugins;
-        self
-    }
-
-    /// Sets whether to refuse to remove textures of the previous library.
-    #[must_use]
-    pub fn with_no_removals(mut self, no_removals: bool) -> Self {
-        self.no_removals = no_removals;
-        self
-    }
-
-    /// Sets the URI to which the results are copied ([`crate::Destination::remote`]).
-    #[must_use]
-    pub fn with_published(mut self, location: Option<&Location>) -> Self {
-        self.published = location.cloned();
-        self
-    }
-
-    /// Sets whether to remove stored results at once that no texture uses any more.
-    #[must_use]
-    pub fn with_prune(mut self, prune: bool) -> Self {
-        self.prune = prune;
-        self
-    }
-
-    /// Sets the folder of the browser package.
-    #[must_use]
-    pub fn with_browser_package(mut self, folder: impl Into<Option<PathBuf>>) -> Self {
-        self.browser_package = folder.into();
-        self
     }
 }
 
@@ -145,7 +90,7 @@ pub struct Build {
     jobs: Vec<(String, Job)>,
     cache: Cache,
     dist: Dist,
-    kept: Arc<Kept>,
+    kept: Arc<StateFolder>,
     /// Names of the textures in the library before this build.
     before: BTreeSet<String>,
     /// Indices of the jobs that no earlier build has done.
@@ -153,8 +98,8 @@ pub struct Build {
     /// Keys of the textures with a file that cannot be read.
     unreadable: BTreeSet<String>,
     /// Results that are not stored for the next build.
-    unkept: BTreeMap<String, Made>,
-    elsewhere: Arc<Elsewhere>,
+    unkept: BTreeMap<String, JobResult>,
+    remote: Arc<RemoteFiles>,
     pool: ThreadPool,
     /// Held as long as the build exists.
     _lock: File,
@@ -171,8 +116,8 @@ impl Build {
     /// - The library would lose textures and the options forbid it.
     /// - A file cannot be read, the folder cannot be written, or another build uses it.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
-        let Prepared { named, plan, hashes, elsewhere, kept, lock } =
-            Prepared::new(recipe, output, &options.plugins, options.missing())?;
+        let RecipeInputs { named, plan, hashes, remote, kept, lock } =
+            RecipeInputs::new(recipe, output, &options.plugins, options.missing())?;
         let dist = Dist::new(output);
         let before = textures_before(&dist, &plan.library, options.published.as_ref());
         // Refused before the files are hashed, which may take long.
@@ -185,7 +130,7 @@ impl Build {
             |texture: &PlannedTexture| match Job::new(texture, &named, &options.program, &hashes) {
                 Err(error) if options.keep_going && is_of_input(&error) => {
                     let (key, job) = Job::absent(texture, &named, &options.program, &hashes)?;
-                    let refused = Made::refused(Outcome::Refused(error.to_string()));
+                    let refused = JobResult::refused(Outcome::Refused(error.to_string()));
                     Ok((key, job, Some(refused)))
                 }
                 job => job.map(|job| (job.key(), job, None)),
@@ -218,7 +163,7 @@ impl Build {
             pending,
             unreadable: unkept.keys().cloned().collect(),
             unkept,
-            elsewhere,
+            remote,
             pool,
             _lock: lock,
         })
@@ -250,7 +195,7 @@ impl Build {
 
     fn workbench(&self) -> Workbench {
         let mut workbench = Workbench::new(self.options.limits.clone());
-        workbench.elsewhere = self.elsewhere.clone();
+        workbench.remote = self.remote.clone();
         workbench
     }
 
@@ -278,7 +223,7 @@ impl Build {
         jobs.map(|(key, job)| (&key[..], job))
     }
 
-    /// Stores the result of a job that was done elsewhere ([`Made::to_bytes`]).
+    /// Stores the result of a job that was done elsewhere ([`JobResult::to_bytes`]).
     ///
     /// # Errors
     /// If the bytes are not the result of a job with this key or cannot be written, or if the
@@ -288,7 +233,7 @@ impl Build {
             // Somebody else has already done the job.
             return Ok(());
         };
-        let made = Made::from_bytes(key, bytes)?;
+        let made = JobResult::from_bytes(key, bytes)?;
         let refused = self.keep(key, &self.jobs[self.pending[at]].1, made)?;
         self.unkept.extend(refused.map(|made| (key.to_owned(), made)));
         self.pending.remove(at);
@@ -343,10 +288,10 @@ impl Build {
         key: &str,
         job: &Job,
         workbench: &mut Workbench,
-    ) -> Result<Option<Made>, BuildError> {
+    ) -> Result<Option<JobResult>, BuildError> {
         let made = match job.run(workbench) {
             Err(error) if self.options.keep_going && is_of_input(&error) => {
-                Made::refused(Outcome::Refused(error.to_string()))
+                JobResult::refused(Outcome::Refused(error.to_string()))
             }
             made => made?,
         };
@@ -354,7 +299,7 @@ impl Build {
     }
 
     /// Stores the result of a job. Returns a result that is not stored.
-    fn keep(&self, key: &str, job: &Job, made: Made) -> Result<Option<Made>, BuildError> {
+    fn keep(&self, key: &str, job: &Job, made: JobResult) -> Result<Option<JobResult>, BuildError> {
         let Outcome::Refused(problem) = &made.record.outcome else {
             self.cache.put(key, &made)?;
             return Ok(None);
@@ -362,7 +307,7 @@ impl Build {
         if self.options.keep_going {
             return Ok(Some(made));
         }
-        Err(BuildError::at(&job.texture, problem))
+        Err(BuildError::at_place(&job.texture, problem))
     }
 
     /// Writes an error, line by line, into the report of this build's folder, together with what an
@@ -374,15 +319,15 @@ impl Build {
         put_failure(&self.dist, &self.options.program, error)
     }
 
-    /// Writes the library, the textures, the report and the catalogue.
+    /// Writes the library, the textures, the report and the catalogue. Returns the report.
     ///
     /// # Errors
     /// If jobs are still pending, or a file cannot be written. If a texture of the previous library
     /// is left out and the options forbid removals; nothing was written then.
-    pub fn finish(self) -> Result<Built, BuildError> {
+    pub fn finish(self) -> Result<Report, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
-            return Err(BuildError::at(&self.jobs[*i].1.texture, problem));
+            return Err(BuildError::at_place(&self.jobs[*i].1.texture, problem));
         }
         let made = |key: &str| match self.unkept.get(key) {
             Some(made) => Some(made.clone()),
@@ -394,8 +339,8 @@ impl Build {
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
         // Only when everything is written, so that a failed build loses no result.
         self.cache.keep(&keys, self.options.prune)?;
-        Reasons::of(self.jobs.iter().map(|(_, job)| job)).keep(&self.kept)?;
-        self.elsewhere.forget()?;
+        Reasons::new(self.jobs.iter().map(|(_, job)| job)).keep(&self.kept)?;
+        self.remote.forget()?;
         Ok(built)
     }
 }
@@ -416,7 +361,7 @@ fn is_of_input(error: &BuildError) -> bool {
 /// The errors of [`Build::open`].
 pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError> {
     // Missing files are not an error here, because the following build reports them.
-    let prepared = Prepared::new(recipe, output, &[], Missing::LeftOut)?;
+    let prepared = RecipeInputs::new(recipe, output, &[], Missing::LeftOut)?;
     let textures = prepared.plan.textures.iter();
     let files = textures.flat_map(PlannedTexture::files).chain(&prepared.named.of_recipe);
     let folder = &prepared.named.folder;
@@ -424,7 +369,7 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     let unknown = files
         .into_iter()
         .filter(|file| !prepared.hashes.is_known(file))
-        .filter(|file| is_elsewhere(file) || file.exists());
+        .filter(|file| is_remote(file) || file.exists());
     Ok(unknown.collect())
 }
 
@@ -436,14 +381,14 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
 pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> {
     let parsed = Recipe::open(recipe)?;
     let folder = folder_of(recipe);
-    let origin = origin(recipe)?;
-    let elsewhere = Arc::new(Elsewhere::temporary(origin.clone()));
+    let origin = remote_location(recipe)?;
+    let remote = Arc::new(RemoteFiles::temporary(origin.clone()));
     // There is no folder of results.
-    let plan = Plan::new(&parsed, &folder, Path::new(""), &elsewhere, Missing::Error)?;
-    let named = Named::new(&options.plugins, parsed.library.plugins, folder, origin)?;
-    let hashes = Hashes::new(elsewhere.clone());
+    let plan = Plan::new(&parsed, &folder, Path::new(""), &remote, Missing::Error)?;
+    let named = NamedPlugins::new(&options.plugins, parsed.library.plugins, folder, origin)?;
+    let hashes = Hashes::new(remote.clone());
     let mut workbench = Workbench::new(options.limits.clone());
-    workbench.elsewhere = elsewhere;
+    workbench.remote = remote;
     let mut checked = BTreeSet::new();
     for texture in &plan.textures {
         for file in texture.recordings.iter().map(|recording| &recording.file) {
@@ -464,8 +409,8 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
 /// # Errors
 /// If the file cannot be read or changes while it is read, or if the recipe may not name its
 /// address.
-pub fn hash_file(recipe: &Path, file: &Path) -> Result<Hashed, BuildError> {
-    hash(file, &Elsewhere::temporary(origin(recipe)?))
+pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
+    hash(file, &RemoteFiles::temporary(remote_location(recipe)?))
 }
 
 /// Stores hashes of files for the next build. The next build reads a file again if its size or
@@ -475,26 +420,26 @@ pub fn hash_file(recipe: &Path, file: &Path) -> Result<Hashed, BuildError> {
 /// If another build uses the folder, or it cannot be written.
 pub fn remember(
     output: &Path,
-    hashed: impl IntoIterator<Item = (PathBuf, Hashed)>,
+    hashed: impl IntoIterator<Item = (PathBuf, FileHash)>,
 ) -> Result<(), BuildError> {
-    let kept = Kept::new(output)?;
+    let kept = StateFolder::new(output)?;
     let _lock = kept.claim()?;
-    let hashes = Hashes::open(&kept, HASHES, Arc::new(Elsewhere::temporary(None)));
+    let hashes = Hashes::open(&kept, HASHES, Arc::new(RemoteFiles::temporary(None)));
     hashes.add(hashed);
     kept.put(HASHES, &hashes.to_keep())
 }
 
 /// A recipe with its plan and the known hashes.
-struct Prepared {
-    named: Named,
+struct RecipeInputs {
+    named: NamedPlugins,
     plan: Plan,
     hashes: Hashes,
-    elsewhere: Arc<Elsewhere>,
-    kept: Arc<Kept>,
+    remote: Arc<RemoteFiles>,
+    kept: Arc<StateFolder>,
     lock: File,
 }
 
-impl Prepared {
+impl RecipeInputs {
     fn new(
         recipe: &Path,
         output: &Path,
@@ -502,17 +447,17 @@ impl Prepared {
         missing: Missing,
     ) -> Result<Self, BuildError> {
         let parsed = Recipe::open(recipe)?;
-        let kept = Arc::new(Kept::new(output)?);
+        let kept = Arc::new(StateFolder::new(output)?);
         let lock = kept.claim()?;
         let folder = folder_of(recipe);
-        let origin = origin(recipe)?;
-        let elsewhere = Arc::new(Elsewhere::with_copies(kept.own().clone(), origin.clone()));
-        let plan = Plan::new(&parsed, &folder, output, &elsewhere, missing)?;
+        let origin = remote_location(recipe)?;
+        let remote = Arc::new(RemoteFiles::with_copies(kept.own().clone(), origin.clone()));
+        let plan = Plan::new(&parsed, &folder, output, &remote, missing)?;
         Ok(Self {
-            named: Named::new(plugins, parsed.library.plugins, folder, origin)?,
+            named: NamedPlugins::new(plugins, parsed.library.plugins, folder, origin)?,
             plan,
-            hashes: Hashes::open(&kept, HASHES, elsewhere.clone()),
-            elsewhere,
+            hashes: Hashes::open(&kept, HASHES, remote.clone()),
+            remote,
             kept,
             lock,
         })

@@ -6,9 +6,9 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use htex_author::recording::{ReadError, ReadProblem, Recording, read_recording};
-use htex_author::settings::{Metadata, ReadingSettings, SettingsError};
+use htex_author::settings::{Metadata, ReadingSettings};
 use htex_author::{
-    AssetRequest, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
+    AssetRequest, AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
 use htex_base::files::{AtFile, FileError, read_regular};
 use htex_exchange::{Import, MOST_BYTES, Physical, Profile, fit_signals};
@@ -19,7 +19,7 @@ use crate::BuildError;
 use crate::findings::by_code;
 use crate::imports::{FileKind, refused};
 use crate::job::{Job, JobFile, JobRecording};
-use crate::made::{Made, Outcome, Record};
+use crate::job_result::{JobResult, Outcome, Record};
 use crate::sound::sound;
 use crate::thumbnail::{Thumbnail, of_magnitudes, thumbnail};
 
@@ -28,7 +28,7 @@ const UNNAMED: &str = "texture";
 
 impl Job {
     /// Makes the texture.
-    pub(crate) fn made(&self, registry: &Registry) -> Result<Made, Box<dyn Error>> {
+    pub(crate) fn make(&self, registry: &Registry) -> Result<JobResult, Box<dyn Error>> {
         let (mut asset, record) = match self.kind {
             FileKind::Asset => self.imported(registry)?,
             FileKind::Recording | FileKind::Signal => self.fitted(registry)?,
@@ -46,7 +46,7 @@ impl Job {
         embed_plugins(&mut asset, registry, &files, None)?;
         let bytes = asset.to_bytes()?;
         let sound = sound(&bytes, registry)?;
-        Ok(Made { record, asset: bytes, sound })
+        Ok(JobResult { record, asset: bytes, sound })
     }
 
     /// Imports the texture that a file of another format states.
@@ -74,7 +74,7 @@ impl Job {
     }
 
     fn fitted(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
-        let takes = self.recordings.iter().map(|recording| self.take(recording));
+        let takes = self.recordings.iter().map(|recording| self.read_take(recording));
         let request = self.request(registry)?;
         let takes = takes.collect::<Result<Vec<Take>, _>>()?;
         let mut fitted = match self.kind {
@@ -87,7 +87,7 @@ impl Job {
                 // A folder has no meaning on other machines, so only the name is stored. The hash
                 // tells apart recordings of the same name.
                 source.file = recording.file.name();
-                source.blake3 = Some(recording.file.hashed.blake3.clone());
+                source.blake3 = Some(recording.file.hash.blake3.clone());
             }
         }
         let record = Record {
@@ -101,7 +101,7 @@ impl Job {
     }
 
     /// Returns the request for the fit.
-    fn request(&self, registry: &Registry) -> Result<AssetRequest, SettingsError> {
+    fn request(&self, registry: &Registry) -> Result<AssetRequest, AuthorError> {
         if self.kind == FileKind::Signal {
             let reading = ReadingSettings::default();
             return self.fit.request(registry, &reading, UNNAMED, &self.program);
@@ -114,7 +114,7 @@ impl Job {
     }
 
     /// Reads a recording, or a signal.
-    fn take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+    fn read_take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
         if self.kind == FileKind::Signal {
             return self.signal(recording);
         }

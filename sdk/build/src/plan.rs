@@ -7,12 +7,12 @@ use globset::GlobSet;
 use htex_author::settings::Metadata;
 
 use crate::BuildError;
-use crate::elsewhere::Elsewhere;
 use crate::error::at_place;
 use crate::globs::glob_set;
 use crate::imports::{FileKind, check_files};
 use crate::inputs::{Input, MOST_RECORDINGS, Missing, inputs, slashed, too_many};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
+use crate::remote::RemoteFiles;
 use crate::template::{Fields, fill};
 
 /// The textures of a recipe.
@@ -82,17 +82,17 @@ impl Plan {
         recipe: &Recipe,
         folder: &Path,
         output: &Path,
-        elsewhere: &Elsewhere,
+        remote: &RemoteFiles,
         missing: Missing,
     ) -> Result<Self, BuildError> {
         check_name("library.name", &recipe.library.name)?;
         if recipe.library.name.contains('/') {
             let problem = "`/` is not possible in the name of a file; leave it out";
-            return Err(BuildError::at("library.name", problem));
+            return Err(BuildError::at_place("library.name", problem));
         }
         if recipe.textures.is_empty() {
             let problem = "there is none; add a [[textures]] with `recordings`";
-            return Err(BuildError::at("textures", problem));
+            return Err(BuildError::at_place("textures", problem));
         }
         let overrides = Overrides::new(recipe)?;
         let mut textures: BTreeMap<String, PlannedTexture> = BTreeMap::new();
@@ -100,7 +100,7 @@ impl Plan {
         for (i, rule) in recipe.textures.iter().enumerate() {
             let place = format!("textures[{i}]");
             let settings = rule.settings.clone().over(recipe.defaults.clone());
-            for input in inputs(rule, &place, (folder, output), elsewhere, missing)? {
+            for input in inputs(rule, &place, (folder, output), remote, missing)? {
                 let planned = planned(rule, &settings, &overrides, input, &place)?;
                 check_once(&mut known, &planned, &place)?;
                 gather(&mut textures, planned, &place)?;
@@ -140,7 +140,7 @@ impl<'a> Overrides<'a> {
         for (i, (set, _)) in self.0.iter().enumerate() {
             if !textures.keys().any(|name| set.is_match(name)) {
                 let problem = "no texture has such a name; correct it, or leave the override out";
-                return Err(BuildError::at(format!("overrides[{i}].textures"), problem));
+                return Err(BuildError::at_place(format!("overrides[{i}].textures"), problem));
             }
         }
         Ok(())
@@ -270,7 +270,7 @@ fn check_once(
                 slashed(&recording.file),
                 planned.name
             );
-            return Err(BuildError::at(place, problem));
+            return Err(BuildError::at_place(place, problem));
         }
     }
     Ok(())
@@ -298,7 +298,7 @@ fn gather(
             file(&planned),
             planned.name
         );
-        return Err(BuildError::at(place, problem));
+        return Err(BuildError::at_place(place, problem));
     }
     known.recordings.extend(planned.recordings);
     Ok(())
@@ -314,7 +314,7 @@ fn check_folders(textures: &[PlannedTexture]) -> Result<(), BuildError> {
         let (folder, inside) = (format!("{}.htex/", pair[0].name), &pair[1].name);
         if inside.starts_with(&folder) {
             let problem = format!("{} and {inside} cannot both be files; rename one", pair[0].name);
-            return Err(BuildError::at("textures", problem));
+            return Err(BuildError::at_place("textures", problem));
         }
     }
     Ok(())

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::elsewhere::elsewhere;
 use crate::error::at_place;
 use crate::hashes::{Stamp, hash_local};
-use crate::kept::Kept;
+use crate::remote::remote_location;
+use crate::state::StateFolder;
 
 /// File that lists what was copied, in the folder of stored data.
 const PUBLISHED: &str = "published.json";
@@ -46,14 +46,14 @@ pub struct Destination {
 
 /// What was copied, by its path in the folder of the results.
 #[derive(Debug, Default, Serialize, Deserialize)]
-struct Published {
+struct PublishedFiles {
     /// The URI of the folder.
     to: String,
-    files: BTreeMap<String, Copied>,
+    files: BTreeMap<String, CopiedFile>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Copied {
+struct CopiedFile {
     blake3: String,
     there: Stamp,
 }
@@ -66,7 +66,7 @@ impl Destination {
     /// # Errors
     /// The URI is malformed or read-only, or there is no `work` and the environment names no cache.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
-        let Some(location) = elsewhere(Path::new(argument))? else {
+        let Some(location) = remote_location(Path::new(argument))? else {
             let location = Location::parse(argument)?;
             let folder = location.local().unwrap_or(Path::new(argument)).to_owned();
             return Ok(Self { folder, remote: None });
@@ -139,7 +139,7 @@ fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
         .ok_or_else(|| {
             let problem =
                 "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
-            BuildError::at(location, problem)
+            BuildError::at_place(location, problem)
         })?;
     let hash = blake3::hash(location.to_string().as_bytes()).to_hex();
     Ok(cache.join("htex").join("builds").join(&hash[..16]))
@@ -150,16 +150,16 @@ struct Publishing<'a> {
     folder: &'a Path,
     to: &'a Location,
     storage: Storage,
-    kept: Kept,
-    before: Published,
+    kept: StateFolder,
+    before: PublishedFiles,
 }
 
 impl<'a> Publishing<'a> {
     fn new(folder: &'a Path, to: &'a Location) -> Result<Self, BuildError> {
-        let kept = Kept::new(folder)?;
+        let kept = StateFolder::new(folder)?;
         let before = kept
             .get(PUBLISHED, MOST_BYTES)
-            .and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
+            .and_then(|bytes| serde_json::from_slice::<PublishedFiles>(&bytes).ok());
         Ok(Self {
             folder,
             to,
@@ -207,7 +207,7 @@ impl<'a> Publishing<'a> {
         let entries = self.storage.list(self.to, "**/*")?;
         let named = entries.into_iter().filter_map(|entry| {
             let uri = entry.location.to_string();
-            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref(), entry.modified);
+            let stamp = Stamp::remote(entry.bytes, entry.etag.as_deref(), entry.modified);
             Some((uri.strip_prefix(&prefix)?.to_owned(), stamp))
         });
         Ok(named.collect())
@@ -256,9 +256,9 @@ impl<'a> Publishing<'a> {
         let there = self.there()?;
         let files = here.into_iter().filter_map(|(name, blake3)| {
             let there = *there.get(&name)?;
-            Some((name, Copied { blake3, there }))
+            Some((name, CopiedFile { blake3, there }))
         });
-        let published = Published { to: self.to.to_string(), files: files.collect() };
+        let published = PublishedFiles { to: self.to.to_string(), files: files.collect() };
         self.kept.put(PUBLISHED, &serde_json::to_vec(&published)?)
     }
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::BuildError;
 use crate::cache::Cache;
 use crate::job::Job;
-use crate::kept::Kept;
+use crate::state::StateFolder;
 
 /// File that lists what the fits of the last build depended on, in the folder of stored data.
 const FILE: &str = "fits.json";
@@ -47,19 +47,19 @@ impl fmt::Display for Why {
 pub(crate) struct Reasons(BTreeMap<String, Vec<String>>);
 
 impl Reasons {
-    pub(crate) fn of<'a>(jobs: impl Iterator<Item = &'a Job>) -> Self {
+    pub(crate) fn new<'a>(jobs: impl Iterator<Item = &'a Job>) -> Self {
         let hashes = |job: &Job| job.parts().map(|(_, hash)| hash).to_vec();
         Self(jobs.map(|job| (job.texture.clone(), hashes(job))).collect())
     }
 
     /// Reads the dependencies of the last finished build.
-    pub(crate) fn open(kept: &Kept) -> Self {
+    pub(crate) fn open(kept: &StateFolder) -> Self {
         let bytes = kept.get(FILE, MOST_BYTES);
         let read = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
         read.unwrap_or_default()
     }
 
-    pub(crate) fn keep(&self, kept: &Kept) -> Result<(), BuildError> {
+    pub(crate) fn keep(&self, kept: &StateFolder) -> Result<(), BuildError> {
         kept.put(FILE, &serde_json::to_vec(self)?)
     }
 

@@ -11,9 +11,9 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
-use crate::elsewhere::{Elsewhere, elsewhere, joined};
 use crate::findings::unknown_code;
 use crate::keys::check_keys;
+use crate::remote::{RemoteFiles, joined, remote_location};
 
 /// Largest size of a recipe, bytes.
 const MOST_BYTES: u64 = 1 << 20;
@@ -232,8 +232,8 @@ impl Recipe {
     /// # Errors
     /// The errors of [`Self::parse`], and an error if the file cannot be read.
     pub fn open(file: &Path) -> Result<Self, BuildError> {
-        let text = match elsewhere(file)? {
-            Some(location) => Elsewhere::temporary(Some(location.clone())).text(&location)?,
+        let text = match remote_location(file)? {
+            Some(location) => RemoteFiles::temporary(Some(location.clone())).text(&location)?,
             None => read_regular_text(file, MOST_BYTES).reading(file)?,
         };
         Self::parse(&text)

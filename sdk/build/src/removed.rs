@@ -22,7 +22,7 @@ const NAMED: usize = 3;
 pub(crate) fn textures_before(
     dist: &Dist,
     library: &str,
-    elsewhere: Option<&Location>,
+    remote: Option<&Location>,
 ) -> BTreeSet<String> {
     let report = previous(dist);
     let file = report.as_ref().map(|report| report.library.file.clone());
@@ -32,7 +32,7 @@ pub(crate) fn textures_before(
     let mut names = in_library(dist, Path::new(&file));
     names.extend(report.iter().flat_map(built));
     if names.is_empty() {
-        names.extend(elsewhere.and_then(report_at).iter().flat_map(built));
+        names.extend(remote.and_then(report_at).iter().flat_map(built));
     }
     names
 }
@@ -47,7 +47,7 @@ pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
 /// repairs it.
 fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
     let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());
-    let path = dist.at(file).ok().filter(|path| is_file(path));
+    let path = dist.path_of(file).ok().filter(|path| is_file(path));
     let library = path.and_then(|path| Library::open(&path).ok());
     let entries = library.iter().flat_map(Library::entries);
     entries.map_while(Result::ok).map(|entry| entry.name).collect()

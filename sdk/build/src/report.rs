@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::findings::{FindingReport, FindingShare};
 use crate::job::Job;
-use crate::made::{Made, Outcome};
+use crate::job_result::{JobResult, Outcome};
 use crate::recipe::Recipe;
 use crate::thumbnail::Thumbnail;
 
@@ -18,7 +18,7 @@ use crate::thumbnail::Thumbnail;
 pub const REPORT: &str = "htex-build-report/1";
 
 /// The report of a build.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     /// `htex-build-report/1`.
     pub report: String,
@@ -44,7 +44,7 @@ pub struct Report {
 }
 
 /// The library of a build.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LibraryReport {
     /// Its name.
     pub name: String,
@@ -73,7 +73,7 @@ pub struct TextureReport {
     pub recordings: Vec<RecordingReport>,
     /// Why it was left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub missed: Vec<Missed>,
+    pub missed: Vec<MissedGate>,
     /// Its asset, even if it was left out because of a gate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub asset: Option<AssetReport>,
@@ -102,7 +102,7 @@ pub struct RecordingReport {
 
 /// A gate that a texture misses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Missed {
+pub struct MissedGate {
     /// The key of the gate in the recipe, or `fit` if there is no asset.
     pub gate: String,
     /// What is wrong, as a sentence.
@@ -164,11 +164,11 @@ pub struct AssetReport {
 
 impl TextureReport {
     /// Reports a texture with its asset, if it has one.
-    pub(crate) fn new(job: &Job, key: &str, made: &Made, asset: Option<&Asset>) -> Self {
+    pub(crate) fn new(job: &Job, key: &str, made: &JobResult, asset: Option<&Asset>) -> Self {
         let recordings = job.recordings.iter().map(|recording| RecordingReport {
             file: recording.name.clone(),
-            bytes: recording.file.hashed.stamp.bytes,
-            blake3: recording.file.hashed.blake3.clone(),
+            bytes: recording.file.hash.stamp.bytes,
+            blake3: recording.file.hash.blake3.clone(),
         });
         Self {
             name: job.texture.clone(),
@@ -177,22 +177,22 @@ impl TextureReport {
             recordings: recordings.collect(),
             missed: match &made.record.outcome {
                 Outcome::Fitted => Vec::new(),
-                Outcome::NotStrict(reason) => vec![Missed::new("strict", reason)],
-                Outcome::Refused(reason) => vec![Missed::new("fit", reason)],
+                Outcome::NotStrict(reason) => vec![MissedGate::new("strict", reason)],
+                Outcome::Refused(reason) => vec![MissedGate::new("fit", reason)],
             },
             asset: asset.map(|asset| AssetReport::new(made, asset)),
         }
     }
 }
 
-impl Missed {
+impl MissedGate {
     pub(crate) fn new(gate: &str, reason: impl Into<String>) -> Self {
         Self { gate: gate.to_owned(), reason: reason.into() }
     }
 }
 
 impl AssetReport {
-    fn new(made: &Made, asset: &Asset) -> Self {
+    fn new(made: &JobResult, asset: &Asset) -> Self {
         let manifest = &asset.manifest;
         let conditions = || manifest.conditions.iter();
         // A representation that a file of another format states has no error.

@@ -4,7 +4,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use htex_exchange::hatt::{Imported, asset, read};
+use htex_exchange::Naming;
+use htex_exchange::hatt::{asset, read};
 use htex_play::{Motion, Texture, VoiceOptions};
 
 const RATE_HZ: f64 = 20_000.0;
@@ -14,7 +15,7 @@ const RUNS: usize = 15;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).ok_or("give a model file")?;
-    let made = asset(&read(&std::fs::read(file)?)?, &Imported::default())?;
+    let made = asset(&read(&std::fs::read(file)?)?, &Naming::default())?;
     let asset = Texture::from_bytes(&made.to_bytes()?)?;
     for (what, samples, moves) in [
         ("at one motion, blocks of 64", 64, false),

@@ -18,7 +18,7 @@ use crate::pattern::Pattern;
 use crate::profile::Profile;
 
 /// Longest duration of a control point that every device accepts, milliseconds.
-pub const LONGEST_POINT_MS: u64 = 1_000;
+pub(crate) const LONGEST_POINT_MS: u64 = 1_000;
 const FORMAT: &str = "android.os.VibrationEffect";
 
 /// An effect in three forms, of which a device uses one.
@@ -191,7 +191,7 @@ impl Android {
     /// Writes three Kotlin functions that build the effect. The texture's `name` becomes part of
     /// their names.
     #[must_use]
-    pub fn to_kotlin(&self, name: &str) -> Vec<u8> {
+    pub(crate) fn to_kotlin(&self, name: &str) -> Vec<u8> {
         let name = identifier(name);
         let waveform = format!(
             "VibrationEffect.createWaveform(\n        longArrayOf({}),\n        intArrayOf({}),\n        {},\n    )",

@@ -56,7 +56,7 @@ impl<'a> Reader<'a> {
     }
 
     /// As [`value_at`], but in constant time on average if the times ascend.
-    pub(crate) fn at(&mut self, time_s: f64) -> Option<f64> {
+    pub(crate) fn value_at(&mut self, time_s: f64) -> Option<f64> {
         while (self.curve.get(self.after)).is_some_and(|point| point.time_s <= time_s) {
             self.after += 1;
         }

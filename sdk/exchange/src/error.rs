@@ -107,12 +107,10 @@ pub enum ExchangeError {
     /// The scene cannot be played.
     #[error("{problem}")]
     Scene { problem: String },
-    /// The signal cannot be read as a recording, or no model could be fitted to it.
+    /// The signal is not a valid recording, a setting of the fit cannot be used, no model could be
+    /// fitted to it, or the asset cannot be written.
     #[error(transparent)]
     Author(#[from] AuthorError),
-    /// The signal is not a valid recording.
-    #[error(transparent)]
-    Recording(#[from] htex_author::recording::RecordingError),
 }
 
 /// A fact that a format does not contain and the user has to give.
@@ -132,12 +130,12 @@ impl ExchangeError {
     /// ```
     /// use htex_exchange::{Format, Physical};
     /// let error = Physical::default().check(Format::of_file("tap.ahap")?).unwrap_err();
-    /// let told = error.told(&|setting| format!("--{}", setting.replace('_', "-")));
+    /// let told = error.message_with(&|setting| format!("--{}", setting.replace('_', "-")));
     /// assert!(told.ends_with("give --full-scale, --speed and --force"));
     /// # Ok::<(), htex_exchange::ExchangeError>(())
     /// ```
     #[must_use]
-    pub fn told(&self, named: &dyn Fn(&str) -> String) -> String {
+    pub fn message_with(&self, named: &dyn Fn(&str) -> String) -> String {
         match self {
             Self::Missing { format, missing } => not_said(format, missing, named),
             Self::Unused { format, way, setting, takes } => {

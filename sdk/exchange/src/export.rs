@@ -4,9 +4,9 @@ use htex_play::Texture;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
-use crate::format::{Format, WriteSignal, Writes};
+use crate::format::{Format, RATE_HZ, WriteSignal, Writes};
 use crate::heard::{Path, Playing, SceneSound, Source};
-use crate::job::{AssetJob, Coding, Job, RATE_HZ};
+use crate::job::{Coding, Job};
 use crate::loss::{Loss, loss};
 use crate::map;
 use crate::profile::Profile;
@@ -84,7 +84,7 @@ impl<'a> Export<'a> {
         self
     }
 
-    fn rate_hz(&self) -> f64 {
+    pub(crate) fn rate_hz(&self) -> f64 {
         self.rate_hz.unwrap_or(RATE_HZ)
     }
 
@@ -111,13 +111,13 @@ impl<'a> Export<'a> {
 /// An exported file, with a report of what is lost.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
-pub struct Exported {
+pub struct ExportedFile {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
     /// How an actuator played the file; `None` if no actuator plays it.
     #[serde(flatten)]
-    pub played: Option<Played>,
+    pub played: Option<ActuatorPlay>,
     /// How much of the texture is lost; `None` if the file holds the whole texture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<Loss>,
@@ -127,10 +127,24 @@ pub struct Exported {
     pub notes: Vec<String>,
 }
 
+impl ExportedFile {
+    /// A file that holds the asset itself, which loses nothing.
+    pub(crate) fn of_asset(format: &Format, bytes: Vec<u8>) -> Self {
+        Self {
+            bytes,
+            format: format.name,
+            played: None,
+            lost: None,
+            loses: format.loses,
+            notes: Vec::new(),
+        }
+    }
+}
+
 /// How an actuator plays a file, according to its profile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
-pub struct Played {
+pub struct ActuatorPlay {
     pub profile: String,
     pub seconds: f64,
     /// Fraction of the time in which the actuator is too weak.
@@ -143,7 +157,7 @@ pub struct Played {
 /// # Errors
 /// When the format cannot be written or does not take a setting, a number is out of range, the
 /// actuator cannot play such files, or the asset cannot be played.
-pub fn export(asset: &Texture, export: &Export<'_>) -> Result<Exported, ExchangeError> {
+pub fn export(asset: &Texture, export: &Export<'_>) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;
     match format.writes {
@@ -156,33 +170,13 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<Exported, Exchange
             };
             of_signal(Playing { source, seconds }, export, write, profile)
         }
-        Some(Writes::Asset(write)) => Ok(Exported {
-            bytes: write(&AssetJob {
-                format: format.name,
-                asset,
-                file: export.file,
-                extension: export.extension,
-            })?,
-            format: format.name,
-            played: None,
-            lost: None,
-            loses: format.loses,
-            notes: Vec::new(),
-        }),
+        Some(Writes::Asset(write)) => Ok(ExportedFile::of_asset(format, write(asset, export)?)),
         Some(Writes::Map) => {
             let motion = match export.path {
                 Path::Condition(motion) => motion,
                 Path::Stroke(_) => None,
             };
-            let printed = map::written(asset, export.model, motion)?;
-            Ok(Exported {
-                bytes: printed.bytes,
-                format: format.name,
-                played: None,
-                lost: printed.lost,
-                loses: format.loses,
-                notes: printed.notes,
-            })
+            map::export(asset, export, motion)
         }
         None => Err(not_written(format)),
     }
@@ -196,7 +190,7 @@ pub fn export(asset: &Texture, export: &Export<'_>) -> Result<Exported, Exchange
 pub fn export_scene(
     scene: &SceneSound<'_>,
     export: &Export<'_>,
-) -> Result<Exported, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
     let format = export.format;
     format.check_export_of_scene(export.given())?;
     match format.writes {
@@ -204,19 +198,15 @@ pub fn export_scene(
             let playing = Playing { source: Source::Scene(scene), seconds: scene.seconds };
             of_signal(playing, export, write, profile)
         }
-        Some(Writes::Asset(_) | Writes::Map) => Err(ExchangeError::Cannot {
-            format: format.name,
-            problem: "it holds an asset, and a scene is none; export the scene's assets".to_owned(),
-        }),
+        Some(Writes::Asset(_) | Writes::Map) => {
+            Err(format.cannot("it holds an asset, and a scene is none; export the scene's assets"))
+        }
         None => Err(not_written(format)),
     }
 }
 
 fn not_written(format: &Format) -> ExchangeError {
-    ExchangeError::Cannot {
-        format: format.name,
-        problem: format!("it is not written; there are {}", crate::exported().join(", ")),
-    }
+    format.cannot(format!("it is not written; there are {}", crate::exported().join(", ")))
 }
 
 fn of_signal(
@@ -224,17 +214,10 @@ fn of_signal(
     export: &Export<'_>,
     write: WriteSignal,
     profile: &'static str,
-) -> Result<Exported, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
     export.check_numbers(&playing)?;
     let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
-    let job = Job {
-        format: export.format.name,
-        playing,
-        profile,
-        rate_hz: export.rate_hz(),
-        coding: export.coding.unwrap_or_default(),
-        extension: export.extension,
-    };
+    let job = Job { export, playing, profile };
     let written = write(&job)?;
     if written.heard.samples.iter().all(|x| *x == 0.0) {
         let problem = match job.playing.source {
@@ -243,7 +226,7 @@ fn of_signal(
             }
             Source::Scene(_) => "the scene is silent",
         };
-        return Err(job.cannot(problem.to_owned()));
+        return Err(job.cannot(problem));
     }
     let lost = loss(&written.heard, &written.drive, profile)?;
     if let Some(db) = lost.sensation_db.filter(|db| *db <= 0.0) {
@@ -254,9 +237,9 @@ fn of_signal(
             below(db)
         )));
     }
-    Ok(Exported {
+    Ok(ExportedFile {
         lost: Some(lost),
-        played: Some(Played {
+        played: Some(ActuatorPlay {
             profile: profile.name.clone(),
             seconds: job.playing.seconds,
             limited: written.limited,

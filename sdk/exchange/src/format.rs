@@ -3,11 +3,17 @@
 
 use serde::Serialize;
 
-use crate::error::{ExchangeError, Fault};
+use crate::error::{ExchangeError, Fault, in_file};
 #[cfg(feature = "export")]
-use crate::job::{AssetJob, Job, Written};
+use crate::export::Export;
+use crate::import::ImportedAsset;
+#[cfg(feature = "export")]
+use crate::job::{Job, WrittenSignal};
 use crate::profile::Profile;
 use crate::rights::RightsPlace;
+
+/// Sample rate of signals, of measured envelopes and of losses, hertz.
+pub const RATE_HZ: f64 = 8_000.0;
 
 /// A file format that can be imported, exported or both.
 #[derive(Debug)]
@@ -47,9 +53,9 @@ pub enum Reads {
     Map,
 }
 
-pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
-pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
-pub type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<Held, Fault>;
+type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
+type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
+type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<ImportedAsset, Fault>;
 
 /// How assets are exported to a format.
 #[cfg(feature = "export")]
@@ -70,9 +76,9 @@ pub enum Writes {
 }
 
 #[cfg(feature = "export")]
-pub type WriteSignal = fn(&Job<'_>) -> Result<Written, ExchangeError>;
+pub(crate) type WriteSignal = fn(&Job<'_>) -> Result<WrittenSignal, ExchangeError>;
 #[cfg(feature = "export")]
-pub type WriteAsset = fn(&AssetJob<'_>) -> Result<Vec<u8>, ExchangeError>;
+type WriteAsset = fn(&htex_play::Texture, &Export<'_>) -> Result<Vec<u8>, ExchangeError>;
 
 /// How a signal is to be sampled.
 #[derive(Debug, Clone, Copy)]
@@ -92,22 +98,12 @@ pub struct Signal {
 }
 
 /// What an asset needs in addition to its file.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Naming<'a> {
     /// Name of the texture, if the file does not name it.
     pub name: &'a str,
     /// Program and version, stored in the provenance.
     pub tool: &'a str,
-}
-
-/// The asset that was read from a file.
-#[derive(Debug)]
-pub struct Held {
-    pub asset: htex_format::Asset,
-    /// The asset's own file, if the imported file contains it.
-    pub bytes: Option<Vec<u8>>,
-    /// What the user should know about the file, each as a sentence.
-    pub warnings: Vec<String>,
 }
 
 /// Settings of imports to which models are fitted.
@@ -216,6 +212,33 @@ impl Format {
         self.check("export of a scene", takes, given)
     }
 
+    /// Reads the signal of a file, whose name is `file`.
+    pub(crate) fn signal(
+        &self,
+        file: &str,
+        bytes: &[u8],
+        speed_mm_s: f64,
+        given: Option<&Profile>,
+    ) -> Result<Signal, ExchangeError> {
+        let sampling = Sampling { rate_hz: RATE_HZ, speed_mm_s };
+        let read = match self.reads {
+            Some(Reads::Positions { read, profile }) => {
+                let profile = given.map_or_else(|| Profile::find(profile), Ok)?;
+                read(bytes, sampling, profile)
+            }
+            Some(Reads::Signal(read)) => read(bytes, sampling),
+            Some(Reads::Asset(_) | Reads::Map) | None => {
+                return Err(self.cannot("its files are no signals"));
+            }
+        };
+        read.map_err(in_file(file))
+    }
+
+    /// An error that says why the format cannot hold a texture.
+    pub(crate) fn cannot(&self, problem: impl Into<String>) -> ExchangeError {
+        ExchangeError::Cannot { format: self.name, problem: problem.into() }
+    }
+
     fn check<'a>(
         &self,
         way: &'static str,
@@ -243,7 +266,7 @@ impl Format {
 
 /// What `htex formats --json` prints about a format.
 #[derive(Serialize)]
-struct Described<'a> {
+struct FormatDescription<'a> {
     name: &'a str,
     title: &'a str,
     extensions: &'a [&'a str],
@@ -267,7 +290,7 @@ impl Serialize for Format {
         );
         #[cfg(not(feature = "export"))]
         let (export, export_settings) = (None, Vec::new());
-        let described = Described {
+        let description = FormatDescription {
             name: self.name,
             title: self.title,
             extensions: self.extensions,
@@ -279,6 +302,6 @@ impl Serialize for Format {
             keeps: self.keeps,
             loses: self.loses,
         };
-        described.serialize(serializer)
+        description.serialize(serializer)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{ExchangeError, list};
 use crate::format::{Format, Reads};
-use crate::{ahap, gltf, haptic, hjif, import, rights};
+use crate::{ahap, gltf, haptic, hatt, hjif, rights};
 #[cfg(feature = "export")]
 use crate::{format::Writes, writers};
 
@@ -12,7 +12,7 @@ pub const FORMATS: &[Format] = &[
         name: "hatt",
         title: "Penn Haptic Texture Toolkit, XML",
         extensions: &["xml"],
-        reads: Some(Reads::Asset(import::hatt)),
+        reads: Some(Reads::Asset(hatt::import)),
         #[cfg(feature = "export")]
         writes: None,
         rights: rights::BESIDE,
@@ -97,9 +97,9 @@ pub const FORMATS: &[Format] = &[
         name: "gltf",
         title: "glTF 2.0 with the extension HTEX_texture",
         extensions: &["glb", "gltf"],
-        reads: Some(Reads::Asset(gltf::held)),
+        reads: Some(Reads::Asset(gltf::import)),
         #[cfg(feature = "export")]
-        writes: Some(Writes::Asset(gltf::written)),
+        writes: Some(Writes::Asset(gltf::export)),
         rights: rights::GLTF,
         keeps: "the asset's file, bit for bit, on the material of a mesh",
         loses: "nothing of a texture; of a file that comes in, the meshes",
@@ -109,7 +109,7 @@ pub const FORMATS: &[Format] = &[
 impl Format {
     /// Finds a format by its name.
     #[must_use]
-    pub fn named(name: &str) -> Option<&'static Self> {
+    pub fn find(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.name == name)
     }
 

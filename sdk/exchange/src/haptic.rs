@@ -215,7 +215,7 @@ impl Haptic {
     /// of a point, which is added if there is none at that time. A transient before the start or
     /// after the end is moved there.
     #[must_use]
-    pub fn of(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
+    pub fn from_pattern(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
         let mut amplitude: Vec<Amplitude> = pattern.level.iter().map(plain).collect();
         if amplitude.is_empty() {
             let end_s = pattern.end_s();

@@ -6,7 +6,7 @@
 //! models are fitted to it. Since a texture lasts, a signal shorter than a few seconds is repeated.
 
 use htex_author::recording::RecordedFile;
-use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
+use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
     AssetRequest, AuthorError, Averaging, Exploration, FeltError, FittedAsset, Level, Recording,
     SegmentChoice, Take, fit_asset,
@@ -16,12 +16,11 @@ use htex_format::Rights;
 use htex_host::Registry;
 
 use crate::error::{ExchangeError, Fault, in_file};
-use crate::format::{Format, Held, Naming, Reads, Sampling};
+use crate::format::{Format, Naming, RATE_HZ, Reads};
 use crate::map;
-use crate::physical::{Checked, PITCH, Physical};
+use crate::physical::{PITCH, Physical};
 use crate::profile::Profile;
-use crate::rights::Stated;
-use crate::signal::{RATE_HZ, signal};
+use crate::rights::FileRights;
 
 /// A signal is repeated until it is this long, seconds.
 const LEAST_S: f64 = 4.0;
@@ -50,10 +49,10 @@ pub struct Import<'a> {
 /// An imported asset, with results that its file does not store.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct Imported {
+pub struct ImportedAsset {
     pub asset: htex_format::Asset,
     /// The asset's own file, if the imported file contains it and metadata changed nothing.
-    held: Option<Vec<u8>>,
+    file: Option<Vec<u8>>,
     /// How much of the difference from the signal can be felt, for each representation at each
     /// condition. Empty if nothing was fitted.
     pub felt: Vec<Vec<Option<FeltError>>>,
@@ -84,18 +83,18 @@ pub struct Imported {
 /// how.physical = Physical { full_scale: Some(0.2), speed_mm_s: Some(80.0), force_n: Some(0.5), ..Physical::default() };
 /// how.fit = FitSettings { models: Some(vec!["bands".to_owned()]), ..FitSettings::default() };
 /// assert_eq!(import("buzz.haptic", file, &how, &registry)?.asset.manifest.name, "buzz");
-/// # Ok::<(), htex_exchange::ImportError>(())
+/// # Ok::<(), htex_exchange::ExchangeError>(())
 /// ```
 pub fn import(
     file: &str,
     bytes: &[u8],
     how: &Import<'_>,
     registry: &Registry,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedAsset, ExchangeError> {
     let format = Format::of_file(file)?;
     format.check_import(how.given())?;
     let mut imported = match format.reads {
-        Some(Reads::Asset(read)) => held(file, read(bytes, &how.naming()))?,
+        Some(Reads::Asset(read)) => read(bytes, &how.naming()).map_err(in_file(file))?,
         Some(Reads::Map) => mapped(format, file, bytes, how)?,
         _ => {
             let recording = recording_of(file, bytes, &how.physical, how.profile)?;
@@ -103,7 +102,7 @@ pub fn import(
         }
     };
     let given = Rights::new(how.metadata.license.as_deref(), how.metadata.author.as_deref());
-    let stated = Stated::of(format, bytes, how.license_file, &given)?;
+    let stated = FileRights::read(format, bytes, how.license_file, &given)?;
     let own = Rights::from_manifest(&imported.asset.manifest);
     stated.check(&own, &given)?;
     let mut metadata = how.metadata.clone();
@@ -148,14 +147,31 @@ impl Import<'_> {
     }
 }
 
-impl Imported {
+impl ImportedAsset {
+    /// An asset to which nothing was fitted; `file` is its own file, if the imported file contains
+    /// it.
+    pub(crate) fn new(
+        asset: htex_format::Asset,
+        file: Option<Vec<u8>>,
+        warnings: Vec<String>,
+    ) -> Self {
+        Self {
+            asset,
+            file,
+            felt: Vec::new(),
+            skipped: Vec::new(),
+            warnings: warnings.into_iter().map(Into::into).collect(),
+            notes: Vec::new(),
+        }
+    }
+
     fn apply(&mut self, metadata: &Metadata) {
         let before = self.asset.manifest.clone();
         metadata.apply(&mut self.asset.manifest);
         if self.asset.manifest != before {
             // The bytes in the file no longer match the manifest; without a change they stay as
             // they are.
-            self.held = None;
+            self.file = None;
         }
     }
 
@@ -165,23 +181,11 @@ impl Imported {
     /// # Errors
     /// When the asset breaks a rule of its format.
     pub fn to_bytes(&self) -> Result<Vec<u8>, htex_format::WriteError> {
-        match &self.held {
+        match &self.file {
             Some(bytes) => Ok(bytes.clone()),
             None => self.asset.to_bytes(),
         }
     }
-}
-
-fn held(file: &str, read: Result<Held, Fault>) -> Result<Imported, ExchangeError> {
-    let held = read.map_err(in_file(file))?;
-    Ok(Imported {
-        asset: held.asset,
-        held: held.bytes,
-        felt: Vec::new(),
-        skipped: Vec::new(),
-        warnings: held.warnings.into_iter().map(Into::into).collect(),
-        notes: Vec::new(),
-    })
 }
 
 /// Imports an image of grey values over a surface.
@@ -190,36 +194,14 @@ fn mapped(
     file: &str,
     bytes: &[u8],
     how: &Import<'_>,
-) -> Result<Imported, ExchangeError> {
+) -> Result<ImportedAsset, ExchangeError> {
     let physical = &how.physical;
-    let condition = physical.checked(format)?;
+    let values = physical.values(format)?;
     let image = map::read(bytes).map_err(in_file(file))?;
     let Some(pitch_mm) = physical.pitch_mm.or(image.pitch_mm) else {
         return Err(ExchangeError::Missing { format: format.title, missing: vec![PITCH] });
     };
-    let surface = map::Surface {
-        pitch_mm,
-        full_scale: condition.full_scale,
-        quantity: physical.quantity,
-        speed_mm_s: condition.speed_mm_s,
-        force_n: condition.force_n,
-        naming: how.naming(),
-    };
-    held(file, map::held(&image, &surface))
-}
-
-/// Imports a model file of the Penn Haptic Texture Toolkit.
-pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
-    let of = |fault: crate::hatt::Fault| {
-        Fault::new(fault.place.to_string().trim_end_matches(": "), fault.problem)
-    };
-    let texture = crate::hatt::read(bytes).map_err(of)?;
-    let imported = crate::hatt::Imported { name: naming.name, tool: naming.tool };
-    Ok(Held {
-        asset: crate::hatt::asset(&texture, &imported).map_err(of)?,
-        bytes: None,
-        warnings: texture.notes,
-    })
+    map::import(&image, pitch_mm, values, physical.quantity, how.naming()).map_err(in_file(file))
 }
 
 /// Reads a file as a recording, as [`import`] does before it fits models.
@@ -233,10 +215,9 @@ pub fn recording_of(
     profile: Option<&Profile>,
 ) -> Result<Recording, ExchangeError> {
     let format = Format::of_file(file)?;
-    let Checked { full_scale, speed_mm_s, .. } = physical.checked(format)?;
-    let sampling = Sampling { rate_hz: RATE_HZ, speed_mm_s };
-    let signal = signal(format, bytes, sampling, profile)?.map_err(in_file(file))?;
-    let mut samples: Vec<f64> = signal.samples.iter().map(|x| full_scale * x).collect();
+    let values = physical.values(format)?;
+    let signal = format.signal(file, bytes, values.speed_mm_s, profile)?;
+    let mut samples: Vec<f64> = signal.samples.iter().map(|x| values.full_scale * x).collect();
     let mut warnings = signal.left_out;
     // Before samples are repeated, so that an empty signal is refused here as well.
     if !samples.iter().any(|x| *x != 0.0) {
@@ -250,7 +231,8 @@ pub fn recording_of(
         warnings.push(format!("Its {seconds:.3} s are repeated {times} times."));
         samples = samples.repeat(times);
     }
-    let mut recording = Recording::of(physical.quantity, file, RATE_HZ, vec![samples])?;
+    let recording = Recording::from_axes(physical.quantity, file, RATE_HZ, vec![samples]);
+    let mut recording = recording.map_err(AuthorError::from)?;
     recording.file = RecordedFile::of_bytes(bytes);
     recording.warnings = warnings.into_iter().map(Into::into).collect();
     Ok(recording)
@@ -286,30 +268,18 @@ fn fitted(
     recording: Recording,
     how: &Import<'_>,
     registry: &Registry,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedAsset, ExchangeError> {
     let reading = ReadingSettings::default();
     let request = how.fit.request(registry, &reading, how.name, how.tool)?;
     let given = Exploration { speed_mm_s: how.physical.speed_mm_s, force_n: how.physical.force_n };
     let takes = [Take { recording, given }];
     let fitted = fit_signals(&takes, request, how.physical.full_scale)?;
-    Ok(Imported {
+    Ok(ImportedAsset {
         asset: fitted.asset,
-        held: None,
+        file: None,
         felt: fitted.felt,
         skipped: fitted.skipped,
         warnings: fitted.warnings,
         notes: fitted.notes,
     })
-}
-
-/// Why a file cannot be imported.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ImportError {
-    #[error(transparent)]
-    Exchange(#[from] ExchangeError),
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    #[error(transparent)]
-    Author(#[from] AuthorError),
 }

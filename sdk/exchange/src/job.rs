@@ -1,15 +1,9 @@
 //! What a format's writer is given, and what it returns.
 
-use std::borrow::Cow;
-
-use htex_play::Texture;
-
 use crate::error::{ExchangeError, Fault};
+use crate::export::Export;
 use crate::heard::{Heard, Playing};
 use crate::profile::{Kind, Profile};
-
-/// Sample rate at which envelopes are measured and losses computed, hertz.
-pub(crate) const RATE_HZ: f64 = 8_000.0;
 
 /// How `.hjif` codes a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,28 +18,13 @@ pub enum Coding {
 
 /// The input of a writer for what is played.
 pub struct Job<'a> {
-    /// Name of the format.
-    pub(crate) format: &'static str,
+    pub(crate) export: &'a Export<'a>,
     pub(crate) playing: Playing<'a>,
     pub(crate) profile: &'a Profile,
-    /// Sample rate of files that contain plain samples, hertz.
-    pub(crate) rate_hz: f64,
-    pub(crate) coding: Coding,
-    pub(crate) extension: Option<&'a str>,
-}
-
-/// The input of a writer for the asset itself.
-pub struct AssetJob<'a> {
-    /// Name of the format.
-    pub(crate) format: &'static str,
-    pub(crate) asset: &'a Texture,
-    /// The asset's file; without it, the asset is written anew.
-    pub(crate) file: Option<&'a [u8]>,
-    pub(crate) extension: Option<&'a str>,
 }
 
 /// What a writer returns.
-pub struct Written {
+pub struct WrittenSignal {
     pub(crate) bytes: Vec<u8>,
     pub(crate) heard: Heard,
     /// What the file drives the actuator with when it is read back, at the sample rate of what was
@@ -53,22 +32,6 @@ pub struct Written {
     pub(crate) drive: Vec<f64>,
     pub(crate) limited: f64,
     pub(crate) notes: Vec<String>,
-}
-
-impl AssetJob<'_> {
-    /// The asset's file.
-    pub(crate) fn file(&self) -> Result<Cow<'_, [u8]>, ExchangeError> {
-        if let Some(file) = self.file {
-            return Ok(Cow::Borrowed(file));
-        }
-        let written = self.asset.data().to_bytes();
-        written.map(Cow::Owned).map_err(|error| self.cannot(error.to_string()))
-    }
-
-    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
-        let format = self.format;
-        ExchangeError::Cannot { format, problem }
-    }
 }
 
 impl Job<'_> {
@@ -102,7 +65,7 @@ impl Job<'_> {
         }
         Err(ExchangeError::NoSamples {
             profile: self.profile.name.clone(),
-            format: self.format,
+            format: self.export.format.name,
             instead: "haptic, ahap or android".to_owned(),
         })
     }
@@ -112,8 +75,7 @@ impl Job<'_> {
         self.cannot(fault.to_string())
     }
 
-    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
-        let format = self.format;
-        ExchangeError::Cannot { format, problem }
+    pub(crate) fn cannot(&self, problem: impl Into<String>) -> ExchangeError {
+        self.export.format.cannot(problem)
     }
 }

@@ -11,7 +11,7 @@
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
 //! let asset = htex_play::Texture::open("sandpaper.htex")?;
-//! if let Some(format) = Format::named("ahap") {
+//! if let Some(format) = Format::find("ahap") {
 //!     let exported = export(&asset, &Export::new(format))?;
 //!     println!("{} bytes, loses {}", exported.bytes.len(), exported.loses);
 //! }
@@ -51,7 +51,6 @@ mod profile;
 mod reduce;
 mod rights;
 mod settings;
-mod signal;
 #[cfg(feature = "export")]
 mod stroke;
 #[cfg(feature = "export")]
@@ -65,12 +64,10 @@ pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
 #[cfg(feature = "export")]
-pub use export::{Export, Exported, Played, export, export_scene};
-pub use format::{
-    Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
-};
+pub use export::{ActuatorPlay, Export, ExportedFile, export, export_scene};
 #[cfg(feature = "export")]
-pub use format::{WriteAsset, WriteSignal, Writes};
+pub use format::Writes;
+pub use format::{Format, Naming, RATE_HZ, Reads, Sampling, Signal};
 pub use formats::{FORMATS, imported, imported_signals};
 #[cfg(feature = "export")]
 pub use formats::{exported, formats_table};
@@ -78,17 +75,16 @@ pub use haptic::Haptic;
 #[cfg(feature = "export")]
 pub use heard::{Path, SceneSound};
 pub use hjif::Hjif;
-pub use import::{Import, ImportError, Imported, fit_signals, import, recording_of};
+pub use import::{Import, ImportedAsset, fit_signals, import, recording_of};
 #[cfg(feature = "export")]
-pub use job::{AssetJob, Coding, Job, Written};
+pub use job::{Coding, Job, WrittenSignal};
 pub use json::MOST_BYTES;
 #[cfg(feature = "export")]
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
 pub use physical::{Physical, missing};
-pub use profile::{Kind, PROFILES, Profile, Sourced, profile_names, profiles_table};
+pub use profile::{Kind, PROFILES, Profile, SourcedValue, profile_names, profiles_table};
 pub use rights::RightsPlace;
 pub use settings::SignalSettings;
-pub use signal::RATE_HZ;
 #[cfg(feature = "export")]
 pub use stroke::Stroke;

@@ -33,8 +33,9 @@ pub struct Loss {
 /// Compares what an actuator plays when driven by `drive` with what was heard. `drive` must be at
 /// the sample rate of what was heard.
 pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
-    let recording =
-        Recording::of(heard.quantity, "the asset", heard.rate_hz, vec![heard.samples.clone()])?;
+    let samples = vec![heard.samples.clone()];
+    let recording = Recording::from_axes(heard.quantity, "the asset", heard.rate_hz, samples)
+        .map_err(AuthorError::from)?;
     let options = SpectrumOptions::default()
         .with_segments(SegmentChoice::Windows)
         .with_averaging(Averaging::Rms);

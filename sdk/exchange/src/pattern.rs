@@ -93,7 +93,8 @@ impl Pattern {
             if time_s >= self.to_s {
                 break;
             }
-            let Some((level, hertz)) = level.at(time_s).zip(frequency.at(time_s)) else {
+            let Some((level, hertz)) = level.value_at(time_s).zip(frequency.value_at(time_s))
+            else {
                 break;
             };
             // A default pattern has the exponent 0, which would play silence as the strongest

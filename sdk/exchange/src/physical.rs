@@ -4,9 +4,8 @@ use htex_author::Exploration;
 use htex_format::Quantity;
 
 use crate::error::{ExchangeError, Missing, in_file};
-use crate::format::{Format, Naming, Reads, Sampling};
+use crate::format::{Format, Naming, Reads};
 use crate::map;
-use crate::signal::{RATE_HZ, signal};
 
 /// What a signal does not state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -48,7 +47,7 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
     let mut missing = format.reads.map_or(Vec::new(), |reads| reads.missing());
     match format.reads {
         Some(Reads::Asset(read)) => {
-            read(bytes, &Naming { name: "", tool: "" }).map_err(in_file(file))?;
+            read(bytes, &Naming::default()).map_err(in_file(file))?;
         }
         Some(Reads::Map) => {
             let image = map::read(bytes).map_err(in_file(file))?;
@@ -59,8 +58,7 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
         _ => {
             // A file over space becomes shorter the faster it is felt, so it is read at the highest
             // speed.
-            let sampling = Sampling { rate_hz: RATE_HZ, speed_mm_s: Exploration::MOST_SPEED_MM_S };
-            signal(format, bytes, sampling, None)?.map_err(in_file(file))?;
+            format.signal(file, bytes, Exploration::MOST_SPEED_MM_S, None)?;
         }
     }
     Ok(missing)
@@ -86,10 +84,11 @@ impl Physical {
     /// When something is missing or out of range. The error names everything that is missing, or
     /// the first such number.
     pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
-        self.checked(format).map(drop)
+        self.values(format).map(drop)
     }
 
-    pub(crate) fn checked(&self, format: &Format) -> Result<Checked, ExchangeError> {
+    /// Returns the values if everything needed is given and in range.
+    pub(crate) fn values(&self, format: &Format) -> Result<PhysicalValues, ExchangeError> {
         let all = [(FULL_SCALE, self.full_scale), (SPEED, self.speed_mm_s), (FORCE, self.force_n)];
         let (Some(full_scale), Some(speed), Some(force)) =
             (self.full_scale, self.speed_mm_s, self.force_n)
@@ -116,12 +115,13 @@ impl Physical {
             let most = *map::PITCH_MM.end();
             above("pitch", pitch_mm, most, "more than 0 mm, at most 64 mm")?;
         }
-        Ok(Checked { full_scale, speed_mm_s: speed, force_n: force })
+        Ok(PhysicalValues { full_scale, speed_mm_s: speed, force_n: force })
     }
 }
 
 /// What a file does not state, checked to be in range.
-pub(crate) struct Checked {
+#[derive(Clone, Copy)]
+pub(crate) struct PhysicalValues {
     pub(crate) full_scale: f64,
     pub(crate) speed_mm_s: f64,
     pub(crate) force_n: f64,

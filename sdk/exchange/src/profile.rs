@@ -27,13 +27,13 @@ pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
 /// A value, with its source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Sourced {
+pub struct SourcedValue {
     pub value: f64,
     /// A document, or `assumed`.
     pub source: String,
 }
 
-impl Sourced {
+impl SourcedValue {
     /// Whether the value is assumed: nobody has measured or published it.
     #[must_use]
     pub fn is_assumed(&self) -> bool {
@@ -60,20 +60,20 @@ pub struct Profile {
     pub title: String,
     pub kind: Kind,
     /// Frequency at which the actuator is strongest, hertz.
-    pub resonance_hz: Sourced,
+    pub resonance_hz: SourcedValue,
     /// Quality factor: resonance frequency divided by bandwidth.
-    pub q: Sourced,
+    pub q: SourcedValue,
     /// Range of frequencies that it can play, hertz.
-    pub low_hz: Sourced,
-    pub high_hz: Sourced,
+    pub low_hz: SourcedValue,
+    pub high_hz: SourcedValue,
     /// Strongest peak acceleration of the housing, at the resonance, m/s².
-    pub strongest_m_s2: Sourced,
+    pub strongest_m_s2: SourcedValue,
     /// Time from a command to the vibration, milliseconds.
-    pub latency_ms: Sourced,
+    pub latency_ms: SourcedValue,
     /// Shortest time between two points of an envelope, milliseconds.
-    pub shortest_point_ms: Sourced,
+    pub shortest_point_ms: SourcedValue,
     /// Largest number of points in an envelope.
-    pub most_points: Sourced,
+    pub most_points: SourcedValue,
 }
 
 impl Profile {
@@ -91,7 +91,7 @@ impl Profile {
 
     /// Returns the profile's values with their names.
     #[must_use]
-    pub fn values(&self) -> [(&'static str, &Sourced); 8] {
+    pub fn values(&self) -> [(&'static str, &SourcedValue); 8] {
         [
             ("resonance_hz", &self.resonance_hz),
             ("q", &self.q),
@@ -122,7 +122,7 @@ impl Profile {
 
     /// Returns its strongest peak acceleration at a frequency, m/s².
     #[must_use]
-    pub fn strongest_at(&self, hertz: f64) -> f64 {
+    pub(crate) fn strongest_at(&self, hertz: f64) -> f64 {
         self.strongest_m_s2.value * self.response(hertz)
     }
 
@@ -155,7 +155,7 @@ pub fn profiles_table() -> String {
         "| name | actuator | resonance | Q | range | strongest | latency | points |\n|---|---|---|---|---|---|---|---|\n",
     );
     for p in PROFILES.iter() {
-        let mut cell = |value: &'static Sourced, unit: &str| {
+        let mut cell = |value: &'static SourcedValue, unit: &str| {
             if value.is_assumed() {
                 return format!("{}{unit}", value.value);
             }

@@ -24,18 +24,18 @@ const LEAST_RESPONSE: f64 = 0.25;
 const RESOLUTION_HZ: f64 = 16.0;
 
 /// A pattern of one tone, and how often the actuator was too weak for it.
-pub(crate) struct Reduced {
+pub(crate) struct Reduction {
     pub(crate) pattern: Pattern,
     /// Fraction of the time in which the actuator is too weak.
     pub(crate) limited: f64,
 }
 
 /// Reduces what was heard to one tone; with `fixed`, always at the resonance.
-pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduced {
+pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduction {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let (mut level, mut frequency_hz, mut limited) = (Vec::new(), Vec::new(), 0usize);
     for (index, block) in heard.blocks.iter().enumerate() {
-        let (strength, wanted_hz) = felt.of(block);
+        let (strength, wanted_hz) = felt.strength(block);
         let wanted_hz = if fixed { profile.resonance_hz.value } else { wanted_hz };
         let tone = match profile.kind {
             Kind::Resonant => resonant(profile, wanted_hz, strength),
@@ -45,7 +45,7 @@ pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduced
         level.push(Point::new(heard.middle_s(index), tone.amplitude));
         frequency_hz.push(Point::new(heard.middle_s(index), tone.hertz));
     }
-    Reduced {
+    Reduction {
         pattern: Pattern {
             from_s: 0.0,
             to_s: heard.seconds(),
@@ -74,7 +74,7 @@ impl Felt {
 
     /// Returns the amplitude relative to the threshold, and the mean frequency weighted by what is
     /// felt.
-    fn of(&self, block: &Block) -> (f64, f64) {
+    fn strength(&self, block: &Block) -> (f64, f64) {
         let (mut energy, mut moment) = (0.0, 0.0);
         for ((power, threshold), hertz) in
             block.powers.iter().zip(&self.thresholds).zip(&self.middles_hz)
@@ -173,21 +173,21 @@ pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
 }
 
 /// Several tones, with their amplitudes over time.
-pub(crate) struct Several {
+pub(crate) struct Tones {
     pub(crate) tones: Vec<(f64, Vec<Point>)>,
     pub(crate) limited: f64,
 }
 
 /// Reduces what was heard to one tone in each of several bands. Bands in which the actuator is weak
 /// are played at its resonance.
-pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Several {
+pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Tones {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let mut sums = vec![0.0f64; heard.blocks.len()];
     let tone = |(hertz, bands): (f64, Vec<usize>)| {
         let per_unit = threshold(Quantity::Acceleration, hertz) / profile.strongest_at(hertz);
         let mut amplitude = Vec::with_capacity(heard.blocks.len());
         for (index, (block, sum)) in heard.blocks.iter().zip(&mut sums).enumerate() {
-            let part = felt.of(&block.only(&bands)).0 * per_unit;
+            let part = felt.strength(&block.only(&bands)).0 * per_unit;
             *sum += part;
             amplitude.push(Point::new(heard.middle_s(index), part.min(1.0)));
         }
@@ -196,7 +196,7 @@ pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Several {
     let groups = groups(&felt.middles_hz, profile, count);
     let tones: Vec<(f64, Vec<Point>)> = groups.into_iter().map(tone).collect();
     let limited = sums.iter().filter(|sum| **sum > 1.0).count() as f64 / sums.len().max(1) as f64;
-    Several { tones, limited }
+    Tones { tones, limited }
 }
 
 /// Groups bands, each group with one frequency: its own, or the resonance if the actuator is weak

@@ -24,28 +24,28 @@ pub(crate) const HAPTIC: RightsPlace = RightsPlace {
     place: "metadata.description, metadata.author",
     read: |bytes| {
         let author = text(bytes, "metadata", "author");
-        of(text(bytes, "metadata", "description")).or(Rights::new(None, author.as_deref()))
+        from_text(text(bytes, "metadata", "description")).or(Rights::new(None, author.as_deref()))
     },
 };
 pub(crate) const AHAP: RightsPlace = RightsPlace {
     place: "Metadata.Description",
-    read: |bytes| of(text(bytes, "metadata", "Description")),
+    read: |bytes| from_text(text(bytes, "metadata", "Description")),
 };
 pub(crate) const ANDROID: RightsPlace = RightsPlace {
     place: "rights (JSON), a comment (Kotlin)",
     read: |bytes| Rights::from_text(&String::from_utf8_lossy(bytes)),
 };
 pub(crate) const HJIF: RightsPlace =
-    RightsPlace { place: "description", read: |bytes| of(text(bytes, "description", "")) };
+    RightsPlace { place: "description", read: |bytes| from_text(text(bytes, "description", "")) };
 pub(crate) const WAV: RightsPlace =
     RightsPlace { place: "LIST INFO: ICOP, IART", read: |_| Rights::default() };
 pub(crate) const PNG: RightsPlace = RightsPlace { place: "iTXt: Copyright", read: map::rights };
 pub(crate) const GLTF: RightsPlace = RightsPlace {
     place: "asset.copyright, and the asset",
-    read: |bytes| of(gltf::copyright(bytes)),
+    read: |bytes| from_text(gltf::copyright(bytes)),
 };
 
-fn of(text: Option<String>) -> Rights {
+fn from_text(text: Option<String>) -> Rights {
     text.map(|text| Rights::from_text(&text)).unwrap_or_default()
 }
 
@@ -73,19 +73,19 @@ pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
 }
 
 /// The rights that a file and the file `NAME.license` beside it state.
-pub(crate) struct Stated {
+pub(crate) struct FileRights {
     pub(crate) rights: Rights,
     /// What was not accepted, each as a sentence.
     pub(crate) left_out: Vec<String>,
 }
 
-impl Stated {
+impl FileRights {
     /// Combines the rights stated inside the file and beside it. A conflict does not matter for a
     /// value that the user gives anyway.
     ///
     /// # Errors
     /// When the two state different licences or authors, and the user gives none.
-    pub(crate) fn of(
+    pub(crate) fn read(
         format: &Format,
         bytes: &[u8],
         beside: Option<&str>,

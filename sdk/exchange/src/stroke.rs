@@ -67,7 +67,7 @@ impl Stroke {
 
     /// Returns the motion at a time, seconds.
     #[must_use]
-    pub fn motion_at(&self, time_s: f64) -> Motion {
+    pub(crate) fn motion_at(&self, time_s: f64) -> Motion {
         let at = |curve: &[Point]| value_at(curve, time_s).unwrap_or(0.0);
         Motion::new(at(&self.speed_mm_s), at(&self.force_n)).with_position_mm(at(&self.way_mm))
     }

@@ -6,9 +6,10 @@ use crate::android::{
 };
 use crate::curve::{Point, simplified, value_at};
 use crate::error::ExchangeError;
+use crate::format::RATE_HZ;
 use crate::heard::{Heard, threshold};
 use crate::hjif::{Hjif, Space, Tone, vectorial, waveform};
-use crate::job::{Coding, Job, RATE_HZ, Written};
+use crate::job::{Coding, Job, WrittenSignal};
 use crate::pattern::{Pattern, rendered};
 use crate::reduce::{drive, one_tone, played_by, tones};
 use htex_format::{Manifest, Quantity};
@@ -24,7 +25,7 @@ const TOLERANCE: f64 = 1e-3;
 /// `VibrationEffect.BasicEnvelopeBuilder`).
 const LEAST_SL_DB: f64 = 10.0;
 
-pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
+pub(crate) fn haptic(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     let source = &job.playing.source;
     let manifest = source.manifest();
     let text =
@@ -41,34 +42,34 @@ pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
         ..Default::default()
     };
     one_envelope(job, |pattern| {
-        let bytes = crate::Haptic::of(pattern, job.profile, metadata.clone()).to_bytes();
+        let bytes = crate::Haptic::from_pattern(pattern, job.profile, metadata.clone()).to_bytes();
         let read = crate::Haptic::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
         Ok((bytes, vec![read.pattern(job.profile)]))
     })
 }
 
-pub(crate) fn ahap(job: &Job<'_>) -> Result<Written, ExchangeError> {
+pub(crate) fn ahap(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     let rights = job.playing.source.rights();
     one_envelope(job, |pattern| {
-        let ahap = crate::Ahap::of(pattern, job.profile);
+        let ahap = crate::Ahap::from_pattern(pattern, job.profile);
         let bytes = ahap.with_description(&rights.described("")).to_bytes();
         let read = crate::Ahap::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
         Ok((bytes, read.patterns(job.profile)))
     })
 }
 
-type Read = (Vec<u8>, Vec<Pattern>);
+type ReadBack = (Vec<u8>, Vec<Pattern>);
 
 fn one_envelope(
     job: &Job<'_>,
-    written: impl Fn(&Pattern) -> Result<Read, ExchangeError>,
-) -> Result<Written, ExchangeError> {
+    written: impl Fn(&Pattern) -> Result<ReadBack, ExchangeError>,
+) -> Result<WrittenSignal, ExchangeError> {
     let heard = job.playing.heard(RATE_HZ, job.point_s(MANY))?;
     let mut reduced = one_tone(&heard, job.profile, false);
     thin(&mut reduced.pattern);
     let (bytes, patterns) = written(&reduced.pattern)?;
     let patterns: Vec<Pattern> = patterns.into_iter().map(|p| played_by(p, job.profile)).collect();
-    Ok(Written {
+    Ok(WrittenSignal {
         drive: rendered(&patterns, RATE_HZ),
         bytes,
         heard,
@@ -91,7 +92,7 @@ fn thin(pattern: &mut Pattern) {
     pattern.frequency_hz = simplified(&pattern.frequency_hz, TOLERANCE * 1e2);
 }
 
-pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
+pub(crate) fn android(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     let point_s = job.point_s(MANY);
     if point_s > LONGEST_POINT_MS as f64 / 1e3 {
         let problem = format!(
@@ -115,7 +116,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let json = effect.to_bytes();
     let read = Android::from_bytes(&json).map_err(|fault| job.own(fault))?;
     read.check_device(job.profile).map_err(|fault| job.own(fault))?;
-    let bytes = match job.extension {
+    let bytes = match job.export.extension {
         Some("kt") => {
             let kotlin = effect.to_kotlin(job.playing.source.name());
             [rights.commented("// ").into_bytes(), kotlin].concat()
@@ -124,7 +125,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     };
     let richest =
         "The loss is that of the envelope of WaveformEnvelopeBuilder, the richest of the three.";
-    Ok(Written {
+    Ok(WrittenSignal {
         drive: rendered(&[played_by(read.pattern(), job.profile)], RATE_HZ),
         bytes,
         heard,
@@ -229,10 +230,10 @@ fn space(job: &Job<'_>) -> Space {
     Space { speed_mm_s: speed.filter(|speed| *speed > 0.0) }
 }
 
-pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
+pub(crate) fn hjif(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     job.check_samples()?;
     let space = space(job);
-    let (file, heard, limited) = match job.coding {
+    let (file, heard, limited) = match job.export.coding.unwrap_or_default() {
         Coding::Vectorial => vectorial_file(job, space)?,
         Coding::Wavelet => wavelet_file(job, space)?,
     };
@@ -245,7 +246,7 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
             "It lies over the way of the finger, and is felt as the asset at {speed} mm/s alone."
         )
     };
-    Ok(Written {
+    Ok(WrittenSignal {
         bytes,
         heard,
         drive,
@@ -292,14 +293,14 @@ fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
     Ok((file, heard, limited))
 }
 
-pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
+pub(crate) fn wav(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     job.check_samples()?;
-    let rate_hz = libm::round(job.rate_hz);
+    let rate_hz = libm::round(job.export.rate_hz());
     let heard = job.playing.heard(rate_hz, job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
     let rights = job.playing.source.rights();
     let bytes =
         crate::wav::to_bytes(&samples, rate_hz as u32, &rights).map_err(|fault| job.own(fault))?;
     let drive = crate::wav::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
-    Ok(Written { bytes, heard, drive, limited, notes: Vec::new() })
+    Ok(WrittenSignal { bytes, heard, drive, limited, notes: Vec::new() })
 }

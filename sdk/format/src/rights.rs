@@ -70,7 +70,7 @@ impl Rights {
         }
         // In an SPDX expression AND binds more strongly than OR.
         if licenses.len() > 1 {
-            for license in licenses.iter_mut().filter(|own| own.contains(" OR ")) {
+            for license in licenses.iter_mut().filter(|own| has_or(own)) {
                 *license = format!("({license})");
             }
         }
@@ -142,15 +142,15 @@ impl Rights {
     /// If the file cannot be written.
     pub fn add_to_wav(&self, wav: &mut (impl Write + Seek)) -> io::Result<()> {
         let chunk = self.riff();
+        if chunk.is_empty() {
+            return Ok(());
+        }
         let end = wav.seek(SeekFrom::End(0))?;
         // Chunks of RIFF begin at even bytes, and not every writer of WAV pads its last one.
         let pad = end % 2;
         let Ok(riff) = u32::try_from(end + pad + chunk.len() as u64 - 8) else {
             return Ok(());
         };
-        if chunk.is_empty() {
-            return Ok(());
-        }
         wav.write_all(&[0][..pad as usize])?;
         wav.write_all(&chunk)?;
         wav.seek(SeekFrom::Start(4))?;
@@ -214,6 +214,12 @@ fn is_wav(path: &Path) -> bool {
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("wav"))
 }
 
+/// Whether an SPDX expression has the operator OR, which may also be in lower case.
+fn has_or(license: &str) -> bool {
+    let mut words = license.split(|c: char| !(c.is_ascii_alphanumeric() || "-.:".contains(c)));
+    words.any(|word| word == "OR" || word == "or")
+}
+
 /// Returns the text after a tag, up to the end of the line or of the comment that contains it.
 fn after<'a>(tag: &str, text: &'a str) -> Option<&'a str> {
     let rest = &text[text.find(tag)? + tag.len()..];
@@ -241,4 +247,31 @@ fn chunk(id: &[u8; 4], bytes: &[u8]) -> Vec<u8> {
     let length = (bytes.len() as u32).to_le_bytes();
     let pad = &[0][..bytes.len() % 2];
     [&id[..], &length, bytes, pad].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    #[test]
+    fn alternatives_stay_together_in_either_case() {
+        for either in ["MIT OR Apache-2.0", "MIT or Apache-2.0", "(MIT)or(Apache-2.0)"] {
+            let both = [either, "CC0-1.0"].map(|license| Rights::new(Some(license), None));
+            let expected = format!("({either}) AND CC0-1.0");
+            assert_eq!(Rights::of_all(both).license, Some(expected));
+        }
+        let both = ["LicenseRef-or", "CC0-1.0"].map(|license| Rights::new(Some(license), None));
+        assert_eq!(Rights::of_all(both).license.as_deref(), Some("LicenseRef-or AND CC0-1.0"));
+    }
+
+    #[test]
+    fn no_rights_leave_a_file_of_any_length() {
+        for bytes in [&b""[..], b"RIFF"] {
+            let mut wav = Cursor::new(bytes.to_vec());
+            assert!(Rights::default().add_to_wav(&mut wav).is_ok());
+            assert_eq!(wav.into_inner(), bytes);
+        }
+    }
 }

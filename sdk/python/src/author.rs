@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use htex::format::{By, KeyedMeasures, Measure};
 use htex::model::Band;
 use htex::model::{Origin, Registry};
-use htex_author::settings::{FitSettings, Metadata, SettingsError};
+use htex_author::settings::{FitSettings, Metadata};
 use htex_author::{
-    AssetRequest, Exploration, FittedAsset, SpectrumRef, TextureSpectrum, fit_asset,
+    AssetRequest, AuthorError, Exploration, FittedAsset, SpectrumRef, TextureSpectrum, fit_asset,
 };
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
@@ -38,15 +38,15 @@ pub(crate) fn process(
 
 fn processed(source: Source, reading: &Reading) -> PyResult<Value> {
     let (recording, read, spectrum) = reading.spectrum(source)?;
-    let stretches = read.part.segments.stretches().into_iter();
+    let stretches = read.spectra.segments.stretches().into_iter();
     let read_s = stretches.map(|part| [part.start, part.end].map(|at| recording.second(at)));
     Ok(json!({
         "spectrum": described(&spectrum),
         "rate_hz": recording.rate_hz,
         "segments": spectrum.segments,
-        "from_sweeps": read.part.segments.from_sweeps,
+        "from_sweeps": read.spectra.segments.from_sweeps,
         "read_s": read_s.collect::<Vec<_>>(),
-        "condition": condition(read.condition, &spectrum),
+        "condition": condition(read.motion, &spectrum),
         "speed_spread_mm_s": read.spread.speed_mm_s,
         "force_spread_n": read.spread.force_n,
         "simulated": recording.simulated,
@@ -148,7 +148,7 @@ impl Fit {
         let name = metadata.name.as_deref().unwrap_or("texture");
         let request = settings.request(registry, reading.settings(), name, TOOL);
         request.map_err(|error| match error {
-            SettingsError::ModelNotFitted { model, fitted, .. } => {
+            AuthorError::ModelNotFitted { model, fitted, .. } => {
                 unknown("a model in options", &model, &fitted.join(", "))
             }
             other => reading.raised(other),

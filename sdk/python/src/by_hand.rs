@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use htex::format::Quantity;
-use htex_author::by_hand::{self, ByHand, ByHandError, MixedAsset};
+use htex_author::by_hand::{self, ByHand, MixedAsset};
+use htex_author::edit as edited;
 use htex_author::settings::Metadata;
-use htex_author::{EditError, edit as edited};
 use htex_format::Condition;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 
 use crate::author::TOOL;
-use crate::errors::{IntoPyErr, option, raised};
+use crate::errors::{option, raised};
 use crate::models::registry;
 use crate::python::parsed;
 use crate::reading::{Pair, unknown};
@@ -99,7 +99,7 @@ impl ByHandTexture {
         let name = metadata.name.as_deref().unwrap_or("texture");
         let (speed_mm_s, force_n) = self.at;
         let mut texture = ByHand::new(name, self.level_rms, TOOL)
-            .at(Condition { speed_mm_s, force_n, ..Condition::default() })
+            .with_condition(Condition { speed_mm_s, force_n, ..Condition::default() })
             .with_quantity(quantity);
         texture.values = self.parameters;
         let mut asset = by_hand::make(model, &texture).map_err(raised)?;
@@ -118,24 +118,4 @@ fn checked(metadata: &str) -> PyResult<Metadata> {
 
 fn hash(texture: &Texture) -> PyResult<String> {
     Ok(blake3::hash(&texture.bytes()?).to_hex().to_string())
-}
-
-impl IntoPyErr for ByHandError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Play(error) => error.into_py_err(),
-            Self::Model(error) => error.into_py_err(),
-            Self::Write(error) => error.into_py_err(),
-            other => option(other.to_string()),
-        }
-    }
-}
-
-impl IntoPyErr for EditError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Read(error) => error.into_py_err(),
-            lost => crate::errors::AssetError::new_err(lost.to_string()),
-        }
-    }
 }

@@ -1,11 +1,11 @@
 //! Compares recordings with textures and with other recordings.
 
-use htex_author::{CompareError, Difference, compare as compared};
+use htex_author::{Difference, compare as compared};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 use crate::author::condition;
-use crate::errors::{IntoPyErr, RecordingError, option, raised};
+use crate::errors::{RecordingError, raised};
 use crate::python::from_json;
 use crate::reading::{Reading, ReadingText, Source};
 use crate::texture::Texture;
@@ -38,9 +38,9 @@ pub(crate) fn compare<'py>(
 
 fn with_texture(source: Source, texture: &Texture, reading: &Reading) -> PyResult<Value> {
     let (_, read, spectrum) = reading.spectrum(source)?;
-    let models = compared(texture.asset(), &spectrum, read.condition).map_err(raised)?;
+    let models = compared(texture.asset(), &spectrum, read.motion).map_err(raised)?;
     Ok(json!({
-        "condition": condition(read.condition, &spectrum),
+        "condition": condition(read.motion, &spectrum),
         "representations": models,
         "other": null,
         "other_condition": null,
@@ -64,24 +64,10 @@ fn with_recording(source: Source, other: Source, reading: &Reading) -> PyResult<
     })?;
     let warnings = [read.warnings, other_read.warnings].concat();
     Ok(json!({
-        "condition": condition(read.condition, &spectrum),
+        "condition": condition(read.motion, &spectrum),
         "representations": [],
         "other": difference,
-        "other_condition": condition(other_read.condition, &other),
+        "other_condition": condition(other_read.motion, &other),
         "warnings": warnings,
     }))
-}
-
-impl IntoPyErr for CompareError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Play(error) => error.into_py_err(),
-            Self::Model(error) => error.into_py_err(),
-            Self::Measure(error) => error.into_py_err(),
-            Self::Quantities { held, .. } => {
-                option(format!("{self}; give quantity=\"{}\"", held.name()))
-            }
-            other => option(other.to_string()),
-        }
-    }
 }

@@ -6,9 +6,8 @@ use std::path::Path;
 use htex::format::{ReadError, WriteError};
 use htex::model::HostError;
 use htex::play::ErrorKind;
-use htex_author::AuthorError;
 use htex_author::recording::{ReadError as RecordingReadError, ReadProblem};
-use htex_author::tradeoff::TradeoffError;
+use htex_author::{AuthorError, AuthorErrorKind};
 use htex_scene::SceneError as PlayError;
 use pyo3::exceptions::PyOSError;
 use pyo3::import_exception;
@@ -120,10 +119,20 @@ impl IntoPyErr for AuthorError {
             Self::Model(error) => error.into_py_err(),
             Self::Read(error) => error.into_py_err(),
             Self::Asset(error) => error.into_py_err(),
-            Self::Write { path, error } => of_file(&path, &error),
-            Self::NothingFitted { .. } => ModelError::new_err(self.to_string()),
-            Self::GridText { .. } => option(self.to_string()),
-            other => RecordingError::new_err(other.to_string()),
+            Self::ReadAsset(error) => error.into_py_err(),
+            Self::Play(error) => error.into_py_err(),
+            Self::Module { file: path, error } | Self::Journal { path, error } => {
+                of_file(&path, &error)
+            }
+            Self::OtherQuantity { held, .. } => {
+                option(format!("{self}; give quantity=\"{}\"", held.name()))
+            }
+            other => match other.kind() {
+                AuthorErrorKind::Model => ModelError::new_err(other.to_string()),
+                AuthorErrorKind::Asset => AssetError::new_err(other.to_string()),
+                AuthorErrorKind::Recording => RecordingError::new_err(other.to_string()),
+                _ => option(other.to_string()),
+            },
         }
     }
 }
@@ -141,17 +150,5 @@ impl IntoPyErr for PlayError {
 impl IntoPyErr for htex_device::DeviceError {
     fn into_py_err(self) -> PyErr {
         SceneError::new_err(self.to_string())
-    }
-}
-
-impl IntoPyErr for TradeoffError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Author(error) => error.into_py_err(),
-            Self::Model(error) => error.into_py_err(),
-            Self::Store(error) => error.into_py_err(),
-            Self::Journal { path, error } => of_file(&path, &error),
-            other => option(other.to_string()),
-        }
     }
 }

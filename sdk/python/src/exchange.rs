@@ -6,8 +6,8 @@ use htex::format::Quantity;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::read_regular;
 use htex_exchange::{
-    Coding, ExchangeError, Export, FORMATS, Format, Import, ImportError, MOST_BYTES, PROFILES,
-    Physical, Profile, Stroke, Writes,
+    Coding, ExchangeError, Export, FORMATS, Format, Import, MOST_BYTES, PROFILES, Physical,
+    Profile, Stroke, Writes,
 };
 use htex_format::{license_file, read_license_file};
 use pyo3::prelude::*;
@@ -129,8 +129,8 @@ impl Importing {
 }
 
 impl Exporting {
-    fn export(&self, texture: &Texture) -> PyResult<htex_exchange::Exported> {
-        let format = Format::named(&self.to)
+    fn export(&self, texture: &Texture) -> PyResult<htex_exchange::ExportedFile> {
+        let format = Format::find(&self.to)
             .ok_or_else(|| unknown("to", &self.to, &htex_exchange::exported().join(", ")))?;
         let mut export = Export::new(format);
         export.path = self.path(texture)?;
@@ -184,7 +184,7 @@ impl IntoPyErr for ExchangeError {
             Self::Play(error) => error.into_py_err(),
             Self::Author(error) => error.into_py_err(),
             Self::File { .. } => Refused::new_err(self.to_string()),
-            other => option(other.told(&keyword)),
+            other => option(other.message_with(&keyword)),
         }
     }
 }
@@ -199,14 +199,4 @@ fn keyword(setting: &str) -> String {
         other => other,
     };
     format!("`{name}`")
-}
-
-impl IntoPyErr for ImportError {
-    fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Exchange(error) => error.into_py_err(),
-            Self::Author(error) => error.into_py_err(),
-            other => option(other.to_string()),
-        }
-    }
 }

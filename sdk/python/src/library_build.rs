@@ -31,12 +31,14 @@ impl Build {
         plugins: Vec<PathBuf>,
         no_removals: bool,
     ) -> PyResult<Self> {
-        let options = BuildOptions::new(TOOL)
-            .with_keep_going(keep_going)
-            .with_plugins(plugins)
-            .with_no_removals(no_removals);
         let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
-        let options = options.with_published(to.remote());
+        let options = BuildOptions {
+            keep_going,
+            plugins,
+            no_removals,
+            published: to.remote().cloned(),
+            ..BuildOptions::new(TOOL)
+        };
         let build = py
             .detach(|| htex_build::Build::open(&recipe, to.folder(), options))
             .map_err(|error| failed(&to, error))?;
@@ -93,7 +95,7 @@ impl Build {
                 self.1.publish().map(|_| built)
             })
             .map_err(|error| failed(&self.1, error))?;
-        let report = serde_json::to_value(&built.report);
+        let report = serde_json::to_value(&built);
         from_json(py, &report.map_err(|error| option(error.to_string()))?)
     }
 }

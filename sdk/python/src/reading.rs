@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use htex_author::recording::{
     ReadError, ReadOptions, ReadProblem, read_recording, recording_from_bytes,
 };
-use htex_author::settings::{ReadingSettings, SettingsError};
+use htex_author::settings::ReadingSettings;
 use htex_author::{
-    Exploration, Reading as ReadTake, Recording, SpectrumOptions, Take, TextureSpectrum, read_take,
+    AuthorError, Exploration, Recording, SegmentedTake, SpectrumOptions, Take, TextureSpectrum,
+    segment_take,
 };
 use htex_lab::record::KnownTake;
 use pyo3::prelude::*;
@@ -91,11 +92,11 @@ impl Reading {
     pub(crate) fn spectrum(
         &self,
         source: Source,
-    ) -> PyResult<(Recording, ReadTake, TextureSpectrum)> {
+    ) -> PyResult<(Recording, SegmentedTake, TextureSpectrum)> {
         let options = self.spectrum_options()?;
         let take = self.takes(&[source], &[])?.pop().ok_or_else(|| option("no recording"))?;
-        let read = read_take(&take, &options, self.strict()).map_err(raised)?;
-        let part = std::slice::from_ref(&read.part);
+        let read = segment_take(&take, &options, self.strict()).map_err(raised)?;
+        let part = std::slice::from_ref(&read.spectra);
         let spectrum = TextureSpectrum::average(part, options.averaging).map_err(raised)?;
         Ok((take.recording, read, spectrum))
     }
@@ -128,13 +129,11 @@ impl Reading {
     }
 
     /// Makes the exception for a setting.
-    pub(crate) fn raised(&self, error: SettingsError) -> PyErr {
+    pub(crate) fn raised(&self, error: AuthorError) -> PyErr {
         match (error, &self.settings().response) {
-            (SettingsError::Response(error), Some(file)) => unreadable(file, *error),
-            (SettingsError::Response(error), None) => (*error).into_py_err(),
-            (SettingsError::Model(error), _) => error.into_py_err(),
-            (SettingsError::Grid(error), _) => (*error).into_py_err(),
-            (other, _) => option(other.to_string()),
+            // The setup's response is the only file that settings read.
+            (AuthorError::Read(error), Some(file)) => unreadable(file, error),
+            (other, _) => other.into_py_err(),
         }
     }
 }

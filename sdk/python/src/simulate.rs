@@ -1,14 +1,12 @@
 //! Simulated recordings.
 
 use htex_author::settings::GivenLaw;
-use htex_author::simulate::{
-    Departures, FreeMotion, Simulation, SimulationError, SimulationOptions, Surface,
-};
+use htex_author::simulate::{Departures, FreeMotion, Simulation, SimulationOptions, Surface};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::errors::{IntoPyErr, option, raised};
+use crate::errors::{option, raised};
 
 /// A column of a recording: its name and its values.
 type Column<'py> = (&'static str, Bound<'py, PyArray1<f64>>);
@@ -110,10 +108,4 @@ fn written(options: &SimulationOptions) -> PyResult<(Simulation, Vec<u8>)> {
     let mut csv = Vec::new();
     simulation.write_csv(&mut csv)?;
     Ok((simulation, csv))
-}
-
-impl IntoPyErr for SimulationError {
-    fn into_py_err(self) -> PyErr {
-        option(self.to_string())
-    }
 }

@@ -165,7 +165,7 @@ impl ReadProblem {
         Fault::from(self).in_file(file)
     }
 
-    pub(crate) fn at(self, place: impl Into<Place>) -> Fault {
+    pub(crate) fn at_place(self, place: impl Into<Place>) -> Fault {
         Fault { place: Some(place.into()), problem: self }
     }
 
@@ -176,7 +176,7 @@ impl ReadProblem {
 
 /// Returns the fault for a cell that is not a finite number.
 pub(crate) fn cell(row: Place, column: &str, problem: String) -> Fault {
-    ReadProblem::Cell(problem).at(format!("{row}, column {column:?}"))
+    ReadProblem::Cell(problem).at_place(format!("{row}, column {column:?}"))
 }
 
 /// A problem, with its place in the file that is being read.

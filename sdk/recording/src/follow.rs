@@ -2,12 +2,12 @@
 
 use htex_base::finding::Notice;
 
-use crate::columns::assemble::{Assembled, Signals};
+use crate::columns::assemble::{Signals, TimedRecording};
 use crate::columns::map::Role;
 use crate::columns::select::select_motion;
 use crate::error::{Fault, ReadError, ReadProblem};
 use crate::formats;
-use crate::input::{Opened, file_name};
+use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::recording::Recording;
 use crate::sheet::Sheet;
@@ -24,7 +24,7 @@ const GAP_S: f64 = 0.2;
 /// Adds the tracked speed to a recording and cuts the recording to the time that both cover.
 pub(crate) fn follow(
     tracker: &Tracker,
-    assembled: Assembled,
+    assembled: TimedRecording,
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
     let (mut recording, time_s) = (assembled.recording, assembled.time_s);
@@ -65,17 +65,17 @@ pub(crate) fn follow(
 fn read(file: &str, tracker: &Tracker, options: &ReadOptions) -> Result<Motion, Fault> {
     let own = ReadOptions::default().with_most_values(options.most_values);
     let opened = match &tracker.bytes {
-        Some(bytes) => Opened::bytes(&tracker.path, bytes)?,
-        None => Opened::file(&tracker.path)?,
+        Some(bytes) => InputFile::bytes(&tracker.path, bytes)?,
+        None => InputFile::file(&tracker.path)?,
     };
     let mut sheet = formats::open(opened, &own)?;
     let selection = select_motion(sheet.columns(), tracker.map.as_ref())?;
     let mut signals = Signals::read(&mut *sheet, &selection)?;
-    let path = match signals.take(Role::Speed) {
+    let path = match signals.take_signal(Role::Speed) {
         Some(speed) => Path::Speed(speed.into_iter().map(f64::abs).collect()),
         None => Path::Position(signals.take_all(&[Role::X, Role::Y])),
     };
-    let time_s = match signals.take(Role::Time) {
+    let time_s = match signals.take_signal(Role::Time) {
         Some(time_s) => time_s,
         None => {
             let rate_hz = sheet.rate_hz(signals.wanted())?;
@@ -102,7 +102,7 @@ fn check_time(sheet: &dyn Sheet, time_s: &[f64]) -> Result<(), Fault> {
         time_s[row],
         time_s[row + 1]
     );
-    Err(ReadProblem::Invalid(problem).at(sheet.place(row + 1)))
+    Err(ReadProblem::Invalid(problem).at_place(sheet.place(row + 1)))
 }
 
 /// Returns a warning about the longest gap, if it is too long.

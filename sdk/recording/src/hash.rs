@@ -10,10 +10,10 @@ use std::time::SystemTime;
 /// A file is hashed only when provenance asks for it. Hashing on every read would read the file a
 /// second time, which takes a tenth longer.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct RecordedFile(Known);
+pub struct RecordedFile(FileIdentity);
 
 #[derive(Debug, Clone, PartialEq, Default)]
-enum Known {
+enum FileIdentity {
     /// The recording does not come from a file, or comes from one that can be read only once, such
     /// as a pipe.
     #[default]
@@ -24,26 +24,26 @@ enum Known {
 
 impl RecordedFile {
     /// The file at a path, in its present version.
-    pub(crate) fn at(path: &Path) -> Self {
+    pub(crate) fn of_path(path: &Path) -> Self {
         let known = || {
-            let version = Version::of(path)?;
-            Some(Known::File(std::path::absolute(path).ok()?, version))
+            let version = Version::read(path)?;
+            Some(FileIdentity::File(std::path::absolute(path).ok()?, version))
         };
         Self(known().unwrap_or_default())
     }
 
     /// A file whose bytes are in memory.
     pub fn of_bytes(bytes: &[u8]) -> Self {
-        Self(Known::Hash(blake3::hash(bytes).to_hex().to_string()))
+        Self(FileIdentity::Hash(blake3::hash(bytes).to_hex().to_string()))
     }
 
     /// BLAKE3 of the file's bytes, 64 hexadecimal digits. `None` if there is no file, if the file
     /// has changed since it was read, or if it can no longer be read.
     pub fn blake3(&self) -> Option<String> {
         match &self.0 {
-            Known::Nothing => None,
-            Known::Hash(hash) => Some(hash.clone()),
-            Known::File(path, version) => of_file(path, *version).ok().flatten(),
+            FileIdentity::Nothing => None,
+            FileIdentity::Hash(hash) => Some(hash.clone()),
+            FileIdentity::File(path, version) => of_file(path, *version).ok().flatten(),
         }
     }
 }
@@ -57,7 +57,7 @@ struct Version {
 
 impl Version {
     /// `None` if the path is not a regular file, such as a pipe, which can be read only once.
-    fn of(path: &Path) -> Option<Self> {
+    fn read(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok()?;
         metadata.is_file().then(|| Self::of_metadata(&metadata))
     }

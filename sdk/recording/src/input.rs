@@ -16,6 +16,8 @@ const FRONT: usize = 4096;
 
 /// A file, or bytes in memory.
 enum Input<'a> {
+    /// A file of which one byte more than the limit is read, so that its end is never taken for the
+    /// end of a longer one.
     File(Take<File>),
     Bytes(&'a [u8]),
 }
@@ -23,14 +25,24 @@ enum Input<'a> {
 impl Read for Input<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self {
-            Self::File(file) => file.read(buffer),
+            Self::File(file) => {
+                let read = file.read(buffer)?;
+                // The size of a pipe or a growing file is not known before it is read.
+                if read > 0 && file.limit() == 0 {
+                    return Err(io::Error::new(
+                        io::ErrorKind::FileTooLarge,
+                        "it has more bytes than the limit; cut the recording into parts",
+                    ));
+                }
+                Ok(read)
+            }
             Self::Bytes(bytes) => bytes.read(buffer),
         }
     }
 }
 
 /// An input whose first bytes have been read.
-pub(crate) struct Opened<'a> {
+pub(crate) struct InputFile<'a> {
     /// Its path, needed for the extension.
     pub(crate) path: PathBuf,
     /// The first bytes.
@@ -38,7 +50,7 @@ pub(crate) struct Opened<'a> {
     rest: Input<'a>,
 }
 
-impl Opened<'static> {
+impl InputFile<'static> {
     /// Opens a file with a size limit.
     pub(crate) fn file(path: &Path) -> Result<Self, Fault> {
         let file = File::open(path)?;
@@ -47,12 +59,16 @@ impl Opened<'static> {
             let limit = MAX_BYTES;
             return Err(ReadProblem::TooLarge { bytes, limit }.into());
         }
-        // The size of a pipe or a growing file is not known in advance.
-        Self::new(path, Input::File(file.take(MAX_BYTES)))
+        Self::limited(path, file, MAX_BYTES)
+    }
+
+    /// Uses an open file of which at most `most_bytes` can be read.
+    fn limited(path: &Path, file: File, most_bytes: u64) -> Result<Self, Fault> {
+        Self::new(path, Input::File(file.take(most_bytes + 1)))
     }
 }
 
-impl<'a> Opened<'a> {
+impl<'a> InputFile<'a> {
     /// Uses bytes in place of a file; `path` is not opened.
     pub(crate) fn bytes(path: &Path, bytes: &'a [u8]) -> Result<Self, Fault> {
         Self::new(path, Input::Bytes(bytes))
@@ -72,26 +88,18 @@ impl<'a> Opened<'a> {
 
     /// Returns the input for random access. An input that can be read only once, such as a pipe, is
     /// read into memory.
-    pub(crate) fn random(self) -> io::Result<Random> {
-        let mut bytes = self.front;
-        match self.rest {
-            Input::Bytes(rest) => {
-                bytes.extend_from_slice(rest);
-                Ok(Random::Bytes(Cursor::new(bytes)))
-            }
-            Input::File(taken) => from_file(taken, bytes),
+    pub(crate) fn random(mut self) -> io::Result<Random> {
+        if let Input::File(taken) = &mut self.rest
+            && taken.get_ref().metadata()?.is_file()
+        {
+            let mut file = taken.get_ref().try_clone()?;
+            file.seek(SeekFrom::Start(0))?;
+            return Ok(Random::File(file));
         }
+        let mut bytes = self.front;
+        self.rest.read_to_end(&mut bytes)?;
+        Ok(Random::Bytes(Cursor::new(bytes)))
     }
-}
-
-fn from_file(mut taken: Take<File>, mut front: Vec<u8>) -> io::Result<Random> {
-    if taken.get_ref().metadata()?.is_file() {
-        let mut file = taken.into_inner();
-        file.seek(SeekFrom::Start(0))?;
-        return Ok(Random::File(file));
-    }
-    taken.read_to_end(&mut front)?;
-    Ok(Random::Bytes(Cursor::new(front)))
 }
 
 /// An input for random access.
@@ -131,4 +139,28 @@ impl Seek for Random {
 /// Returns the file's name without its directory.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+mod tests {
+    use super::*;
+
+    /// A pipe states no size, so only reading shows that it is too long.
+    #[test]
+    fn an_input_beyond_the_limit_is_refused_and_not_cut() {
+        let read = |bytes: u64, limit: u64| {
+            let mut file = tempfile::tempfile().unwrap();
+            io::copy(&mut io::repeat(b'1').take(bytes), &mut file).unwrap();
+            file.seek(SeekFrom::Start(0)).unwrap();
+            let opened = InputFile::limited(Path::new("pipe.csv"), file, limit);
+            let mut all = Vec::new();
+            opened.ok()?.stream().read_to_end(&mut all).ok()
+        };
+        let front = FRONT as u64;
+        for limit in [10, front - 1, front, front + 10] {
+            assert_eq!(read(limit, limit), Some(limit as usize), "{limit}");
+            assert_eq!(read(limit + 1, limit), None, "{limit}");
+        }
+    }
 }

@@ -65,7 +65,7 @@ pub use hertz::hertz;
 pub use options::ReadOptions;
 pub use preview::{Preview, PreviewColumn, preview};
 pub use recording::{MAX_RATE_HZ, Recording, RecordingError};
-pub use response::{Raised, SetupResponse, raised, read_response, response_from_bytes};
+pub use response::{RaisedRanges, SetupResponse, raised, read_response, response_from_bytes};
 pub use sums::Sums;
 pub use trace::{
     StrokeColumns, TraceColumns, read_stroke, read_trace, stroke_from_bytes, trace_from_bytes,
@@ -77,7 +77,7 @@ pub use velocity::velocity;
 use columns::assemble::assemble;
 use error::Fault;
 use follow::follow;
-use input::{Opened, file_name};
+use input::{InputFile, file_name};
 
 /// Reads a recording. The kind of file is detected by its first bytes, or by its extension if it
 /// has no known signature.
@@ -89,8 +89,8 @@ use input::{Opened, file_name};
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
     // Before the file is read, so that a change during the reading makes the hash unknown instead
     // of wrong.
-    let file = RecordedFile::at(path);
-    let recording = read(path, || Opened::file(path), options)?;
+    let file = RecordedFile::of_path(path);
+    let recording = read(path, || InputFile::file(path), options)?;
     Ok(Recording { file, ..recording })
 }
 
@@ -103,14 +103,14 @@ pub fn recording_from_bytes(
     bytes: &[u8],
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
-    let recording = read(path, || Opened::bytes(path, bytes), options)?;
+    let recording = read(path, || InputFile::bytes(path, bytes), options)?;
     let file = RecordedFile::of_bytes(bytes);
     Ok(Recording { file, ..recording })
 }
 
 fn read<'a>(
     path: &Path,
-    open: impl FnOnce() -> Result<Opened<'a>, Fault>,
+    open: impl FnOnce() -> Result<InputFile<'a>, Fault>,
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
     let file = file_name(path);

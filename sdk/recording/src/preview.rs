@@ -8,7 +8,7 @@ use crate::columns::names::base_unit;
 use crate::columns::select::{Selection, Values, select};
 use crate::error::{Fault, ReadError};
 use crate::formats;
-use crate::input::{Opened, file_name};
+use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Layout, Sheet};
 use htex_format::Quantity;
@@ -71,12 +71,13 @@ pub struct PreviewColumn {
 pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Preview, ReadError> {
     let previewed = || {
         options.check()?;
-        let sheet = formats::open(Opened::bytes(path, bytes)?, options)?;
+        let sheet = formats::open(InputFile::bytes(path, bytes)?, options)?;
         let bytes = match sheet.layout() {
             Layout::Text => beginning(bytes),
             Layout::Channels { .. } | Layout::Named => bytes,
         };
-        let first = first_numbers(&*sheet, || formats::open(Opened::bytes(path, bytes)?, options));
+        let first =
+            first_numbers(&*sheet, || formats::open(InputFile::bytes(path, bytes)?, options));
         Ok(of_sheet(&*sheet, first, options))
     };
     previewed().map_err(|fault: Fault| fault.in_file(&file_name(path)))
@@ -142,7 +143,7 @@ fn of_sheet(sheet: &dyn Sheet, first: Vec<Vec<f64>>, options: &ReadOptions) -> P
 }
 
 impl PreviewColumn {
-    fn take(&mut self, role: Role, scale: f64, quantity: Quantity) {
+    fn assign_role(&mut self, role: Role, scale: f64, quantity: Quantity) {
         self.role = Some(role);
         self.scale = scale;
         self.unit = base_unit(role, quantity);
@@ -169,7 +170,7 @@ fn by_order(columns: &mut [PreviewColumn], options: &ReadOptions) -> Result<(), 
     };
     let scale = options.scale.unwrap_or(1.0);
     for (column, role) in columns.iter_mut().zip(roles) {
-        column.take(*role, scale, options.quantity);
+        column.assign_role(*role, scale, options.quantity);
     }
     Ok(())
 }
@@ -184,7 +185,7 @@ fn by_name(selection: &Selection, columns: &mut [PreviewColumn], quantity: Quant
         };
         let first = chosen.columns().first().copied().unwrap_or_default();
         if let Some(column) = columns.get_mut(first) {
-            column.take(chosen.role, scale, quantity);
+            column.assign_role(chosen.role, scale, quantity);
         }
     }
 }

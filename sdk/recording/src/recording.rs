@@ -93,7 +93,7 @@ impl Recording {
     /// Creates a recording of a lateral force with one or two axes, in newtons.
     ///
     /// # Errors
-    /// As [`Self::of`].
+    /// As [`Self::from_axes`].
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -107,7 +107,7 @@ impl Recording {
         rate_hz: f64,
         axes: Vec<Vec<f64>>,
     ) -> Result<Self, RecordingError> {
-        Self::of(Quantity::LateralForce, source, rate_hz, axes)
+        Self::from_axes(Quantity::LateralForce, source, rate_hz, axes)
     }
 
     /// Creates a recording without normal force, speed or warnings. `axes` are in the quantity's
@@ -122,11 +122,11 @@ impl Recording {
     /// # use htex_recording::Recording;
     /// # use htex_format::Quantity;
     /// let axes = vec![vec![0.1, -0.2], vec![0.0, 0.3], vec![9.8, 9.9]];
-    /// let tool = Recording::of(Quantity::Acceleration, "tool.csv", 10_000.0, axes)?;
+    /// let tool = Recording::from_axes(Quantity::Acceleration, "tool.csv", 10_000.0, axes)?;
     /// assert_eq!((tool.axes.len(), tool.quantity.unit()), (3, "m/s2"));
     /// # Ok::<(), htex_recording::RecordingError>(())
     /// ```
-    pub fn of(
+    pub fn from_axes(
         quantity: Quantity,
         source: impl Into<String>,
         rate_hz: f64,

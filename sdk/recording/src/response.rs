@@ -7,7 +7,7 @@ use htex_dsp::grid::Band;
 
 use crate::error::{Fault, ReadError, ReadProblem};
 use crate::formats::csv::Csv;
-use crate::input::{Opened, file_name};
+use crate::input::{InputFile, file_name};
 use crate::sheet::{Columns, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -44,11 +44,11 @@ impl SetupResponse {
     ///     magnitude: vec![1.0, 2.0],
     ///     phase_rad: vec![0.0, 0.0],
     /// };
-    /// assert_eq!(response.at(510.0), (1.5, 0.0));
-    /// assert_eq!(response.at(5000.0), (2.0, 0.0));
+    /// assert_eq!(response.value_at(510.0), (1.5, 0.0));
+    /// assert_eq!(response.value_at(5000.0), (2.0, 0.0));
     /// ```
     #[must_use]
-    pub fn at(&self, frequency_hz: f64) -> (f64, f64) {
+    pub fn value_at(&self, frequency_hz: f64) -> (f64, f64) {
         // Magnitude and phase are interpolated and not the complex numbers, whose mean is too small
         // where the phase turns between two points.
         let above = self.frequency_hz.partition_point(|f| *f <= frequency_hz);
@@ -68,7 +68,7 @@ impl SetupResponse {
     /// Returns the largest magnitude in a band, edges included.
     #[must_use]
     pub fn largest_in(&self, band: Band) -> f64 {
-        let edges = [band.low_hz, band.high_hz].map(|hz| self.at(hz));
+        let edges = [band.low_hz, band.high_hz].map(|hz| self.value_at(hz));
         let inside = |hz: &f64| band.contains(*hz);
         let both = self.frequency_hz.iter().zip(&self.magnitude);
         let sampled = both.filter(|(hz, _)| inside(hz)).map(|(_, m)| *m);
@@ -96,14 +96,14 @@ impl SetupResponse {
 /// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, and by how
 /// much.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Raised {
+pub struct RaisedRanges {
     /// For each stretch, its lowest and highest frequency in hertz, and its largest gain in
     /// decibels.
     pub stretches: Vec<(f64, f64, f64)>,
 }
 
 /// Returns the stretches of a grid in which gains exceed 10 dB; `None` if there are none.
-pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<Raised> {
+pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<RaisedRanges> {
     let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
     let mut goes_on = false;
     for (&hz, gain) in frequency_hz.iter().zip(gains) {
@@ -116,10 +116,10 @@ pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<
         }
         goes_on = is_raised;
     }
-    (!stretches.is_empty()).then_some(Raised { stretches })
+    (!stretches.is_empty()).then_some(RaisedRanges { stretches })
 }
 
-impl fmt::Display for Raised {
+impl fmt::Display for RaisedRanges {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (low_hz, high_hz, most_db)) in self.stretches.iter().enumerate() {
             let comma = if i > 0 { ", " } else { "" };
@@ -136,7 +136,7 @@ impl fmt::Display for Raised {
 /// The errors of [`read_recording`](crate::read_recording) for a CSV. Also, with the line number, a
 /// frequency that is negative or does not increase, or a negative magnitude.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
-    let read = Opened::file(path).and_then(response);
+    let read = InputFile::file(path).and_then(response);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
@@ -145,11 +145,11 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
 /// # Errors
 /// As [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
-    let read = Opened::bytes(Path::new(file), bytes).and_then(response);
+    let read = InputFile::bytes(Path::new(file), bytes).and_then(response);
     read.map_err(|fault| fault.in_file(file))
 }
 
-fn response(opened: Opened<'_>) -> Result<SetupResponse, Fault> {
+fn response(opened: InputFile<'_>) -> Result<SetupResponse, Fault> {
     let mut csv = Csv::open(opened, ValueLimit::default())?;
     let columns = csv.columns();
     let mut wanted = vec![column(columns, "frequency_hz")?, column(columns, "magnitude")?];
@@ -161,7 +161,7 @@ fn response(opened: Opened<'_>) -> Result<SetupResponse, Fault> {
     let phase_rad = columns.next().unwrap_or_else(|| vec![0.0; frequency_hz.len()]);
     if let Some(row) = phase_rad.iter().position(|phase| phase.abs() > LARGEST) {
         let problem = format!("the phase {} rad is beyond {LARGEST}", phase_rad[row]);
-        return Err(ReadProblem::Invalid(problem).at(csv.place(row)));
+        return Err(ReadProblem::Invalid(problem).at_place(csv.place(row)));
     }
     Ok(SetupResponse { frequency_hz, magnitude, phase_rad: unwrapped(phase_rad) })
 }
@@ -178,7 +178,7 @@ fn column(columns: &Columns, name: &str) -> Result<usize, ReadProblem> {
 
 fn check(csv: &Csv<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(), Fault> {
     let refuse =
-        |row: usize, problem: String| Err(ReadProblem::Invalid(problem).at(csv.place(row)));
+        |row: usize, problem: String| Err(ReadProblem::Invalid(problem).at_place(csv.place(row)));
     for (row, (frequency, magnitude)) in frequency_hz.iter().zip(magnitude).enumerate() {
         if *frequency < 0.0 {
             return refuse(row, format!("the frequency {frequency} Hz is negative"));

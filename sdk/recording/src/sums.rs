@@ -6,7 +6,7 @@ pub struct Sums(Vec<f64>);
 impl Sums {
     /// Adds up `values`.
     #[must_use]
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub fn new(values: impl Iterator<Item = f64>) -> Self {
         let mut sum = 0.0;
         let mut sums = Vec::with_capacity(values.size_hint().0 + 1);
         sums.push(sum);
@@ -43,11 +43,11 @@ mod tests {
 
     #[test]
     fn means_shrink_at_the_ends() {
-        let sums = Sums::of([1.0, 2.0, 6.0, 7.0].into_iter());
+        let sums = Sums::new([1.0, 2.0, 6.0, 7.0].into_iter());
         let means = |half| [0, 1, 2, 3].map(|at| sums.mean_around(at, half));
         assert_eq!(means(0), [1.0, 2.0, 6.0, 7.0]);
         assert_eq!(means(1), [1.5, 3.0, 5.0, 6.5]);
         assert_eq!(means(9), [4.0; 4]);
-        assert_eq!(Sums::of(std::iter::empty()).mean(0, 0), 0.0);
+        assert_eq!(Sums::new(std::iter::empty()).mean(0, 0), 0.0);
     }
 }

@@ -8,7 +8,7 @@ use crate::columns::map::Role;
 use crate::columns::names::{Unit, base_unit, recognise};
 use crate::error::{Fault, ReadError, ReadProblem};
 use crate::formats::csv::Csv;
-use crate::input::{Opened, file_name};
+use crate::input::{InputFile, file_name};
 use crate::sheet::{Columns, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -41,7 +41,7 @@ pub struct TraceColumns {
 /// The errors of [`read_recording`](crate::read_recording) for a CSV. Also, with the line number, a
 /// time that does not increase by at least a nanosecond, or a number beyond 1e9.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
-    let read = Opened::file(path).and_then(trace);
+    let read = InputFile::file(path).and_then(trace);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
@@ -50,7 +50,7 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
 /// # Errors
 /// As [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
-    let read = Opened::bytes(Path::new(file), bytes).and_then(trace);
+    let read = InputFile::bytes(Path::new(file), bytes).and_then(trace);
     read.map_err(|fault| fault.in_file(file))
 }
 
@@ -73,7 +73,7 @@ pub struct StrokeColumns {
 /// # Errors
 /// As [`read_trace`].
 pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
-    let read = Opened::file(path).and_then(stroke);
+    let read = InputFile::file(path).and_then(stroke);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
@@ -82,11 +82,11 @@ pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
 /// # Errors
 /// As [`read_stroke`].
 pub fn stroke_from_bytes(file: &str, bytes: &[u8]) -> Result<StrokeColumns, ReadError> {
-    let read = Opened::bytes(Path::new(file), bytes).and_then(stroke);
+    let read = InputFile::bytes(Path::new(file), bytes).and_then(stroke);
     read.map_err(|fault| fault.in_file(file))
 }
 
-fn stroke(opened: Opened<'_>) -> Result<StrokeColumns, Fault> {
+fn stroke(opened: InputFile<'_>) -> Result<StrokeColumns, Fault> {
     let mut csv = Csv::open(opened, ValueLimit::default())?;
     let columns = csv.columns();
     let mut warnings = Vec::new();
@@ -124,7 +124,7 @@ fn along(trace: TraceColumns) -> StrokeColumns {
     }
 }
 
-fn trace(opened: Opened<'_>) -> Result<TraceColumns, Fault> {
+fn trace(opened: InputFile<'_>) -> Result<TraceColumns, Fault> {
     traced(Csv::open(opened, ValueLimit::default())?)
 }
 
@@ -225,7 +225,7 @@ fn check_size(csv: &Csv<'_>, values: &[f64]) -> Result<(), Fault> {
         None => Ok(()),
         Some(row) => {
             let problem = format!("{} is beyond {LARGEST}; correct its unit", values[row]);
-            Err(ReadProblem::Invalid(problem).at(csv.place(row)))
+            Err(ReadProblem::Invalid(problem).at_place(csv.place(row)))
         }
     }
 }
@@ -239,5 +239,5 @@ fn check_time(csv: &Csv<'_>, t_s: &[f64]) -> Result<(), Fault> {
         "the time after {before} s is {after} s; it must increase on every row by a nanosecond or more (a column with too \
          few decimals repeats values)"
     );
-    Err(ReadProblem::Invalid(problem).at(csv.place(row + 1)))
+    Err(ReadProblem::Invalid(problem).at_place(csv.place(row + 1)))
 }

@@ -37,8 +37,8 @@ pub fn velocity(t_s: &[f64], position: &[f64], at_s: impl IntoIterator<Item = f6
     let (mut here, mut after) = (before.clone(), before.clone());
     let at = |t: f64| {
         let t = t.clamp(reach_s, end_s - reach_s);
-        let outer = before.at(t - reach_s) + after.at(t + reach_s);
-        (outer - 2.0 * here.at(t)) / (reach_s * reach_s)
+        let outer = before.value_at(t - reach_s) + after.value_at(t + reach_s);
+        (outer - 2.0 * here.value_at(t)) / (reach_s * reach_s)
     };
     at_s.map(at).collect()
 }
@@ -64,7 +64,7 @@ impl<'a> Integral<'a> {
         (self.t_s[row], self.position[row] - self.position[0])
     }
 
-    fn at(&mut self, t_s: f64) -> f64 {
+    fn value_at(&mut self, t_s: f64) -> f64 {
         let last = self.t_s.len() - 1;
         // It stops one row early, so that a time at the end still has a row after it.
         while self.row + 1 < last && self.t_s[self.row + 1] <= t_s {

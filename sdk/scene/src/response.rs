@@ -4,7 +4,7 @@ use std::path::Path;
 
 use htex_dsp::grid::Band;
 use htex_play::Texture;
-use htex_recording::{Raised, raised, read_response, response_from_bytes};
+use htex_recording::{RaisedRanges, raised, read_response, response_from_bytes};
 use htex_recording::{ReadError, ReadProblem};
 
 pub use htex_recording::SetupResponse as Response;
@@ -65,7 +65,7 @@ impl Inverse {
     /// magnitude in the band. It is near 1/|H| and at most 1/(2 floor), and 0 where the response is
     /// 0.
     pub(crate) fn gain_at(&self, frequency_hz: f64) -> f64 {
-        let (re, im) = self.response.at(frequency_hz);
+        let (re, im) = self.response.value_at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;
         let gain = part / (part * part + self.floor * self.floor);
         // If the response is 0 in the whole band, this is 0 / 0.
@@ -78,7 +78,7 @@ impl Inverse {
     }
 
     /// Returns which part of the band is amplified, and by how much.
-    pub(crate) fn raised(&self) -> Option<Raised> {
+    pub(crate) fn raised(&self) -> Option<RaisedRanges> {
         let grid = self.band.grid_hz();
         raised(&grid, grid.iter().map(|&hz| self.gain_at(hz)))
     }

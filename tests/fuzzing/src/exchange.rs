@@ -1,7 +1,8 @@
 //! Third-party texture formats.
 
+use htex_exchange::Naming;
 use htex_exchange::haptic::Metadata;
-use htex_exchange::hatt::{Imported, asset, read};
+use htex_exchange::hatt::{asset, read};
 use htex_exchange::{
     Ahap, Export, Format, Haptic, Hjif, Import, MOST_S, PROFILES, Pattern, Physical, combined,
     export, import, recording_of,
@@ -12,7 +13,7 @@ use crate::promise::sentence;
 /// Reads a model file of the Penn Haptic Texture Toolkit. If it is valid, it must become an asset
 /// that opens and has finite magnitudes at each node.
 pub fn hatt(input: &[u8]) -> bool {
-    let imported = Imported { name: "fuzzed", tool: "fuzz" };
+    let imported = Naming { name: "fuzzed", tool: "fuzz" };
     let texture = match read(input) {
         Ok(texture) => texture,
         Err(fault) => return refused(&fault),
@@ -48,7 +49,7 @@ pub fn haptic(input: &[u8]) -> bool {
     if let Ok(file) = &read {
         let pattern = file.pattern(&PROFILES[0]);
         let metadata = Metadata::default();
-        let again = Haptic::of(&pattern, &PROFILES[0], metadata).to_bytes();
+        let again = Haptic::from_pattern(&pattern, &PROFILES[0], metadata).to_bytes();
         let again = Haptic::from_bytes(&again).expect("what was written is read");
         same_end(&pattern, &again.pattern(&PROFILES[0]));
     }
@@ -64,7 +65,7 @@ pub fn ahap(input: &[u8]) -> bool {
         let is_short = patterns.iter().all(|pattern| pattern.end_s() <= MOST_S);
         if patterns.len() < 100 && is_short {
             let pattern = combined(&patterns);
-            let again = Ahap::of(&pattern, &PROFILES[0]).to_bytes();
+            let again = Ahap::from_pattern(&pattern, &PROFILES[0]).to_bytes();
             let again = Ahap::from_bytes(&again).expect("what was written is read");
             same_end(&pattern, &combined(&again.patterns(&PROFILES[0])));
         }
@@ -96,7 +97,7 @@ pub fn gltf(input: &[u8]) -> bool {
     };
     let bytes = imported.to_bytes().expect("it is held");
     assert_eq!(read.ok().map(|texture| texture.bytes).as_ref(), Some(&bytes));
-    let format = Format::named("gltf").expect("it is in the table");
+    let format = Format::find("gltf").expect("it is in the table");
     let mut how = Export::new(format);
     how.file = Some(&bytes);
     let asset = htex::Texture::with_registry(imported.asset, registry);
@@ -136,7 +137,7 @@ pub fn png(input: &[u8]) -> bool {
     };
     let bytes = imported.to_bytes().expect("an asset is written");
     let asset = htex::Texture::from_bytes(&bytes).expect("what was written opens");
-    let format = Format::named("png").expect("it is in the table");
+    let format = Format::find("png").expect("it is in the table");
     let again = export(&asset, &Export::new(format)).expect("a map is exported");
     let again = htex_exchange::map::read(&again.bytes).expect("what was written is read");
     assert_eq!((again.width, again.grey), (image.width, image.grey));

@@ -1,13 +1,13 @@
 //! Recipes of libraries, and results of jobs.
 
 use htex_base::finding::plain;
-use htex_build::{BuildError, Made, Recipe};
+use htex_build::{BuildError, JobResult, Recipe};
 
 use crate::promise::sentence;
 
 /// Reads the input as a recipe and as the result of a job.
 pub fn recipe(input: &[u8]) -> bool {
-    let made = taken(Made::from_bytes("key", input).and_then(|made| made.to_bytes("key")));
+    let made = taken(JobResult::from_bytes("key", input).and_then(|made| made.to_bytes("key")));
     let Ok(text) = std::str::from_utf8(input) else {
         return made;
     };

@@ -7,7 +7,7 @@ use htex_author::recording::{
 };
 use htex_author::{
     Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take, TextureSpectrum,
-    read_take, recording_findings,
+    recording_findings, segment_take,
 };
 use htex_scene::Trace;
 
@@ -99,12 +99,12 @@ fn take_spectra(recording: &Recording) {
     for segments in [SegmentChoice::Auto, SegmentChoice::Sweeps, SegmentChoice::Windows] {
         let options = SpectrumOptions::default().with_segments(segments);
         let take = Take { recording: recording.clone(), given: Exploration::default() };
-        let parts = match read_take(&take, &options, false) {
+        let parts = match segment_take(&take, &options, false) {
             Ok(reading) => {
                 reading.warnings.iter().chain(&reading.notes).for_each(sentence);
-                finite("speed", reading.condition.speed_mm_s);
-                finite("force", reading.condition.force_n);
-                [reading.part]
+                finite("speed", reading.motion.speed_mm_s);
+                finite("force", reading.motion.force_n);
+                [reading.spectra]
             }
             Err(error) => {
                 sentence(&error);

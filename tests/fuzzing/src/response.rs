@@ -15,7 +15,7 @@ pub fn response_csv(input: &[u8]) -> bool {
         }
     };
     for frequency_hz in [0.0, 20.0, 99.5, 1000.0, f64::MAX] {
-        let (re, im) = response.at(frequency_hz);
+        let (re, im) = response.value_at(frequency_hz);
         finite("response", [re, im]);
     }
     let steps: Vec<f64> = (0..40).map(|i| f64::from(i % 7)).collect();

@@ -104,8 +104,9 @@ fn signals_of_others() -> Vec<Seed> {
             frequency_hz: 150.0,
         }],
     };
-    let haptic = htex_exchange::Haptic::of(&pattern, profile, Default::default()).to_bytes();
-    let ahap = htex_exchange::Ahap::of(&pattern, profile).to_bytes();
+    let haptic =
+        htex_exchange::Haptic::from_pattern(&pattern, profile, Default::default()).to_bytes();
+    let ahap = htex_exchange::Ahap::from_pattern(&pattern, profile).to_bytes();
     let controls = br#"{"Version": 1.0, "Metadata": {"Project": "seed"}, "Pattern": [
         {"Event": {"Time": 0.0, "EventType": "HapticContinuous", "EventDuration": 0.3, "EventParameters": [
             {"ParameterID": "HapticIntensity", "ParameterValue": 0.8}, {"ParameterID": "AttackTime", "ParameterValue": 0.1}]}},
@@ -146,7 +147,7 @@ fn meshes(registry: &Registry) -> Vec<Seed> {
     let model = registry.models().first().expect("a built-in model");
     let bytes = asset(model).to_bytes().expect("a sound asset");
     let opened = htex::Texture::from_bytes(&bytes).expect("what was written opens");
-    let format = htex_exchange::Format::named("gltf").expect("it is in the table");
+    let format = htex_exchange::Format::find("gltf").expect("it is in the table");
     let mesh = |extension| {
         let mut how = htex_exchange::Export::new(format);
         how.extension = Some(extension);
@@ -162,7 +163,7 @@ fn images(registry: &Registry) -> Vec<Seed> {
     let model = registry.find("sslope").expect("a built-in model");
     let bytes = asset(model).to_bytes().expect("a sound asset");
     let opened = htex::Texture::from_bytes(&bytes).expect("what was written opens");
-    let format = htex_exchange::Format::named("png").expect("it is in the table");
+    let format = htex_exchange::Format::find("png").expect("it is in the table");
     let mut how = htex_exchange::Export::new(format);
     how.path = htex_exchange::Path::Condition(Some(htex::Motion::new(80.0, 0.4)));
     let made = htex_exchange::export(&opened, &how).expect("a texture is exported");

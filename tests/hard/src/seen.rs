@@ -66,7 +66,7 @@ pub fn fit(model: &LoadedModel, magnitude: &[f64]) -> Result<Fit, HostError> {
 /// Fits every model except those named, and runs every operation on the parameters. Returns the
 /// largest sample relative to its RMS. If anything fails, returns NaN and prints a line to standard
 /// output.
-pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
+pub(crate) fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
     let magnitude = spectrum(signal);
     let (mut largest, mut failed) = (0.0, false);
     for model in models() {
@@ -85,19 +85,19 @@ pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
 }
 
 /// As [`every_model_but`], without exceptions.
-pub fn every_model(signal: &[f64]) -> f64 {
+pub(crate) fn every_model(signal: &[f64]) -> f64 {
     every_model_but(&[], signal)
 }
 
 /// The error with which a model refuses to fit a signal; a text if it does not refuse.
 pub fn refusal(name: &str, signal: &[f64]) -> String {
-    told(fit(&model(name), &spectrum(signal)))
+    outcome_text(fit(&model(name), &spectrum(signal)))
 }
 
 /// The models' refusals, if all refuse with the same status.
-pub fn refusal_of_all(signal: &[f64]) -> String {
+pub(crate) fn refusal_of_all(signal: &[f64]) -> String {
     let magnitude = spectrum(signal);
-    let said = |model: &LoadedModel| told(fit(model, &magnitude));
+    let said = |model: &LoadedModel| outcome_text(fit(model, &magnitude));
     let all: Vec<String> = models().iter().map(said).collect();
     match all.iter().find(|text| !text.contains("CannotFit")) {
         Some(other) => other.clone(),
@@ -106,7 +106,7 @@ pub fn refusal_of_all(signal: &[f64]) -> String {
 }
 
 /// Status and message of an error; a text if there was none.
-pub fn told<T>(result: Result<T, HostError>) -> String {
+pub fn outcome_text<T>(result: Result<T, HostError>) -> String {
     match result {
         Ok(_) => "it was done".to_owned(),
         Err(HostError::Call { status, message, .. }) => format!("{status:?}: {message}"),

@@ -8,7 +8,7 @@ pub const RATE_HZ: f64 = 20_000.0;
 pub const SAMPLES: usize = 40_000;
 
 /// Samples of a function of time in seconds.
-pub fn of_time(f: impl Fn(f64) -> f64) -> Vec<f64> {
+pub(crate) fn of_time(f: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..SAMPLES).map(|i| f(i as f64 / RATE_HZ)).collect()
 }
 
@@ -62,6 +62,6 @@ pub fn quantised(a: &[f64], step: f64) -> Vec<f64> {
 }
 
 /// Two tones, the second 120 dB below the first.
-pub fn far_apart() -> Vec<f64> {
+pub(crate) fn far_apart() -> Vec<f64> {
     sum(&tone(50.0), &scaled(&tone(700.0), 1e-6))
 }

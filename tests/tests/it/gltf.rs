@@ -33,7 +33,7 @@ fn ran(script: &str, files: &[PathBuf]) -> Value {
 fn written(extension: &str) -> Vec<u8> {
     let seed = workspace().join("fuzz/seeds/open_asset/vinyl");
     let file = std::fs::read(seed).unwrap();
-    let mut how = Export::new(Format::named("gltf").unwrap());
+    let mut how = Export::new(Format::find("gltf").unwrap());
     how.extension = Some(extension);
     how.file = Some(&file);
     export(&Texture::from_bytes(&file).unwrap(), &how).unwrap().bytes

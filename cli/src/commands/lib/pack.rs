@@ -111,7 +111,8 @@ impl Serialize for PackReport<'_> {
 
 impl Display for PackReport<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let PackSummary { entries, bytes, index_bytes, shared_objects, saved_bytes, .. } = &self.packed;
+        let PackSummary { entries, bytes, index_bytes, shared_objects, saved_bytes, .. } =
+            &self.packed;
         let textures = if *entries == 1 { "texture" } else { "textures" };
         writeln!(
             f,

@@ -1,14 +1,13 @@
 //! Mixing two textures into one between them.
 
 use htex_format::{
-    Asset, AtCondition, Condition, How, Ingredient, Made, Manifest, Representation, Triangle,
-    round_within,
+    Asset, AtCondition, Condition, How, Ingredient, Made, Manifest, Provenance, Representation,
+    Triangle, round_within,
 };
 use htex_host::LoadedModel;
 use htex_play::Motion;
 
-use super::{ByHandError, Frame};
-use crate::stored::stored_fields;
+use crate::{AuthorError, new_asset, representation, stored_fields};
 
 /// A texture to mix, with the hash of its file.
 #[derive(Debug, Clone, Copy)]
@@ -44,11 +43,11 @@ pub fn mix(
     weight: f64,
     name: &str,
     tool: &str,
-) -> Result<Asset, ByHandError> {
+) -> Result<Asset, AuthorError> {
     if !(0.0..=1.0).contains(&weight) {
-        return Err(ByHandError::Weight { weight });
+        return Err(AuthorError::Weight { weight });
     }
-    let different = |problem: String| ByHandError::Different {
+    let different = |problem: String| AuthorError::NotMixable {
         a: a.name().to_owned(),
         b: b.name().to_owned(),
         problem,
@@ -67,7 +66,7 @@ pub fn mix(
             let model = a.asset.representation(&id[..])?.model()?;
             mixed(&model, (a, b), weight, &conditions)
         })
-        .collect::<Result<Vec<_>, ByHandError>>()?;
+        .collect::<Result<Vec<_>, AuthorError>>()?;
     if mixed.is_empty() {
         let problem = format!(
             "no model describes both ({} and {}); fit them with the same model",
@@ -91,23 +90,21 @@ pub fn mix(
         lost.then(|| triangles_warning(&made.model))
     });
     let warnings: Vec<String> = warnings.collect();
-    let frame = Frame {
-        name: name.to_owned(),
-        quantity: manifest.quantity,
-        band: manifest.band,
+    let simulated = [a, b].map(|part| part.asset.manifest().provenance.simulated);
+    let provenance = Provenance {
         tool: tool.to_owned(),
-        made: Made {
+        simulated: simulated.contains(&true),
+        made: Some(Made {
             how: How::Mixed,
             from: vec![ingredient(a, 1.0 - weight), ingredient(b, weight)],
-        },
-        conditions,
-        contact: heavier.contact,
-        law: heavier.law(),
+        }),
+        warnings,
+        ..Provenance::default()
     };
-    let mut asset = frame.asset(mixed);
-    asset.manifest.provenance.warnings = warnings;
-    let simulated = [a, b].map(|part| part.asset.manifest().provenance.simulated);
-    asset.manifest.provenance.simulated = simulated.contains(&true);
+    let (quantity, band) = (manifest.quantity, manifest.band);
+    let mut asset = new_asset(name, quantity, band, provenance, conditions, mixed);
+    asset.manifest.contact = heavier.contact;
+    asset.manifest.law = Some(heavier.law());
     Ok(asset)
 }
 
@@ -191,7 +188,7 @@ fn mixed(
     (a, b): (MixedAsset<'_>, MixedAsset<'_>),
     weight: f64,
     conditions: &[Condition],
-) -> Result<(Representation, Vec<Vec<f64>>), ByHandError> {
+) -> Result<(Representation, Vec<Vec<f64>>), AuthorError> {
     let fields = stored_fields(model.descriptor());
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
     for (condition, place) in conditions.iter().enumerate() {
@@ -215,13 +212,5 @@ fn mixed(
             left_out: None,
         });
     }
-    let representation = Representation {
-        model: model.id().to_owned(),
-        model_version: model.descriptor().version.clone(),
-        fields,
-        at,
-        triangles: Vec::new(),
-        parameters: format!("parameters/{}.bin", model.short_name()),
-    };
-    Ok((representation, parameters))
+    Ok((representation(model, at), parameters))
 }

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use htex_format::{
-    Asset, AtCondition, Condition, Contact, How, Law, Made, Quantity, Representation, round_within,
+    Asset, AtCondition, Condition, Contact, How, Law, Made, Provenance, Quantity, Representation,
+    round_within,
 };
 use htex_host::{Band, Field, Kind, LoadedModel};
 
 use super::mix::is_same;
-use super::{ByHandError, Frame};
-use crate::stored::stored_fields;
+use crate::{AuthorError, new_asset, stored_fields};
 
 /// Highest frequency of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
@@ -54,7 +54,7 @@ impl ByHand {
 
     /// Sets speed and force.
     #[must_use]
-    pub fn at(mut self, condition: Condition) -> Self {
+    pub fn with_condition(mut self, condition: Condition) -> Self {
         self.condition = condition;
         self
     }
@@ -84,7 +84,7 @@ impl ByHand {
 /// # Errors
 /// When a parameter is unknown, missing or out of range, the level is out of the quantity's range,
 /// or the model refuses the parameters.
-pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError> {
+pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, AuthorError> {
     let at = ByHandAt {
         condition: texture.condition,
         values: texture.values.clone(),
@@ -135,10 +135,10 @@ pub struct ByHandAt {
 /// # Errors
 /// As [`make`]. Also when there is no model or no condition, or when only some conditions have a
 /// speed or a force.
-pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
+pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {
-        return Err(ByHandError::Band { low_hz, high_hz });
+        return Err(AuthorError::Band { low_hz, high_hz });
     }
     let all = texture.models.iter().flat_map(|model| &model.at);
     let conditions = distinct(all.map(|at| at.condition))?;
@@ -147,40 +147,38 @@ pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
         .iter()
         .map(|of| representation(of, texture, &conditions))
         .collect::<Result<Vec<_>, _>>()?;
-    let frame = Frame {
-        name: texture.name.clone(),
-        quantity: texture.quantity,
-        band: texture.band,
+    let provenance = Provenance {
         tool: texture.tool.clone(),
-        made: Made { how: How::Parameters, from: Vec::new() },
-        conditions,
-        contact: Contact::Unknown,
-        law: Law::assumed(texture.quantity, Contact::Unknown),
+        made: Some(Made { how: How::Parameters, from: Vec::new() }),
+        ..Provenance::default()
     };
-    Ok(frame.asset(made))
+    let (quantity, band) = (texture.quantity, texture.band);
+    let mut asset = new_asset(&texture.name, quantity, band, provenance, conditions, made);
+    asset.manifest.law = Some(Law::assumed(quantity, Contact::Unknown));
+    Ok(asset)
 }
 
 /// The conditions, with equal ones merged into one.
-fn distinct(all: impl Iterator<Item = Condition>) -> Result<Vec<Condition>, ByHandError> {
+fn distinct(all: impl Iterator<Item = Condition>) -> Result<Vec<Condition>, AuthorError> {
     let mut distinct: Vec<Condition> = Vec::new();
     for condition in all {
         let known = |c: &Condition| (c.speed_mm_s.is_some(), c.force_n.is_some());
         let first = distinct.first().map(known);
         if first.is_some_and(|first| first != known(&condition)) {
-            return Err(ByHandError::Conditions);
+            return Err(AuthorError::PartialConditions);
         }
         if !distinct.iter().any(|other| is_same(other, &condition)) {
             distinct.push(condition);
         }
     }
-    if distinct.is_empty() { Err(ByHandError::Empty) } else { Ok(distinct) }
+    if distinct.is_empty() { Err(AuthorError::NoParameters) } else { Ok(distinct) }
 }
 
 fn representation(
     of: &ByHandModel,
     texture: &ByHandModels,
     conditions: &[Condition],
-) -> Result<(Representation, Vec<Vec<f64>>), ByHandError> {
+) -> Result<(Representation, Vec<Vec<f64>>), AuthorError> {
     let (model, band) = (&of.model, texture.band);
     let fields = stored_fields(model.descriptor());
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
@@ -195,7 +193,7 @@ fn representation(
             None if model.descriptor().keeps_level => htex_dsp::grid::level_rms(&magnitude),
             None => {
                 let model = model.short_name().to_owned();
-                return Err(ByHandError::NoLevel { model });
+                return Err(AuthorError::NoLevel { model });
             }
         };
         check_level(level_rms, texture.quantity)?;
@@ -208,39 +206,31 @@ fn representation(
         });
         parameters.push(stored);
     }
-    let representation = Representation {
-        model: model.id().to_owned(),
-        model_version: model.descriptor().version.clone(),
-        fields,
-        at,
-        triangles: Vec::new(),
-        parameters: format!("parameters/{}.bin", model.short_name()),
-    };
-    Ok((representation, parameters))
+    Ok((crate::representation(model, at), parameters))
 }
 
-fn check_level(level_rms: f64, quantity: Quantity) -> Result<(), ByHandError> {
+fn check_level(level_rms: f64, quantity: Quantity) -> Result<(), AuthorError> {
     let most = quantity.largest_level();
     if (0.0..=most).contains(&level_rms) {
         return Ok(());
     }
-    Err(ByHandError::Level { level_rms, unit: quantity.unit(), most })
+    Err(AuthorError::LevelRange { level_rms, unit: quantity.unit(), most })
 }
 
 /// Flattens named values into the model's parameter array.
-fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<f64>, ByHandError> {
+fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<f64>, AuthorError> {
     let fields = &model.descriptor().fields;
     let named = || model.short_name().to_owned();
     if let Some(name) = values.keys().find(|name| !fields.iter().any(|f| f.name == **name)) {
         let (model, name) = (named(), name.clone());
         let there = words(fields.iter());
-        return Err(ByHandError::Unknown { model, name, there });
+        return Err(AuthorError::UnknownParameter { model, name, there });
     }
     let missing = fields.iter().filter(|f| f.default.is_none() && !values.contains_key(&f.name));
     let missing = words(missing);
     if !missing.is_empty() {
         let model = named();
-        return Err(ByHandError::Missing { model, missing });
+        return Err(AuthorError::MissingParameter { model, missing });
     }
     let mut flat = Vec::new();
     for field in fields {
@@ -253,8 +243,8 @@ fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<
 }
 
 /// Appends a field's values after checking its range.
-fn push(field: &Field, given: &[f64], flat: &mut Vec<f64>) -> Result<(), ByHandError> {
-    let wrong = |problem: String| ByHandError::Value {
+fn push(field: &Field, given: &[f64], flat: &mut Vec<f64>) -> Result<(), AuthorError> {
+    let wrong = |problem: String| AuthorError::ParameterValue {
         name: field.name.clone(),
         value: given.iter().map(f64::to_string).collect::<Vec<_>>().join(","),
         problem,

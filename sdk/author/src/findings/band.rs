@@ -54,7 +54,7 @@ pub(super) fn definition() -> String {
 
 /// Compares the power in the band with the power that leaks into it and with the power above it.
 pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
-    let Some(Powers { shown, long }) = Powers::of(recording) else {
+    let Some(Powers { shown, long }) = Powers::measure(recording) else {
         return;
     };
     let pointer = format!("/{}", recording.axis_name(0));
@@ -93,7 +93,7 @@ struct Powers {
 
 impl Powers {
     /// `None` if the recording has no segment, or its segments are too long.
-    fn of(recording: &Recording) -> Option<Self> {
+    fn measure(recording: &Recording) -> Option<Self> {
         let segments = choose_segments(recording, SegmentChoice::Auto);
         let (len, samples) = (segments.len, recording.samples());
         let long_len = (LONG * len).min(samples).min(MOST);

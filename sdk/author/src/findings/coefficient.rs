@@ -53,8 +53,8 @@ pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
 fn logarithms(recording: &Recording) -> Option<Vec<[f64; 2]>> {
     let normal = recording.normal_n.as_ref()?;
     let slides = sliding(recording);
-    let normal = Sums::of(normal.iter().copied());
-    let lateral = Sums::of((0..recording.samples()).map(|at| recording.magnitude_at(at)));
+    let normal = Sums::new(normal.iter().copied());
+    let lateral = Sums::new((0..recording.samples()).map(|at| recording.magnitude_at(at)));
     let len = segment_len(recording.rate_hz);
     let starts = (0..recording.samples().saturating_sub(len)).step_by(len);
     let windows = starts.filter(|from| slides[*from..from + len].iter().all(|slides| *slides));

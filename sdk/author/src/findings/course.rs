@@ -36,7 +36,7 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     if values.len() < FEWEST_SEGMENTS * segment_len(recording.rate_hz) {
         return false;
     }
-    let Some(centred) = Centred::of(values) else {
+    let Some(centred) = CentredValues::new(values) else {
         return false;
     };
     let pointer = format!("/{name}");
@@ -60,15 +60,15 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
 }
 
 /// An axis minus its mean, relative to its largest value, so that no square overflows.
-struct Centred {
+struct CentredValues {
     values: Vec<f64>,
     /// Sum of the squares.
     squares: f64,
 }
 
-impl Centred {
+impl CentredValues {
     /// `None` if all values of the axis are the same.
-    fn of(values: &[f64]) -> Option<Self> {
+    fn new(values: &[f64]) -> Option<Self> {
         let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         if largest == 0.0 || values.iter().all(|x| *x == values[0]) {
             return None;

@@ -4,13 +4,13 @@
 use htex_dsp::Band;
 use htex_dsp::bands::rms;
 use htex_dsp::spectrum::Complex;
-use htex_format::{Condition, Contact, Law, Quantity};
+use htex_format::{Contact, Law, Quantity};
 
 use super::cells::Cell;
 use super::folds::Fold;
 use super::paths::{Paths, Window};
 use super::played::{PlayedSpectra, levels_db};
-use crate::conditions::Group;
+use crate::conditions::ConditionSpectrum;
 use crate::{AuthorError, Averaging, TextureSpectrum};
 
 /// Fewest windows of a block that are compared with a prediction.
@@ -26,7 +26,7 @@ pub(super) struct Kind {
 }
 
 /// The windows of a left-out block that lie inside one cell.
-pub(crate) struct Held {
+pub(crate) struct HeldOutWindows {
     /// Index of the cell; in a [`LeftOutBlock`], index of its condition.
     pub(crate) cell: usize,
     /// Mean speed in mm/s and mean force in N of these windows.
@@ -36,22 +36,21 @@ pub(crate) struct Held {
 
 /// A grid fitted without one block of time, with the windows of that block.
 pub(crate) struct LeftOutBlock {
-    /// The conditions fitted to the rest of the time, in the order of `groups`.
-    pub(crate) conditions: Vec<Condition>,
-    pub(crate) groups: Vec<Group>,
-    pub(crate) held: Vec<Held>,
+    /// The conditions of the rest of the time.
+    pub(crate) rest: Vec<ConditionSpectrum>,
+    pub(crate) held_out: Vec<HeldOutWindows>,
     /// The law of those conditions.
     pub(crate) law: Law,
 }
 
 /// Averages the windows of a left-out block, cell by cell.
-pub(super) fn held(
+pub(super) fn held_out_windows(
     paths: &mut Paths<'_>,
     windows: &[Window],
     fold: &Fold,
     cells: &[Cell],
     kind: Kind,
-) -> Result<Vec<Held>, AuthorError> {
+) -> Result<Vec<HeldOutWindows>, AuthorError> {
     let mut all = Vec::new();
     for (index, cell) in cells.iter().enumerate() {
         let is_held = |i: &&usize| fold.held.binary_search(i).is_ok();
@@ -63,7 +62,7 @@ pub(super) fn held(
             own.iter().map(|i| windows[*i].motion[axis]).sum::<f64>() / own.len() as f64
         };
         let motion = [mean(0), mean(1)];
-        all.push(Held {
+        all.push(HeldOutWindows {
             cell: index,
             motion: motion.map(libm::exp),
             spectrum: averaged(paths, windows, &own, Some(motion[0]), kind)?,
@@ -89,11 +88,11 @@ pub(super) fn averaged(
     }
     let spectra: Vec<&[Complex<f64>]> = spectra.iter().map(Vec::as_slice).collect();
     let Kind { quantity, band, averaging, .. } = kind;
-    Ok(TextureSpectrum::of(quantity, band, &spectra, &spans, averaging))
+    Ok(TextureSpectrum::from_segments(quantity, band, &spectra, &spans, averaging))
 }
 
 /// Returns, in third octaves, how far the played spectra are from the left-out blocks, decibels.
-pub(super) fn errors_db(played: &PlayedSpectra, held: &[Held]) -> Vec<f64> {
+pub(super) fn errors_db(played: &PlayedSpectra, held: &[HeldOutWindows]) -> Vec<f64> {
     let mut errors = Vec::new();
     for one in held {
         let truth = levels_db(&one.spectrum, 1.0, 1.0);

@@ -2,35 +2,36 @@
 //! of the recording.
 
 use htex_dsp::bands::rms;
-use htex_format::{AtCondition, LeftOut, Measure, Measures};
+use htex_format::{LeftOut, Measure, Measures};
 use htex_host::LoadedModel;
 use htex_play::exploration::CEILING;
 use htex_play::{Conditions, Mesh, Motion};
 
-use super::held_out::{Held, LeftOutBlock};
-use super::played::motion;
-use crate::conditions::Group;
+use super::held_out::{HeldOutWindows, LeftOutBlock};
+use super::played::mesh_of;
+use crate::conditions::ConditionSpectrum;
+use crate::fit::ConditionFit;
 use crate::{AuthorError, agreement, read_spectrum};
 
 /// Returns the held-out error at each of `conditions` conditions. A block of time is left out, the
 /// model is fitted to the rest, and what a player makes near the condition is compared with the
 /// block; the error is the RMS over the blocks. `None` if no block has enough windows near the
-/// condition, or the rest does not reach it. `fit` returns the stored parameters and the level of a
-/// group.
+/// condition, or the rest does not reach it. `fit` fits the
+/// model at one condition.
 pub(crate) fn left_out(
     model: &LoadedModel,
     conditions: usize,
     blocks: &[LeftOutBlock],
-    mut fit: impl FnMut(&Group) -> Result<(Vec<f64>, f64), AuthorError>,
+    mut fit: impl FnMut(&ConditionSpectrum) -> Result<ConditionFit, AuthorError>,
 ) -> Vec<Option<LeftOut>> {
     let mut errors: Vec<Vec<Measures>> = vec![Vec::new(); conditions];
     for block in blocks {
-        let fits: Result<Vec<_>, _> = block.groups.iter().map(&mut fit).collect();
+        let fits: Result<Vec<_>, _> = block.rest.iter().map(&mut fit).collect();
         // If the model cannot be fitted to the rest of the recording, this block gives no error.
-        let Some(played) = fits.ok().and_then(|fits| Played::new(model, block, fits)) else {
+        let Some(played) = fits.ok().and_then(|fits| HeldOutGrid::new(model, block, fits)) else {
             continue;
         };
-        for held in &block.held {
+        for held in &block.held_out {
             let error = played.error(held);
             if let (Some(error), Some(all)) = (error, errors.get_mut(held.cell)) {
                 all.push(error);
@@ -50,38 +51,23 @@ pub(crate) fn left_out(
 }
 
 /// The conditions of a grid fitted without a block of time, as a player plays them.
-struct Played<'a> {
+struct HeldOutGrid<'a> {
     model: &'a LoadedModel,
     mesh: Mesh,
     conditions: Conditions,
-    fits: Vec<(Vec<f64>, f64)>,
+    fits: Vec<ConditionFit>,
 }
 
-impl<'a> Played<'a> {
-    fn new(
-        model: &'a LoadedModel,
-        block: &LeftOutBlock,
-        fits: Vec<(Vec<f64>, f64)>,
-    ) -> Option<Self> {
-        let points: Vec<[f64; 2]> = block.conditions.iter().map(motion).collect();
-        let at = |(condition, fit): (usize, &(Vec<f64>, f64))| AtCondition {
-            condition,
-            level_rms: fit.1,
-            quality: None,
-            left_out: None,
-        };
-        let at: Vec<AtCondition> = fits.iter().enumerate().map(at).collect();
-        (!points.is_empty()).then(|| Self {
-            model,
-            mesh: Mesh::new(&points),
-            conditions: Conditions::new(&at, &block.conditions, block.law),
-            fits,
-        })
+impl<'a> HeldOutGrid<'a> {
+    fn new(model: &'a LoadedModel, block: &LeftOutBlock, fits: Vec<ConditionFit>) -> Option<Self> {
+        let levels: Vec<f64> = fits.iter().map(|fit| fit.level_rms).collect();
+        let (mesh, conditions) = mesh_of(&block.rest, &levels, block.law)?;
+        Some(Self { model, mesh, conditions, fits })
     }
 
     /// Compares what is played at the motion of left-out windows with the spectrum of those
     /// windows.
-    fn error(&self, held: &Held) -> Option<Measures> {
+    fn error(&self, held: &HeldOutWindows) -> Option<Measures> {
         let reference = held.spectrum.as_ref();
         let magnitude = self.magnitude(held.motion, reference).ok()?;
         let error = agreement(reference, &magnitude);
@@ -98,9 +84,9 @@ impl<'a> Played<'a> {
         reference: crate::SpectrumRef<'_>,
     ) -> Result<Vec<f64>, AuthorError> {
         let weights: Vec<(usize, f64)> = self.mesh.weights(speed, force).iter().collect();
-        let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.fits[*i].0[..]).collect();
+        let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.fits[*i].stored[..]).collect();
         let parts: Vec<f64> = weights.iter().map(|(_, weight)| *weight).collect();
-        let level: f64 = weights.iter().map(|(i, w)| w * self.fits[*i].1).sum();
+        let level: f64 = weights.iter().map(|(i, w)| w * self.fits[*i].level_rms).sum();
         let mixed = match &sets[..] {
             [only] => only.to_vec(),
             _ => self.model.interpolate(&sets, &parts)?,

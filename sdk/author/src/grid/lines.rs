@@ -40,7 +40,7 @@ impl Lines {
         if motions.len() < FEWEST {
             return Err(AuthorError::GridFew { segments: motions.len(), needed: FEWEST });
         }
-        let [speed, force] = [0, 1].map(|axis| Covered::of(motions, axis));
+        let [speed, force] = [0, 1].map(|axis| LogRange::of_motions(motions, axis));
         if speed.is_constant() && force.is_constant() && speeds.is_none() && forces.is_none() {
             return Err(AuthorError::GridConstant {
                 speed_mm_s: [speed.low, speed.high].map(libm::exp),
@@ -67,13 +67,13 @@ impl Lines {
 }
 
 /// The range of speed or force that a chosen grid covers, as logarithms.
-struct Covered {
+struct LogRange {
     low: f64,
     high: f64,
 }
 
-impl Covered {
-    fn of(motions: &[[f64; 2]], axis: usize) -> Self {
+impl LogRange {
+    fn of_motions(motions: &[[f64; 2]], axis: usize) -> Self {
         let at = |part| quantile(part, motions.len(), |i| motions[i][axis]).unwrap_or(0.0);
         let [low, high] = COVERED.map(at);
         Self { low, high }

@@ -24,100 +24,111 @@ mod search;
 mod slopes;
 mod steady;
 
-use htex_base::finding::{Findings, Notice};
-use htex_dsp::Band;
-use htex_format::{Condition, Contact, Quantity};
-use htex_host::FitCondition;
+use htex_base::finding::Findings;
+use htex_format::Condition;
 
 pub(crate) use held_out::LeftOutBlock;
 pub(crate) use leave_out::left_out;
 pub use report::{CellStatus, GridCell, GridReport};
 pub use request::Grid;
 
-use crate::conditions::{Group, Grouped, four_digits};
+use crate::conditions::{
+    ConditionSpectra, ConditionSpectrum, RecordingsReport, contact, four_digits,
+};
 use crate::findings::GRID_NOT_BETTER;
-use crate::recording_finding::RecordingFinding;
-use crate::take::source_of;
-use crate::warnings::Warnings;
+use crate::law::law;
+use crate::take::{sentence, source_of};
 use crate::{AuthorError, SpectrumOptions, Take};
 use cells::Cell;
 use held_out::Kind;
 use paths::Window;
-use search::{Search, Searched};
-use steady::{Steady, read_steady};
+use search::{Search, SearchResult};
+use steady::read_steady;
 
 /// The conditions of a grid.
-pub(crate) struct Gridded {
-    pub(crate) grouped: Grouped,
+pub(crate) struct GridSpectra {
+    pub(crate) conditions: ConditionSpectra,
     pub(crate) report: GridReport,
     /// The grid fitted without each block of time, for the models' held-out errors.
     pub(crate) left_out: Vec<LeftOutBlock>,
 }
 
-/// Computes the spectra of the recordings' steady windows and averages them cell by cell.
-pub(crate) fn group_grid(
-    takes: &[Take],
-    grid: &Grid,
-    options: &SpectrumOptions,
-    strict: bool,
-    contact: Contact,
-) -> Result<Gridded, AuthorError> {
-    let (mut warnings, mut notes) = (Warnings::default(), Warnings::default());
-    let (mut all, mut sources) = (Vec::<Steady>::new(), Vec::new());
-    let mut findings = Vec::new();
-    for (index, take) in takes.iter().enumerate() {
-        let mut steady = read_steady(index, take, options, strict)?;
-        let source = &take.recording.source;
-        warnings.add(source, std::mem::take(&mut steady.warnings));
-        notes.add(source, std::mem::take(&mut steady.notes));
-        findings.extend(RecordingFinding::all(source, std::mem::take(&mut steady.findings)));
-        sources.push(source_of(take, steady.windows.len()));
-        all.push(steady);
+impl GridSpectra {
+    /// Computes the spectra of the recordings' steady windows and averages them cell by cell. Unlike
+    /// for plain conditions, the windows are read from the recordings over paths that depend on the
+    /// grid.
+    pub(crate) fn new(
+        takes: &[Take],
+        grid: &Grid,
+        options: &SpectrumOptions,
+        strict: bool,
+    ) -> Result<Self, AuthorError> {
+        let contact = contact(takes.iter().map(|take| take.recording.simulated));
+        let (mut windows, mut bands) = (Vec::<Window>::new(), Vec::new());
+        let mut recordings = RecordingsReport::default();
+        let mut looked_at = 0;
+        for (index, take) in takes.iter().enumerate() {
+            let recording = &take.recording;
+            let steady = read_steady(index, take, options.response.as_ref(), strict)?;
+            let source = source_of(recording, steady.windows.len());
+            recordings.add(source, recording.simulated, steady.notices, steady.findings);
+            looked_at += steady.looked_at;
+            windows.extend(steady.windows);
+            bands.push(steady.band);
+        }
+        let first = takes.first().zip(bands.first());
+        let (first, band) = first.ok_or(AuthorError::NoSegments { source_name: String::new() })?;
+        let quantity = first.recording.quantity;
+        if takes.iter().any(|take| take.recording.quantity != quantity) {
+            return Err(AuthorError::QuantitiesDiffer);
+        }
+        if bands.iter().any(|one| one != band) {
+            return Err(AuthorError::BandsDiffer);
+        }
+        let kind = Kind { quantity, band: *band, averaging: options.averaging, contact };
+        let response = options.response.as_ref();
+        let found = Search::new(takes, response, &windows, kind).best(grid)?;
+        let mut report = GridReport::new(looked_at, &windows, &found);
+        let SearchResult { gathered, left_out, .. } = found;
+        let mut all = Vec::new();
+        for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
+            let Some(spectrum) = spectrum else {
+                report.add_thin(cell);
+                continue;
+            };
+            report.add_fitted(cell, &spectrum, all.len());
+            let condition = Condition {
+                repeatability_rms_db: spectrum.repeatability_rms_db,
+                segments: Some(spectrum.segments as u64),
+                ..condition(cell)
+            };
+            all.push(ConditionSpectrum { condition, spectrum });
+        }
+        if all.is_empty() {
+            return Err(AuthorError::GridEmpty {
+                segments: windows.len(),
+                needed: lines::FEWEST,
+                motion: report.motion_text(),
+            });
+        }
+        report.add_mesh(&all);
+        judge(&report, takes, all.len(), &mut recordings);
+        let law = law(&all, contact);
+        Ok(Self {
+            conditions: ConditionSpectra { all, contact, law, recordings },
+            report,
+            left_out,
+        })
     }
-    let (quantity, band) = same_kind(&all)?;
-    let kind = Kind { quantity, band, averaging: options.averaging, contact };
-    let looked_at = all.iter().map(|steady| steady.looked_at).sum();
-    let windows: Vec<Window> = all.into_iter().flat_map(|steady| steady.windows).collect();
-    let searched = Search::new(takes, options, &windows, kind).best(grid)?;
-    let mut report = GridReport::new(looked_at, &windows, &searched);
-    let mut grouped = Grouped {
-        groups: Vec::new(),
-        conditions: Vec::new(),
-        sources,
-        warnings: warnings.into_notices(),
-        notes: notes.into_notices(),
-        findings,
-    };
-    let Searched { gathered, left_out, .. } = searched;
-    for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
-        let Some(spectrum) = spectrum else {
-            report.add_thin(cell);
-            continue;
-        };
-        report.add_fitted(cell, &spectrum, grouped.groups.len());
-        let condition = fit_condition(cell);
-        grouped.conditions.push(Condition {
-            speed_mm_s: condition.speed_mm_s,
-            force_n: condition.force_n,
-            repeatability_rms_db: spectrum.repeatability_rms_db,
-            segments: Some(spectrum.segments as u64),
-        });
-        grouped.groups.push(Group { spectrum, condition });
-    }
-    if grouped.groups.is_empty() {
-        return Err(AuthorError::GridEmpty {
-            segments: windows.len(),
-            needed: lines::FEWEST,
-            motion: report.motion_text(),
-        });
-    }
-    report.add_mesh(&grouped.conditions);
-    judge(&report, takes, &mut grouped);
-    Ok(Gridded { grouped, report, left_out })
 }
 
 /// Adds a finding if a single condition predicts the left-out blocks as well as the grid does.
-fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
+fn judge(
+    report: &GridReport,
+    takes: &[Take],
+    conditions: usize,
+    recordings: &mut RecordingsReport,
+) {
     let (Some(grid_db), Some(one_db)) = (report.left_out_rms_db, report.one_condition_rms_db)
     else {
         return;
@@ -126,7 +137,6 @@ fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
         return;
     }
     let mut findings = Findings::default();
-    let conditions = grouped.conditions.len();
     findings.add(
         GRID_NOT_BETTER,
         "",
@@ -136,29 +146,13 @@ fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
         ),
     );
     let names: Vec<&str> = takes.iter().map(|t| t.recording.source.as_str()).collect();
-    let name = names.join(", ");
-    for finding in findings.into_list() {
-        let text = format!("{name}: {}: {}", finding.code, finding.message);
-        grouped.warnings.push(Notice::new(text, finding.hint));
-        let found = RecordingFinding::all(&name, vec![finding]);
-        grouped.findings.extend(found);
-    }
+    let (name, findings) = (names.join(", "), findings.into_list());
+    recordings.warnings.add(&name, findings.iter().map(|f| sentence(&name, f)).collect());
+    recordings.add_findings(&name, findings);
 }
 
-/// Returns speed and force at a cell's crossing, to four digits.
-fn fit_condition(cell: &Cell) -> FitCondition {
-    let [speed, force] = cell.at.map(|log| four_digits(libm::exp(log)));
-    FitCondition { speed_mm_s: Some(speed), force_n: Some(force) }
-}
-
-/// Returns the quantity and band of the recordings, which must be the same for all.
-fn same_kind(all: &[Steady]) -> Result<(Quantity, Band), AuthorError> {
-    let first = all.first().ok_or(AuthorError::NoSegments { source_name: String::new() })?;
-    if all.iter().any(|one| one.quantity != first.quantity) {
-        return Err(AuthorError::QuantitiesDiffer);
-    }
-    if all.iter().any(|one| one.band != first.band) {
-        return Err(AuthorError::BandsDiffer);
-    }
-    Ok((first.quantity, first.band))
+/// Returns the condition of a cell, which has only its motion, to four digits.
+fn condition(cell: &Cell) -> Condition {
+    let [speed, force] = cell.at.map(|log| Some(four_digits(libm::exp(log))));
+    Condition { speed_mm_s: speed, force_n: force, ..Condition::default() }
 }

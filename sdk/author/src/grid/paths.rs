@@ -15,7 +15,7 @@ use htex_dsp::spectrum::Complex;
 
 use crate::blocks::Span;
 use crate::spectrum::{SegmentReader, Trend, inverse_at};
-use crate::{AuthorError, SpectrumOptions, Take};
+use crate::{AuthorError, SetupResponse, Take};
 
 /// Largest ratio between a window's speed and the line's speed that is compensated.
 pub(super) const MOST: f64 = 1.5;
@@ -39,15 +39,15 @@ pub(super) struct Window {
 /// A reader of the windows of some recordings.
 pub(super) struct Paths<'a> {
     takes: &'a [Take],
-    options: &'a SpectrumOptions,
+    response: Option<&'a SetupResponse>,
     band: Band,
     readers: BTreeMap<usize, SegmentReader>,
     inverses: BTreeMap<[usize; 2], Vec<Complex<f64>>>,
 }
 
 impl<'a> Paths<'a> {
-    pub(super) fn new(takes: &'a [Take], options: &'a SpectrumOptions, band: Band) -> Self {
-        Self { takes, options, band, readers: BTreeMap::new(), inverses: BTreeMap::new() }
+    pub(super) fn new(takes: &'a [Take], response: Option<&'a SetupResponse>, band: Band) -> Self {
+        Self { takes, response, band, readers: BTreeMap::new(), inverses: BTreeMap::new() }
     }
 
     /// Returns the spectrum of a window, read over the path of 0.2 s at the given logarithm of a
@@ -64,7 +64,7 @@ impl<'a> Paths<'a> {
         let reader =
             self.readers.entry(len).or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
         let mut bins = reader.read(&recording.axes, start)?;
-        if let Some(response) = &self.options.response {
+        if let Some(response) = self.response {
             // The bins carry the numbers of the line's frequencies, but the setup passed the
             // frequencies at which the finger really moved.
             let faster = window.len as f64 / len as f64;

@@ -1,11 +1,12 @@
 //! Recorded spectra played at other motions, as by a player whose model loses nothing.
 
-use htex_format::{AtCondition, Condition, Contact};
+use htex_format::{AtCondition, Condition, Contact, Law};
 use htex_play::exploration::CEILING;
 use htex_play::{Conditions, Mesh, Motion};
 
 use super::slopes::third_octaves;
 use crate::TextureSpectrum;
+use crate::conditions::ConditionSpectrum;
 use crate::law::law;
 
 /// Conditions with their spectra, interpolated and scaled as a player does it.
@@ -17,28 +18,13 @@ pub(super) struct PlayedSpectra {
 }
 
 impl PlayedSpectra {
-    /// Takes spectra with their conditions; `None` if there are none.
-    pub(super) fn new(
-        conditions: &[Condition],
-        spectra: Vec<TextureSpectrum>,
-        contact: Contact,
-    ) -> Option<Self> {
-        let levels = spectra.iter();
-        let level_rms: Vec<f64> = levels.map(|s| htex_dsp::grid::level_rms(&s.magnitude)).collect();
-        let at = |(condition, level_rms): (usize, &f64)| AtCondition {
-            condition,
-            level_rms: *level_rms,
-            quality: None,
-            left_out: None,
-        };
-        let at: Vec<AtCondition> = level_rms.iter().enumerate().map(at).collect();
-        let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
-        (!points.is_empty()).then(|| Self {
-            mesh: Mesh::new(&points),
-            conditions: Conditions::new(&at, conditions, law(conditions, &spectra, contact)),
-            spectra,
-            level_rms,
-        })
+    /// `None` if there is no condition.
+    pub(super) fn new(all: Vec<ConditionSpectrum>, contact: Contact) -> Option<Self> {
+        let level = |one: &ConditionSpectrum| htex_dsp::grid::level_rms(&one.spectrum.magnitude);
+        let level_rms: Vec<f64> = all.iter().map(level).collect();
+        let (mesh, conditions) = mesh_of(&all, &level_rms, law(&all, contact))?;
+        let spectra = all.into_iter().map(|one| one.spectrum).collect();
+        Some(Self { mesh, conditions, spectra, level_rms })
     }
 
     /// Returns the energies in third octaves at a motion, decibels.
@@ -82,6 +68,26 @@ pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) 
         10.0 * libm::log10(sum / (level_rms * level_rms))
     };
     third_octaves(spectrum.band).into_iter().map(energy).collect()
+}
+
+/// Returns the mesh and the motions by which a player interpolates between conditions with these
+/// levels; `None` if there is no condition.
+pub(super) fn mesh_of(
+    all: &[ConditionSpectrum],
+    level_rms: &[f64],
+    law: Law,
+) -> Option<(Mesh, Conditions)> {
+    let conditions: Vec<Condition> = all.iter().map(|one| one.condition).collect();
+    let at = |(condition, level_rms): (usize, &f64)| AtCondition {
+        condition,
+        level_rms: *level_rms,
+        quality: None,
+        left_out: None,
+    };
+    let at: Vec<AtCondition> = level_rms.iter().enumerate().map(at).collect();
+    let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
+    let is_any = !points.is_empty();
+    is_any.then(|| (Mesh::new(&points), Conditions::new(&at, &conditions, law)))
 }
 
 /// Returns speed and force of a condition, as a player uses them.

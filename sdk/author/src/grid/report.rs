@@ -1,15 +1,14 @@
 //! Report on a fitted grid.
 
-use htex_format::Condition;
 use htex_play::Mesh;
 use serde::Serialize;
 
 use super::cells::Cell;
 use super::paths::Window;
 use super::played::motion;
-use super::search::Searched;
+use super::search::SearchResult;
 use crate::TextureSpectrum;
-use crate::conditions::four_digits;
+use crate::conditions::{ConditionSpectrum, four_digits};
 
 /// Whether a cell became a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -74,8 +73,8 @@ pub struct GridReport {
 }
 
 impl GridReport {
-    pub(super) fn new(looked_at: usize, windows: &[Window], searched: &Searched) -> Self {
-        let lines = &searched.gathered.lines;
+    pub(super) fn new(looked_at: usize, windows: &[Window], found: &SearchResult) -> Self {
+        let lines = &found.gathered.lines;
         let natural = |axis: usize| {
             let values = lines.axes[axis].iter();
             values.map(|log| four_digits(libm::exp(*log))).collect()
@@ -85,8 +84,8 @@ impl GridReport {
             force_n: natural(1),
             windows: looked_at,
             steady: windows.len(),
-            left_out_rms_db: searched.left_out_rms_db,
-            one_condition_rms_db: searched.one_condition_rms_db,
+            left_out_rms_db: found.left_out_rms_db,
+            one_condition_rms_db: found.one_condition_rms_db,
             cells: Vec::new(),
             triangles: Vec::new(),
             motions: windows.iter().map(|w| w.motion.map(libm::exp)).collect(),
@@ -94,7 +93,7 @@ impl GridReport {
     }
 
     pub(super) fn add_thin(&mut self, cell: &Cell) {
-        self.cells.push(described(cell, CellStatus::Thin));
+        self.cells.push(grid_cell(cell, CellStatus::Thin));
     }
 
     pub(super) fn add_fitted(&mut self, cell: &Cell, spectrum: &TextureSpectrum, condition: usize) {
@@ -104,12 +103,12 @@ impl GridReport {
             averaged: spectrum.segments,
             repeatability_rms_db: spectrum.repeatability_rms_db,
             condition: Some(condition),
-            ..described(cell, status)
+            ..grid_cell(cell, status)
         });
     }
 
-    pub(super) fn add_mesh(&mut self, conditions: &[Condition]) {
-        let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
+    pub(super) fn add_mesh(&mut self, all: &[ConditionSpectrum]) {
+        let points: Vec<[f64; 2]> = all.iter().map(|one| motion(&one.condition)).collect();
         self.triangles = Mesh::new(&points).triangles().collect();
     }
 
@@ -131,7 +130,7 @@ impl GridReport {
     }
 }
 
-fn described(cell: &Cell, status: CellStatus) -> GridCell {
+fn grid_cell(cell: &Cell, status: CellStatus) -> GridCell {
     let [speed_mm_s, force_n] = cell.at.map(|log| four_digits(libm::exp(log)));
     GridCell {
         speed_mm_s,

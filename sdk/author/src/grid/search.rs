@@ -3,18 +3,20 @@
 use htex_format::Condition;
 
 use super::cells::{Cell, are_full, gather};
-use super::fit_condition;
+use super::condition;
 use super::folds::{Fold, folds};
-use super::held_out::{Held, Kind, LeftOutBlock, averaged, errors_db, held, rms_db};
+use super::held_out::{
+    HeldOutWindows, Kind, LeftOutBlock, averaged, errors_db, held_out_windows, rms_db,
+};
 use super::lines::Lines;
 use super::paths::{Paths, Window};
 use super::played::PlayedSpectra;
 use super::request::Grid;
-use super::slopes::{Read, corrected, read_around};
-use crate::conditions::{Group, four_digits};
+use super::slopes::{WindowSpectrum, corrected, read_around};
+use crate::conditions::{ConditionSpectrum, four_digits};
 use crate::findings::quantile;
 use crate::law::law;
-use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum};
+use crate::{AuthorError, SetupResponse, Take, TextureSpectrum};
 
 /// Ratios of neighbouring speeds that are tried: from an octave down to a twelfth of it. A player
 /// treats speeds within 5 % as one.
@@ -27,7 +29,7 @@ const COMPARED_RATIO: f64 = 1.19;
 const WORTH_DB: f64 = 0.02;
 
 /// The cells and their spectra for one choice of lines.
-pub(super) struct Gathered {
+pub(super) struct CellSpectra {
     pub(super) lines: Lines,
     pub(super) cells: Vec<Cell>,
     pub(super) spectra: Vec<Option<TextureSpectrum>>,
@@ -36,8 +38,8 @@ pub(super) struct Gathered {
 }
 
 /// The chosen lines and their error.
-pub(super) struct Searched {
-    pub(super) gathered: Gathered,
+pub(super) struct SearchResult {
+    pub(super) gathered: CellSpectra,
     /// RMS error of what is played for left-out blocks, in third octaves, decibels.
     pub(super) left_out_rms_db: Option<f64>,
     /// The same error when one condition serves all motions.
@@ -57,12 +59,12 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(super) fn new(
         takes: &'a [Take],
-        options: &'a SpectrumOptions,
+        response: Option<&'a SetupResponse>,
         windows: &'a [Window],
         kind: Kind,
     ) -> Self {
         Self {
-            paths: Paths::new(takes, options, kind.band),
+            paths: Paths::new(takes, response, kind.band),
             windows,
             motions: windows.iter().map(|window| window.motion).collect(),
             folds: folds(takes, windows).into(),
@@ -73,17 +75,17 @@ impl<'a> Search<'a> {
     /// Gathers windows around the given lines. If no speeds are given, uses the speed lines that
     /// best predict left-out blocks; if no block can be left out, lines a quarter of an octave
     /// apart.
-    pub(super) fn best(mut self, grid: &Grid) -> Result<Searched, AuthorError> {
+    pub(super) fn best(mut self, grid: &Grid) -> Result<SearchResult, AuthorError> {
         let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
         let all: Vec<usize> = (0..self.windows.len()).collect();
         let cells = gather(&lines, &self.motions, &all);
         // The same windows for all candidates: with cells of their own, denser grids would be
         // compared with fewer and better placed windows.
-        let compared = self.all_held(&cells)?;
+        let compared = self.all_held_out(&cells)?;
         let one_condition_rms_db = self.one_condition_db(&compared)?;
         let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
         let ratios = if is_chosen { &SPEED_RATIOS[..] } else { &[COMPARED_RATIO] };
-        let mut best: Option<(Gathered, f64)> = None;
+        let mut best: Option<(CellSpectra, f64)> = None;
         for ratio in ratios {
             let lines = Lines::choose(grid, &self.motions, *ratio)?;
             let cells = gather(&lines, &self.motions, &all);
@@ -103,7 +105,7 @@ impl<'a> Search<'a> {
         }
         let (gathered, error_db) =
             best.ok_or(AuthorError::NoSegments { source_name: String::new() })?;
-        Ok(Searched {
+        Ok(SearchResult {
             left_out: self.left_out(&gathered)?,
             left_out_rms_db: Some(error_db).filter(|db| db.is_finite()),
             gathered,
@@ -112,14 +114,14 @@ impl<'a> Search<'a> {
     }
 
     /// Averages the left-out windows of each block, cell by cell.
-    fn all_held(&mut self, cells: &[Cell]) -> Result<Vec<Vec<Held>>, AuthorError> {
+    fn all_held_out(&mut self, cells: &[Cell]) -> Result<Vec<Vec<HeldOutWindows>>, AuthorError> {
         let (paths, windows, kind) = (&mut self.paths, self.windows, self.kind);
         let folds = self.folds.iter();
-        folds.map(|fold| held(paths, windows, fold, cells, kind)).collect()
+        folds.map(|fold| held_out_windows(paths, windows, fold, cells, kind)).collect()
     }
 
     /// Averages the windows of all cells, once over the whole time and once without each block.
-    fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<Gathered, AuthorError> {
+    fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<CellSpectra, AuthorError> {
         let folds = self.folds.iter();
         let cells_without: Vec<Vec<Cell>> =
             folds.map(|fold| gather(&lines, &self.motions, &fold.known)).collect();
@@ -133,11 +135,11 @@ impl<'a> Search<'a> {
                 spectra.push(cells.get(i).and_then(|cell| self.spectrum(&reads, cell)));
             }
         }
-        Ok(Gathered { lines, cells, spectra, without })
+        Ok(CellSpectra { lines, cells, spectra, without })
     }
 
     /// Averages the windows of a cell, corrected to its crossing; `None` if there are too few.
-    fn spectrum(&self, reads: &[Read], cell: &Cell) -> Option<TextureSpectrum> {
+    fn spectrum(&self, reads: &[WindowSpectrum], cell: &Cell) -> Option<TextureSpectrum> {
         let used = cell.used()?;
         let kind = self.kind;
         let corrected = corrected(reads, cell, &used, kind.band);
@@ -146,19 +148,15 @@ impl<'a> Search<'a> {
         let spans: Vec<_> = used.iter().map(span).collect();
         let (quantity, band) = (kind.quantity, kind.band);
         let averaging = kind.averaging;
-        Some(TextureSpectrum::of(quantity, band, &spectra, &spans, averaging))
+        Some(TextureSpectrum::from_segments(quantity, band, &spectra, &spans, averaging))
     }
 
     /// Returns the error of a grid: each block of time is compared with what the grid fitted
     /// without it plays.
-    fn error_db(&self, gathered: &Gathered, compared: &[Vec<Held>]) -> Option<f64> {
+    fn error_db(&self, gathered: &CellSpectra, compared: &[Vec<HeldOutWindows>]) -> Option<f64> {
         let mut errors = Vec::new();
         for (spectra, held) in gathered.without.iter().zip(compared) {
-            let fitted = gathered.cells.iter().zip(spectra);
-            let (conditions, spectra) = fitted
-                .filter_map(|(cell, spectrum)| Some((condition(cell), spectrum.clone()?)))
-                .unzip::<_, _, Vec<_>, Vec<_>>();
-            let played = PlayedSpectra::new(&conditions, spectra, self.kind.contact)?;
+            let played = PlayedSpectra::new(gathered.conditions(spectra), self.kind.contact)?;
             errors.extend(errors_db(&played, held));
         }
         rms_db(&errors)
@@ -166,7 +164,10 @@ impl<'a> Search<'a> {
 
     /// Returns the error of a single condition for all motions: the mean of all windows, placed at
     /// their median motion.
-    fn one_condition_db(&mut self, compared: &[Vec<Held>]) -> Result<Option<f64>, AuthorError> {
+    fn one_condition_db(
+        &mut self,
+        compared: &[Vec<HeldOutWindows>],
+    ) -> Result<Option<f64>, AuthorError> {
         let mut errors = Vec::new();
         for (fold, held) in self.folds.iter().zip(compared) {
             let known = &fold.known;
@@ -182,52 +183,44 @@ impl<'a> Search<'a> {
                 force_n: median(1).map(four_digits),
                 ..Condition::default()
             };
-            let played = PlayedSpectra::new(&[condition], vec![spectrum], self.kind.contact);
+            let one = vec![ConditionSpectrum { condition, spectrum }];
+            let played = PlayedSpectra::new(one, self.kind.contact);
             errors.extend(played.iter().flat_map(|played| errors_db(played, held)));
         }
         Ok(rms_db(&errors))
     }
 
     /// Returns the chosen grid fitted without each block of time, together with the blocks.
-    fn left_out(&mut self, gathered: &Gathered) -> Result<Vec<LeftOutBlock>, AuthorError> {
+    fn left_out(&mut self, gathered: &CellSpectra) -> Result<Vec<LeftOutBlock>, AuthorError> {
         // Gathered again, because the blocks for models belong to the conditions of the chosen
         // lines.
-        let all_held = self.all_held(&gathered.cells)?;
-        let blocks = gathered.without.iter().zip(all_held);
-        let block = |(spectra, held): (&Vec<Option<TextureSpectrum>>, Vec<Held>)| {
-            let mut conditions = Vec::new();
-            let mut groups = Vec::new();
-            for (cell, spectrum) in gathered.cells.iter().zip(spectra) {
-                let Some(spectrum) = spectrum.clone() else {
-                    continue;
-                };
-                conditions.push(condition(cell));
-                groups.push(Group { spectrum, condition: fit_condition(cell) });
-            }
-            let spectra: Vec<TextureSpectrum> = groups.iter().map(|g| g.spectrum.clone()).collect();
-            LeftOutBlock {
-                law: law(&conditions, &spectra, self.kind.contact),
-                conditions,
-                groups,
-                held: of_conditions(held, gathered),
-            }
+        let all_held_out = self.all_held_out(&gathered.cells)?;
+        let blocks = gathered.without.iter().zip(all_held_out);
+        let block = |(spectra, held_out): (&Vec<Option<TextureSpectrum>>, _)| {
+            let rest = gathered.conditions(spectra);
+            let law = law(&rest, self.kind.contact);
+            LeftOutBlock { rest, held_out: gathered.of_conditions(held_out), law }
         };
         Ok(blocks.map(block).collect())
     }
 }
 
-/// Keeps the left-out windows whose cells are conditions, and replaces their cell index by the
-/// index of the condition.
-fn of_conditions(held: Vec<Held>, gathered: &Gathered) -> Vec<Held> {
-    let spectra = &gathered.spectra;
-    let is_fitted = |cell: usize| spectra.get(cell).is_some_and(Option::is_some);
-    let before = |cell: usize| spectra.iter().take(cell).flatten().count();
-    let kept = held.into_iter().filter(|one| is_fitted(one.cell));
-    kept.map(|one| Held { cell: before(one.cell), ..one }).collect()
-}
+impl CellSpectra {
+    /// Returns the cells that have one of these spectra, as conditions.
+    fn conditions(&self, spectra: &[Option<TextureSpectrum>]) -> Vec<ConditionSpectrum> {
+        let both = self.cells.iter().zip(spectra);
+        let with = both.filter_map(|(cell, spectrum)| {
+            Some(ConditionSpectrum { condition: condition(cell), spectrum: spectrum.clone()? })
+        });
+        with.collect()
+    }
 
-/// Returns the condition of a cell, which has only its motion.
-fn condition(cell: &Cell) -> Condition {
-    let motion = fit_condition(cell);
-    Condition { speed_mm_s: motion.speed_mm_s, force_n: motion.force_n, ..Condition::default() }
+    /// Keeps the left-out windows whose cells are conditions, and replaces their cell index by the
+    /// index of the condition.
+    fn of_conditions(&self, held_out: Vec<HeldOutWindows>) -> Vec<HeldOutWindows> {
+        let is_fitted = |cell: usize| self.spectra.get(cell).is_some_and(Option::is_some);
+        let before = |cell: usize| self.spectra.iter().take(cell).flatten().count();
+        let fitted = held_out.into_iter().filter(|one| is_fitted(one.cell));
+        fitted.map(|one| HeldOutWindows { cell: before(one.cell), ..one }).collect()
+    }
 }

@@ -24,7 +24,7 @@ const STEEPEST: f64 = 6.0;
 const FLOOR: f64 = 1e-9;
 
 /// The spectrum of a window over the path of its cell, with its motion.
-pub(super) struct Read {
+pub(super) struct WindowSpectrum {
     index: usize,
     motion: [f64; 2],
     spectrum: Vec<Complex<f64>>,
@@ -35,10 +35,10 @@ pub(super) fn read_around(
     paths: &mut Paths<'_>,
     windows: &[Window],
     cell: &Cell,
-) -> Result<Vec<Read>, AuthorError> {
+) -> Result<Vec<WindowSpectrum>, AuthorError> {
     let mut around = Vec::with_capacity(cell.around.len());
     for &index in &cell.around {
-        around.push(Read {
+        around.push(WindowSpectrum {
             index,
             motion: windows[index].motion,
             spectrum: paths.read(&windows[index], cell.at[0])?,
@@ -50,16 +50,16 @@ pub(super) fn read_around(
 /// Returns the spectra of the windows `used`, corrected to the crossing of their cell. `reads`
 /// holds all windows around the crossing.
 pub(super) fn corrected(
-    reads: &[Read],
+    reads: &[WindowSpectrum],
     cell: &Cell,
     used: &[usize],
     band: Band,
 ) -> Vec<Vec<Complex<f64>>> {
     let octaves = third_octaves(band);
-    let is_around = |read: &&Read| cell.around.binary_search(&read.index).is_ok();
-    let around: Vec<&Read> = reads.iter().filter(is_around).collect();
+    let is_around = |read: &&WindowSpectrum| cell.around.binary_search(&read.index).is_ok();
+    let around: Vec<&WindowSpectrum> = reads.iter().filter(is_around).collect();
     let slopes: Vec<[f64; 2]> = octaves.iter().map(|bins| slopes(&around, cell.at, bins)).collect();
-    let correct = |window: &&Read| {
+    let correct = |window: &&WindowSpectrum| {
         let mut spectrum = window.spectrum.clone();
         for (bins, slope) in octaves.iter().zip(&slopes) {
             let change = [0, 1].map(|axis| slope[axis] * (window.motion[axis] - cell.at[axis]));
@@ -70,7 +70,7 @@ pub(super) fn corrected(
         }
         spectrum
     };
-    let is_used = |window: &&&Read| used.binary_search(&window.index).is_ok();
+    let is_used = |window: &&&WindowSpectrum| used.binary_search(&window.index).is_ok();
     around.iter().filter(is_used).map(correct).collect()
 }
 
@@ -89,11 +89,11 @@ pub(super) fn third_octaves(band: Band) -> Vec<std::ops::Range<usize>> {
 }
 
 /// Returns the slopes of the logarithm of a band's energy over the logarithms of speed and force.
-fn slopes(windows: &[&Read], at: [f64; 2], bins: &std::ops::Range<usize>) -> [f64; 2] {
+fn slopes(windows: &[&WindowSpectrum], at: [f64; 2], bins: &std::ops::Range<usize>) -> [f64; 2] {
     if windows.len() < FEWEST {
         return [0.0; 2];
     }
-    let energy = |window: &&Read| {
+    let energy = |window: &&WindowSpectrum| {
         let bins = window.spectrum.get(bins.clone()).unwrap_or_default();
         bins.iter().map(Complex::norm_sqr).sum::<f64>()
     };
@@ -105,7 +105,7 @@ fn slopes(windows: &[&Read], at: [f64; 2], bins: &std::ops::Range<usize>) -> [f6
     }
     let logs: Vec<f64> = energies.iter().map(|e| libm::log(e + floor)).collect();
     let rows = || {
-        let place = |window: &&Read| [0, 1].map(|axis| window.motion[axis] - at[axis]);
+        let place = |window: &&WindowSpectrum| [0, 1].map(|axis| window.motion[axis] - at[axis]);
         windows.iter().map(place).zip(&logs)
     };
     let mean = |value: &dyn Fn([f64; 2], f64) -> f64| {

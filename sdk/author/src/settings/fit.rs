@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::setting::settings;
-use super::{OneOrMore, ReadingSettings, SettingsError, one_or_more};
-use crate::{AssetRequest, Grid, Level, ModelRequest};
+use super::{OneOrMore, ReadingSettings, one_or_more};
+use crate::{AssetRequest, AuthorError, Grid, Level, ModelRequest};
 
 settings! {
     /// Settings of fitting models; a missing one has its default.
@@ -23,7 +23,7 @@ settings! {
     ///     ..Default::default()
     /// };
     /// assert_eq!(settings.models(&Registry::builtin())?.len(), 1);
-    /// # Ok::<(), htex_author::settings::SettingsError>(())
+    /// # Ok::<(), htex_author::AuthorError>(())
     /// ```
     pub struct FitSettings {
         /// Models by short name or id, in the order of the representations. If missing, all that
@@ -134,12 +134,12 @@ impl FitSettings {
     ///
     /// # Errors
     /// When a text has another form.
-    pub fn add_options(&mut self, texts: &[String]) -> Result<(), SettingsError> {
+    pub fn add_options(&mut self, texts: &[String]) -> Result<(), AuthorError> {
         for text in texts {
             let (name, value) = text
                 .split_once('=')
                 .filter(|(name, _)| name.contains('.'))
-                .ok_or_else(|| SettingsError::OptionForm { text: text.clone() })?;
+                .ok_or_else(|| AuthorError::OptionForm { text: text.clone() })?;
             let value = OptionSetting::Text(value.to_owned());
             self.options.insert(name.to_owned(), value);
         }
@@ -150,17 +150,17 @@ impl FitSettings {
     ///
     /// # Errors
     /// When a model or an option is unknown, or an option names a model that is not being fitted.
-    pub fn models(&self, registry: &Registry) -> Result<Vec<ModelRequest>, SettingsError> {
+    pub fn models(&self, registry: &Registry) -> Result<Vec<ModelRequest>, AuthorError> {
         let models = named_models(registry, self.models.as_deref().unwrap_or_default())?;
         let mut options = Vec::new();
         for (name, value) in &self.options {
             // A model's id has dots of its own, so the option is what follows the last dot.
             let (owner, option) = name.rsplit_once('.').ok_or_else(|| {
                 let text = format!("{name}={value}");
-                SettingsError::OptionForm { text }
+                AuthorError::OptionForm { text }
             })?;
             if !models.iter().any(|model| is(model, owner)) {
-                return Err(SettingsError::ModelNotFitted {
+                return Err(AuthorError::ModelNotFitted {
                     model: owner.to_owned(),
                     name: option.to_owned(),
                     fitted: models.iter().map(|m| m.short_name().to_owned()).collect(),
@@ -202,7 +202,7 @@ impl FitSettings {
         reading: &ReadingSettings,
         name: &str,
         tool: &str,
-    ) -> Result<AssetRequest, SettingsError> {
+    ) -> Result<AssetRequest, AuthorError> {
         let mut recorded = reading.recorded();
         let options = self.options.iter();
         recorded.extend(options.map(|(name, value)| (name.clone(), value.to_string())));
@@ -211,16 +211,19 @@ impl FitSettings {
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
         // Only the models that come with this program: a plugin runs only where it is asked for.
         let builtin = registry.by_default().filter(|model| *model.origin() == Origin::Builtin);
-        Ok(AssetRequest::new(name)
-            .with_models(self.models(registry)?)
-            .with_spectrum(reading.spectrum_options()?)
-            .with_level(self.level.unwrap_or_default())
-            .with_alternatives(builtin.cloned().collect())
-            .with_grid(grid.transpose().map_err(|error| SettingsError::Grid(Box::new(error)))?)
-            .with_strict(self.strict.unwrap_or_default())
-            .with_keep_reference(self.keep_reference.unwrap_or_default())
-            .with_recorded_options(recorded)
-            .with_tool(tool))
+        Ok(AssetRequest {
+            name: name.to_owned(),
+            models: self.models(registry)?,
+            spectrum: reading.spectrum_options()?,
+            level: self.level.unwrap_or_default(),
+            alternatives: builtin.cloned().collect(),
+            strict: self.strict.unwrap_or_default(),
+            grid: grid.transpose()?,
+            keep_reference: self.keep_reference.unwrap_or_default(),
+            recorded_options: recorded,
+            tool: tool.to_owned(),
+            ..AssetRequest::default()
+        })
     }
 }
 

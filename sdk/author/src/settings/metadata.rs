@@ -1,7 +1,8 @@
 //! A texture's metadata.
 
+use super::GivenLaw;
 use super::setting::settings;
-use super::{GivenLaw, SettingsError};
+use crate::AuthorError;
 use htex_base::finding::Severity;
 use htex_format::{Contact, Law, Manifest, check_doi, check_license};
 
@@ -104,8 +105,8 @@ impl Metadata {
     ///
     /// # Errors
     /// When an entry would make the asset invalid.
-    pub fn check(&self) -> Result<Vec<String>, SettingsError> {
-        let refuse = |field, problem: String| Err(SettingsError::Metadata { field, problem });
+    pub fn check(&self) -> Result<Vec<String>, AuthorError> {
+        let refuse = |field, problem: String| Err(AuthorError::Metadata { field, problem });
         if self.name.as_deref().is_some_and(|name| name.trim().is_empty()) {
             return refuse("name", "the name is empty; give one".to_owned());
         }

@@ -6,7 +6,6 @@
 
 #[cfg(feature = "clap")]
 mod choices;
-mod error;
 mod fit;
 mod law;
 mod metadata;
@@ -14,7 +13,6 @@ mod one_or_more;
 mod reading;
 mod setting;
 
-pub use error::SettingsError;
 pub use fit::{FitSettings, OptionSetting, named_models};
 pub use law::GivenLaw;
 pub use metadata::Metadata;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use htex_format::Quantity;
 
+use super::one_or_more;
 use super::setting::settings;
-use super::{SettingsError, one_or_more};
-use crate::{Averaging, SegmentChoice, SpectrumOptions};
+use crate::{AuthorError, Averaging, SegmentChoice, SpectrumOptions};
 use htex_recording::read_response;
 use htex_recording::{ColumnMap, MAX_RATE_HZ, ReadOptions, Tracker};
 
@@ -18,7 +18,7 @@ settings! {
     /// let settings = ReadingSettings { rate_hz: Some(20_000.0), ..Default::default() };
     /// assert_eq!(settings.read_options(1)?[0].rate_hz, Some(20_000.0));
     /// assert_eq!(settings.recorded()["rate"], "20000");
-    /// # Ok::<(), htex_author::settings::SettingsError>(())
+    /// # Ok::<(), htex_author::AuthorError>(())
     /// ```
     pub struct ReadingSettings {
         /// Sample rate of the recordings, hertz, for files that do not state it.
@@ -130,7 +130,7 @@ impl ReadingSettings {
     ///
     /// # Errors
     /// When a map of columns cannot be read, or the number of trackers is neither one nor `count`.
-    pub fn read_options(&self, count: usize) -> Result<Vec<ReadOptions>, SettingsError> {
+    pub fn read_options(&self, count: usize) -> Result<Vec<ReadOptions>, AuthorError> {
         let options = ReadOptions::default()
             .with_rate_hz(self.rate_hz)
             .with_map(parsed("map", self.map.as_deref())?)
@@ -148,7 +148,7 @@ impl ReadingSettings {
             [] => Ok(vec![options; count]),
             [one] => Ok(vec![tracked(one); count]),
             all if all.len() == count => Ok(all.iter().map(tracked).collect()),
-            all => Err(SettingsError::Trackers { trackers: all.len(), recordings: count }),
+            all => Err(AuthorError::Trackers { trackers: all.len(), recordings: count }),
         }
     }
 
@@ -164,22 +164,20 @@ impl ReadingSettings {
     ///
     /// # Errors
     /// When the response cannot be read.
-    pub fn spectrum_options(&self) -> Result<SpectrumOptions, SettingsError> {
+    pub fn spectrum_options(&self) -> Result<SpectrumOptions, AuthorError> {
         let response = self.response.as_deref().map(read_response);
         Ok(SpectrumOptions::default()
             .with_segments(self.segments.unwrap_or_default())
             .with_averaging(self.averaging.unwrap_or_default())
-            .with_response(
-                response.transpose().map_err(|error| SettingsError::Response(Box::new(error)))?,
-            ))
+            .with_response(response.transpose()?))
     }
 }
 
 /// Reads a map of columns.
-fn parsed(keyword: &'static str, text: Option<&str>) -> Result<Option<ColumnMap>, SettingsError> {
+fn parsed(keyword: &'static str, text: Option<&str>) -> Result<Option<ColumnMap>, AuthorError> {
     let map = text.map(|text| {
         let map = text.parse::<ColumnMap>();
-        map.map_err(|error| SettingsError::Map {
+        map.map_err(|error| AuthorError::Map {
             keyword,
             text: text.to_owned(),
             error: Box::new(error),

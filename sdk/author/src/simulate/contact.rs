@@ -66,7 +66,7 @@ impl Material {
             Self::Piece(relief, path) => {
                 *path += distance;
                 let along_mm = if as_it_lies { finger.along_mm } else { to_and_fro(*path) };
-                [ACROSS.1, 0.0].map(|ahead| relief.at(along_mm + ahead, finger.across_mm))
+                [ACROSS.1, 0.0].map(|ahead| relief.height_at(along_mm + ahead, finger.across_mm))
             }
             Self::Endless(tracks) => {
                 let [across, along] = &mut **tracks;

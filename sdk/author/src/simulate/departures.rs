@@ -8,8 +8,9 @@
 
 use htex_dsp::normal::Normal;
 
+use super::check_range;
 use super::hand::Finger;
-use super::{SimulationError, check_range};
+use crate::AuthorError;
 
 /// The motion at which nothing departs: the paper's recording condition.
 const SPEED_MM_S: f64 = 80.0;
@@ -29,7 +30,7 @@ const TOUCHDOWN_S: f64 = 0.01;
 /// let tool = Departures::default().with_frequency_speed(0.0).with_level_speed(0.4);
 /// let options = SimulationOptions::new(Surface::Vinyl).with_duration_s(1.0).with_departures(tool);
 /// assert_eq!(simulate(&options)?.t_s.len(), 20_000);
-/// # Ok::<(), htex_author::simulate::SimulationError>(())
+/// # Ok::<(), htex_author::AuthorError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -91,7 +92,7 @@ impl Departures {
         Self { lifted, ..self }
     }
 
-    pub(super) fn check(&self) -> Result<(), SimulationError> {
+    pub(super) fn check(&self) -> Result<(), AuthorError> {
         let mut ranges = [
             ("frequency_speed", self.frequency_speed, -0.5, 2.0),
             ("level_speed", self.level_speed, -2.0, 2.0),
@@ -125,7 +126,7 @@ impl Departures {
 
     /// Describes the departures for the header of a file, each after a comma; empty if there are
     /// none.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn description(&self) -> String {
         let usual = Self::default();
         let parts = [
             ("frequency ~ speed^", self.frequency_speed, usual.frequency_speed, ""),

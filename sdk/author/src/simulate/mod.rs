@@ -33,12 +33,12 @@ mod write;
 
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::normal::Normal;
-use thiserror::Error;
 
 pub use departures::Departures;
 pub use surface::Surface;
 pub use truth::Truth;
 
+use crate::AuthorError;
 use contact::{Contact, Force, Material, Rig, sense};
 use departures::Course;
 use free::FreeHand;
@@ -54,36 +54,6 @@ use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
 const INNER_HZ: f64 = 20_000.0;
 /// Largest number of samples in a simulation.
 const MAX_SAMPLES: f64 = 2e7;
-
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SimulationError {
-    /// No surface has this name.
-    #[error(
-        "unknown surface {text:?}; the surfaces are sandpaper, fine-fabric, coarse-fabric, corrugated-paper and vinyl"
-    )]
-    Surface {
-        /// The given name, at most 40 characters.
-        text: String,
-    },
-    /// An option is out of range.
-    #[error("{option} is {value}; it must lie in {low}..={high}")]
-    Range {
-        /// Name of the option, including its unit.
-        option: &'static str,
-        value: f64,
-        low: f64,
-        high: f64,
-    },
-    /// The true spectrum of sweeps is not known, only that of a free motion.
-    #[error(
-        "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
-    )]
-    NoTruth,
-    /// The spectrum changes during the recording, so it has no single true value.
-    #[error("the true spectrum is known without drift and lifts only; leave them out")]
-    Unsteady,
-}
 
 /// The motion of the simulated hand.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -232,7 +202,7 @@ impl SimulationOptions {
     /// assert!((response.magnitude[124] - 1.73).abs() < 0.01, "at 620 Hz");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn setup_response(&self) -> Result<SetupResponse, SimulationError> {
+    pub fn setup_response(&self) -> Result<SetupResponse, AuthorError> {
         self.check()?;
         let top_hz = Band::TACTILE.high_hz.min(0.5 * self.rate_hz);
         let bins = (top_hz / GRID_HZ) as usize;
@@ -251,7 +221,7 @@ impl SimulationOptions {
         self.rate_hz * self.inner_steps() as f64
     }
 
-    fn check(&self) -> Result<(), SimulationError> {
+    fn check(&self) -> Result<(), AuthorError> {
         let ranges = [
             ("rate_hz", self.rate_hz, 200.0, 200_000.0),
             ("duration_s", self.duration_s, 0.1, 600.0),
@@ -300,7 +270,7 @@ impl SimulationOptions {
 }
 
 impl FreeMotion {
-    fn check(&self) -> Result<(), SimulationError> {
+    fn check(&self) -> Result<(), AuthorError> {
         let [slowest, fastest] = self.speed_mm_s;
         let [lightest, firmest] = self.force_n;
         check_range("lowest speed_mm_s", slowest, 1.0, 500.0)?;
@@ -324,16 +294,11 @@ impl AnyHand {
     }
 }
 
-fn check_range(
-    option: &'static str,
-    value: f64,
-    low: f64,
-    high: f64,
-) -> Result<(), SimulationError> {
+fn check_range(option: &'static str, value: f64, low: f64, high: f64) -> Result<(), AuthorError> {
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    Err(SimulationError::Range { option, value, low, high })
+    Err(AuthorError::SimulationRange { option, value, low, high })
 }
 
 /// A simulated recording; all signals have the same length.
@@ -401,7 +366,7 @@ impl Simulation {
 ///
 /// # Errors
 /// When an option is out of range.
-pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationError> {
+pub fn simulate(options: &SimulationOptions) -> Result<Simulation, AuthorError> {
     options.check()?;
     let parameters = options.surface.parameters();
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;

@@ -52,7 +52,7 @@ impl Relief {
 
     /// Returns the change of the friction coefficient at `along_mm` (0 is the middle of the sweep)
     /// and `across_mm`.
-    pub(super) fn at(&self, along_mm: f64, across_mm: f64) -> f64 {
+    pub(super) fn height_at(&self, along_mm: f64, across_mm: f64) -> f64 {
         let point = (along_mm + LENGTH_MM / 2.0) * POINTS_PER_MM;
         let turn = PI * across_mm / (2.0 * TRACK_MM);
         let [a, b] = &self.grains;

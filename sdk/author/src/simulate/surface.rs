@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::SimulationError;
+use crate::AuthorError;
 
 /// A surface that can be simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -54,13 +54,13 @@ impl fmt::Display for Surface {
 }
 
 impl FromStr for Surface {
-    type Err = SimulationError;
+    type Err = AuthorError;
 
-    fn from_str(text: &str) -> Result<Self, SimulationError> {
+    fn from_str(text: &str) -> Result<Self, AuthorError> {
         Self::ALL
             .into_iter()
             .find(|surface| surface.name() == text)
-            .ok_or_else(|| SimulationError::Surface { text: text.chars().take(40).collect() })
+            .ok_or_else(|| AuthorError::UnknownSurface { text: text.chars().take(40).collect() })
     }
 }
 

@@ -16,7 +16,8 @@ use super::contact::{ACROSS, Rig, SKIN, noise_density};
 use super::filters::{OnePole, low_pass};
 use super::relief::{POINTS_PER_MM, contact_kernel, cubic_weights};
 use super::surface::{Grain, Parameters};
-use super::{Motion, SimulationError, SimulationOptions, check_range};
+use super::{Motion, SimulationOptions, check_range};
+use crate::AuthorError;
 
 /// Number of cells in each step of the grid. Densities are constant within a cell.
 const CELLS: usize = 32;
@@ -55,13 +56,13 @@ impl SimulationOptions {
     /// # Errors
     /// When an option is out of range; when the motion is not free, because sweeps run over one
     /// fixed piece of the material; or when the level drifts or the finger lifts.
-    pub fn truth(&self) -> Result<Truth, SimulationError> {
+    pub fn truth(&self) -> Result<Truth, AuthorError> {
         self.check()?;
         if !self.departures.is_steady() {
-            return Err(SimulationError::Unsteady);
+            return Err(AuthorError::UnsteadyTruth);
         }
         if !matches!(self.motion, Motion::Free(_)) {
-            return Err(SimulationError::NoTruth);
+            return Err(AuthorError::NoTruth);
         }
         let band = Band { high_hz: Band::TACTILE.high_hz.min(0.5 * self.rate_hz), ..Band::TACTILE };
         let cell_hz = GRID_HZ / CELLS as f64;
@@ -99,7 +100,7 @@ impl Truth {
     ///
     /// # Errors
     /// When speed or force is out of the simulator's range.
-    pub fn magnitude(&self, speed_mm_s: f64, force_n: f64) -> Result<Vec<f64>, SimulationError> {
+    pub fn magnitude(&self, speed_mm_s: f64, force_n: f64) -> Result<Vec<f64>, AuthorError> {
         check_range("speed_mm_s", speed_mm_s, 1.0, 500.0)?;
         check_range("force_n", force_n, 0.01, 10.0)?;
         let per_newton = self.per_newton(speed_mm_s);

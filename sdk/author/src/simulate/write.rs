@@ -40,7 +40,7 @@ impl Simulation {
             "# simulated recording, no finger and no sensor: surface {}, seed {}, {motion}{}, {} Hz, htex {}",
             options.surface,
             options.seed,
-            options.departures.told(),
+            options.departures.description(),
             options.rate_hz,
             env!("CARGO_PKG_VERSION")
         )?;

@@ -1,13 +1,13 @@
 //! Contenders: everything that can be fitted to a recording, stored and played.
 
-use crate::{Level, TextureSpectrum, stored_fields, stored_level};
+use crate::{AuthorError, Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
 use htex_format::{StoredAs, StoredField, round_within, stored_bytes};
 use htex_host::{Fit, FitCondition, HostError, LoadedModel};
 
 use crate::tradeoff::baseline::quantise;
 use crate::tradeoff::setting::Keep;
-use crate::tradeoff::{Setting, Subject, TradeoffError};
+use crate::tradeoff::{Setting, Subject};
 
 /// What is measured: a model with a setting, or a baseline.
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ pub(crate) enum ContenderKind {
 }
 
 /// The stored data needed for playing.
-pub(crate) struct Stored {
+pub(crate) struct StoredData {
     pub(crate) parameters: Vec<f64>,
     pub(crate) level_rms: f64,
     pub(crate) bytes: usize,
@@ -62,14 +62,14 @@ impl Contender {
         subject: &Subject,
         spectrum: &TextureSpectrum,
         fit: &Fit,
-    ) -> Result<Stored, TradeoffError> {
+    ) -> Result<StoredData, AuthorError> {
         let (parameters, bytes) = match &self.kind {
             ContenderKind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());
                 self.keep(&mut fields);
                 let parameters = round_within(&fields, model.descriptor(), &fit.parameters)?;
                 let (reference, level) = (spectrum.as_ref(), Level::default());
-                return Ok(Stored {
+                return Ok(StoredData {
                     level_rms: stored_level(model, fit, &parameters, reference, level)?,
                     bytes: stored_bytes(&fields, &parameters)?,
                     parameters,
@@ -78,7 +78,7 @@ impl Contender {
             ContenderKind::Quantised => quantise(&spectrum.magnitude),
             ContenderKind::Recording => (Vec::new(), subject.bytes),
         };
-        Ok(Stored { parameters, level_rms: fit.level_rms, bytes })
+        Ok(StoredData { parameters, level_rms: fit.level_rms, bytes })
     }
 
     fn keep(&self, fields: &mut [StoredField]) {

@@ -24,7 +24,7 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
 /// Plots error against cost: all settings as small dots, the points on each model's own front as
 /// larger dots, both baselines, the front of all models, and the error of a second recording as a
 /// floor. Both axes are logarithmic.
-pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
+pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
     let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
     let mut plot = Plot::new(
         title,

@@ -1,13 +1,13 @@
 //! The halves of a recording for held-out errors: contenders are fitted to the odd blocks and
 //! compared with the even blocks.
 
-use crate::{OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
+use crate::{AuthorError, OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
 
+use crate::tradeoff::Subject;
 use crate::tradeoff::accuracy::{Accuracy, FAR_DB, accuracy};
 use crate::tradeoff::contender::{Contender, ContenderKind};
 use crate::tradeoff::error_axis::HELD_OUT_MEASURE;
-use crate::tradeoff::measured::rms_of;
-use crate::tradeoff::{Subject, TradeoffError};
+use crate::tradeoff::measurement::rms_of;
 
 /// The halves of a recording and the difference between them.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl Contender {
         &self,
         subject: &Subject,
         quick: bool,
-    ) -> Result<Option<f64>, TradeoffError> {
+    ) -> Result<Option<f64>, AuthorError> {
         let Ok(held_out) = &subject.held_out else {
             return Ok(None);
         };

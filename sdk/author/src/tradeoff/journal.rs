@@ -8,9 +8,9 @@ use std::sync::Mutex;
 use htex_base::files::OwnFolder;
 use serde::{Deserialize, Serialize};
 
-use crate::tradeoff::TradeoffError;
-use crate::tradeoff::measured::Measured;
-use crate::tradeoff::timing::Timed;
+use crate::AuthorError;
+use crate::tradeoff::measurement::Measurement;
+use crate::tradeoff::timing::Times;
 
 /// Start of a journal's first line; the key follows.
 const HEAD: &str = "htex tradeoff ";
@@ -19,7 +19,7 @@ const HEAD: &str = "htex tradeoff ";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) enum Outcome {
-    Measured(Box<Measured>),
+    Measured(Box<Measurement>),
     Failed { reason: String },
 }
 
@@ -30,7 +30,7 @@ pub(crate) enum Entry {
     /// The result of measuring a contender on a recording.
     Measured { recording: usize, contender: String, outcome: Outcome },
     /// The times of all contenders for a recording.
-    Timed { recording: usize, times: Vec<(String, Timed)> },
+    Timed { recording: usize, times: Vec<(String, Times)> },
 }
 
 /// A file of finished entries, one in each line. The first line has a key of the sweep's inputs.
@@ -49,11 +49,11 @@ impl Journal {
 
     /// Reads the entries of a file that has this key. A file with another key is overwritten.
     /// Reading stops at a truncated line.
-    pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
+    pub(crate) fn open(&mut self, key: &str) -> Result<(), AuthorError> {
         let key = &format!("{HEAD}{key}");
-        self.entries = self.kept(self.read(key))?;
+        self.entries = self.with_path(self.read(key))?;
         // The rest of a truncated line must go: appending to it would spoil the next entry too.
-        let file = self.kept(self.rewrite(key))?;
+        let file = self.with_path(self.rewrite(key))?;
         self.file = Some(Mutex::new(file));
         Ok(())
     }
@@ -98,22 +98,22 @@ impl Journal {
 
     /// Appends a finished entry. Each line is a single write, so only the last line can be
     /// truncated.
-    pub(crate) fn keep(&self, entry: &Entry) -> Result<(), TradeoffError> {
+    pub(crate) fn keep(&self, entry: &Entry) -> Result<(), AuthorError> {
         let write = |file: &Mutex<File>| {
             let line = serde_json::to_string(entry)? + "\n";
             let mut file = file.lock().map_err(|_| io::Error::other("a thread panicked"))?;
             file.write_all(line.as_bytes())
         };
-        self.kept(self.file.as_ref().map_or(Ok(()), write))
+        self.with_path(self.file.as_ref().map_or(Ok(()), write))
     }
 
     /// Removes the file, once the results are written elsewhere.
     ///
     /// # Errors
     /// When it cannot be removed.
-    pub fn discard(self) -> Result<(), TradeoffError> {
+    pub fn discard(self) -> Result<(), AuthorError> {
         let removed = self.place().and_then(|(own, name)| own.remove(&name));
-        self.kept(removed)
+        self.with_path(removed)
     }
 
     /// The file's folder, which must exist, and the file's name in it.
@@ -130,8 +130,8 @@ impl Journal {
     }
 
     /// Adds the file's name to an error.
-    fn kept<T>(&self, result: io::Result<T>) -> Result<T, TradeoffError> {
-        result.map_err(|error| TradeoffError::Journal { path: self.path.clone(), error })
+    fn with_path<T>(&self, result: io::Result<T>) -> Result<T, AuthorError> {
+        result.map_err(|error| AuthorError::Journal { path: self.path.clone(), error })
     }
 }
 

@@ -4,14 +4,15 @@ use std::path::Path;
 
 use htex_host::{LoadedModel, Origin, Synthesis};
 
+use crate::AuthorError;
 use crate::tradeoff::contender::{Contender, ContenderKind};
 use crate::tradeoff::point::{QUANTISED, RECORDING};
 use crate::tradeoff::request::{Model, Request};
 use crate::tradeoff::settings::{fit_settings, playing_settings};
-use crate::tradeoff::{Machine, Setting, Subject, TradeoffError};
+use crate::tradeoff::{Machine, Setting, Subject};
 
 /// Returns all contenders: the settings of every model, and the baselines.
-pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError> {
+pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, AuthorError> {
     let mut all = Vec::new();
     for Model { ways } in &request.models {
         let Some((_, first)) = ways.first() else {
@@ -24,7 +25,7 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
             let options = loaded.options(&given)?;
             let kind = ContenderKind::Model(loaded.clone(), options);
             all.push(Contender { model: model.clone(), setting, kind });
-            Ok::<(), TradeoffError>(())
+            Ok::<(), AuthorError>(())
         };
         let played = playing_settings(request.quick)?;
         for setting in fit_settings(first, request.quick).into_iter().chain(played) {

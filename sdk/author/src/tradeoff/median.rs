@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use htex_format::{By, Measure, Measures};
 
-use crate::tradeoff::point::{Played, Point, Shares};
+use crate::tradeoff::point::{Point, RenderedAccuracy, Shares};
 
 /// Returns one point for each setting that was measured on all `recordings` recordings, in the
 /// order of the first recording.
@@ -57,7 +57,7 @@ fn median_of(same: &[&Point], name: &str) -> Point {
             below_threshold_if_sensitive: mean(|p| p.shares.below_threshold_if_sensitive),
             within_repeatability: mean(|p| p.shares.within_repeatability),
         },
-        by_samples: Played {
+        by_samples: RenderedAccuracy {
             measures: measures(By::Samples),
             band_error_spread_db: of(&|p| p.by_samples.band_error_spread_db),
         },

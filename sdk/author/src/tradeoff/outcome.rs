@@ -10,7 +10,7 @@ use crate::tradeoff::figure::mark_front;
 use crate::tradeoff::knee::{Knee, knees};
 use crate::tradeoff::median::medians;
 use crate::tradeoff::point::Point;
-use crate::tradeoff::sweep::{LeftOut, Swept};
+use crate::tradeoff::sweep::{LeftOut, SweepResult};
 
 /// Description of the numbers, for readers of the JSON.
 const METHOD: &str = "times are medians of interleaved runs on one core, with warm caches; every spread is half \
@@ -53,7 +53,7 @@ impl Machine {
 
 /// A recording that the report is about.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Recorded {
+pub struct RecordingSummary {
     pub name: String,
     /// Whether it was computed instead of recorded.
     pub simulated: bool,
@@ -79,7 +79,7 @@ pub struct Tradeoff {
     pub error: ErrorAxis,
     /// Description of the numbers.
     pub method: &'static str,
-    pub recordings: Vec<Recorded>,
+    pub recordings: Vec<RecordingSummary>,
     /// Short names of the models, in their order.
     pub models: Vec<String>,
     /// Every setting on every recording.
@@ -96,8 +96,8 @@ pub struct Tradeoff {
 
 impl Tradeoff {
     /// Marks the fronts of a sweep over `subjects` and finds their knees.
-    pub fn new(tool: &str, subjects: &[Subject], swept: Swept) -> Self {
-        let Swept { error, mut points, left_out } = swept;
+    pub fn new(tool: &str, subjects: &[Subject], swept: SweepResult) -> Self {
+        let SweepResult { error, mut points, left_out } = swept;
         for subject in subjects {
             let own = |p: &Point| p.recording == subject.name;
             // Points are ordered by recording.
@@ -121,7 +121,7 @@ impl Tradeoff {
             machine: Machine::here(),
             error,
             method: METHOD,
-            recordings: subjects.iter().map(Recorded::new).collect(),
+            recordings: subjects.iter().map(RecordingSummary::new).collect(),
             models,
             points,
             medians,
@@ -134,7 +134,8 @@ impl Tradeoff {
         tradeoff
     }
 
-    pub fn of(&self, recording: &str) -> Vec<&Point> {
+    /// Returns the points of a recording.
+    pub(crate) fn points_of(&self, recording: &str) -> Vec<&Point> {
         self.points.iter().filter(|p| p.recording == recording).collect()
     }
 
@@ -155,7 +156,12 @@ impl Tradeoff {
             all.extend(knees(&first.recording, &medians, &self.models, self.error));
         }
         for recording in &self.recordings {
-            all.extend(knees(&recording.name, &self.of(&recording.name), &self.models, self.error));
+            all.extend(knees(
+                &recording.name,
+                &self.points_of(&recording.name),
+                &self.models,
+                self.error,
+            ));
         }
         all
     }
@@ -182,7 +188,7 @@ impl Tradeoff {
     }
 }
 
-impl Recorded {
+impl RecordingSummary {
     fn new(subject: &Subject) -> Self {
         let held_out = subject.held_out.as_ref().ok();
         Self {

@@ -25,7 +25,7 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     }
     if !tradeoff.medians.is_empty() {
         for recording in &tradeoff.recordings {
-            section(&mut page, tradeoff, &recording.name, &tradeoff.of(&recording.name));
+            section(&mut page, tradeoff, &recording.name, &tradeoff.points_of(&recording.name));
         }
     }
     page.heading("Warnings");

@@ -8,12 +8,12 @@ use serde::{Serialize, Serializer};
 use serde_json::Value;
 
 use crate::tradeoff::contender::{Contender, ContenderKind};
-use crate::tradeoff::measured::Measured;
-use crate::tradeoff::timing::Timed;
+use crate::tradeoff::measurement::Measurement;
+use crate::tradeoff::timing::Times;
 use crate::tradeoff::{Setting, Subject};
 
 /// Model name of the first baseline: the spectrum, quantised to one byte per bin.
-pub const QUANTISED: &str = "quantised-spectrum";
+pub(crate) const QUANTISED: &str = "quantised-spectrum";
 /// Model name of the second baseline: the recording.
 pub const RECORDING: &str = "recording";
 
@@ -21,7 +21,7 @@ pub const RECORDING: &str = "recording";
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Point {
     pub recording: String,
-    /// Short name of the model, [`QUANTISED`] or [`RECORDING`].
+    /// Short name of the model, `quantised-spectrum` or [`RECORDING`].
     pub model: String,
     /// The values of all knobs, including those at their defaults.
     pub knobs: BTreeMap<String, Value>,
@@ -60,7 +60,7 @@ pub struct Point {
     pub shares: Shares,
     /// The measures of rendered samples.
     #[serde(flatten)]
-    pub by_samples: Played,
+    pub by_samples: RenderedAccuracy,
     /// Whether the point is on the front of bytes and magnitude error, among settings that play at
     /// their defaults.
     pub on_front: bool,
@@ -116,7 +116,7 @@ pub fn others() -> impl Iterator<Item = Measure> {
 
 /// Accuracy of rendered samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Played {
+pub struct RenderedAccuracy {
     /// The measures over several renderings together.
     pub measures: Measures,
     /// Half the range of the nine-band error over the single renderings, dB.
@@ -128,7 +128,7 @@ fn of_magnitudes<S: Serializer>(measures: &Measures, serializer: S) -> Result<S:
     keyed.serialize(serializer)
 }
 
-impl Played {
+impl RenderedAccuracy {
     /// Returns the numbers with their keys. The spread comes after the error to which it belongs.
     pub(crate) fn keyed(&self) -> KeyedMeasures {
         let mut keyed = KeyedMeasures::default();
@@ -143,7 +143,7 @@ impl Played {
     }
 }
 
-impl Serialize for Played {
+impl Serialize for RenderedAccuracy {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.keyed().serialize(serializer)
     }
@@ -153,8 +153,8 @@ impl Point {
     pub(crate) fn new(
         subject: &Subject,
         one: &Contender,
-        measured: &Measured,
-        timed: &Timed,
+        measured: &Measurement,
+        timed: &Times,
     ) -> Self {
         let descriptor = match &one.kind {
             ContenderKind::Model(model, _) => Some(model.descriptor()),
@@ -180,7 +180,7 @@ impl Point {
             held_out_error_db: measured.held_out_error_db,
             by_magnitude: measured.by_magnitude.measures,
             shares: Shares::new(&measured.by_magnitude.felt),
-            by_samples: Played {
+            by_samples: RenderedAccuracy {
                 measures: measured.by_samples.measures,
                 band_error_spread_db: measured.samples_spread_db,
             },
@@ -203,7 +203,7 @@ impl Point {
         format!("{} {}", self.model, self.setting)
     }
 
-    pub fn is_baseline(&self) -> bool {
+    pub(crate) fn is_baseline(&self) -> bool {
         self.model == QUANTISED || self.model == RECORDING
     }
 }

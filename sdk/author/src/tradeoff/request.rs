@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use htex_format::ErrorMeasure;
 use htex_host::LoadedModel;
 
-use crate::tradeoff::{ErrorAxis, Subject, TradeoffError};
+use crate::AuthorError;
+use crate::tradeoff::{ErrorAxis, Subject};
 
 /// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first way is measured
 /// with all knobs, the others with the default settings.
@@ -34,7 +35,7 @@ impl Request {
     ///
     /// # Errors
     /// When the held-out error is requested and nothing can be held out of a subject.
-    pub(crate) fn error_of(&self, subjects: &[Subject]) -> Result<ErrorAxis, TradeoffError> {
+    pub(crate) fn error_of(&self, subjects: &[Subject]) -> Result<ErrorAxis, AuthorError> {
         let check = || subjects.iter().try_for_each(Subject::check_held_out);
         match self.error {
             Some(ErrorAxis::HeldOut) => check().map(|()| ErrorAxis::HeldOut),

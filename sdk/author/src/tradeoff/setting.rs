@@ -1,11 +1,10 @@
 //! Settings: a value for each knob.
 
+use crate::AuthorError;
 use std::collections::BTreeMap;
 
 use htex_host::{Descriptor, Synthesis};
 use serde_json::Value;
-
-use crate::tradeoff::TradeoffError;
 
 /// How parameters are stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,21 +49,21 @@ impl Default for Setting {
 
 impl Setting {
     /// Whether it plays like [`Self::default`]; fit and storage may differ.
-    pub fn plays_as_default(&self) -> bool {
+    pub(crate) fn plays_as_default(&self) -> bool {
         let other = Self { options: self.options.clone(), store: self.store, ..Self::default() };
         *self == other
     }
 
     /// Whether its times can be compared with those at the defaults, because block size and output
     /// rate are the same.
-    pub fn times_compare(&self) -> bool {
+    pub(crate) fn times_compare(&self) -> bool {
         let default = Self::default();
         self.block_samples == default.block_samples && self.output_rate_hz == default.output_rate_hz
     }
 
     /// Returns the setting with one of [`PLAYING`](crate::tradeoff::knobs::PLAYING) changed.
-    pub(crate) fn playing(mut self, name: &str, value: &str) -> Result<Self, TradeoffError> {
-        let wrong = || TradeoffError::Knob { name: name.to_owned(), value: value.to_owned() };
+    pub(crate) fn playing(mut self, name: &str, value: &str) -> Result<Self, AuthorError> {
+        let wrong = || AuthorError::Knob { name: name.to_owned(), value: value.to_owned() };
         match (name, value) {
             ("synthesis", _) => self.synthesis = value.parse()?,
             ("store", "f32") => self.store = Keep::F32,

@@ -2,8 +2,9 @@
 
 use htex_host::{FitOption, LoadedModel};
 
+use crate::AuthorError;
+use crate::tradeoff::Setting;
 use crate::tradeoff::knobs::{PLAYING, few, of_range};
-use crate::tradeoff::{Setting, TradeoffError};
 
 /// The values of a knob, by its name.
 type Knob = (String, Vec<String>);
@@ -58,7 +59,7 @@ fn knobs(model: &LoadedModel) -> (Vec<Knob>, Vec<Knob>) {
 ///
 /// # Errors
 /// When the table of knobs has an invalid value.
-pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
+pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, AuthorError> {
     let mut settings = Vec::new();
     for (name, values) in PLAYING {
         let values = if quick { few(values) } else { values.to_vec() };

@@ -5,7 +5,7 @@ use htex_dsp::seam::Loop;
 use htex_host::{HostError, LoadedModel, StillSound, Stream, Synthesis};
 
 use crate::tradeoff::baseline::SpectrumNoise;
-use crate::tradeoff::contender::{Contender, ContenderKind, Stored};
+use crate::tradeoff::contender::{Contender, ContenderKind, StoredData};
 use crate::tradeoff::{Setting, Subject};
 
 /// Duration of the cross-fade in the recording's loop, seconds.
@@ -24,7 +24,7 @@ impl Contender {
     pub(crate) fn sound(
         &self,
         subject: &Subject,
-        stored: &Stored,
+        stored: &StoredData,
         seed: u64,
     ) -> Result<Sound, HostError> {
         match &self.kind {
@@ -50,7 +50,7 @@ fn of_model(
     setting: &Setting,
     model: &LoadedModel,
     subject: &Subject,
-    stored: &Stored,
+    stored: &StoredData,
     seed: u64,
 ) -> Result<Sound, HostError> {
     let (band, rate_hz) = (subject.spectrum.band, setting.output_rate_hz);
@@ -66,7 +66,7 @@ fn of_model(
 fn of_spectrum(
     setting: &Setting,
     subject: &Subject,
-    stored: &Stored,
+    stored: &StoredData,
     seed: u64,
 ) -> Result<Sound, HostError> {
     let (band, rate_hz) = (subject.spectrum.band, setting.output_rate_hz);

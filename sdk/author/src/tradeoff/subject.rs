@@ -1,9 +1,8 @@
 //! Subjects of a sweep: the recordings.
 
-use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum, read_take};
+use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum, segment_take};
 use htex_base::finding::Notice;
 
-use crate::tradeoff::TradeoffError;
 use crate::tradeoff::held_out::HeldOut;
 
 /// A recording, with its spectrum and its variation.
@@ -34,8 +33,8 @@ impl Subject {
     /// When the recording cannot be used.
     pub fn new(take: &Take, options: &SpectrumOptions, strict: bool) -> Result<Self, AuthorError> {
         let recording = &take.recording;
-        let reading = read_take(take, options, strict)?;
-        let (part, warnings) = (reading.part, reading.warnings);
+        let read = segment_take(take, options, strict)?;
+        let (part, warnings) = (read.spectra, read.warnings);
         let held_out = HeldOut::new(&part, options);
         let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
         let axes = &recording.axes;
@@ -54,11 +53,11 @@ impl Subject {
     }
 
     /// Returns an error if nothing can be held out of the recording.
-    pub(crate) fn check_held_out(&self) -> Result<(), TradeoffError> {
+    pub(crate) fn check_held_out(&self) -> Result<(), AuthorError> {
         match &self.held_out {
             Ok(_) => Ok(()),
             Err(reason) => {
-                Err(TradeoffError::NothingHeldOut { recording: self.name.clone(), reason })
+                Err(AuthorError::NothingHeldOut { recording: self.name.clone(), reason })
             }
         }
     }

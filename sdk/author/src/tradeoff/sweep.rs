@@ -11,8 +11,8 @@ use crate::tradeoff::contender::Contender;
 use crate::tradeoff::journal::{Entry, Journal, Outcome};
 use crate::tradeoff::lineup::{key, lineup};
 use crate::tradeoff::request::Request;
-use crate::tradeoff::timing::{Timed, time};
-use crate::tradeoff::{ErrorAxis, Point, Subject, TradeoffError};
+use crate::tradeoff::timing::{Times, time};
+use crate::tradeoff::{ErrorAxis, Point, Subject};
 
 /// A setting that could not be measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,7 +24,7 @@ pub struct LeftOut {
 }
 
 #[derive(Debug, Clone, Default)]
-pub struct Swept {
+pub struct SweepResult {
     /// The error by which the points are judged.
     pub error: ErrorAxis,
     /// The points by recording, in the order of the table.
@@ -46,7 +46,7 @@ pub fn sweep(
     request: &Request,
     journal: &mut Journal,
     progress: Progress<'_>,
-) -> Result<Swept, TradeoffError> {
+) -> Result<SweepResult, AuthorError> {
     let error = request.error_of(subjects)?;
     let contenders = lineup(request)?;
     journal.open(&key(subjects, &contenders, request))?;
@@ -58,7 +58,7 @@ pub fn sweep(
         let before = done.fetch_add(steps, Ordering::Relaxed);
         progress((before + steps) as u64, all as u64, what);
     };
-    let mut swept = Swept { error, ..Swept::default() };
+    let mut swept = SweepResult { error, ..SweepResult::default() };
     for (recording, subject) in subjects.iter().enumerate() {
         let measured =
             measure_all(recording, subject, &contenders, request.quick, journal, &|| {
@@ -84,13 +84,13 @@ pub fn sweep(
             }
         }
         if !swept.points.iter().any(|p| p.recording == subject.name && !p.is_baseline()) {
-            return Err(nothing_fitted(subject, &swept).into());
+            return Err(nothing_fitted(subject, &swept));
         }
     }
     Ok(swept)
 }
 
-fn nothing_fitted(subject: &Subject, swept: &Swept) -> AuthorError {
+fn nothing_fitted(subject: &Subject, swept: &SweepResult) -> AuthorError {
     let own = swept.left_out.iter().filter(|l| l.recording == subject.name);
     let mut reasons: Vec<&str> = own.map(|l| &l.reason[..]).collect();
     reasons.sort_unstable();
@@ -109,7 +109,7 @@ fn measure_all(
     quick: bool,
     journal: &Journal,
     step: &(dyn Fn() + Sync),
-) -> Result<Outcomes, TradeoffError> {
+) -> Result<Outcomes, AuthorError> {
     let mut known = Outcomes::new();
     for entry in &journal.entries {
         if let Entry::Measured { recording: of, contender, outcome } = entry
@@ -145,7 +145,7 @@ fn measure_all(
             }
             step();
         }
-        Ok::<(), TradeoffError>(())
+        Ok::<(), AuthorError>(())
     };
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(open.len().max(1));
     std::thread::scope(|scope| {
@@ -169,7 +169,7 @@ fn time_all(
     measured: &Outcomes,
     quick: bool,
     journal: &Journal,
-) -> Result<BTreeMap<String, Timed>, TradeoffError> {
+) -> Result<BTreeMap<String, Times>, AuthorError> {
     for entry in &journal.entries {
         if let Entry::Timed { recording: of, times } = entry
             && *of == recording
@@ -181,7 +181,7 @@ fn time_all(
         |one: &&Contender| matches!(measured.get(&one.id()), Some(Outcome::Measured(_)));
     let timed: Vec<&Contender> = contenders.iter().filter(is_measured).collect();
     let times = time(subject, &timed, quick)?;
-    let times: Vec<(String, Timed)> = timed.iter().map(|one| one.id()).zip(times).collect();
+    let times: Vec<(String, Times)> = timed.iter().map(|one| one.id()).zip(times).collect();
     journal.keep(&Entry::Timed { recording, times: times.clone() })?;
     Ok(times.into_iter().collect())
 }

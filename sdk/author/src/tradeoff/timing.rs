@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::tradeoff::contender::{Contender, Stored};
+use crate::AuthorError;
+use crate::tradeoff::Subject;
+use crate::tradeoff::contender::{Contender, StoredData};
 use crate::tradeoff::sound::Sound;
-use crate::tradeoff::{Subject, TradeoffError};
 
 /// Number of samples in a run; also in the warm-up before it, which fills the caches.
 const SAMPLES: usize = 16_384;
@@ -33,7 +34,7 @@ pub(crate) struct Median {
 
 /// The times of a contender.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Timed {
+pub(crate) struct Times {
     pub(crate) fit_ms: Median,
     pub(crate) first_sample_us: Median,
     pub(crate) ns_per_sample: Median,
@@ -49,7 +50,7 @@ pub(crate) fn time(
     subject: &Subject,
     contenders: &[&Contender],
     quick: bool,
-) -> Result<Vec<Timed>, TradeoffError> {
+) -> Result<Vec<Times>, AuthorError> {
     let rounds = if quick { QUICK } else { FULL };
     let fit_ms = turns(contenders, rounds.fit, |one| {
         let begun = Instant::now();
@@ -71,7 +72,7 @@ pub(crate) fn time(
     })?;
     let ns_per_sample = turns(&mut playing, rounds.render, |playing| playing.turn())?;
     let all = fit_ms.into_iter().zip(first_sample_us).zip(ns_per_sample);
-    let timed = |((fit_ms, first_sample_us), ns_per_sample)| Timed {
+    let timed = |((fit_ms, first_sample_us), ns_per_sample)| Times {
         fit_ms,
         first_sample_us,
         ns_per_sample,
@@ -81,12 +82,12 @@ pub(crate) fn time(
 
 struct Playing<'a> {
     one: &'a Contender,
-    stored: Stored,
+    stored: StoredData,
     sound: Sound,
 }
 
 impl Playing<'_> {
-    fn turn(&mut self) -> Result<f64, TradeoffError> {
+    fn turn(&mut self) -> Result<f64, AuthorError> {
         let block = self.one.setting.block_samples;
         let mut out = vec![0.0; block];
         let mut render = |samples: usize| {
@@ -107,8 +108,8 @@ impl Playing<'_> {
 fn turns<T>(
     items: impl IntoIterator<Item = T>,
     rounds: usize,
-    mut turn: impl FnMut(&mut T) -> Result<f64, TradeoffError>,
-) -> Result<Vec<Median>, TradeoffError> {
+    mut turn: impl FnMut(&mut T) -> Result<f64, AuthorError>,
+) -> Result<Vec<Median>, AuthorError> {
     let mut items: Vec<(T, Vec<f64>)> = items.into_iter().map(|item| (item, Vec::new())).collect();
     for round in 0..=rounds {
         for (item, times) in &mut items {

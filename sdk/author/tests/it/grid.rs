@@ -67,7 +67,7 @@ fn errors_db(asset: &Texture, model: &str, options: &SimulationOptions, count: u
         let grid = truth.frequency_hz();
         let recorded = truth.magnitude(speed, force).unwrap();
         let at_finger = recorded.iter().zip(&grid).map(|(magnitude, f)| {
-            let (re, im) = rig.at(*f);
+            let (re, im) = rig.value_at(*f);
             magnitude / re.hypot(im)
         });
         let truth_at: Vec<f64> = at_finger.collect();

@@ -95,7 +95,7 @@ fn true_spectrum(surface: Surface, departures: Departures, motion: Motion) -> (V
     let (grid, rig) = (truth.frequency_hz(), options.setup_response().unwrap());
     let there = truth.magnitude(motion.speed_mm_s, motion.force_n).unwrap();
     let at_finger = there.iter().zip(&grid).map(|(magnitude, f)| {
-        let (re, im) = rig.at(*f);
+        let (re, im) = rig.value_at(*f);
         magnitude / re.hypot(im)
     });
     (grid.clone(), at_finger.collect())

@@ -33,7 +33,7 @@ fn a_loop_has_the_spectrum_of_its_recording() {
         for (choice, within_db) in choices.into_iter().zip(WITHIN_DB) {
             let options = SpectrumOptions::default().with_segments(choice);
             let take = take(surface);
-            let made = RecordedLoop::of(&take, &options, false, RATE_HZ).unwrap();
+            let made = RecordedLoop::new(&take, &options, false, RATE_HZ).unwrap();
             let twice = made.samples.repeat(2);
             let again = Recording::new("loop", RATE_HZ, vec![twice]).unwrap();
             let windows = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
@@ -58,7 +58,7 @@ fn a_loop_is_the_recorded_signal() {
         given: Exploration::default(),
     };
     let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
-    let made = RecordedLoop::of(&take, &options, false, 8000.0).unwrap();
+    let made = RecordedLoop::new(&take, &options, false, 8000.0).unwrap();
     assert_eq!(made.samples.len(), made.segments * 800);
     // Only between the first half segment and the seam. The level comes from the spectrum and
     // agrees to within the same error.
@@ -74,7 +74,7 @@ fn a_loop_is_the_recorded_signal() {
 fn rates_that_do_not_fit_are_refused() {
     let take = take(Surface::Vinyl);
     for rate_hz in [0.0, -10.0, 2000.0, 8005.0, 1e6, f64::NAN] {
-        let made = RecordedLoop::of(&take, &SpectrumOptions::default(), false, rate_hz);
+        let made = RecordedLoop::new(&take, &SpectrumOptions::default(), false, rate_hz);
         assert!(matches!(made, Err(AuthorError::LoopRate { .. })), "{rate_hz}");
     }
 }

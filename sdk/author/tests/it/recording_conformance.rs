@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::findings::{RULES, findings_page};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
-use htex_author::{Exploration, SpectrumOptions, Take, read_take};
+use htex_author::{Exploration, SpectrumOptions, Take, segment_take};
 use htex_base::finding::Severity;
 use recordings::cases;
 use serde_json::Value;
@@ -91,8 +91,8 @@ fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
             let target = Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(0.4) };
             for given in [target, Exploration::default()] {
                 let take = Take { recording: recording.clone(), given };
-                let reading = read_take(&take, &SpectrumOptions::default(), false).unwrap();
-                assert!(reading.part.segments.from_sweeps);
+                let reading = segment_take(&take, &SpectrumOptions::default(), false).unwrap();
+                assert!(reading.spectra.segments.from_sweeps);
                 let grave: Vec<_> =
                     reading.findings.iter().filter(|f| f.severity != Severity::Info).collect();
                 assert!(grave.is_empty(), "{surface} {rate_hz} {speed_mm_s}: {grave:?}");

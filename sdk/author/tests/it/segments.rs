@@ -3,8 +3,8 @@
 use htex_author::recording::Recording;
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
-    AuthorError, Exploration, Reading, SegmentChoice, SpectrumOptions, Take, choose_segments,
-    read_take,
+    AuthorError, Exploration, SegmentChoice, SegmentedTake, SpectrumOptions, Take, choose_segments,
+    segment_take,
 };
 
 const RATE_HZ: f64 = 1000.0;
@@ -26,9 +26,9 @@ fn friction(seconds: f64, sweeps: &[(f64, f64)]) -> Vec<f64> {
     (0..(seconds * RATE_HZ) as usize).map(force).collect()
 }
 
-fn read(recording: &Recording, given: Exploration) -> Result<Reading, AuthorError> {
+fn read(recording: &Recording, given: Exploration) -> Result<SegmentedTake, AuthorError> {
     let take = Take { recording: recording.clone(), given };
-    read_take(&take, &SpectrumOptions::default(), false)
+    segment_take(&take, &SpectrumOptions::default(), false)
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn a_sweep_that_the_end_cuts_off_is_left_out() {
     let options = SimulationOptions::new(Surface::CorrugatedPaper);
     let recording = simulate(&options).unwrap().to_recording("paper").unwrap();
     let reading = read(&recording, Exploration::default()).unwrap();
-    let segments = &reading.part.segments;
+    let segments = &reading.spectra.segments;
     assert_eq!((segments.sweeps.len(), segments.cut_off), (9, 1));
     assert_eq!(segments.sweeps[8].end, recording.samples());
     assert_eq!(segments.starts.len(), 8);
@@ -66,14 +66,14 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
     let recording = Recording::new("r", RATE_HZ, vec![lateral]).unwrap().with_speed(speed).unwrap();
     let at = |speed_mm_s| Exploration { speed_mm_s, force_n: Some(0.4) };
     let near = read(&recording, at(Some(81.0))).unwrap();
-    assert_eq!(near.part.spectra.len(), 4);
-    assert_eq!(near.part.segments.off_target.len(), 2);
+    assert_eq!(near.spectra.spectra.len(), 4);
+    assert_eq!(near.spectra.segments.off_target.len(), 2);
     assert_eq!(near.findings[0].code, "RECORDING_OFF_TARGET");
     assert!(near.warnings[1].contains("2 of 6 segments left out"), "{:?}", near.warnings);
-    assert_eq!(near.condition.speed_mm_s, Some(81.0));
+    assert_eq!(near.motion.speed_mm_s, Some(81.0));
     let all = read(&recording, at(None)).unwrap();
-    assert_eq!(all.part.spectra.len(), 6);
-    assert_eq!(all.condition.speed_mm_s, Some(80.0));
+    assert_eq!(all.spectra.spectra.len(), 6);
+    assert_eq!(all.motion.speed_mm_s, Some(80.0));
     assert_eq!(all.spread.speed_mm_s, Some([65.0, 95.0]));
     assert_eq!(all.findings[0].code, "RECORDING_UNSTEADY");
     let none = read(&recording, at(Some(200.0))).unwrap_err().to_string();
@@ -104,7 +104,7 @@ fn readings_that_no_finger_makes_do_not_move_the_condition() {
     let recording =
         Recording::new("r", RATE_HZ, vec![lateral]).unwrap().with_normal(normal).unwrap();
     let reading = read(&recording, Exploration::default()).unwrap();
-    let force_n = reading.condition.force_n.unwrap();
+    let force_n = reading.motion.force_n.unwrap();
     assert!((force_n - 1.0).abs() < 0.01, "{force_n}");
     let outlier = reading.findings.iter().find(|f| f.code == "RECORDING_FORCE_OUTLIER").unwrap();
     assert!(outlier.message.contains("36870.0000 N at 0.7000 s"), "{outlier}");

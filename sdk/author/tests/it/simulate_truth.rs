@@ -4,7 +4,7 @@
 
 use htex_author::simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
 use htex_author::{
-    Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, TextureSpectrum, read_take,
+    Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, TextureSpectrum, segment_take,
 };
 use htex_dsp::fidelity::third_octave_error_rms_db;
 
@@ -37,7 +37,7 @@ fn a_steady_part_of_a_free_motion_has_the_true_spectrum() {
         let target = Exploration { speed_mm_s: Some(speed), force_n: Some(force) };
         let take = Take { recording, given: target };
         let windows = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
-        let part = read_take(&take, &windows, false).unwrap().part;
+        let part = segment_take(&take, &windows, false).unwrap().spectra;
         let measured = TextureSpectrum::average(&[part], Averaging::Rms).unwrap();
         let truth = options.truth().unwrap().magnitude(speed, force).unwrap();
         let error_db =

@@ -79,7 +79,7 @@ impl Place {
         let mut build = self.open(textures)?;
         build.check()?;
         build.run(&|_| ())?;
-        Ok(build.finish()?.report)
+        build.finish()
     }
 
     fn refused(&self, textures: &str) -> String {
@@ -120,7 +120,7 @@ fn files_of_other_formats_become_textures() {
     );
     let imported = htex_exchange::hatt::asset(
         &htex_exchange::hatt::read(hatt("Felt").as_bytes()).unwrap(),
-        &htex_exchange::hatt::Imported::default(),
+        &htex_exchange::Naming::default(),
     )
     .unwrap();
     assert_eq!(felt.parameters, imported.parameters);
@@ -162,7 +162,7 @@ fn signals_of_one_name_are_conditions_of_a_texture() {
     place.build(SIGNAL).unwrap();
     let hum = htex_play::Texture::open(place.0.path().join("out/textures/hum.htex")).unwrap();
     for name in ["ahap", "hjif"] {
-        let format = Format::named(name).unwrap();
+        let format = Format::find(name).unwrap();
         let exported = export(&hum, &Export::new(format)).unwrap();
         fs::write(place.0.path().join(format!("at.{name}")), exported.bytes).unwrap();
     }

@@ -14,10 +14,10 @@ pub(super) struct Controls {
 }
 
 impl Controls {
-    pub(super) fn of(entries: &[Entry]) -> Self {
+    pub(super) fn new(entries: &[Entry]) -> Self {
         Self {
-            intensity: Control::of(entries, INTENSITY_CONTROL, 1.0),
-            sharpness: Control::of(entries, SHARPNESS_CONTROL, 0.0),
+            intensity: Control::new(entries, INTENSITY_CONTROL, 1.0),
+            sharpness: Control::new(entries, SHARPNESS_CONTROL, 0.0),
         }
     }
 
@@ -41,8 +41,8 @@ impl Controls {
     pub(super) fn transient(&self, event: &Event, profile: &Profile) -> Transient {
         Transient {
             time_s: event.time,
-            amplitude: libm::pow(level(event)(self.intensity.at(event.time)), 2.0),
-            frequency_hz: hertz(event, profile)(self.sharpness.at(event.time)),
+            amplitude: libm::pow(level(event)(self.intensity.value_at(event.time)), 2.0),
+            frequency_hz: hertz(event, profile)(self.sharpness.value_at(event.time)),
         }
     }
 }
@@ -67,7 +67,7 @@ struct Control {
 }
 
 impl Control {
-    fn of(entries: &[Entry], id: &str, usual: f64) -> Self {
+    fn new(entries: &[Entry], id: &str, usual: f64) -> Self {
         let mut curves: Vec<Vec<Point>> =
             entries.iter().filter_map(|entry| own_curve(entry, id)).collect();
         // Files may list curves in any order. The sort is stable: of equal starts, the later entry
@@ -88,7 +88,7 @@ impl Control {
         Self { points, usual }
     }
 
-    fn at(&self, time_s: f64) -> f64 {
+    fn value_at(&self, time_s: f64) -> f64 {
         match self.points.first() {
             Some(first) if first.time_s <= time_s => {
                 value_at(&self.points, time_s).unwrap_or(self.usual)
@@ -102,7 +102,7 @@ impl Control {
     fn over(&self, event: &Event, made: impl Fn(f64) -> f64) -> Vec<Point> {
         let (from_s, to_s) = (event.time, event.end_s());
         let point = |time_s: f64, control: f64| Point::new(time_s, made(control));
-        let mut over = vec![point(from_s, self.at(from_s))];
+        let mut over = vec![point(from_s, self.value_at(from_s))];
         let first = self.points.first();
         for (index, p) in self.during(event).iter().enumerate() {
             // At the control's first point, its value jumps there from the usual value.

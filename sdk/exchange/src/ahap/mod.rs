@@ -25,9 +25,9 @@ use crate::profile::Profile;
 use control::Controls;
 
 /// Longest continuous event, seconds (documentation of `CHHapticEvent.EventType.hapticContinuous`).
-pub const LONGEST_EVENT_S: f64 = 30.0;
+pub(crate) const LONGEST_EVENT_S: f64 = 30.0;
 /// Largest number of control points that are written into one curve.
-pub const POINTS_OF_A_CURVE: usize = 16;
+pub(crate) const POINTS_OF_A_CURVE: usize = 16;
 
 /// An `.ahap` file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -172,7 +172,7 @@ impl Ahap {
     /// transients together.
     #[must_use]
     pub fn patterns(&self, profile: &Profile) -> Vec<Pattern> {
-        let controls = Controls::of(&self.pattern);
+        let controls = Controls::new(&self.pattern);
         let of = |kind: EventType| self.events().filter(move |e| e.event_type == kind);
         let continuous = of(EventType::HapticContinuous).map(|e| controls.pattern(e, profile));
         let transients = of(EventType::HapticTransient).map(|e| controls.transient(e, profile));
@@ -184,7 +184,7 @@ impl Ahap {
 
     /// Refuses events and curves that would together take too long to play.
     fn check_work(&self) -> Result<(), Fault> {
-        let controls = Controls::of(&self.pattern);
+        let controls = Controls::new(&self.pattern);
         let points: usize = self.events().map(|event| controls.points_during(event)).sum();
         let seconds: f64 = self.events().filter_map(|event| event.event_duration).sum();
         if points > MOST_POINTS || seconds > MOST_TOGETHER_S {

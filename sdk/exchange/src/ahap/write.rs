@@ -10,11 +10,11 @@ use crate::profile::Profile;
 
 impl Ahap {
     /// Makes a file from a vibration whose levels are amplitudes: curves of at most
-    /// [`POINTS_OF_A_CURVE`] points over events of at most [`LONGEST_EVENT_S`]. The controls also
+    /// 16 points over events of at most 30 s. The controls also
     /// change transients, so a transient's intensity is divided by the control's value there; the
     /// result is at most 1.
     #[must_use]
-    pub fn of(pattern: &Pattern, profile: &Profile) -> Self {
+    pub fn from_pattern(pattern: &Pattern, profile: &Profile) -> Self {
         let root = |p: &Point| Point::new(p.time_s, libm::sqrt(p.value.clamp(0.0, 1.0)));
         let levels: Vec<Point> = pattern.level.iter().map(root).collect();
         let part = |p: &Point| Point::new(p.time_s, profile.part_of(p.value));
@@ -31,7 +31,7 @@ impl Ahap {
 
     /// Sets a description in the metadata, unless `description` is empty.
     #[must_use]
-    pub fn with_description(mut self, description: &str) -> Self {
+    pub(crate) fn with_description(mut self, description: &str) -> Self {
         if !description.is_empty() {
             let metadata = self.metadata.get_or_insert_default();
             metadata.insert("Description".to_owned(), description.into());

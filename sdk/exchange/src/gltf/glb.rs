@@ -28,12 +28,12 @@ pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
         return Ok(Chunks { json: file, binary: None });
     }
     check_header(file)?;
-    let json = Chunk::at(file, HEADER_BYTES)?;
+    let json = Chunk::read_at(file, HEADER_BYTES)?;
     if json.kind != JSON {
         let place = format!("byte {}", HEADER_BYTES + 4);
         return Err(Fault::new(place, "the first chunk is not JSON"));
     }
-    let next = if json.end < file.len() { Some(Chunk::at(file, json.end)?) } else { None };
+    let next = if json.end < file.len() { Some(Chunk::read_at(file, json.end)?) } else { None };
     // A second chunk of another kind is no error: the specification lets readers skip unknown
     // chunks.
     Ok(Chunks { json: json.bytes, binary: next.filter(|c| c.kind == BINARY).map(|c| c.bytes) })
@@ -71,7 +71,7 @@ struct Chunk<'a> {
 }
 
 impl<'a> Chunk<'a> {
-    fn at(file: &'a [u8], at: usize) -> Result<Self, Fault> {
+    fn read_at(file: &'a [u8], at: usize) -> Result<Self, Fault> {
         let place = || format!("byte {at}");
         let short = || Fault::new(place(), "the file ends in the header of a chunk");
         let length = number_at(file, at).ok_or_else(short)? as usize;

@@ -13,6 +13,6 @@ mod write;
 pub use material::{EXTENSION, Material, MediaType, material_schema};
 pub use read::{Texture, read};
 
-pub(crate) use read::{copyright, held};
+pub(crate) use read::{copyright, import};
 #[cfg(feature = "export")]
-pub(crate) use write::written;
+pub(crate) use write::export;

@@ -9,7 +9,8 @@ use serde::Deserialize;
 use super::glb::{Chunks, chunks};
 use super::material::{EXTENSION, Material};
 use crate::error::Fault;
-use crate::format::{Held, Naming};
+use crate::format::Naming;
+use crate::import::ImportedAsset;
 use crate::json;
 
 /// Media types of buffers in data URIs (glTF 2.0, section 3.6.1).
@@ -105,13 +106,13 @@ pub(crate) fn copyright(file: &[u8]) -> Option<String> {
 }
 
 /// Reads the texture of a file as an asset, which has its own name.
-pub(crate) fn held(file: &[u8], _: &Naming<'_>) -> Result<Held, Fault> {
+pub(crate) fn import(file: &[u8], _: &Naming<'_>) -> Result<ImportedAsset, Fault> {
     let texture = read(file)?;
     let asset = htex_format::Asset::from_bytes(&texture.bytes).map_err(|error| {
         let pointer = format!("/bufferViews/{}", texture.material.buffer_view);
         Fault::new(pointer, error.to_string())
     })?;
-    Ok(Held { asset, bytes: Some(texture.bytes), warnings: Vec::new() })
+    Ok(ImportedAsset::new(asset, Some(texture.bytes), Vec::new()))
 }
 
 impl Document {

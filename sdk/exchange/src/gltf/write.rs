@@ -1,5 +1,8 @@
 //! Writing a glTF file: a rectangle whose material carries an asset.
 
+use std::borrow::Cow;
+
+use htex_author::AuthorError;
 use htex_format::Rights;
 use serde_json::{Value, json};
 
@@ -7,7 +10,7 @@ use super::glb;
 use super::material::{EXTENSION, Material, MediaType};
 use super::read::{data_uri, read};
 use crate::error::ExchangeError;
-use crate::job::AssetJob;
+use crate::export::Export;
 use crate::json::{self, MOST_BYTES};
 
 /// Side of the rectangle, millimetres. Each texture coordinate goes from 0 to 1 along it.
@@ -34,10 +37,18 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// Writes the asset on a rectangle: as a `.gltf` file with an embedded buffer if that extension is
 /// requested, otherwise as a `.glb`.
-pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
-    let asset = job.file()?;
+pub(crate) fn export(
+    asset: &htex_play::Texture,
+    job: &Export<'_>,
+) -> Result<Vec<u8>, ExchangeError> {
+    let format = job.format;
+    let manifest = asset.manifest();
+    let asset = match job.file {
+        Some(file) => Cow::Borrowed(file),
+        None => Cow::Owned(asset.data().to_bytes().map_err(AuthorError::from)?),
+    };
     if asset.len() as u64 > MOST_BYTES {
-        return Err(job.cannot(too_long(asset.len())));
+        return Err(format.cannot(too_long(asset.len())));
     }
     let mut buffer = Buffer::of_rectangle();
     let texture = Material {
@@ -48,7 +59,6 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
         tex_coord: 0,
         tex_coord_size_mm: Some([SIDE_MM; 2]),
     };
-    let manifest = job.asset.manifest();
     let mut document = document(&manifest.name, &texture, &buffer);
     let rights = Rights::from_manifest(manifest);
     if !rights.is_empty() {
@@ -62,13 +72,13 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
         _ => glb::file(document.to_string().into_bytes(), buffer.bytes),
     };
     if file.len() as u64 > MOST_BYTES {
-        return Err(job.cannot(too_long(file.len())));
+        return Err(format.cannot(too_long(file.len())));
     }
-    let again = read(&file).map_err(|fault| job.cannot(fault.to_string()))?;
+    let again = read(&file).map_err(|fault| format.cannot(fault.to_string()))?;
     if again.bytes == *asset && again.material == texture {
         Ok(file)
     } else {
-        Err(job.cannot("what was written is read as another asset".to_owned()))
+        Err(format.cannot("what was written is read as another asset"))
     }
 }
 

@@ -1,72 +1,76 @@
 //! Conversion of a toolkit texture to an asset.
 
-use htex_author::stored_fields;
+use htex_author::{new_asset, representation};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
 use htex_dsp::line_spectrum::{coefficients_of_lines, line_spectral_frequencies, zeros_of_lines};
 use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
 use htex_format::{
-    Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation, Steps,
-    StoredAs, VERSION, round_within,
+    Asset, AtCondition, Condition, Contact, Provenance, Quantity, Steps, StoredAs, round_within,
 };
 use htex_host::Registry;
 
 use super::extension::{EXTENSION, Hatt};
-use super::fault::Fault;
 use super::node::Node;
-use super::texture::Texture;
+use super::texture::{Texture, read};
+use crate::error::Fault;
+use crate::format::Naming;
+use crate::import::ImportedAsset;
 
 const MODEL: &str = "org.htex.arma";
 
-/// What the asset needs in addition to the file.
-#[derive(Debug, Clone, Default)]
-pub struct Imported<'a> {
-    /// Name of the texture, if the file does not name the material.
-    pub name: &'a str,
-    /// Program and version, stored in the provenance.
-    pub tool: &'a str,
+/// Reads a model file as an asset.
+pub(crate) fn import(bytes: &[u8], naming: &Naming<'_>) -> Result<ImportedAsset, Fault> {
+    let texture = read(bytes)?;
+    Ok(ImportedAsset::new(asset(&texture, naming)?, None, texture.notes))
 }
 
 /// Makes the asset of a texture. It has no licence, because the file states none.
 ///
 /// # Errors
 /// When a filter cannot be stored because its poles or zeros are too close to each other.
-pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault> {
+pub fn asset(texture: &Texture, naming: &Naming<'_>) -> Result<Asset, Fault> {
     let registry = Registry::builtin();
-    let model = registry.find(MODEL).map_err(|error| Fault::of_file(error.to_string()))?;
-    let mut fields = stored_fields(model.descriptor());
-    if let Some(rate) = fields.last_mut() {
+    let model = registry.find(MODEL).map_err(|error| Fault::whole(error.to_string()))?;
+    let mut representation = representation(model, Vec::new());
+    if let Some(rate) = representation.fields.last_mut() {
         // The rate is the same at all nodes, so one byte at each is enough.
         rate.store = StoredAs::U8(Steps { scale: texture.rate_hz, offset: 0.0, log: false });
     }
     let band = band(texture.rate_hz);
-    let (mut at, mut parameters) = (Vec::new(), Vec::new());
+    let mut parameters = Vec::new();
     for (condition, node) in texture.nodes.iter().enumerate() {
         let flat = flat(node, texture.rate_hz)?;
-        let stored = round_within(&fields, model.descriptor(), &flat)
-            .map_err(|error| of(node, error.to_string()))?;
-        at.push(AtCondition {
-            condition,
-            level_rms: level_rms(node, &stored, texture.rate_hz, band)?,
-            quality: None,
-            left_out: None,
-        });
+        let stored = round_within(&representation.fields, model.descriptor(), &flat)
+            .map_err(|error| fault(node, error.to_string()))?;
+        let level_rms = level_rms(node, &stored, texture.rate_hz, band)?;
+        let at = AtCondition { condition, level_rms, quality: None, left_out: None };
+        representation.at.push(at);
         parameters.push(stored);
     }
-    let representation = Representation {
-        model: MODEL.to_owned(),
-        model_version: model.descriptor().version.clone(),
-        fields,
-        at,
-        triangles: texture.triangles.clone(),
-        parameters: "parameters/arma.bin".to_owned(),
+    representation.triangles.clone_from(&texture.triangles);
+    let condition = |node: &Node| Condition {
+        speed_mm_s: Some(node.speed_mm_s),
+        force_n: Some(node.force_n),
+        ..Condition::default()
     };
-    Ok(Asset {
-        manifest: manifest(texture, imported, band, representation)?,
-        parameters: vec![parameters],
-        reference: None,
-        plugins: Vec::new(),
-        notes: Vec::new(),
-    })
+    let conditions = texture.nodes.iter().map(condition).collect();
+    let provenance = Provenance {
+        tool: naming.tool.to_owned(),
+        warnings: texture.notes.clone(),
+        ..Provenance::default()
+    };
+    let name = if texture.material.is_empty() { naming.name } else { &texture.material };
+    let models = vec![(representation, parameters)];
+    let quantity = Quantity::Acceleration;
+    let mut asset = new_asset(name, quantity, band, provenance, conditions, models);
+    let manifest = &mut asset.manifest;
+    manifest.source = Some("Penn Haptic Texture Toolkit".to_owned());
+    manifest.finger = Some("a rigid tool".to_owned());
+    manifest.contact = Contact::Tool;
+    let numbers = serde_json::to_value(Hatt::new(texture))
+        .map_err(|error| Fault::whole(error.to_string()))?;
+    manifest.extensions.insert(EXTENSION.to_owned(), numbers);
+    Ok(asset)
 }
 
 /// The tactile band, as far as the filters' sample rate covers it.
@@ -74,57 +78,12 @@ fn band(rate_hz: f64) -> Band {
     Band { high_hz: (0.5 * rate_hz).min(Band::TACTILE.high_hz), ..Band::TACTILE }
 }
 
-fn manifest(
-    texture: &Texture,
-    imported: &Imported<'_>,
-    band: Band,
-    representation: Representation,
-) -> Result<Manifest, Fault> {
-    let condition = |node: &Node| Condition {
-        speed_mm_s: Some(node.speed_mm_s),
-        force_n: Some(node.force_n),
-        ..Condition::default()
-    };
-    let numbers = serde_json::to_value(Hatt::of(texture))
-        .map_err(|error| Fault::of_file(error.to_string()))?;
-    let name = if texture.material.is_empty() { imported.name } else { &texture.material };
-    Ok(Manifest {
-        htex: VERSION.to_owned(),
-        name: name.to_owned(),
-        license: None,
-        author: None,
-        tags: Vec::new(),
-        description: None,
-        source: Some("Penn Haptic Texture Toolkit".to_owned()),
-        doi: None,
-        sensor: None,
-        finger: Some("a rigid tool".to_owned()),
-        contact: Contact::Tool,
-        quantity: Quantity::Acceleration,
-        unit: Quantity::Acceleration.unit().to_owned(),
-        band,
-        provenance: Provenance {
-            tool: imported.tool.to_owned(),
-            warnings: texture.notes.clone(),
-            ..Provenance::default()
-        },
-        conditions: texture.nodes.iter().map(condition).collect(),
-        law: None,
-        representations: vec![representation],
-        reference: None,
-        plugins: Vec::new(),
-        extensions: [(EXTENSION.to_owned(), numbers)].into(),
-        extensions_required: Vec::new(),
-        other: Default::default(),
-    })
-}
-
 /// The parameters of a node.
 fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
     let lines = |coefficients: &[f64], what: &str| {
         let negated: Vec<f64> = coefficients.iter().map(|a| -a).collect();
         line_spectral_frequencies(&negated)
-            .ok_or_else(|| of(node, format!("the {what} lie outside the unit circle")))
+            .ok_or_else(|| fault(node, format!("the {what} lie outside the unit circle")))
     };
     let (poles, zeros) = (lines(&node.ar, "poles")?, lines(&node.ma, "zeros")?);
     Ok([&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat())
@@ -140,7 +99,7 @@ fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f6
         && zeros_of_lines(zeros.unwrap_or_default(), &mut b)
         && is_stable(&a);
     if !is_one {
-        return Err(of(
+        return Err(fault(
             node,
             "the poles are so near each other and the unit circle that 32-bit floats do not hold the filter",
         ));
@@ -148,10 +107,10 @@ fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f6
     let curve = |hz: f64| ar_magnitude(&a, hz, rate_hz) / ar_magnitude(&b, hz, rate_hz);
     let gain = (4.0 * 1.5 * GRID_HZ / rate_hz).sqrt();
     let level_rms = node.deviation() * gain * curve_level_rms(band, curve);
-    if level_rms.is_finite() { Ok(level_rms) } else { Err(of(node, "its level is not finite")) }
+    if level_rms.is_finite() { Ok(level_rms) } else { Err(fault(node, "its level is not finite")) }
 }
 
 /// A fault of a node.
-fn of(node: &Node, problem: impl Into<String>) -> Fault {
-    Fault::at(node.place.clone(), problem)
+fn fault(node: &Node, problem: impl AsRef<str>) -> Fault {
+    Fault::new(&node.place, problem)
 }

@@ -5,13 +5,13 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, BytesStart, Event};
 
-use super::element::Element;
-use super::fault::{Fault, Place, short};
+use super::element::{Element, place, short};
+use crate::error::Fault;
 
 /// Largest file that is read, bytes.
 pub const MOST_BYTES: usize = 16 << 20;
 /// Largest number of elements in a file.
-pub const MOST_ELEMENTS: usize = 200_000;
+const MOST_ELEMENTS: usize = 200_000;
 /// Deepest nesting of elements.
 const MOST_DEPTH: usize = 16;
 /// Longest text of an element, bytes, without blanks at its ends.
@@ -24,12 +24,11 @@ const MOST_ATTRIBUTES: usize = 64;
 pub(super) fn root(bytes: &[u8]) -> Result<Element, Fault> {
     if bytes.len() > MOST_BYTES {
         let words = format!("{} bytes are more than {MOST_BYTES}, the most", bytes.len());
-        return Err(Fault::of_file(words));
+        return Err(Fault::whole(words));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = line_of(bytes, error.valid_up_to());
-        let place = Place { line, element: String::new() };
-        Fault::at(place, "this is no UTF-8; save the file as UTF-8")
+        Fault::new(place(line, None), "this is no UTF-8; save the file as UTF-8")
     })?;
     // Some editors write a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -74,7 +73,7 @@ impl<'a> Builder<'a> {
                 let at = self.reader.error_position();
                 self.here(at, format!("this is no XML: {}", short(&error.to_string())))
             })?;
-            if !self.take(event)? {
+            if !self.process(event)? {
                 break;
             }
         }
@@ -82,11 +81,11 @@ impl<'a> Builder<'a> {
             return Err(left.fault("it is not closed; the file seems cut off"));
         }
         let root = self.root.take();
-        root.ok_or_else(|| Fault::of_file("it holds no element; give a model file of the toolkit"))
+        root.ok_or_else(|| Fault::whole("it holds no element; give a model file of the toolkit"))
     }
 
     /// Processes an event; returns false at the end of the file.
-    fn take(&mut self, event: Event<'a>) -> Result<bool, Fault> {
+    fn process(&mut self, event: Event<'a>) -> Result<bool, Fault> {
         match event {
             Event::Start(start) => self.start(&start)?,
             Event::Empty(start) => {
@@ -213,14 +212,13 @@ impl<'a> Builder<'a> {
         self.known.1
     }
 
-    fn fault(&mut self, problem: impl Into<String>) -> Fault {
+    fn fault(&mut self, problem: impl AsRef<str>) -> Fault {
         self.here(self.reader.buffer_position(), problem)
     }
 
-    fn here(&mut self, position: u64, problem: impl Into<String>) -> Fault {
+    fn here(&mut self, position: u64, problem: impl AsRef<str>) -> Fault {
         let line = self.line_at(position);
-        let element = self.open.last().map(|open| open.name.clone()).unwrap_or_default();
-        Fault::at(Place { line, element }, problem)
+        Fault::new(place(line, self.open.last().map(|open| &open.name[..])), problem)
     }
 }
 

@@ -1,6 +1,23 @@
 //! An XML element and its content.
 
-use super::fault::{Fault, Place, short};
+use crate::error::Fault;
+
+/// Longest quotation from a file, characters.
+const MOST_QUOTED: usize = 100;
+
+/// The beginning of a text from the file, on one line.
+pub(super) fn short(text: &str) -> String {
+    let shown: String = text.chars().take(MOST_QUOTED).collect();
+    shown.escape_debug().to_string()
+}
+
+/// A place in the file: `line 12, ARcoeff`, or `line 12` outside of all elements.
+pub(super) fn place(line: usize, element: Option<&str>) -> String {
+    match element {
+        None => format!("line {line}"),
+        Some(element) => format!("line {line}, {}", short(element)),
+    }
+}
 
 /// An element.
 #[derive(Debug)]
@@ -13,12 +30,12 @@ pub(super) struct Element {
 }
 
 impl Element {
-    pub(super) fn place(&self) -> Place {
-        Place { line: self.line, element: self.name.clone() }
+    pub(super) fn place(&self) -> String {
+        place(self.line, Some(&self.name))
     }
 
-    pub(super) fn fault(&self, problem: impl Into<String>) -> Fault {
-        Fault::at(self.place(), problem)
+    pub(super) fn fault(&self, problem: impl AsRef<str>) -> Fault {
+        Fault::new(self.place(), problem)
     }
 
     /// All children with a name.

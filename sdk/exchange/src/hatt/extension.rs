@@ -32,7 +32,7 @@ pub struct Hatt {
 }
 
 impl Hatt {
-    pub(super) fn of(texture: &Texture) -> Self {
+    pub(super) fn new(texture: &Texture) -> Self {
         Self {
             texture: texture.number,
             friction_coefficient: texture.friction,

@@ -18,15 +18,14 @@ mod asset;
 mod document;
 mod element;
 mod extension;
-mod fault;
 mod node;
 mod texture;
 mod work;
 mod zeros;
 
-pub use asset::{Imported, asset};
-pub use document::{MOST_BYTES, MOST_ELEMENTS};
+pub use asset::asset;
+pub(crate) use asset::import;
+pub use document::MOST_BYTES;
 pub use extension::{EXTENSION, Hatt, extension_schema};
-pub use fault::{Fault, Place};
 pub use node::Node;
 pub use texture::{Texture, read};

@@ -5,9 +5,9 @@ use htex_dsp::line_spectrum::line_spectral_frequencies;
 use htex_dsp::linear_prediction::is_stable;
 
 use super::element::Element;
-use super::fault::{Fault, Place};
 use super::work::Work;
 use super::zeros::{NotFound, inside};
+use crate::error::Fault;
 
 /// Largest difference between a line spectral frequency in the file and the one computed from the
 /// coefficients, radians, without a warning.
@@ -30,8 +30,9 @@ pub struct Node {
     /// Variance of the noise, (m/s²)²; 0 at a silent node.
     pub variance: f64,
     pub gain: f64,
-    /// Where the node is in the file.
-    pub place: Place,
+    /// Where the node is in the file: its line, and that line with the name of its element.
+    pub(super) line: usize,
+    pub(super) place: String,
 }
 
 impl Node {
@@ -72,6 +73,7 @@ impl Node {
             force_n: of("forceMod", 1e4)?,
             variance: of("var", 1e12)?,
             gain: gain * mirrored,
+            line: element.line,
             place: element.place(),
             ar,
             ma,
@@ -130,7 +132,7 @@ fn compare_lines(
     let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     if error > LINE_ERROR {
         notes.push(format!(
-            "{}the lines differ from those of the coefficients, which are used, by {error:.4} rad",
+            "{}: the lines differ from those of the coefficients, which are used, by {error:.4} rad",
             list.place()
         ));
     }

@@ -4,9 +4,9 @@ use htex_format::{Triangle, check_triangles};
 
 use super::document::root;
 use super::element::Element;
-use super::fault::Fault;
 use super::node::Node;
 use super::work::Work;
+use crate::error::Fault;
 
 /// Largest relative difference at which two numbers count as the same.
 const SAME: f64 = 1e-6;
@@ -159,7 +159,7 @@ fn check_places(models: &[&Element], nodes: &[Node]) -> Result<(), Fault> {
     let mut seen = std::collections::BTreeMap::new();
     for (model, node) in models.iter().zip(nodes) {
         let motion = (node.speed_mm_s.to_bits(), node.force_n.to_bits());
-        if let Some(first) = seen.insert(motion, node.place.line) {
+        if let Some(first) = seen.insert(motion, node.line) {
             return Err(model.fault(format!(
                 "another model, of line {first}, is at {} mm/s and {} N too",
                 node.speed_mm_s, node.force_n
@@ -185,7 +185,7 @@ fn triangles(
         Ok(()) => Ok(triangles),
         Err(error) => {
             let wrong = error.triangle().and_then(|triangle| elements.get(triangle));
-            let place = wrong.map(|wrong| wrong.place().to_string()).unwrap_or_default();
+            let place = wrong.map(|wrong| format!("{}: ", wrong.place())).unwrap_or_default();
             notes.push(format!(
                 "{place}the triangles are left out, and a player finds its own: {error} (models are counted from 0 here)"
             ));

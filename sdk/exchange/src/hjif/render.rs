@@ -16,7 +16,7 @@ const PER_COEFFICIENT: f64 = 4.0;
 type Library<'a> = BTreeMap<i64, &'a Effect>;
 
 /// A band with its units converted to seconds.
-struct Timed<'a> {
+struct BandInSeconds<'a> {
     band: &'a Band,
     library: &'a Library<'a>,
     /// Length of a tick, seconds.
@@ -40,14 +40,14 @@ impl Hjif {
         let speed = if self.is_over_space() { speed_mm_s / 1e3 } else { 1.0 };
         let library = chosen.perception.effect_library.iter();
         let library: Library<'_> = library.filter_map(|e| Some((e.id?, e))).collect();
-        let bands = chosen.channel.bands.iter().map(|band| Timed {
+        let bands = chosen.channel.bands.iter().map(|band| BandInSeconds {
             band,
             library: &library,
             tick_s: chosen.tick(self.timescale) / speed,
             per_s: speed,
             rate_hz,
         });
-        let bands: Vec<Timed<'_>> = bands.collect();
+        let bands: Vec<BandInSeconds<'_>> = bands.collect();
         let mut samples = vec![0.0; length(&bands, &chosen, rate_hz)?];
         for band in &bands {
             band.add_to(&mut samples);
@@ -59,7 +59,7 @@ impl Hjif {
 }
 
 /// Number of samples up to the end of the last effect.
-fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usize, Fault> {
+fn length(bands: &[BandInSeconds<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usize, Fault> {
     let (mut end_s, mut work) = (0.0f64, 0.0);
     for (index, band) in bands.iter().enumerate() {
         let at = || format!("{}/bands/{index}", chosen.pointer);
@@ -79,13 +79,13 @@ fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usiz
 }
 
 /// An effect at a position: its own position, or the position of a reference to it.
-struct Placed<'a> {
+struct PlacedEffect<'a> {
     effect: &'a Effect,
     position: i64,
 }
 
-impl<'a> Timed<'a> {
-    fn effects(&self) -> impl Iterator<Item = Placed<'a>> {
+impl<'a> BandInSeconds<'a> {
+    fn effects(&self) -> impl Iterator<Item = PlacedEffect<'a>> {
         let library = self.library;
         self.band.effects.iter().filter_map(move |effect| {
             let position = effect.position;
@@ -93,15 +93,15 @@ impl<'a> Timed<'a> {
                 EffectType::Reference => library.get(&effect.id?).copied()?,
                 _ => effect,
             };
-            Some(Placed { effect, position })
+            Some(PlacedEffect { effect, position })
         })
     }
 
-    fn start_s(&self, placed: &Placed<'_>) -> f64 {
+    fn start_s(&self, placed: &PlacedEffect<'_>) -> f64 {
         placed.position as f64 * self.tick_s
     }
 
-    fn end_s(&self, placed: &Placed<'_>) -> f64 {
+    fn end_s(&self, placed: &PlacedEffect<'_>) -> f64 {
         let keyframes = &placed.effect.keyframes;
         let last = keyframes.iter().filter_map(|k| k.relative_position).max().unwrap_or(0);
         let own_s = match self.band.band_type {
@@ -169,10 +169,11 @@ impl<'a> Timed<'a> {
             let time_s = clock.into_s(index);
             // Frequencies are linear between keyframes, so the middle of a step has the step's
             // mean.
-            let hz = frequency.at(0.5 * (before_s + time_s)).unwrap_or(0.0);
+            let hz = frequency.value_at(0.5 * (before_s + time_s)).unwrap_or(0.0);
             periods += hz * (time_s - before_s);
             before_s = time_s;
-            *sample += amplitude.at(time_s).unwrap_or(1.0) * base(effect.base_signal, periods);
+            *sample +=
+                amplitude.value_at(time_s).unwrap_or(1.0) * base(effect.base_signal, periods);
         }
     }
 
@@ -208,7 +209,7 @@ impl<'a> Timed<'a> {
         let curve = self.curve(effect, |k| k.amplitude_modulation);
         let mut curve = Reader::new(&curve);
         for (index, sample) in own.iter_mut().enumerate() {
-            *sample += curve.at(clock.into_s(index)).unwrap_or(0.0);
+            *sample += curve.value_at(clock.into_s(index)).unwrap_or(0.0);
         }
     }
 }

@@ -12,11 +12,11 @@ mod image;
 #[cfg(feature = "export")]
 mod write;
 
-pub(crate) use asset::{Surface, held};
+pub(crate) use asset::import;
 pub use image::{Image, read};
 pub(crate) use image::{PITCH_MM, rights};
 #[cfg(feature = "export")]
-pub(crate) use write::written;
+pub(crate) use write::export;
 
 /// The model of the pixels.
 const MODEL: &str = "org.htex.map";

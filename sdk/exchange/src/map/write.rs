@@ -9,6 +9,8 @@ use htex_play::{Motion, Texture};
 use super::MODEL;
 use super::image::{Image, read, to_bytes};
 use crate::error::{ExchangeError, Fault};
+use crate::export::{Export, ExportedFile};
+use crate::format::Format;
 use crate::loss::Loss;
 
 /// Indices of the fields in the model's parameters.
@@ -19,35 +21,29 @@ const FORCE: usize = 3;
 const RMS: usize = 4;
 const GREY: usize = 6;
 
-/// An image, and what it loses.
-pub(crate) struct Printed {
-    pub(crate) bytes: Vec<u8>,
-    /// `None` if the texture is a map already.
-    pub(crate) lost: Option<Loss>,
-    pub(crate) notes: Vec<String>,
-}
-
 /// Writes a texture as an image. A map keeps its own pixels. Any other texture becomes a row of
 /// pixels, fitted to what it plays at a motion (by default at its default condition).
 ///
 /// # Errors
 /// When the texture is silent, the speed is unknown, or 255 pixels cannot hold any of it.
-pub(crate) fn written(
+pub(crate) fn export(
     asset: &Texture,
-    model: Option<&str>,
+    export: &Export<'_>,
     motion: Option<Motion>,
-) -> Result<Printed, ExchangeError> {
-    let rights = Rights::from_manifest(asset.manifest());
-    match own(asset, model)? {
-        None => fitted(asset, model, motion),
-        Some(_) if motion.is_some() => Err(cannot(
+) -> Result<ExportedFile, ExchangeError> {
+    let (format, model) = (export.format, export.model);
+    let Some((parameters, level_rms)) = own(asset, model)? else {
+        return export_fit(asset, export, motion);
+    };
+    if motion.is_some() {
+        return Err(format.cannot(
             "the texture is a map, whose pixels are the same at every motion; leave out speed and force",
-        )),
-        Some((parameters, level_rms)) => {
-            let (bytes, white) = image(&parameters, level_rms, &rights)?;
-            Ok(Printed { bytes, lost: None, notes: vec![said(&parameters, white, asset)] })
-        }
+        ));
     }
+    let (bytes, white) =
+        image(format, &parameters, level_rms, &Rights::from_manifest(asset.manifest()))?;
+    let notes = vec![said(&parameters, white, asset)];
+    Ok(ExportedFile { notes, ..ExportedFile::of_asset(format, bytes) })
 }
 
 /// The parameters and the level of a texture that is a map. They come from the model that is named,
@@ -60,11 +56,12 @@ fn own(asset: &Texture, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, 
     }
 }
 
-fn fitted(
+fn export_fit(
     asset: &Texture,
-    model: Option<&str>,
+    export: &Export<'_>,
     motion: Option<Motion>,
-) -> Result<Printed, ExchangeError> {
+) -> Result<ExportedFile, ExchangeError> {
+    let (format, model) = (export.format, export.model);
     let band = asset.band();
     let frequency_hz = band.grid_hz();
     let representation = asset.representation(model)?;
@@ -76,12 +73,12 @@ fn fitted(
         force_n: motion.map(|motion| motion.force_n).or(default.and_then(|one| one.force_n)),
     };
     if condition.speed_mm_s.is_none() {
-        return Err(cannot(
+        return Err(format.cannot(
             "the texture states no speed, and pixels lie over a way; give `speed` and `force`",
         ));
     }
     let magnitude = representation.magnitude(motion, &frequency_hz)?;
-    let failed = |error: htex_host::HostError| cannot(&error.to_string());
+    let failed = |error: htex_host::HostError| format.cannot(error.to_string());
     let registry = Registry::builtin();
     let map = registry.find(MODEL).map_err(failed)?;
     let request = FitInput {
@@ -105,15 +102,15 @@ fn fitted(
         signal: Vec::new(),
         signal_rate_hz: 0.0,
     };
-    let (bytes, white) =
-        image(&fit.parameters, fit.level_rms, &Rights::from_manifest(asset.manifest()))?;
-    Ok(Printed {
-        bytes,
+    let rights = Rights::from_manifest(asset.manifest());
+    let (bytes, white) = image(format, &fit.parameters, fit.level_rms, &rights)?;
+    Ok(ExportedFile {
         lost: Some(loss(&reference, shape, fit.level_rms)?),
         notes: vec![
             said(&fit.parameters, white, asset),
             "It is one row, which repeats: it is felt along the row alone, and as the texture at that speed alone.".to_owned(),
         ],
+        ..ExportedFile::of_asset(format, bytes)
     })
 }
 
@@ -135,6 +132,7 @@ fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss
 
 /// Writes parameters as an image and reads it back. Also returns the value of white at the level.
 fn image(
+    format: &Format,
     parameters: &[f64],
     level_rms: f64,
     rights: &Rights,
@@ -146,12 +144,12 @@ fn image(
         grey: grey.iter().map(|grey| libm::round(*grey) as u8).collect(),
         pitch_mm: Some(at(PITCH)),
     };
-    let own = |fault: Fault| cannot(&fault.to_string());
+    let own = |fault: Fault| format.cannot(fault.to_string());
     let bytes = to_bytes(&image, rights).map_err(own)?;
     if read(&bytes).map_err(own)?.grey == image.grey {
         Ok((bytes, level_rms * f64::from(u8::MAX) / at(RMS)))
     } else {
-        Err(cannot("what was written is read as another image"))
+        Err(format.cannot("what was written is read as another image"))
     }
 }
 
@@ -169,8 +167,4 @@ fn said(parameters: &[f64], white: f64, asset: &Texture) -> String {
     format!(
         "White is {white} {unit} above black at {speed_mm_s} mm/s{force}, and pixels lie {pitch_mm} mm apart."
     )
-}
-
-fn cannot(problem: &str) -> ExchangeError {
-    ExchangeError::Cannot { format: "png", problem: problem.to_owned() }
 }

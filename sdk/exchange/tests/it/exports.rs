@@ -5,7 +5,7 @@ use crate::textures;
 
 use htex_author::simulate::Surface;
 use htex_exchange::{
-    Coding, ExchangeError, Export, Exported, FORMATS, Format, PROFILES, Path, Profile, Stroke,
+    Coding, ExchangeError, Export, ExportedFile, FORMATS, Format, PROFILES, Path, Profile, Stroke,
     Writes, export,
 };
 use htex_play::{Motion, Texture};
@@ -13,11 +13,11 @@ use serde_json::Value;
 use textures::texture;
 
 fn of<'a>(format: &str) -> Export<'a> {
-    Export::new(Format::named(format).unwrap())
+    Export::new(Format::find(format).unwrap())
 }
 
 /// Checks a file against the rules of its format.
-fn check(name: &str, exported: &Exported, profile: &Profile) {
+fn check(name: &str, exported: &ExportedFile, profile: &Profile) {
     let json = || serde_json::from_slice::<Value>(&exported.bytes).unwrap();
     match name {
         "haptic" => rules::haptic(&json()),
@@ -121,7 +121,7 @@ fn what_is_too_strong_is_counted() {
     let asset = texture(Surface::Sandpaper);
     let lra = Profile::find("lra-175").unwrap();
     let weak = Profile {
-        strongest_m_s2: htex_exchange::Sourced { value: 0.1, source: "assumed".to_owned() },
+        strongest_m_s2: htex_exchange::SourcedValue { value: 0.1, source: "assumed".to_owned() },
         ..lra.clone()
     };
     for format in ["haptic", "ahap", "hjif", "wav"] {

@@ -18,7 +18,7 @@ static ASSET: LazyLock<Texture> = LazyLock::new(|| texture(Surface::Vinyl));
 static FILE: LazyLock<Vec<u8>> = LazyLock::new(|| ASSET.data().to_bytes().unwrap());
 
 fn written(extension: &str, file: &[u8]) -> Vec<u8> {
-    let mut how = Export::new(Format::named("gltf").unwrap());
+    let mut how = Export::new(Format::find("gltf").unwrap());
     how.extension = Some(extension);
     how.file = Some(file);
     export(&ASSET, &how).unwrap().bytes
@@ -91,7 +91,7 @@ fn a_file_that_would_be_written_differently_comes_back_too() {
     let asset = Texture::from_bytes(&file).unwrap();
     assert_ne!(asset.data().to_bytes().unwrap(), file);
     for extension in ["glb", "gltf"] {
-        let mut how = Export::new(Format::named("gltf").unwrap());
+        let mut how = Export::new(Format::find("gltf").unwrap());
         how.extension = Some(extension);
         how.file = Some(&file);
         let bytes = export(&asset, &how).unwrap().bytes;
@@ -117,7 +117,7 @@ fn metadata_is_applied() {
 
 #[test]
 fn an_export_says_that_nothing_is_lost_and_takes_no_setting() {
-    let mut how = Export::new(Format::named("gltf").unwrap());
+    let mut how = Export::new(Format::find("gltf").unwrap());
     let exported = export(&ASSET, &how).unwrap();
     assert!(exported.played.is_none() && exported.notes.is_empty());
     assert_eq!(&exported.bytes[..4], b"glTF");

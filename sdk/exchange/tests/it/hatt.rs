@@ -10,7 +10,8 @@ use busy::Busy;
 use common::{Model, draw, file};
 use htex_dsp::line_spectrum::coefficients_of_lines;
 use htex_dsp::linear_prediction::is_stable;
-use htex_exchange::hatt::{EXTENSION, Imported, MOST_BYTES, asset, extension_schema, read};
+use htex_exchange::Naming;
+use htex_exchange::hatt::{EXTENSION, MOST_BYTES, asset, extension_schema, read};
 use htex_play::{Motion, Texture};
 use proptest::prelude::*;
 
@@ -19,7 +20,7 @@ const MODEL: Option<&str> = Some("arma");
 fn imported(text: &str) -> Texture {
     let texture = read(text.as_bytes()).unwrap();
     assert_eq!(texture.notes, [""; 0]);
-    let made = asset(&texture, &Imported::default()).unwrap();
+    let made = asset(&texture, &Naming::default()).unwrap();
     Texture::from_bytes(&made.to_bytes().unwrap()).unwrap()
 }
 
@@ -90,7 +91,7 @@ fn forty_models_take_less_than_eight_kilobytes() {
     let models = draw(7, 20, 18);
     assert_eq!(models.len(), 40);
     let text = file(&models);
-    let made = asset(&read(text.as_bytes()).unwrap(), &Imported::default()).unwrap();
+    let made = asset(&read(text.as_bytes()).unwrap(), &Naming::default()).unwrap();
     let bytes = made.to_bytes().unwrap().len();
     println!("{} bytes of XML are {bytes}", text.len());
     assert!(bytes <= 8_000, "{bytes}");
@@ -131,7 +132,7 @@ fn said(from: &str, to: &str) -> String {
     let text = file(&draw(1, 6, 4));
     assert!(text.contains(from), "{from}");
     let changed = text.replacen(from, to, 1);
-    let made = read(changed.as_bytes()).and_then(|texture| asset(&texture, &Imported::default()));
+    let made = read(changed.as_bytes()).and_then(|texture| asset(&texture, &Naming::default()));
     made.map_or_else(|fault| fault.to_string(), |_| "it is read".to_owned())
 }
 
@@ -179,7 +180,10 @@ fn damaged_files_are_named_with_place() {
     );
     for end in (0..text.len()).step_by(997) {
         let fault = read(&text.as_bytes()[..end]).unwrap_err();
-        assert!(!fault.problem.is_empty() && (end < 60 || fault.place.line > 0), "{end}: {fault}");
+        assert!(
+            !fault.problem.is_empty() && (end < 60 || !fault.place.is_empty()),
+            "{end}: {fault}"
+        );
     }
 }
 
@@ -253,5 +257,5 @@ fn triangles_that_leave_a_gap_are_left_out() {
     let texture = read([&text[..from], &text[to..]].concat().as_bytes()).unwrap();
     assert!(texture.triangles.is_empty());
     assert!(texture.notes[0].contains("the triangles are left out"), "{:?}", texture.notes);
-    assert!(asset(&texture, &Imported::default()).unwrap().to_bytes().is_ok());
+    assert!(asset(&texture, &Naming::default()).unwrap().to_bytes().is_ok());
 }

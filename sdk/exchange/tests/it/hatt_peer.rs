@@ -6,14 +6,15 @@ use std::path::Path;
 use std::process::Command;
 
 use common::{draw, file};
-use htex_exchange::hatt::{Imported, asset, read};
+use htex_exchange::Naming;
+use htex_exchange::hatt::{asset, read};
 use htex_play::{Motion, Texture};
 
 /// Magnitudes at each node from 20 to 490 Hz, as stated by the asset that is imported from a file.
 fn stated(text: &str) -> Vec<Vec<f64>> {
     let grid: Vec<f64> = (4..=98).map(|bin| 5.0 * f64::from(bin)).collect();
     let texture = read(text.as_bytes()).unwrap();
-    let made = asset(&texture, &Imported::default()).unwrap();
+    let made = asset(&texture, &Naming::default()).unwrap();
     let asset = Texture::from_bytes(&made.to_bytes().unwrap()).unwrap();
     let motions = texture.nodes.iter().map(|node| Motion::new(node.speed_mm_s, node.force_n));
     let arma = asset.representation("arma").unwrap();

@@ -48,7 +48,7 @@ fn generated_losses_are_fresh() {
         for (format, coding) in WAYS {
             text += &format!("| {surface} | {} |", way(format, coding));
             for name in PROFILES {
-                let mut how = Export::new(Format::named(format).unwrap());
+                let mut how = Export::new(Format::find(format).unwrap());
                 how = how.with_profile(Profile::find(name).unwrap());
                 how.coding = coding;
                 text += &cell(&export(&asset, &how).unwrap().lost.unwrap());

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use htex_exchange::map::{Image, read};
 use htex_exchange::{
-    Export, Exported, Format, Import, Imported, Path, Physical, export, import, missing,
+    Export, ExportedFile, Format, Import, ImportedAsset, Path, Physical, export, import, missing,
 };
 use htex_play::{Motion, Registry, Texture, VoiceOptions};
 use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
@@ -47,7 +47,7 @@ fn how(pitch_mm: Option<f64>) -> Import<'static> {
     }
 }
 
-fn imported(bytes: &[u8], pitch_mm: Option<f64>) -> Imported {
+fn imported(bytes: &[u8], pitch_mm: Option<f64>) -> ImportedAsset {
     import("map.png", bytes, &how(pitch_mm), &Registry::builtin()).unwrap()
 }
 
@@ -57,12 +57,12 @@ fn refusal(bytes: &[u8], pitch_mm: Option<f64>) -> String {
 }
 
 /// Opens the asset as an app does.
-fn opened(imported: &Imported) -> Texture {
+fn opened(imported: &ImportedAsset) -> Texture {
     Texture::from_bytes(&imported.to_bytes().unwrap()).unwrap()
 }
 
-fn exported(asset: &Texture) -> Exported {
-    export(asset, &Export::new(Format::named("png").unwrap())).unwrap()
+fn exported(asset: &Texture) -> ExportedFile {
+    export(asset, &Export::new(Format::find("png").unwrap())).unwrap()
 }
 
 /// Ridges along y, `wave` pixels apart.
@@ -213,7 +213,7 @@ fn a_texture_without_places_goes_out_as_a_row() {
     hum.fit.models = Some(vec!["sslope".to_owned()]);
     let hum = import("hum.haptic", file, &hum, &Registry::builtin()).unwrap();
     let hum = opened(&hum);
-    let mut to = Export::new(Format::named("png").unwrap());
+    let mut to = Export::new(Format::find("png").unwrap());
     let motion = Motion::new(120.0, FORCE_N);
     to.path = Path::Condition(Some(motion));
     let row = export(&hum, &to).unwrap();

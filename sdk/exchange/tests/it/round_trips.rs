@@ -39,12 +39,12 @@ fn pattern(steps_ms: &[u32], values: &[f64], hertz: &[f64]) -> Pattern {
 }
 
 fn there(pattern: &Pattern) -> Pattern {
-    let bytes = Ahap::of(pattern, profile()).to_bytes();
+    let bytes = Ahap::from_pattern(pattern, profile()).to_bytes();
     combined(&Ahap::from_bytes(&bytes).unwrap().patterns(profile()))
 }
 
 fn back(pattern: &Pattern) -> Pattern {
-    let bytes = Haptic::of(pattern, profile(), Metadata::default()).to_bytes();
+    let bytes = Haptic::from_pattern(pattern, profile(), Metadata::default()).to_bytes();
     Haptic::from_bytes(&bytes).unwrap().pattern(profile())
 }
 

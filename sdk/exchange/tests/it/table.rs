@@ -13,7 +13,7 @@ fn names_and_extensions_lead_to_one_format() {
     assert_eq!(names.len(), FORMATS.len());
     let mut extensions = BTreeSet::new();
     for format in FORMATS {
-        assert_eq!(Format::named(format.name).unwrap().title, format.title);
+        assert_eq!(Format::find(format.name).unwrap().title, format.title);
         assert!(format.reads.is_some() || format.writes.is_some(), "{}", format.name);
         for extension in format.extensions.iter().filter(|_| format.reads.is_some()) {
             assert!(extensions.insert(*extension), "{extension}");
@@ -56,8 +56,8 @@ fn each_profile_is_whole_and_says_where_its_values_are_from() {
 
 #[test]
 fn a_setting_that_means_nothing_is_refused() {
-    let import_of = |name: &str, setting| Format::named(name).unwrap().check_import([setting]);
-    let export_of = |name: &str, setting| Format::named(name).unwrap().check_export([setting]);
+    let import_of = |name: &str, setting| Format::find(name).unwrap().check_import([setting]);
+    let export_of = |name: &str, setting| Format::find(name).unwrap().check_export([setting]);
     assert!(import_of("hatt", "full_scale").is_err());
     assert!(import_of("hjif", "profile").is_err());
     assert!(import_of("haptic", "profile").is_ok());
@@ -79,12 +79,12 @@ fn a_setting_that_means_nothing_is_refused() {
     };
     let error = import("cork.xml", b"<modelSet/>", &how, &Registry::builtin()).unwrap_err();
     assert!(error.to_string().contains("takes no `speed`"), "{error}");
-    let mut how = Export::new(Format::named("ahap").unwrap());
+    let mut how = Export::new(Format::find("ahap").unwrap());
     how.rate_hz = Some(8_000.0);
     let asset = made();
     let error = htex_exchange::export(&asset, &how).unwrap_err().to_string();
     assert!(error.contains("takes no `rate`"), "{error}");
-    let not_written = Export::new(Format::named("hatt").unwrap());
+    let not_written = Export::new(Format::find("hatt").unwrap());
     let error = htex_exchange::export(&asset, &not_written).unwrap_err().to_string();
     assert!(error.contains("it is not written; there are haptic, ahap"), "{error}");
 }

@@ -159,7 +159,7 @@ impl Coverage {
 /// a range or values.
 fn within(values: Option<&[f64]>, range: Option<[f64; 2]>, half: usize) -> Option<Vec<bool>> {
     let (values, [low, high]) = (values?, range?);
-    let means = Sums::of(values.iter().copied());
+    let means = Sums::new(values.iter().copied());
     let is_within = |at| (low..=high).contains(&means.mean_around(at, half));
     Some((0..values.len()).map(is_within).collect())
 }

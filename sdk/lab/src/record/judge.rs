@@ -3,7 +3,9 @@
 use std::error::Error;
 
 use htex_author::recording::RecordingError;
-use htex_author::{Exploration, Reading, Recording, SpectrumOptions, Take, read_take, velocity};
+use htex_author::{
+    Exploration, Recording, SegmentedTake, SpectrumOptions, Take, segment_take, velocity,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::record::coverage::{Coverage, Target};
@@ -74,7 +76,7 @@ pub fn judge(data: &TakeData) -> Verdict {
                 };
                 verdict.reasons.extend(reason);
             }
-            let coverage = Coverage::measure(&recording, &reading.part.segments, [speed, force]);
+            let coverage = Coverage::measure(&recording, &reading.spectra.segments, [speed, force]);
             verdict.reasons.extend(coverage.lacks(header.required));
             verdict.coverage = Some(coverage);
             if header.target_speed_mm_s.is_some() {
@@ -101,10 +103,10 @@ fn targets(header: &TakeHeader) -> [Option<Target>; 2] {
         .map(|target| target.map(|value| Target { value, tolerance }))
 }
 
-fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
+fn reading(data: &TakeData) -> Result<(SegmentedTake, Recording), Box<dyn Error>> {
     let recording = recording(data)?;
     let take = Take { recording, given: Exploration::default() };
-    let reading = read_take(&take, &SpectrumOptions::default(), false)?;
+    let reading = segment_take(&take, &SpectrumOptions::default(), false)?;
     Ok((reading, take.recording))
 }
 
@@ -114,7 +116,7 @@ fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     let axes =
         texture_axes(&data.header.signals).iter().map(|at| data.signals[*at].clone()).collect();
     let (name, rate_hz) = (data.header.name.as_str(), data.header.rate_hz);
-    let mut recording = Recording::of(data.header.quantity, name, rate_hz, axes)?;
+    let mut recording = Recording::from_axes(data.header.quantity, name, rate_hz, axes)?;
     if let Some(normal) = signal("normal") {
         recording = recording.with_normal(normal)?;
     }
@@ -168,8 +170,8 @@ fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     }
 }
 
-fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
-    let stretches = reading.part.segments.stretches();
+fn measure(verdict: &mut Verdict, reading: &SegmentedTake, recording: &Recording) {
+    let stretches = reading.spectra.segments.stretches();
     let mean = |values: &[f64]| {
         let (mut sum, mut count) = (0.0, 0);
         for stretch in &stretches {
@@ -185,7 +187,7 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
     };
     verdict.speed_mm_s = measured(reading.spread.speed_mm_s, recording.speed_mm_s.as_ref());
     verdict.force_n = measured(reading.spread.force_n, recording.normal_n.as_ref());
-    verdict.segments = reading.part.segments.starts.len();
+    verdict.segments = reading.spectra.segments.starts.len();
     let findings = reading.findings.iter();
     verdict.findings = findings.map(|f| format!("{}: {}", f.code, f.message)).collect();
 }

@@ -85,7 +85,8 @@ impl LiveSignal {
     #[must_use]
     pub fn spectrum(&self) -> Option<LiveSpectrum> {
         let axes = self.axes.iter().map(|axis| axis.iter().copied().collect());
-        let recording = Recording::of(self.quantity, "", self.rate_hz, axes.collect()).ok()?;
+        let recording =
+            Recording::from_axes(self.quantity, "", self.rate_hz, axes.collect()).ok()?;
         let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
         let segments = segment_spectra(&recording, &options).ok()?;
         let texture = TextureSpectrum::average(&[segments], Averaging::Rms).ok()?;

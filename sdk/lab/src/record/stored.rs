@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::recording::read_recording;
 use htex_author::settings::ReadingSettings;
-use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, segment_take};
 use htex_base::files::{ContentError, open_regular, read_regular};
 use htex_format::Quantity;
 use serde::Deserialize;
@@ -136,7 +136,7 @@ pub(crate) fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Op
     let options = settings(&file, &take).read_options(1).ok()?.pop()?;
     let take =
         Take { recording: read_recording(&file, &options).ok()?, given: Exploration::default() };
-    let reading = read_take(&take, &SpectrumOptions::default(), false).ok()?;
-    let texture = TextureSpectrum::average(&[reading.part], Averaging::Rms).ok()?;
+    let reading = segment_take(&take, &SpectrumOptions::default(), false).ok()?;
+    let texture = TextureSpectrum::average(&[reading.spectra], Averaging::Rms).ok()?;
     Some(LiveSpectrum::from_texture(&texture))
 }

@@ -5,7 +5,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use htex_author::recording::read_recording;
-use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_author::{
+    Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, segment_take,
+};
 use htex_base::files::{AtFile, ContentError};
 use htex_base::finding::as_text;
 use htex_dsp::Band;
@@ -54,8 +56,8 @@ impl Reference {
         options: &SpectrumOptions,
         strict: bool,
     ) -> Result<Self, LabError> {
-        let reading = read_take(take, options, strict).map_err(ContentError::in_file(file))?;
-        Ok(Self::average(&[reading.part], options).map_err(ContentError::in_file(file))?)
+        let reading = segment_take(take, options, strict).map_err(ContentError::in_file(file))?;
+        Ok(Self::average(&[reading.spectra], options).map_err(ContentError::in_file(file))?)
     }
 
     /// Returns the spectrum that was recorded for an asset, at the condition nearest to a motion,
@@ -212,7 +214,7 @@ fn part(
         .ok_or("it does not describe a recording")
         .map_err(ContentError::in_file(&beside))?;
     let take = open_take(&file, &header).map_err(ContentError::in_file(&file))?;
-    Ok(read_take(&take, options, false).map_err(ContentError::in_file(&file))?.part)
+    Ok(segment_take(&take, options, false).map_err(ContentError::in_file(&file))?.spectra)
 }
 
 fn open_take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {

@@ -4,7 +4,7 @@ use htex_base::finding::Notice;
 use htex_format::Quantity;
 
 use crate::columns::by_order::by_order;
-use crate::columns::clock::{self, Noticed};
+use crate::columns::clock::{self, ReadNotices};
 use crate::columns::map::Role;
 use crate::columns::motion;
 use crate::columns::select::{Chosen, Selection, Values, all_axis_roles, select};
@@ -14,7 +14,7 @@ use crate::recording::{Recording, RecordingError};
 use crate::sheet::{Layout, Sheet, even_numbers};
 
 /// A recording, with the time of each sample if the file has times.
-pub(crate) struct Assembled {
+pub(crate) struct TimedRecording {
     pub(crate) recording: Recording,
     pub(crate) time_s: Option<Vec<f64>>,
 }
@@ -25,22 +25,27 @@ pub(crate) fn assemble(
     file: &str,
     sheet: &mut dyn Sheet,
     options: &ReadOptions,
-) -> Result<Assembled, Fault> {
+) -> Result<TimedRecording, Fault> {
     match (sheet.layout(), &options.map) {
-        (Layout::Channels { are_integers }, None) => {
-            Ok(Assembled { recording: by_order(file, sheet, are_integers, options)?, time_s: None })
-        }
+        (Layout::Channels { are_integers }, None) => Ok(TimedRecording {
+            recording: by_order(file, sheet, are_integers, options)?,
+            time_s: None,
+        }),
         _ => by_name(file, sheet, options),
     }
 }
 
-fn by_name(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<Assembled, Fault> {
+fn by_name(
+    file: &str,
+    sheet: &mut dyn Sheet,
+    options: &ReadOptions,
+) -> Result<TimedRecording, Fault> {
     let mut selection = select(sheet.columns(), options.map.as_ref(), options.quantity)?;
     let mut signals = Signals::read(sheet, &selection)?;
     let mut noticed =
-        Noticed { warnings: std::mem::take(&mut selection.warnings), ..Noticed::default() };
+        ReadNotices { warnings: std::mem::take(&mut selection.warnings), ..ReadNotices::default() };
     noticed.warnings.extend(signals.warnings());
-    let time_s = signals.take(Role::Time);
+    let time_s = signals.take_signal(Role::Time);
     let own_hz = match &time_s {
         Some(_) => None,
         None => sheet.rate_hz(signals.wanted())?,
@@ -52,7 +57,7 @@ fn by_name(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<A
     recording.simulated = simulated;
     recording.clock_findings = noticed.findings.into_list();
     recording.warnings = noticed.warnings;
-    Ok(Assembled { recording, time_s })
+    Ok(TimedRecording { recording, time_s })
 }
 
 /// The values of each role.
@@ -98,14 +103,14 @@ impl Signals {
         std::mem::take(&mut self.warnings)
     }
 
-    pub(crate) fn take(&mut self, role: Role) -> Option<Vec<f64>> {
+    pub(crate) fn take_signal(&mut self, role: Role) -> Option<Vec<f64>> {
         let mut roles = self.roles.iter_mut();
         let (_, values) = roles.find(|(own, values)| *own == role && !values.is_empty())?;
         Some(std::mem::take(values))
     }
 
     pub(crate) fn take_all(&mut self, roles: &[Role]) -> Vec<Vec<f64>> {
-        roles.iter().filter_map(|role| self.take(*role)).collect()
+        roles.iter().filter_map(|role| self.take_signal(*role)).collect()
     }
 
     fn into_recording(
@@ -118,13 +123,13 @@ impl Signals {
         let axes = self.take_all(&roles);
         let normal = match quantity {
             Quantity::NormalForce => axes.first().cloned(),
-            _ => self.take(Role::Normal),
+            _ => self.take_signal(Role::Normal),
         };
-        let mut recording = Recording::of(quantity, file, rate_hz, axes)?;
+        let mut recording = Recording::from_axes(quantity, file, rate_hz, axes)?;
         if let Some(normal) = normal {
             recording = recording.with_normal(normal)?;
         }
-        if let Some(speed) = self.take(Role::Speed) {
+        if let Some(speed) = self.take_signal(Role::Speed) {
             return recording.with_speed(speed);
         }
         let position = self.take_all(&[Role::X, Role::Y]);

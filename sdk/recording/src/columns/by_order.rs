@@ -38,7 +38,7 @@ pub(crate) fn by_order(
         (Quantity::NormalForce, [axis]) => Some(axis.clone()),
         _ => None,
     };
-    let mut recording = Recording::of(options.quantity, file, rate_hz, channels)?;
+    let mut recording = Recording::from_axes(options.quantity, file, rate_hz, channels)?;
     if let Some(normal) = normal {
         recording = recording.with_normal(normal)?;
     }

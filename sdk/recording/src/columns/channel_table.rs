@@ -4,12 +4,12 @@ use std::path::Path;
 
 use htex_format::Quantity;
 
-use crate::columns::clock::{self, Noticed};
+use crate::columns::clock::{self, ReadNotices};
 use crate::columns::map::Role;
 use crate::columns::names::{Unit, recognise};
 use crate::error::{Fault, ReadError};
 use crate::formats;
-use crate::input::{Opened, file_name};
+use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
 
@@ -36,7 +36,7 @@ pub fn read_channels(path: &Path, options: &ReadOptions) -> Result<ChannelTable,
     let file = file_name(path);
     let read = || {
         options.check()?;
-        let mut sheet = formats::open(Opened::file(path)?, options)?;
+        let mut sheet = formats::open(InputFile::file(path)?, options)?;
         table(&file, &mut *sheet, options)
     };
     read().map_err(|fault: Fault| fault.in_file(&file))
@@ -57,7 +57,7 @@ fn table(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<Cha
         Some(_) => None,
         None => sheet.rate_hz(&all)?,
     };
-    let mut noticed = Noticed::default();
+    let mut noticed = ReadNotices::default();
     let given_hz = clock::given(own_hz, options.rate_hz, &mut noticed);
     let rate_hz = clock::rate(file, sheet, time_s.as_deref(), given_hz, &mut noticed)?;
     if names.is_empty() {

@@ -36,13 +36,17 @@ pub fn clock_definition() -> String {
 
 /// Warnings of the reader, and findings of the time column.
 #[derive(Default)]
-pub(crate) struct Noticed {
+pub(crate) struct ReadNotices {
     pub(crate) warnings: Vec<Notice>,
     pub(crate) findings: Findings,
 }
 
 /// Returns the sample rate of a file without a time column: the given rate, or else the file's own.
-pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed) -> Option<f64> {
+pub(crate) fn given(
+    own: Option<f64>,
+    given: Option<f64>,
+    noticed: &mut ReadNotices,
+) -> Option<f64> {
     if let (Some(own), Some(given)) = (own, given)
         && (own / given - 1.0).abs() > DISAGREE
     {
@@ -65,7 +69,7 @@ pub(crate) fn rate(
     sheet: &dyn Sheet,
     time_s: Option<&[f64]>,
     given: Option<f64>,
-    noticed: &mut Noticed,
+    noticed: &mut ReadNotices,
 ) -> Result<f64, Fault> {
     let measured = match (time_s, given) {
         (None, None) => return Err(ReadProblem::NoRate.into()),
@@ -98,14 +102,14 @@ fn measure(
     sheet: &dyn Sheet,
     time_s: &[f64],
     given: Option<f64>,
-    noticed: &mut Noticed,
+    noticed: &mut ReadNotices,
 ) -> Result<f64, Fault> {
     let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
     // This must be known first: the median of steps that are not positive would make every step a
     // gap.
     if let Some(row) = steps().position(|step| step <= 0.0) {
         let (before, after) = (time_s[row], time_s[row + 1]);
-        return Err(ReadProblem::Time { before, after }.at(sheet.place(row + 1)));
+        return Err(ReadProblem::Time { before, after }.at_place(sheet.place(row + 1)));
     }
     let longest = longest_step(steps().collect());
     let (mut sum, mut squares, mut count, mut gaps) = (0.0, 0.0, 0.0, 0_usize);

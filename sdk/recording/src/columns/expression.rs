@@ -108,7 +108,7 @@ impl Expression {
                 TokenKind::Equals => "a second '='; quote a name that contains one",
                 _ => "an operator is missing before this",
             };
-            return Err(Problem::at(token, what));
+            return Err(Problem::at_token(token, what));
         }
         let whole = match tokens {
             [first, .., last] => text.get(first.start..last.end),
@@ -164,7 +164,7 @@ impl Parser<'_> {
         self.depth += 1;
         if self.depth > MOST_DEEP {
             let what = format!("more than {MOST_DEEP} parentheses and signs within each other");
-            return Err(Problem::at(token, what));
+            return Err(Problem::at_token(token, what));
         }
         match &token.kind {
             TokenKind::Plus | TokenKind::Minus => {
@@ -193,16 +193,16 @@ impl Parser<'_> {
                 match self.tokens.split_first() {
                     Some((Token { kind: TokenKind::Close, .. }, rest)) => self.tokens = rest,
                     Some((other, _)) => {
-                        return Err(Problem::at(
+                        return Err(Problem::at_token(
                             other,
                             "an operator or ')' is missing before this",
                         ));
                     }
-                    None => return Err(Problem::at(token, "'(' is not closed")),
+                    None => return Err(Problem::at_token(token, "'(' is not closed")),
                 }
                 Ok(())
             }
-            _ => Err(Problem::at(token, "a number or a column is missing before this")),
+            _ => Err(Problem::at_token(token, "a number or a column is missing before this")),
         }
     }
 
@@ -259,7 +259,7 @@ impl Formula {
                         // the parser wrote both operands before their operator.
                         let right = stack.pop().unwrap_or(f64::NAN);
                         let left = stack.pop().unwrap_or(f64::NAN);
-                        operator.of(left, right)
+                        operator.apply(left, right)
                     }
                 };
                 stack.push(value);
@@ -271,7 +271,7 @@ impl Formula {
 }
 
 impl Operator {
-    fn of(self, left: f64, right: f64) -> f64 {
+    fn apply(self, left: f64, right: f64) -> f64 {
         match self {
             Self::Add => left + right,
             Self::Subtract => left - right,

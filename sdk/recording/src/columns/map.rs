@@ -114,7 +114,7 @@ impl MapEntry {
         let among = |token: &&Token| matches!(token.kind, TokenKind::Comma | TokenKind::Equals);
         if let Some(token) = tokens.iter().find(among) {
             let what = "one column or expression is expected here; quote a name with ',' or '='";
-            return Err(refuse(Problem::at(token, what)));
+            return Err(refuse(Problem::at_token(token, what)));
         }
         let (values, scale) = split_scale(&tokens).map_err(refuse)?;
         if values.is_empty() {
@@ -227,7 +227,7 @@ fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
     let Some(equals) = tokens.iter().position(|token| token.kind == TokenKind::Equals) else {
         return Err(match tokens {
             [] => nowhere("an entry between commas is empty".into()),
-            [first, ..] => Problem::at(first, "this entry has no '='"),
+            [first, ..] => Problem::at_token(first, "this entry has no '='"),
         });
     };
     let (before, values) = (&tokens[..equals], &tokens[equals + 1..]);
@@ -235,11 +235,11 @@ fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
         [] => "",
         [first, ..] => text[first.start..tokens[equals].start].trim(),
     };
-    let role = parse_role(role).map_err(|what| Problem::at(&tokens[0], what))?;
+    let role = parse_role(role).map_err(|what| Problem::at_token(&tokens[0], what))?;
     let (values, scale) = split_scale(values)?;
     if values.is_empty() {
         let what = "a column name is missing after '='";
-        return Err(Problem::at(&tokens[equals], what));
+        return Err(Problem::at_token(&tokens[equals], what));
     }
     Ok(MapEntry { role, values: Expression::parse(text, values)?, scale })
 }
@@ -270,7 +270,7 @@ fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
 }
 
 fn not_a_scale(colon: &Token) -> Problem {
-    Problem::at(
+    Problem::at_token(
         colon,
         "what follows is not a scale; write a finite number other than 0, or quote a name that contains ':'",
     )

@@ -39,7 +39,7 @@ fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item =
 /// Returns the mean over `2 half + 1` samples. At the ends it covers fewer samples, but stays
 /// symmetric around the sample.
 fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
-    let sums = Sums::of(values.iter().copied());
+    let sums = Sums::new(values.iter().copied());
     let mean = |at: usize| {
         let reach = half.min(at).min(values.len() - 1 - at);
         sums.mean(at - reach, at + reach + 1)

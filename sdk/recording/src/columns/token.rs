@@ -51,7 +51,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn at(token: &Token, what: impl Into<String>) -> Self {
+    pub(crate) fn at_token(token: &Token, what: impl Into<String>) -> Self {
         Self { at: Some(token.start), what: what.into() }
     }
 

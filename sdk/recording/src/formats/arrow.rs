@@ -12,8 +12,8 @@ use lz4_flex::frame::FrameDecoder;
 
 use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::arrow_schema::{Column, Schema};
-use crate::formats::shared::Shared;
-use crate::input::Opened;
+use crate::formats::shared::SharedInput;
+use crate::input::InputFile;
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -47,7 +47,7 @@ pub(crate) struct Arrow {
     schema: Schema,
     batches: Vec<Batch>,
     limit: ValueLimit,
-    source: Shared,
+    source: SharedInput,
 }
 
 /// Where a batch of rows is, and how many rows it has.
@@ -68,9 +68,9 @@ struct Message {
 
 impl Arrow {
     /// Reads the schema and finds the batches.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
+    pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let (is_file, is_old) = (opened.front.starts_with(FILE), opened.front.starts_with(b"FEA1"));
-        let source = Shared::new(opened.random()?)?;
+        let source = SharedInput::new(opened.random()?)?;
         let mut arrow = Self {
             columns: Columns::default(),
             schema: Schema::default(),
@@ -112,7 +112,7 @@ impl Arrow {
                 .flatten()
                 .map(|block| [block.offset(), block.metaDataLength().into(), block.bodyLength()])
                 .collect();
-            Ok((Schema::of(&schema), blocks))
+            Ok((Schema::from_ipc(&schema), blocks))
         };
         let (schema, blocks) = read().map_err(|error| (at, error))?;
         self.schema = schema;
@@ -164,7 +164,7 @@ impl Arrow {
         let body_bytes = u64::try_from(message.bodyLength()).unwrap_or(u64::MAX);
         let body = at + 8 + size;
         match (is_first, message.header_as_schema()) {
-            (true, Some(schema)) => self.schema = Schema::of(&schema),
+            (true, Some(schema)) => self.schema = Schema::from_ipc(&schema),
             (true, None) => {
                 return Err(ArrowError::Layout(
                     "the stream does not begin with a schema; write it again",
@@ -320,7 +320,7 @@ impl Sheet for Arrow {
 }
 
 /// Reads metadata, up to the largest allowed size.
-fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError> {
+fn metadata(source: &SharedInput, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError> {
     if bytes <= MOST_METADATA {
         Ok(source.read(at, bytes)?)
     } else {
@@ -331,5 +331,6 @@ fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError>
 }
 
 fn damaged(place: impl Into<Place>, problem: &ArrowError) -> Fault {
-    ReadProblem::Invalid(htex_base::finding::plain(&problem.to_string()).into_owned()).at(place)
+    ReadProblem::Invalid(htex_base::finding::plain(&problem.to_string()).into_owned())
+        .at_place(place)
 }

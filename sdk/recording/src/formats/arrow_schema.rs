@@ -43,7 +43,7 @@ struct Extent {
 
 impl Schema {
     /// Counts the nodes and buffers of a schema's fields.
-    pub(crate) fn of(schema: &arrow_ipc::Schema<'_>) -> Self {
+    pub(crate) fn from_ipc(schema: &arrow_ipc::Schema<'_>) -> Self {
         let mut place = Some(Extent { nodes: 0, buffers: 0 });
         let fields = schema.fields().into_iter().flatten();
         let columns = fields.map(|field| {

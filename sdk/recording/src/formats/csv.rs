@@ -6,7 +6,7 @@ use crate::formats::cells::{Delimiter, sniff, split};
 use crate::formats::number::parse_number;
 use crate::formats::table::Table;
 use crate::formats::text::Lines;
-use crate::input::Opened;
+use crate::input::InputFile;
 use crate::sheet::{Columns, Layout, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -30,7 +30,7 @@ struct Start {
 
 impl<'a> Csv<'a> {
     /// Detects delimiter and header.
-    pub(crate) fn open(opened: Opened<'a>, limit: ValueLimit) -> Result<Self, Fault> {
+    pub(crate) fn open(opened: InputFile<'a>, limit: ValueLimit) -> Result<Self, Fault> {
         let mut blocks = Blocks::new(opened.stream(), limit);
         let head = blocks.head()?;
         let (table, start) = layout(&head)?;
@@ -125,7 +125,7 @@ fn in_the_middle(fault: Fault, behind: &mut Blocks<'_>) -> Result<Fault, Fault> 
             place: Some(Place::Line(line)),
             problem: ReadProblem::CutOff { expected, got },
         } if behind.has_row(line)? => {
-            Ok(ReadProblem::Ragged { expected, got }.at(Place::Line(line)))
+            Ok(ReadProblem::Ragged { expected, got }.at_place(Place::Line(line)))
         }
         other => Ok(other),
     }

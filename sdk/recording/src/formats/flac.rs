@@ -8,11 +8,11 @@ use claxon::{Block, FlacReader, FlacReaderOptions};
 
 use crate::error::{Fault, ReadProblem};
 use crate::formats::samples::{Order, Samples, channel_names};
-use crate::input::Opened;
+use crate::input::InputFile;
 use crate::value_limit::ValueLimit;
 
 /// Opens a FLAC file. Its blocks are decoded one by one later.
-pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
+pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let options = FlacReaderOptions { metadata_only: false, read_vorbis_comment: false };
     let reader = FlacReader::new_ext(opened.stream(), options)
         .map_err(|error| broken("header", format!("not a readable FLAC file: {error}")))?;
@@ -29,7 +29,7 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
         frames: info.samples,
         limit,
         order: Order::Interleaved,
-        samples: Box::new(Decoded {
+        samples: Box::new(SampleDecoder {
             // Samples are signed, so one bit is the sign.
             full_scale: libm::exp2(f64::from(info.bits_per_sample) - 1.0),
             expected: info.samples,
@@ -44,7 +44,7 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
 }
 
 /// The decoded samples, interleaved, as fractions of full scale.
-struct Decoded<R: Read> {
+struct SampleDecoder<R: Read> {
     reader: FlacReader<R>,
     width: usize,
     full_scale: f64,
@@ -58,7 +58,7 @@ struct Decoded<R: Read> {
     ended: bool,
 }
 
-impl<R: Read> Decoded<R> {
+impl<R: Read> SampleDecoder<R> {
     /// Decodes the next block; returns false at the end.
     fn advance(&mut self) -> Result<bool, Fault> {
         self.before += u64::from(self.block.duration());
@@ -94,7 +94,7 @@ impl<R: Read> Decoded<R> {
     }
 }
 
-impl<R: Read> Iterator for Decoded<R> {
+impl<R: Read> Iterator for SampleDecoder<R> {
     type Item = Result<f64, Fault>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -123,5 +123,5 @@ impl<R: Read> Iterator for Decoded<R> {
 }
 
 fn broken(place: &str, problem: String) -> Fault {
-    ReadProblem::Invalid(problem).at(place)
+    ReadProblem::Invalid(problem).at_place(place)
 }

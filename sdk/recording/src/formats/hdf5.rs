@@ -15,8 +15,8 @@ use hdf5_reader::{
 
 use crate::error::{Fault, ReadProblem};
 use crate::formats::matrix::{Arrays, MOST_COLUMNS, Shape, is_rate_name};
-use crate::formats::shared::Shared;
-use crate::input::Opened;
+use crate::formats::shared::SharedInput;
+use crate::input::InputFile;
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -43,7 +43,7 @@ pub(crate) struct Hdf5 {
     bytes: u64,
 }
 
-struct SharedFile(Shared);
+struct SharedFile(SharedInput);
 
 impl Storage for SharedFile {
     fn len(&self) -> u64 {
@@ -57,8 +57,8 @@ impl Storage for SharedFile {
 
 impl Hdf5 {
     /// Finds the names of all data sets. Links to other files are not followed.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
-        let shared = Shared::new(opened.random()?)?;
+    pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Self, Fault> {
+        let shared = SharedInput::new(opened.random()?)?;
         let bytes = shared.length();
         let options = OpenOptions::default()
             .with_max_chunk_bytes(MOST_CHUNK)
@@ -111,7 +111,7 @@ impl Scan {
                 "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
                  to a file of their own"
             );
-            return Err(ReadProblem::Invalid(problem).at(htex_base::finding::plain(path)));
+            return Err(ReadProblem::Invalid(problem).at_place(htex_base::finding::plain(path)));
         }
         // Attributes that cannot be read do not state a rate; these include kinds that are not
         // numbers.
@@ -137,8 +137,8 @@ impl Scan {
         let path = format!("{group}/{}", dataset.name());
         self.attributes(&path, dataset.attributes());
         let shape = match *dataset.shape() {
-            [samples] => Shape::of(1, samples),
-            [outer, inner] => Shape::of(outer, inner),
+            [samples] => Shape::of_array(1, samples),
+            [outer, inner] => Shape::of_array(outer, inner),
             _ => None,
         };
         let is_number = is_number(dataset.dtype());
@@ -147,7 +147,9 @@ impl Scan {
                 let problem = format!(
                     "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
                 );
-                return Err(ReadProblem::Invalid(problem).at(htex_base::finding::plain(&path)));
+                return Err(
+                    ReadProblem::Invalid(problem).at_place(htex_base::finding::plain(&path))
+                );
             }
         } else if is_number
             && is_rate_name(dataset.name())
@@ -185,7 +187,7 @@ fn fits(bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), Fault> {
         "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
         shape.samples, shape.channels
     );
-    Err(ReadProblem::Invalid(problem).at(htex_base::finding::plain(dataset.name())))
+    Err(ReadProblem::Invalid(problem).at_place(htex_base::finding::plain(dataset.name())))
 }
 
 /// Reads a data set in slabs: some samples of all its channels at once.
@@ -262,5 +264,5 @@ fn damaged(place: &str, error: &hdf5_reader::error::Error) -> Fault {
         "not readable HDF5: {}; copy the file again, or write it again by h5py or MATLAB",
         htex_base::finding::plain(&error)
     );
-    ReadProblem::Invalid(problem).at(htex_base::finding::plain(place))
+    ReadProblem::Invalid(problem).at_place(htex_base::finding::plain(place))
 }

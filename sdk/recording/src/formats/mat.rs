@@ -19,7 +19,7 @@ use crate::formats::mat_element::{
     number_type, text, unexpected, up_to_nul, words,
 };
 use crate::formats::matrix::{Arrays, MOST_COLUMNS, Shape};
-use crate::input::{Opened, Random};
+use crate::input::{InputFile, Random};
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -56,11 +56,11 @@ struct Element {
 
 impl Mat {
     /// Finds the names of all variables.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
+    pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let endian = match opened.front.get(126..128) {
             Some(b"IM") => Endian::Little,
             Some(b"MI") => Endian::Big,
-            _ => return Err(ReadProblem::Invalid(NOT_MATLAB.to_owned()).at("byte 126")),
+            _ => return Err(ReadProblem::Invalid(NOT_MATLAB.to_owned()).at_place("byte 126")),
         };
         let input = opened.random()?;
         let mut scan = Scan {
@@ -226,7 +226,7 @@ impl Scan {
             )));
         }
         // MATLAB stores column after column.
-        if let Some(shape) = Shape::of(columns, rows) {
+        if let Some(shape) = Shape::of_array(columns, rows) {
             let data = Data { element: self.element, before: inside.at, kind };
             if !self.arrays.add(name, shape, data) {
                 return Err(MatError::TooMany);
@@ -290,5 +290,5 @@ fn damaged(at: u64, problem: &MatError) -> Fault {
         }
         other => other.to_string(),
     };
-    ReadProblem::Invalid(problem).at(format!("byte {at}"))
+    ReadProblem::Invalid(problem).at_place(format!("byte {at}"))
 }

@@ -39,7 +39,7 @@ impl Shape {
     /// Returns the shape of an array of `outer` blocks, each with `inner` values that are next to
     /// each other in the file. `None` for an empty array, a single value, or more than
     /// [`MOST_CHANNELS`] channels.
-    pub(crate) fn of(outer: u64, inner: u64) -> Option<Self> {
+    pub(crate) fn of_array(outer: u64, inner: u64) -> Option<Self> {
         let is_planar = inner >= outer;
         let (channels, samples) = if is_planar { (outer, inner) } else { (inner, outer) };
         let is_signal = samples > 1 && (1..=MOST_CHANNELS).contains(&channels);
@@ -129,7 +129,7 @@ impl<T> Arrays<T> {
                         "it states another sample rate than {}; give the rate of the recording",
                         htex_base::finding::plain(name)
                     ))
-                    .at(htex_base::finding::plain(other))),
+                    .at_place(htex_base::finding::plain(other))),
                 };
             }
             if around.is_empty() {

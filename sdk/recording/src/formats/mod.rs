@@ -41,7 +41,7 @@ mod thrift;
 mod wav;
 
 use crate::error::{Fault, ReadProblem};
-use crate::input::Opened;
+use crate::input::InputFile;
 use crate::options::ReadOptions;
 use crate::sheet::{Layout, Sheet};
 use crate::value_limit::ValueLimit;
@@ -59,7 +59,7 @@ pub struct Format {
     open: Option<Open>,
 }
 
-type Open = for<'a> fn(Opened<'a>, ValueLimit) -> Result<Box<dyn Sheet + 'a>, Fault>;
+type Open = for<'a> fn(InputFile<'a>, ValueLimit) -> Result<Box<dyn Sheet + 'a>, Fault>;
 
 /// The reader of a format, if it was built.
 macro_rules! reader {
@@ -152,7 +152,7 @@ const HDF5_START: &[u8] = b"\x89HDF\r\n\x1a\n";
 impl Format {
     /// Detects the format of a file by its signature, or else by its extension; the default is
     /// text.
-    fn of(opened: &Opened<'_>) -> &'static Self {
+    fn detect(opened: &InputFile<'_>) -> &'static Self {
         let extension = opened.path.extension().map(|e| e.to_ascii_lowercase());
         let extension = extension.as_ref().and_then(|extension| extension.to_str());
         let is_signed = |format: &&Self| format.is_signed(&opened.front);
@@ -183,10 +183,10 @@ pub fn format_names() -> String {
 
 /// Opens a file of any format and refuses options that do not apply to it.
 pub(crate) fn open<'a>(
-    opened: Opened<'a>,
+    opened: InputFile<'a>,
     options: &ReadOptions,
 ) -> Result<Box<dyn Sheet + 'a>, Fault> {
-    let format = Format::of(&opened);
+    let format = Format::detect(&opened);
     let reader = format.open.ok_or_else(|| not_built(format.feature))?;
     let sheet = reader(opened, options.value_limit())?;
     check(&*sheet, options)?;

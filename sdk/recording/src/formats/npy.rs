@@ -6,14 +6,14 @@ use crate::error::{Fault, ReadProblem};
 use crate::formats::bytes::NumberType;
 use crate::formats::npy_header::{Header, NpyError};
 use crate::formats::samples::{Order, Samples, channel_names};
-use crate::input::Opened;
+use crate::input::InputFile;
 use crate::value_limit::ValueLimit;
 
 /// Largest number of channels. An array with exchanged axes would have one channel for each sample.
 const MAX_CHANNELS: u64 = 256;
 
 /// Opens an NPY file. Its values are read one by one later.
-pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
+pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let header = Header::parse(&opened.front).map_err(broken)?;
     let (rows, width) = shape(&header.shape).map_err(broken)?;
     let mut bytes = BufReader::new(opened.stream());

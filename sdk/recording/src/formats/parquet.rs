@@ -15,9 +15,9 @@ use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReade
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::error::{Fault, ReadProblem};
-use crate::formats::shared::Shared;
+use crate::formats::shared::SharedInput;
 use crate::formats::thrift::struct_len;
-use crate::input::Opened;
+use crate::input::InputFile;
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -38,7 +38,7 @@ pub(crate) struct Parquet {
     reader: SerializedFileReader<SharedFile>,
 }
 
-struct SharedFile(Shared);
+struct SharedFile(SharedInput);
 
 impl Length for SharedFile {
     fn len(&self) -> u64 {
@@ -66,7 +66,7 @@ impl ChunkReader for SharedFile {
 
 /// Reads the input from a place on.
 struct From {
-    source: Shared,
+    source: SharedInput,
     at: u64,
 }
 
@@ -82,8 +82,11 @@ impl Read for From {
 
 impl Parquet {
     /// Reads the schema.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> std::result::Result<Self, Fault> {
-        let shared = Shared::new(opened.random()?)?;
+    pub(crate) fn open(
+        opened: InputFile<'_>,
+        limit: ValueLimit,
+    ) -> std::result::Result<Self, Fault> {
+        let shared = SharedInput::new(opened.random()?)?;
         check_footer(&shared).map_err(|error| damaged("footer", &error))?;
         let reader = SerializedFileReader::new(SharedFile(shared))
             .map_err(|error| damaged("footer", &error))?;
@@ -103,8 +106,9 @@ impl Parquet {
         for group in 0..self.reader.num_row_groups() {
             let group = self.reader.get_row_group(group).map_err(broken)?;
             let chunk = group.metadata().column(leaf);
-            check(chunk)
-                .map_err(|problem| ReadProblem::Invalid(problem).at(self.columns.name(column)))?;
+            check(chunk).map_err(|problem| {
+                ReadProblem::Invalid(problem).at_place(self.columns.name(column))
+            })?;
             let pages = group.get_column_page_reader(leaf).map_err(broken)?;
             let descriptor = chunk.column_descr_ptr();
             let mut append = Append {
@@ -138,7 +142,7 @@ impl Parquet {
 
 /// Refuses a footer that is not a whole structure. A footer whose stated length does not fit
 /// into the file is left to the library.
-fn check_footer(source: &Shared) -> Result<()> {
+fn check_footer(source: &SharedInput) -> Result<()> {
     let Some(end) = source.length().checked_sub(END) else {
         return Ok(());
     };
@@ -321,5 +325,5 @@ fn damaged(place: &str, error: &ParquetError) -> Fault {
         "not readable Parquet: {}; copy the file again, or write it again",
         htex_base::finding::plain(error.trim_end())
     );
-    ReadProblem::Invalid(problem).at(place)
+    ReadProblem::Invalid(problem).at_place(place)
 }

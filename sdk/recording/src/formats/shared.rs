@@ -7,12 +7,12 @@ use crate::input::Random;
 
 /// An input of known length that can be read at any place.
 #[derive(Clone)]
-pub(crate) struct Shared {
+pub(crate) struct SharedInput {
     input: Arc<Mutex<Random>>,
     length: u64,
 }
 
-impl Shared {
+impl SharedInput {
     pub(crate) fn new(input: Random) -> io::Result<Self> {
         Ok(Self { length: input.len()?, input: Arc::new(Mutex::new(input)) })
     }

@@ -109,7 +109,7 @@ impl Table {
         } else {
             ReadProblem::Ragged { expected, got }
         };
-        problem.at(Place::Line(line))
+        problem.at_place(Place::Line(line))
     }
 
     fn bad_cell(&self, line: usize, column: usize, text: &str) -> Fault {

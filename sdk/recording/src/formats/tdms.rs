@@ -14,7 +14,7 @@ use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::bytes::{ByteReader, Endian};
 use crate::formats::tdms_directory::{Channel, Directory, Piece};
 use crate::formats::tdms_object::TdmsError;
-use crate::input::{Opened, Random};
+use crate::input::{InputFile, Random};
 use crate::sheet::{Columns, Numbers, Sheet};
 use crate::value_limit::ValueLimit;
 
@@ -29,7 +29,7 @@ pub(crate) struct Tdms {
 
 impl Tdms {
     /// Reads the directory.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
+    pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let mut input = opened.random()?;
         let mut directory = Directory::new(limit);
         directory.read(&mut input).map_err(|problem| damaged(directory.place(), &problem))?;
@@ -111,9 +111,8 @@ impl Sheet for Tdms {
                         "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
                         htex_base::finding::plain(&other.name)
                     );
-                    return Err(
-                        ReadProblem::Invalid(problem).at(htex_base::finding::plain(&channel.name))
-                    );
+                    return Err(ReadProblem::Invalid(problem)
+                        .at_place(htex_base::finding::plain(&channel.name)));
                 }
             }
         }
@@ -140,5 +139,5 @@ impl Sheet for Tdms {
 }
 
 fn damaged(place: impl Into<Place>, problem: &TdmsError) -> Fault {
-    ReadProblem::invalid(problem).at(place)
+    ReadProblem::invalid(problem).at_place(place)
 }

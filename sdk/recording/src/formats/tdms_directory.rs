@@ -168,7 +168,8 @@ impl Directory {
             let channel = self.channel(&path)?;
             let index = reader.u32()?;
             match (channel, index) {
-                (_, u32::MAX) => {}
+                (Some(channel), u32::MAX) => self.remove_current(channel),
+                (None, u32::MAX) => {}
                 (Some(channel), 0) => self.add_current(channel),
                 (None, 0) => {}
                 // The two marks of DAQmx data: the bytes 69 12 00 00 and 69 13 00 00, read in
@@ -227,6 +228,13 @@ impl Directory {
         }
     }
 
+    /// Takes a channel that has no values in this segment out of the list that the segment before
+    /// left.
+    fn remove_current(&mut self, channel: usize) {
+        self.channels[channel].list = 0;
+        self.current.retain(|own| *own != channel);
+    }
+
     fn set_layout(&mut self, channel: usize, layout: Layout) {
         self.channels[channel].layout = Some(layout);
         self.add_current(channel);
@@ -277,6 +285,8 @@ impl Directory {
             .current
             .iter()
             .filter_map(|channel| Some((*channel, self.channels[*channel].layout?)))
+            // An empty channel takes no part, also not in the rows of interleaved ones.
+            .filter(|(_, layout)| layout.values > 0)
             .collect();
         let chunk_bytes =
             layouts.iter().fold(0_u64, |sum, (_, layout)| sum.saturating_add(layout.bytes));

@@ -99,9 +99,13 @@ pub(crate) fn attribute(reader: &mut ByteReader<impl Read>) -> Result<Option<f64
         return Ok(Some(value));
     }
     match kind {
+        0 => {}
         0x20 => drop(text(reader)?),
         0x21 => reader.skip(1)?,
-        0x44 => reader.skip(16)?,
+        // A complex number of two 32-bit floats.
+        0x0008_000c => reader.skip(8)?,
+        // A time, and a complex number of two 64-bit floats.
+        0x44 | 0x0010_000d => reader.skip(16)?,
         other => return Err(TdmsError::Attribute(other)),
     }
     Ok(None)

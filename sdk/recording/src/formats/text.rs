@@ -15,7 +15,7 @@ pub(crate) fn without_mark(text: &str) -> &str {
 pub(crate) fn checked(bytes: &[u8], before: usize) -> Result<&str, Fault> {
     let refuse = |position: usize, what| {
         let line = before + 1 + bytes[..position].iter().filter(|byte| **byte == b'\n').count();
-        ReadProblem::NotText { what }.at(Place::Line(line))
+        ReadProblem::NotText { what }.at_place(Place::Line(line))
     };
     if bytes.contains(&0) {
         let position = bytes.iter().position(|byte| *byte == 0).unwrap_or(0);
@@ -85,7 +85,7 @@ impl<'a> Lines<'a> {
         self.number += 1;
         if line.len() > MAX_LINE {
             let problem = ReadProblem::LongLine { bytes: line.len(), limit: MAX_LINE };
-            return Err(problem.at(Place::Line(self.number)));
+            return Err(problem.at_place(Place::Line(self.number)));
         }
         Ok(line.strip_suffix('\r').unwrap_or(line))
     }

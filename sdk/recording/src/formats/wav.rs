@@ -6,11 +6,11 @@ use hound::{SampleFormat, WavReader};
 
 use crate::error::{Fault, ReadProblem};
 use crate::formats::samples::{Order, Samples, channel_names};
-use crate::input::Opened;
+use crate::input::InputFile;
 use crate::value_limit::ValueLimit;
 
 /// Opens a WAV file. Its samples are read one by one later.
-pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
+pub(crate) fn open(opened: InputFile<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let reader = WavReader::new(BufReader::new(opened.stream()))
         .map_err(|error| broken(format!("not a readable WAV file: {error}")))?;
     let spec = reader.spec();

@@ -8,4 +8,5 @@ mod lab;
 mod long_files;
 mod maps;
 mod readers;
+mod tdms;
 mod value_limit;

@@ -188,12 +188,12 @@ fn setup_response_is_read_unwrapped_and_held_at_its_ends() {
     let folder = Folder::new();
     let path = folder.put("h.csv", "frequency_hz,magnitude,phase_rad\n10,1,3\n20,2,-3\n40,1,-3\n");
     let response = read_response(&path).unwrap();
-    let (re, im) = response.at(15.0);
+    let (re, im) = response.value_at(15.0);
     let middle = 1.5_f64;
     assert!((re.hypot(im) - middle).abs() < 1e-12);
     assert!((re + middle).abs() < 1e-12, "half way from 3 to 2 pi - 3 is pi");
-    assert_eq!(response.at(1.0), response.at(10.0));
-    assert_eq!(response.at(99.0), response.at(40.0));
+    assert_eq!(response.value_at(1.0), response.value_at(10.0));
+    assert_eq!(response.value_at(99.0), response.value_at(40.0));
     for (text, words) in [
         ("frequency_hz,magnitude\n10,1\n10,1\n", "line 3: the frequency 10 Hz follows 10 Hz"),
         ("frequency_hz,magnitude\n10,1\n20,-1\n", "line 3: the magnitude -1 is negative"),

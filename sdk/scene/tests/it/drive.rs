@@ -69,7 +69,7 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
             let found: Vec<f64> =
                 magnitudes(steady.clone()).iter().zip(&grid).map(|(m, f)| m / droop(*f)).collect();
             let texture = single().representation(model).unwrap().magnitude(None, &grid).unwrap();
-            let inverse = |f: f64| response.as_ref().map_or(1.0, |r| 1.0 / r.at(f).0);
+            let inverse = |f: f64| response.as_ref().map_or(1.0, |r| 1.0 / r.value_at(f).0);
             let wanted: Vec<f64> =
                 texture.iter().zip(&grid).map(|(m, f)| m * inverse(*f)).collect();
             let gain = energy_matching_gain(&wanted, &found);

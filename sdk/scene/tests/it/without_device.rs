@@ -33,7 +33,7 @@ fn a_scene_without_a_device_has_the_samples_of_a_file() {
         ..DeviceOverride::default()
     };
     let scene = Scene::open_with(Path::new(&path), &around, &device).unwrap();
-    let adapter = &devices.find(ADAPTER).unwrap().adapter;
+    let adapter = &devices.find_output(ADAPTER).unwrap().adapter;
     let able = adapter.capabilities(&scene.settings).unwrap();
     let plan = plan(&scene, &able, &Costs::embedded()).unwrap();
     let filed = two_seconds(Renderer::new(&scene, &plan).unwrap());

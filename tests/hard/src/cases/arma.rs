@@ -6,7 +6,7 @@ use htex_dsp::line_spectrum::{coefficients_of_lines, line_spectral_frequencies};
 use htex_dsp::linear_prediction::is_stable;
 use htex_host::{Band, Stream};
 
-use crate::seen::{fit_with, model, spectrum, told};
+use crate::seen::{fit_with, model, outcome_text, spectrum};
 use crate::signals::{RATE_HZ, friction, noise, tone};
 use crate::{Bound, Case, Section, failures, none, refused, within};
 
@@ -36,8 +36,8 @@ fn is_played(parameters: &[f64]) -> bool {
 /// How a set is refused, by magnitude and by voice.
 fn said_of(parameters: &[f64]) -> String {
     let arma = model("arma");
-    let magnitude = told(arma.magnitude(parameters, BAND, &[100.0]));
-    let voice = told(arma.voice(parameters, BAND, 2_000.0, 1));
+    let magnitude = outcome_text(arma.magnitude(parameters, BAND, &[100.0]));
+    let voice = outcome_text(arma.voice(parameters, BAND, 2_000.0, 1));
     if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
@@ -162,7 +162,7 @@ const CASES: &[Case] = &[
     refused("filters of 2 kHz and 1 kHz", "ARMA", "mix", "different model rates", || {
         let (a, mut b) = (set(&[1.0], &[]), set(&[1.0], &[]));
         b[3] = 1_000.0;
-        told(model("arma").interpolate(&[&a, &b], &[0.5, 0.5]))
+        outcome_text(model("arma").interpolate(&[&a, &b], &[0.5, 0.5]))
     }),
     refused(
         "a zero on the circle, and a filter of more zeros",
@@ -171,7 +171,7 @@ const CASES: &[Case] = &[
         "another order",
         || {
             let (a, b) = (set(&[], &[1.0, 1.0]), set(&[], &[0.5, 1.0, 1.5]));
-            told(model("arma").interpolate(&[&a, &b], &[0.5, 0.5]))
+            outcome_text(model("arma").interpolate(&[&a, &b], &[0.5, 0.5]))
         },
     ),
 ];

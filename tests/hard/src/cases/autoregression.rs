@@ -2,7 +2,7 @@
 
 use htex_host::{Band, FitCondition, FitInput, Stream};
 
-use crate::seen::{fit_with, model, models, spectrum, told};
+use crate::seen::{fit_with, model, models, outcome_text, spectrum};
 use crate::signals::{RATE_HZ, friction, noise, tone};
 use crate::{Bound, Case, Section, exact, failures, none, refused, within, worse};
 
@@ -21,8 +21,8 @@ fn filter_refused(coefficients: &[f64]) -> String {
     let ar = model("ar");
     let count = [coefficients.len() as f64];
     let parameters = [&count[..], coefficients, &[2_000.0]].concat();
-    let magnitude = told(ar.magnitude(&parameters, BAND, &[100.0]));
-    let voice = told(ar.voice(&parameters, BAND, 2_000.0, 1));
+    let magnitude = outcome_text(ar.magnitude(&parameters, BAND, &[100.0]));
+    let voice = outcome_text(ar.voice(&parameters, BAND, 2_000.0, 1));
     if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
@@ -186,7 +186,7 @@ const CASES: &[Case] = &[
         "InvalidParameters: the filter has no finite energy in the band",
         || {
             let band = Band { low_hz: 100.0, ..BAND };
-            told(model("ar").magnitude(&[1.0, 0.5, 50.0], band, &[200.0]))
+            outcome_text(model("ar").magnitude(&[1.0, 0.5, 50.0], band, &[200.0]))
         },
     ),
     refused(
@@ -198,7 +198,7 @@ const CASES: &[Case] = &[
             let magnitude = spectrum(&friction());
             let said = |signal: &[f64]| {
                 let options = [("method", "burg")];
-                told(fit_with(&model("ar"), &magnitude, signal, &options))
+                outcome_text(fit_with(&model("ar"), &magnitude, signal, &options))
             };
             let (none, one) = (said(&[]), said(&[1.0]));
             if none == one { none } else { format!("{none}; {one}") }
@@ -211,7 +211,7 @@ const CASES: &[Case] = &[
         "CannotFit: the recording's segments are silent",
         || {
             let options = [("method", "burg")];
-            told(fit_with(&model("ar"), &spectrum(&friction()), &[0.0; 100], &options))
+            outcome_text(fit_with(&model("ar"), &spectrum(&friction()), &[0.0; 100], &options))
         },
     ),
     refused(
@@ -260,8 +260,8 @@ const CASES: &[Case] = &[
             parameters[last] = f64::NAN;
             let grid = BAND.grid_hz();
             [
-                told(model.magnitude(&parameters, BAND, &grid)),
-                told(model.voice(&parameters, BAND, 2_000.0, 1)),
+                outcome_text(model.magnitude(&parameters, BAND, &grid)),
+                outcome_text(model.voice(&parameters, BAND, 2_000.0, 1)),
             ]
         });
         let all: Vec<String> = said.flatten().collect();

@@ -5,7 +5,7 @@ use htex_dsp::grid::level_rms;
 use htex_host::{Band, Fit};
 
 use crate::big::{Big, big};
-use crate::seen::{fit_with, model, spectrum, told};
+use crate::seen::{fit_with, model, outcome_text, spectrum};
 use crate::signals::tone;
 use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
@@ -251,8 +251,8 @@ const CASES: &[Case] = &[
         "put all energy between two bins of the 5 Hz grid",
         || {
             let (sbeta, set) = (model("sbeta"), [31_030.0, 1e6]);
-            let magnitude = told(sbeta.magnitude(&set, BAND, &[100.0]));
-            let voice = told(sbeta.voice(&set, BAND, 2_500.0, 1));
+            let magnitude = outcome_text(sbeta.magnitude(&set, BAND, &[100.0]));
+            let voice = outcome_text(sbeta.voice(&set, BAND, 2_500.0, 1));
             if magnitude == voice { voice } else { format!("{magnitude}; {voice}") }
         },
     ),

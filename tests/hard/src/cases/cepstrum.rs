@@ -8,7 +8,7 @@ use htex_dsp::non_negative::{NonNegative, Scratch};
 use htex_host::{Band, FitCondition, FitInput};
 
 use crate::big::{Big, big};
-use crate::seen::{fit_with, model, spectrum, told};
+use crate::seen::{fit_with, model, outcome_text, spectrum};
 use crate::signals::{far_apart, friction, tone};
 use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
@@ -245,7 +245,7 @@ const CASES: &[Case] = &[
         "InvalidParameters: the cepstrum's band energies are not finite",
         || {
             let parameters = set(&[1e5], 26.0, 0.0);
-            told(model("mfcc").magnitude(&parameters, BAND, &[100.0]))
+            outcome_text(model("mfcc").magnitude(&parameters, BAND, &[100.0]))
         },
     ),
     refused(
@@ -255,7 +255,7 @@ const CASES: &[Case] = &[
         "InvalidParameters: the cepstrum's band energies are not finite, or all zero",
         || {
             let parameters = set(&[-1e5], 26.0, 2.0);
-            told(model("mfcc").voice(&parameters, BAND, 2_500.0, 1))
+            outcome_text(model("mfcc").voice(&parameters, BAND, 2_500.0, 1))
         },
     ),
 ];

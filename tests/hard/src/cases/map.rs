@@ -2,7 +2,7 @@
 
 use htex_host::{Band, ModelVoice, Motion};
 
-use crate::seen::{model, told};
+use crate::seen::{model, outcome_text};
 use crate::{Bound, Case, Section, failures, none, refused, within};
 
 pub(crate) const SECTION: Section = Section {
@@ -78,8 +78,8 @@ fn is_bounded(parameters: &[f64]) -> bool {
 
 /// How grey values are refused, by magnitude and by voice.
 fn said_of(parameters: &[f64]) -> String {
-    let magnitude = told(model("map").magnitude(parameters, BAND, &[100.0]));
-    let voice = told(model("map").voice(parameters, BAND, RATE_HZ, 1));
+    let magnitude = outcome_text(model("map").magnitude(parameters, BAND, &[100.0]));
+    let voice = outcome_text(model("map").voice(parameters, BAND, RATE_HZ, 1));
     if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 

@@ -8,7 +8,7 @@ use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::uniform::Uniform;
 use htex_host::{Band, LoadedModel};
 
-use crate::seen::{fit_with, model, models, spectrum, told};
+use crate::seen::{fit_with, model, models, outcome_text, spectrum};
 use crate::signals::{far_apart, friction, impulse, noise, tone};
 use crate::{Bound, Case, Section, exact, failures, none, refused, within, worse};
 
@@ -225,7 +225,7 @@ const CASES: &[Case] = &[
                 let set = crate::seen::fit(&model, &spectrum(&friction())).unwrap().parameters;
                 let sets = [&set[..], &set[..]];
                 let weights = [[0.5, 0.6], [-0.5, 1.5], [f64::NAN, 1.0], [0.0, 0.0]];
-                weights.map(|weights| told(model.interpolate(&sets, &weights)))
+                weights.map(|weights| outcome_text(model.interpolate(&sets, &weights)))
             });
             let all: Vec<String> = said.collect();
             let other = all.iter().find(|text| !text.contains("sum to 1"));
@@ -239,7 +239,7 @@ const CASES: &[Case] = &[
         "InvalidArgument: filters of different model rates cannot be mixed",
         || {
             let (a, b) = ([1.0, 0.5, 2_000.0], [1.0, 0.5, 4_000.0]);
-            told(model("ar").interpolate(&[&a, &b], &[0.5, 0.5]))
+            outcome_text(model("ar").interpolate(&[&a, &b], &[0.5, 0.5]))
         },
     ),
     refused(
@@ -249,7 +249,7 @@ const CASES: &[Case] = &[
         "InvalidParameters: the filter is not stable",
         || {
             let (a, b) = ([1.0, 0.5, 2_000.0], [1.0, 1.0, 2_000.0]);
-            told(model("ar").interpolate(&[&a, &b], &[0.5, 0.5]))
+            outcome_text(model("ar").interpolate(&[&a, &b], &[0.5, 0.5]))
         },
     ),
     within(
@@ -280,7 +280,7 @@ const CASES: &[Case] = &[
                 let a = vec![0.2; count];
                 [&[count as f64], &f[..], &[count as f64], &a, &[0.0]].concat()
             };
-            told(model("speak").interpolate(&[&set(33), &set(34)], &[0.5, 0.5]))
+            outcome_text(model("speak").interpolate(&[&set(33), &set(34)], &[0.5, 0.5]))
         },
     ),
     refused(
@@ -295,7 +295,7 @@ const CASES: &[Case] = &[
                 let fitted = fit_with(&mfcc, &magnitude, &[], &[("bands", bands)]);
                 fitted.unwrap().parameters
             };
-            told(mfcc.interpolate(&[&set("26"), &set("20")], &[0.5, 0.5]))
+            outcome_text(mfcc.interpolate(&[&set("26"), &set("20")], &[0.5, 0.5]))
         },
     ),
 ];

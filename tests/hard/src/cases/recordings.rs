@@ -1,7 +1,7 @@
 //! Recordings with degenerate spectra, passed through every model of the registry.
 
 use crate::seen::{
-    every_model, every_model_but, fit_with, model, refusal, refusal_of_all, spectrum, told,
+    every_model, every_model_but, fit_with, model, outcome_text, refusal, refusal_of_all, spectrum,
 };
 use crate::signals::{SAMPLES, far_apart, friction, impulse, noise, quantised, scaled, sum, tone};
 use crate::{Bound, Case, Section, refused, within};
@@ -28,8 +28,9 @@ const NO_PEAK: &str = "CannotFit: the spectrum has no peak";
 /// How sPeak refuses peaks at bins, if it refuses all in the same way.
 fn refusal_of_bins(signals: &[Vec<f64>]) -> String {
     let at_bins = [("frequency", "bin")];
-    let refused =
-        |signal: &Vec<f64>| told(fit_with(&model("speak"), &spectrum(signal), &[], &at_bins));
+    let refused = |signal: &Vec<f64>| {
+        outcome_text(fit_with(&model("speak"), &spectrum(signal), &[], &at_bins))
+    };
     let mut all: Vec<String> = signals.iter().map(refused).collect();
     all.dedup();
     all.join("; ")

@@ -6,7 +6,7 @@ use htex_dsp::grid::level_rms;
 use htex_host::Band;
 
 use crate::big::{Big, big};
-use crate::seen::{fit_with, model, models, told};
+use crate::seen::{fit_with, model, models, outcome_text};
 use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
 pub(crate) const SECTION: Section = Section {
@@ -293,6 +293,6 @@ const CASES: &[Case] = &[
     }),
     refused(ENDS, "nine bands, whose triangles weigh nothing there", "fit", "CannotFit", || {
         let nine = [("bands", "9")];
-        told(crate::seen::fit_with(&model("bands"), &ends(), &[], &nine))
+        outcome_text(crate::seen::fit_with(&model("bands"), &ends(), &[], &nine))
     }),
 ];

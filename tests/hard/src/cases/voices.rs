@@ -2,7 +2,7 @@
 
 use htex_host::{Band, LoadedModel, ModelVoice, Stream};
 
-use crate::seen::{fit, model, models, spectrum, told};
+use crate::seen::{fit, model, models, outcome_text, spectrum};
 use crate::signals::{friction, noise, tone};
 use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
@@ -50,7 +50,7 @@ fn restless(model: &LoadedModel) -> f64 {
 /// How a voice refuses parameters that it cannot change to. It must play on.
 fn retune_refused(name: &str, from: &[f64], to: &[f64]) -> String {
     let mut voice = model(name).voice(from, BAND, 2_000.0, 1).unwrap();
-    let said = told(voice.retune(to));
+    let said = outcome_text(voice.retune(to));
     let mut out = [0.0f32; 500];
     match voice.render(&mut out) {
         Ok(()) if out.iter().any(|x| *x != 0.0) => said,
@@ -227,7 +227,8 @@ const CASES: &[Case] = &[
     refused("rates of 0, -1, NaN, 1e8 Hz", "every model", "voice", "InvalidArgument: rate", || {
         let said = models().into_iter().flat_map(|model| {
             let [set, _] = two_sets(&model);
-            [0.0, -1.0, f64::NAN, 1e8].map(|rate| told(Stream::new(&model, &set, BAND, rate, 1)))
+            [0.0, -1.0, f64::NAN, 1e8]
+                .map(|rate| outcome_text(Stream::new(&model, &set, BAND, rate, 1)))
         });
         let all: Vec<String> = said.collect();
         let other = all.iter().find(|text| !text.contains("InvalidArgument: rate"));
@@ -250,8 +251,8 @@ const CASES: &[Case] = &[
                 let [set, _] = two_sets(&model);
                 bands.map(|edges| {
                     let band = Band::from(edges);
-                    let voice = told(model.voice(&set, band, 2_000.0, 1));
-                    let magnitude = told(model.magnitude(&set, band, &[100.0]));
+                    let voice = outcome_text(model.voice(&set, band, 2_000.0, 1));
+                    let magnitude = outcome_text(model.magnitude(&set, band, &[100.0]));
                     if voice == magnitude { voice } else { format!("{voice}; {magnitude}") }
                 })
             });
@@ -271,8 +272,8 @@ const CASES: &[Case] = &[
             let said = of_bins.flat_map(|model| {
                 let [set, _] = two_sets(&model);
                 [
-                    told(model.voice(&set, band, 2_000.0, 1)),
-                    told(model.magnitude(&set, band, &[22.0])),
+                    outcome_text(model.voice(&set, band, 2_000.0, 1)),
+                    outcome_text(model.magnitude(&set, band, &[22.0])),
                 ]
             });
             let all: Vec<String> = said.collect();
@@ -301,8 +302,9 @@ const CASES: &[Case] = &[
         "voice",
         "InvalidParameters: no line in the band 20 to 1000 Hz has an amplitude above zero",
         || {
-            let none = told(model("speak").voice(&[0.0, 0.0, 0.0], BAND, 20_000.0, 1));
-            let silent = told(model("speak").voice(&[1.0, 50.0, 1.0, 0.0, 0.0], BAND, 20_000.0, 1));
+            let none = outcome_text(model("speak").voice(&[0.0, 0.0, 0.0], BAND, 20_000.0, 1));
+            let silent =
+                outcome_text(model("speak").voice(&[1.0, 50.0, 1.0, 0.0, 0.0], BAND, 20_000.0, 1));
             if none == silent { none } else { format!("{none}; {silent}") }
         },
     ),
@@ -311,6 +313,6 @@ const CASES: &[Case] = &[
         "sPeak",
         "voice",
         "InvalidParameters: 2 frequencies and 1 amplitudes",
-        || told(model("speak").voice(&[2.0, 50.0, 60.0, 1.0, 1.0, 0.0], BAND, 20_000.0, 1)),
+        || outcome_text(model("speak").voice(&[2.0, 50.0, 60.0, 1.0, 1.0, 0.0], BAND, 20_000.0, 1)),
     ),
 ];

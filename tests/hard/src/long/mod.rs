@@ -19,7 +19,7 @@ use crate::signals::friction;
 /// Samples rendered at a time.
 pub const BLOCK: usize = 4_096;
 /// The requested sample rate, hertz. Each voice renders at its own rate, which is lower.
-pub const WANTED_HZ: f64 = 20_000.0;
+pub(crate) const WANTED_HZ: f64 = 20_000.0;
 
 /// Results of running a voice.
 #[derive(Debug, Clone)]

@@ -33,7 +33,7 @@ struct Kind {
 }
 
 pub(super) fn check(hjif: &Hjif) -> Result<(), Fault> {
-    let kind = Kind::of(hjif)?;
+    let kind = Kind::new(hjif)?;
     let timescales = if kind.is_parametric {
         PARAMETRIC_TIMESCALE..=PARAMETRIC_TIMESCALE
     } else {
@@ -60,7 +60,7 @@ pub(super) fn check(hjif: &Hjif) -> Result<(), Fault> {
 }
 
 impl Kind {
-    fn of(hjif: &Hjif) -> Result<Self, Fault> {
+    fn new(hjif: &Hjif) -> Result<Self, Fault> {
         let is_parametric = match &hjif.profile[..] {
             "Main" => false,
             "Simple Parametric" => true,

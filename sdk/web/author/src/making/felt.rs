@@ -2,7 +2,7 @@
 
 use htex::Texture;
 use htex::format::Asset;
-use htex_author::by_hand::ByHandError;
+use htex_author::AuthorError;
 use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
 use htex_dsp::vibrotactile::Listener;
 use serde::Serialize;
@@ -71,12 +71,12 @@ fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Texture, Vec<f64>), Re
     side.finish()?;
     let asset = Texture::new(Asset::from_bytes(bytes)?);
     let grid = asset.band().grid_hz();
-    let representation = asset.representation(model.as_deref()).map_err(ByHandError::from)?;
+    let representation = asset.representation(model.as_deref()).map_err(AuthorError::from)?;
     let motion = match (speed, force) {
         (None, None) => None,
         (speed, force) => Some(representation.motion(speed, force)),
     };
-    let magnitude = representation.magnitude(motion, &grid).map_err(ByHandError::from)?;
+    let magnitude = representation.magnitude(motion, &grid).map_err(AuthorError::from)?;
     Ok((asset, magnitude))
 }
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use htex::model::Registry;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_exchange::{
-    ExchangeError, FORMATS, Format, Import, ImportError, Imported, MOST_BYTES, Missing, PROFILES,
-    Physical, Profile, Reads, missing,
+    ExchangeError, FORMATS, Format, Import, ImportedAsset, MOST_BYTES, Missing, PROFILES, Physical,
+    Profile, Reads, missing,
 };
 use htex_format::Condition;
 use serde::Serialize;
@@ -195,7 +195,7 @@ struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    fn new(format: &'a Format, imported: &'a Imported) -> Self {
+    fn new(format: &'a Format, imported: &'a ImportedAsset) -> Self {
         let models = represented(&imported.asset, &imported.felt);
         Self {
             format: format.name,
@@ -221,18 +221,7 @@ impl From<ExchangeError> for Refusal {
         match error {
             ExchangeError::Author(error) => error.into(),
             ExchangeError::File { .. } => Self::file(error),
-            other => Self::argument(other.told(&|setting| named(setting).to_owned())),
-        }
-    }
-}
-
-impl From<ImportError> for Refusal {
-    fn from(error: ImportError) -> Self {
-        match error {
-            ImportError::Exchange(error) => error.into(),
-            ImportError::Settings(error) => error.into(),
-            ImportError::Author(error) => error.into(),
-            other => Self::argument(other),
+            other => Self::argument(other.message_with(&|setting| named(setting).to_owned())),
         }
     }
 }

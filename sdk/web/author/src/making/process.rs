@@ -1,7 +1,7 @@
 //! Reads a recording: its columns, signals, spectrum and findings.
 
 use htex_author::recording::{Preview, preview};
-use htex_author::{Reading as Read, Recording, TextureSpectrum, read_take};
+use htex_author::{Recording, SegmentedTake, TextureSpectrum, segment_take};
 use serde::Serialize;
 
 use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
@@ -71,8 +71,8 @@ pub(crate) fn process(call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let (name, bytes, options) = reading.only()?;
     let preview = preview(name, bytes, options)?;
     let take = reading.takes(&[])?.pop().ok_or_else(|| Refusal::argument("give one recording"))?;
-    let read = read_take(&take, &reading.spectrum, reading.strict)?;
-    let parts = std::slice::from_ref(&read.part);
+    let read = segment_take(&take, &reading.spectrum, reading.strict)?;
+    let parts = std::slice::from_ref(&read.spectra);
     let spectrum = TextureSpectrum::average(parts, reading.spectrum.averaging)?;
     let (picture, numbers) = Picture::new(&take.recording);
     let processed = ProcessAnswer {
@@ -109,8 +109,8 @@ struct Condition {
 }
 
 impl<'a> ProcessAnswer<'a> {
-    fn new(recording: &Recording, read: &'a Read, spectrum: &'a TextureSpectrum) -> Self {
-        let stretches = read.part.segments.stretches().into_iter();
+    fn new(recording: &Recording, read: &'a SegmentedTake, spectrum: &'a TextureSpectrum) -> Self {
+        let stretches = read.spectra.segments.stretches().into_iter();
         let second = |part: std::ops::Range<usize>| {
             [recording.second(part.start), recording.second(part.end)]
         };
@@ -122,12 +122,9 @@ impl<'a> ProcessAnswer<'a> {
             simulated: recording.simulated,
             spectrum: describe::spectrum(spectrum),
             segments: spectrum.segments,
-            from_sweeps: read.part.segments.from_sweeps,
+            from_sweeps: read.spectra.segments.from_sweeps,
             read_s: stretches.map(second).collect(),
-            condition: Condition {
-                speed: read.condition.speed_mm_s,
-                force: read.condition.force_n,
-            },
+            condition: Condition { speed: read.motion.speed_mm_s, force: read.motion.force_n },
             speed_spread: read.spread.speed_mm_s,
             force_spread: read.spread.force_n,
             findings: describe::findings(&read.findings),

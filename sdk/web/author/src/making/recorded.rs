@@ -48,7 +48,7 @@ pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, R
     let loops = takes
         .iter()
         .map(|take| {
-            RecordedLoop::of(take, &reading.spectrum, reading.strict, rate_hz)
+            RecordedLoop::new(take, &reading.spectrum, reading.strict, rate_hz)
                 .map(|made| (take.recording.source.as_str(), made))
         })
         .collect::<Result<Vec<_>, _>>()?;

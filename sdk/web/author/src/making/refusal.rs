@@ -1,9 +1,7 @@
 //! Errors of the functions that make textures.
 
-use htex_author::by_hand::ByHandError;
 use htex_author::recording::{ReadError, ReadProblem};
-use htex_author::settings::SettingsError;
-use htex_author::{AuthorError, EditError};
+use htex_author::{AuthorError, AuthorErrorKind};
 use htex_c::htex_status::*;
 use htex_format::library::LibraryError;
 use htex_format::{ReadError as AssetError, WriteError};
@@ -29,41 +27,19 @@ impl From<ReadError> for Refusal {
     }
 }
 
-impl From<SettingsError> for Refusal {
-    fn from(error: SettingsError) -> Self {
-        match error {
-            SettingsError::Model(error) => error.into(),
-            other => Self::argument(other),
-        }
-    }
-}
-
 impl From<AuthorError> for Refusal {
     fn from(error: AuthorError) -> Self {
         match error {
             AuthorError::Model(error) => error.into(),
             AuthorError::Read(error) => error.into(),
-            AuthorError::Asset(error) => error.into(),
-            AuthorError::NothingFitted { .. } => Self::model(error),
-            AuthorError::GridText { .. } | AuthorError::LoopRate { .. } => Self::argument(error),
-            other => Self::recording(other),
+            AuthorError::Play(_) => Self::argument(error),
+            other => match other.kind() {
+                AuthorErrorKind::Model => Self::model(other),
+                AuthorErrorKind::Asset => Self::asset(other),
+                AuthorErrorKind::Recording => Self::recording(other),
+                _ => Self::argument(other),
+            },
         }
-    }
-}
-
-impl From<ByHandError> for Refusal {
-    fn from(error: ByHandError) -> Self {
-        match error {
-            ByHandError::Model(error) => error.into(),
-            ByHandError::Write(error) => error.into(),
-            other => Self::argument(other),
-        }
-    }
-}
-
-impl From<EditError> for Refusal {
-    fn from(error: EditError) -> Self {
-        Self::asset(error)
     }
 }
 

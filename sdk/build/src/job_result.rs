@@ -14,7 +14,7 @@ const MOST_HEADER: usize = 1 << 20;
 
 /// The result of a job.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Made {
+pub struct JobResult {
     /// Facts that the asset does not contain.
     pub record: Record,
     /// The asset; empty if there is none.
@@ -70,7 +70,7 @@ impl Header {
     }
 }
 
-impl Made {
+impl JobResult {
     pub(crate) fn refused(outcome: Outcome) -> Self {
         Self {
             record: Record {

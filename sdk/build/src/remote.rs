@@ -14,8 +14,8 @@ use htex_base::storage::{Location, Storage, StorageError, StorageProblem};
 use tempfile::TempDir;
 
 use crate::BuildError;
-use crate::hashes::{Hashed, Stamp, hash_local};
-use crate::kept::inside;
+use crate::hashes::{FileHash, Stamp, hash_local};
+use crate::state::inside;
 
 /// Largest size of a file that is copied, bytes.
 const MOST_BYTES: u64 = 16 << 30;
@@ -27,7 +27,7 @@ const COPIES: &str = "elsewhere";
 
 /// Remote files and their copies, by content.
 #[derive(Debug)]
-pub(crate) struct Elsewhere {
+pub(crate) struct RemoteFiles {
     /// Location of the recipe. The recipe may name files on the same server.
     origin: Option<Location>,
     storage: OnceLock<Storage>,
@@ -45,20 +45,20 @@ enum Copies {
 }
 
 /// Returns the location of a path that is a remote URI; `None` for a local path.
-pub(crate) fn elsewhere(path: &Path) -> Result<Option<Location>, StorageError> {
+pub(crate) fn remote_location(path: &Path) -> Result<Option<Location>, StorageError> {
     let location = Location::parse(path.as_os_str())?;
     Ok(location.local().is_none().then_some(location))
 }
 
 /// Returns whether a path is a remote URI.
-pub(crate) fn is_elsewhere(path: &Path) -> bool {
-    !matches!(elsewhere(path), Ok(None))
+pub(crate) fn is_remote(path: &Path) -> bool {
+    !matches!(remote_location(path), Ok(None))
 }
 
 /// Resolves a path in a recipe that lies in `folder`. A URI stays unchanged. Any other path is
 /// relative to the folder, which may be a URI.
 pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
-    match (is_elsewhere(path), is_elsewhere(folder), folder.to_str()) {
+    match (is_remote(path), is_remote(folder), folder.to_str()) {
         (true, ..) => path.to_owned(),
         (false, true, Some(folder)) if path.is_relative() => {
             below(folder, &path.to_string_lossy()).into()
@@ -96,7 +96,7 @@ fn below(folder: &str, path: &str) -> String {
 
 /// Returns the folder that contains a path or a URI, without the URI's query.
 pub(crate) fn folder_of(path: &Path) -> PathBuf {
-    if let (Ok(Some(_)), Some(text)) = (elsewhere(path), path.to_str()) {
+    if let (Ok(Some(_)), Some(text)) = (remote_location(path), path.to_str()) {
         let text = text.split('?').next().unwrap_or(text);
         return text.rsplit_once('/').map_or(text, |(folder, _)| folder).into();
     }
@@ -106,7 +106,7 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-impl Elsewhere {
+impl RemoteFiles {
     /// Stores copies in the folder of the results until [`Self::forget`] removes them. `origin` is
     /// the location of the recipe.
     pub(crate) fn with_copies(output: OwnFolder, origin: Option<Location>) -> Self {
@@ -135,7 +135,7 @@ impl Elsewhere {
         let found = entries.into_iter().map(|entry| {
             let uri = entry.location.to_string();
             let inside = uri.strip_prefix(&prefix).unwrap_or(&uri).to_owned();
-            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref(), entry.modified);
+            let stamp = Stamp::remote(entry.bytes, entry.etag.as_deref(), entry.modified);
             listed.insert(PathBuf::from(&uri), stamp);
             (uri.into(), inside.into())
         });
@@ -151,22 +151,22 @@ impl Elsewhere {
             .storage()?
             .stat(location)?
             .ok_or_else(|| StorageProblem::Missing.at_place(location))?;
-        let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref(), stat.modified);
+        let stamp = Stamp::remote(stat.bytes, stat.etag.as_deref(), stat.modified);
         self.listed().insert(path.to_owned(), stamp);
         Ok(stamp)
     }
 
     /// Copies and hashes a file.
-    pub(crate) fn hash(&self, path: &Path, location: &Location) -> Result<Hashed, BuildError> {
+    pub(crate) fn hash(&self, path: &Path, location: &Location) -> Result<FileHash, BuildError> {
         let stamp = self.stamp(path, location)?;
         let (blake3, _) = self.fetch(location)?;
-        Ok(Hashed { blake3, stamp })
+        Ok(FileHash { blake3, stamp })
     }
 
     /// Returns a copy of the contents with this hash, under the file's own name. An existing copy
     /// is used if it has the hash.
     pub(crate) fn copy(&self, location: &Location, blake3: &str) -> Result<PathBuf, BuildError> {
-        let name = named(location)?;
+        let name = file_name(location)?;
         let copies = self.copies()?;
         if let Ok(there) = copies.own.entry_path(&copies.inside.join(blake3).join(&name))
             && there.symlink_metadata().is_ok_and(|is| is.is_file())
@@ -177,7 +177,7 @@ impl Elsewhere {
         let (found, copy) = self.fetch(location)?;
         if found != blake3 {
             let problem = "it changed while it was used; start again when it is complete";
-            return Err(BuildError::at(location, problem));
+            return Err(BuildError::at_place(location, problem));
         }
         Ok(copy)
     }
@@ -185,7 +185,7 @@ impl Elsewhere {
     /// Reads a text file.
     pub(crate) fn text(&self, location: &Location) -> Result<String, BuildError> {
         let bytes = self.storage()?.read(location, MOST_TEXT_BYTES)?;
-        String::from_utf8(bytes).map_err(|_| BuildError::at(location, "it is not UTF-8 text"))
+        String::from_utf8(bytes).map_err(|_| BuildError::at_place(location, "it is not UTF-8 text"))
     }
 
     /// Removes all copies.
@@ -202,7 +202,7 @@ impl Elsewhere {
     /// Downloads a file. Returns its hash and its copy. Other users cannot read the copy, because
     /// the store may be private.
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
-        let (copies, name) = (self.copies()?, named(location)?);
+        let (copies, name) = (self.copies()?, file_name(location)?);
         let folder = copies.own.path().join(&copies.inside);
         // In the folder of the copies, so that it only needs a new name at the end.
         let part =
@@ -265,15 +265,10 @@ struct CopiesIn {
     inside: PathBuf,
 }
 
-/// Returns the location of a recipe if it is remote.
-pub(crate) fn origin(recipe: &Path) -> Result<Option<Location>, StorageError> {
-    elsewhere(recipe)
-}
-
 /// Returns the name of the file. Its copy has the same name, because readers and provenance depend
 /// on it.
-fn named(location: &Location) -> Result<String, BuildError> {
-    location
-        .file_name()
-        .ok_or_else(|| BuildError::at(location, "it has no file name at its end; name a file"))
+fn file_name(location: &Location) -> Result<String, BuildError> {
+    location.file_name().ok_or_else(|| {
+        BuildError::at_place(location, "it has no file name at its end; name a file")
+    })
 }

@@ -1,12 +1,12 @@
 //! Measuring a contender's accuracy on its magnitudes and on rendered samples.
 
-use crate::{read_spectrum, spectrum_of_samples};
+use crate::{AuthorError, read_spectrum, spectrum_of_samples};
 use htex_format::Measure;
 use serde::{Deserialize, Serialize};
 
+use crate::tradeoff::Subject;
 use crate::tradeoff::accuracy::{Accuracy, accuracy};
-use crate::tradeoff::contender::{Contender, ContenderKind, Stored};
-use crate::tradeoff::{Subject, TradeoffError};
+use crate::tradeoff::contender::{Contender, ContenderKind, StoredData};
 
 /// Number of renderings that are measured, each with another seed.
 const SEEDS: u64 = 3;
@@ -18,7 +18,7 @@ const MOST_SAMPLES: f64 = 2e6;
 
 /// Accuracy and size of a contender.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Measured {
+pub(crate) struct Measurement {
     pub(crate) bytes: usize,
     pub(crate) kept_bytes: usize,
     pub(crate) by_magnitude: Accuracy,
@@ -37,14 +37,14 @@ impl Contender {
         &self,
         subject: &Subject,
         quick: bool,
-    ) -> Result<Option<Measured>, TradeoffError> {
+    ) -> Result<Option<Measurement>, AuthorError> {
         let reference = &subject.spectrum;
         let stored = self.store(subject, reference, &self.fit(reference)?)?;
         let held_out_error_db = self.held_out_error_db(subject, quick)?;
         if matches!(self.kind, ContenderKind::Recording) {
             // A recording cannot differ from itself. Its error is how well its own parts agree.
             let held_out = subject.held_out.as_ref().ok();
-            return Ok(held_out.map(|held_out| Measured {
+            return Ok(held_out.map(|held_out| Measurement {
                 bytes: stored.bytes,
                 kept_bytes: size_of::<f32>() * subject.samples.len(),
                 by_magnitude: held_out.repeats,
@@ -60,7 +60,7 @@ impl Contender {
             .filter_map(|m| accuracy(reference, m).measures.get(Measure::NineBand));
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = errors.fold(ends, |(low, high), x| (x.min(low), x.max(high)));
-        Ok(Some(Measured {
+        Ok(Some(Measurement {
             bytes: stored.bytes,
             kept_bytes: rendered.kept_bytes,
             by_magnitude: accuracy(reference, &self.magnitude(subject, &stored)?),
@@ -74,13 +74,13 @@ impl Contender {
     pub(crate) fn rendered(
         &self,
         subject: &Subject,
-        stored: &Stored,
+        stored: &StoredData,
         quick: bool,
-    ) -> Result<Rendered, TradeoffError> {
+    ) -> Result<RenderedSpectra, AuthorError> {
         let rate_hz = self.setting.output_rate_hz;
         let seconds = if quick { QUICK_SECONDS } else { SECONDS };
         let mut samples = vec![0.0; (seconds * rate_hz).min(MOST_SAMPLES) as usize];
-        let mut rendered = Rendered { spectra: Vec::new(), kept_bytes: 0 };
+        let mut rendered = RenderedSpectra { spectra: Vec::new(), kept_bytes: 0 };
         for seed in 1..=SEEDS {
             let mut sound = self.sound(subject, stored, seed)?;
             samples.chunks_mut(self.setting.block_samples).try_for_each(&mut sound.render)?;
@@ -98,7 +98,7 @@ impl Contender {
 
     /// Returns the magnitudes as a recording of the voice would read them; for a baseline, its own
     /// magnitudes.
-    fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, TradeoffError> {
+    fn magnitude(&self, subject: &Subject, stored: &StoredData) -> Result<Vec<f64>, AuthorError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
             ContenderKind::Model(model, _) => {
@@ -111,7 +111,7 @@ impl Contender {
     }
 }
 
-pub(crate) struct Rendered {
+pub(crate) struct RenderedSpectra {
     pub(crate) spectra: Vec<Vec<f64>>,
     kept_bytes: usize,
 }

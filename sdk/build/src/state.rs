@@ -15,7 +15,7 @@ use htex_base::files::{AtFile, FileError, Key, OwnFolder};
 use crate::BuildError;
 
 /// Name of the folder, in the folder of the results.
-pub(crate) const KEPT: &str = ".htex-build";
+pub(crate) const STATE: &str = ".htex-build";
 /// File name of the key, in the user's folder of settings.
 const KEY: &str = "build.key";
 /// Length of a tag, bytes.
@@ -23,12 +23,12 @@ const TAG: usize = 32;
 
 /// The folder of stored data.
 #[derive(Debug)]
-pub(crate) struct Kept {
+pub(crate) struct StateFolder {
     own: OwnFolder,
     key: Key,
 }
 
-impl Kept {
+impl StateFolder {
     /// Returns the folder of stored data in the folder of the results.
     pub(crate) fn new(output: &Path) -> Result<Self, BuildError> {
         let folder = htex_base::native::folders::config();
@@ -42,8 +42,8 @@ impl Kept {
 
     /// Creates the folder, and locks it for this build.
     pub(crate) fn claim(&self) -> Result<File, BuildError> {
-        let folder = Path::new(KEPT);
-        let kept = self.own.path().join(KEPT);
+        let folder = Path::new(STATE);
+        let kept = self.own.path().join(STATE);
         self.own.make_folder(folder).writing(&kept)?;
         let lock = self.own.open_lock(&folder.join("lock"));
         let file = kept.join("lock");
@@ -84,7 +84,7 @@ impl Kept {
 
 /// Returns the path of a stored file, in the folder of the results.
 pub(crate) fn inside(name: &str) -> PathBuf {
-    Path::new(KEPT).join(name)
+    Path::new(STATE).join(name)
 }
 
 /// Returns a temporary key that all builds of this process share.

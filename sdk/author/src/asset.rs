@@ -1,0 +1,178 @@
+//! The way from recordings to a fitted asset: the stages in their order, and the last of them, which
+//! puts the asset together.
+
+use std::collections::BTreeMap;
+
+use htex_base::finding::Notice;
+use htex_dsp::Band;
+use htex_format::{
+    Asset, Condition, Contact, Manifest, Provenance, Quantity, Reference, Representation,
+};
+use htex_host::LoadedModel;
+
+use crate::conditions::{ConditionSpectra, RecordingFinding};
+use crate::felt::FeltError;
+use crate::fit::{FittedModels, fit_models};
+use crate::grid::{GridReport, GridSpectra};
+use crate::request::AssetRequest;
+use crate::take::{SegmentedTake, Take, segment_take};
+use crate::{AuthorError, TextureSpectrum};
+
+/// A fitted asset, with results that its file does not store.
+#[derive(Debug, Clone)]
+pub struct FittedAsset {
+    pub asset: Asset,
+    /// Time taken by each representation's fits, milliseconds.
+    pub fit_ms: Vec<f64>,
+    /// Models that could not be fitted, with the reasons.
+    pub skipped: Vec<(String, String)>,
+    /// The texture spectrum of each condition.
+    pub spectra: Vec<TextureSpectrum>,
+    /// How much of the difference from these spectra can be felt, for each representation at each
+    /// of its conditions. `None` at a condition that was computed between recorded ones, where
+    /// there is no recording to compare with.
+    pub felt: Vec<Vec<Option<FeltError>>>,
+    /// The warnings in the asset's provenance, each with settings that help.
+    pub warnings: Vec<Notice>,
+    /// Findings of the recordings that are less severe than a warning: what was left out, and why.
+    pub notes: Vec<Notice>,
+    /// All findings of the recordings, recording by recording.
+    pub findings: Vec<RecordingFinding>,
+    /// The grid of conditions, if one was requested.
+    pub grid: Option<GridReport>,
+}
+
+/// Fits every model at every condition, measures the parameters as they are stored, and returns the
+/// asset.
+///
+/// A model that cannot be fitted is left out and listed in `skipped`.
+///
+/// # Errors
+/// When a recording cannot be used, or no model could be fitted.
+pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
+    fit_asset_watched(takes, request, &mut |_| {})
+}
+
+/// As [`fit_asset`], but calls `begins` with each model before it is fitted.
+///
+/// # Errors
+/// As [`fit_asset`].
+pub fn fit_asset_watched(
+    takes: &[Take],
+    request: &AssetRequest,
+    begins: &mut dyn FnMut(&LoadedModel),
+) -> Result<FittedAsset, AuthorError> {
+    let AssetRequest { spectrum, strict, level, .. } = request;
+    let (conditions, grid, blocks) = match &request.grid {
+        None => {
+            let segmented = takes.iter().map(|take| segment_take(take, spectrum, *strict));
+            let segmented = segmented.collect::<Result<Vec<SegmentedTake>, _>>()?;
+            let conditions = ConditionSpectra::new(segmented, spectrum.averaging, *strict)?;
+            (conditions, None, Vec::new())
+        }
+        Some(lines) => {
+            let grid = GridSpectra::new(takes, lines, spectrum, *strict)?;
+            (grid.conditions, Some(grid.report), grid.left_out)
+        }
+    };
+    let fitted = fit_models(
+        &request.models,
+        &conditions.all,
+        &blocks,
+        *level,
+        &request.alternatives,
+        begins,
+    )?;
+    Ok(assemble(request, conditions, grid, fitted))
+}
+
+fn assemble(
+    request: &AssetRequest,
+    of: ConditionSpectra,
+    grid: Option<GridReport>,
+    fitted: FittedModels,
+) -> FittedAsset {
+    let ConditionSpectra { all, contact, law, recordings } = of;
+    let (conditions, spectra): (Vec<_>, Vec<TextureSpectrum>) =
+        all.into_iter().map(|one| (one.condition, one.spectrum)).unzip();
+    let mut warnings = recordings.warnings.into_notices();
+    warnings.extend(fitted.warnings);
+    let provenance = Provenance {
+        tool: request.tool.clone(),
+        simulated: recordings.simulated,
+        recordings: recordings.sources,
+        made: None,
+        options: request.recorded_options.clone(),
+        warnings: warnings.iter().map(Notice::to_string).collect(),
+    };
+    // All conditions have the same band and quantity.
+    let band = spectra.first().map_or(Band::TACTILE, |s| s.band);
+    let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
+    let (mut models, mut felt, mut fit_ms) = (Vec::new(), Vec::new(), Vec::new());
+    for one in fitted.models {
+        models.push((one.representation, one.parameters));
+        felt.push(one.felt);
+        fit_ms.push(one.fit_ms);
+    }
+    let mut asset = new_asset(&request.name, quantity, band, provenance, conditions, models);
+    let manifest = &mut asset.manifest;
+    manifest.license.clone_from(&request.license);
+    manifest.author.clone_from(&request.author);
+    manifest.tags.clone_from(&request.tags);
+    (manifest.contact, manifest.law) = (contact, Some(law));
+    if request.keep_reference {
+        let to_f32 = |s: &TextureSpectrum| s.magnitude.iter().map(|&m| m as f32).collect();
+        manifest.reference = Some(Reference { file: "reference.bin".to_owned() });
+        asset.reference = Some(spectra.iter().map(to_f32).collect());
+    }
+    FittedAsset {
+        asset,
+        fit_ms,
+        skipped: fitted.skipped,
+        spectra,
+        felt,
+        warnings,
+        notes: recordings.notes.into_notices(),
+        findings: recordings.findings,
+        grid,
+    }
+}
+
+/// Returns an asset with these models: each has a representation, and parameters for each of its
+/// conditions. Everything that is not given is left out of its manifest.
+pub fn new_asset(
+    name: &str,
+    quantity: Quantity,
+    band: Band,
+    provenance: Provenance,
+    conditions: Vec<Condition>,
+    models: Vec<(Representation, Vec<Vec<f64>>)>,
+) -> Asset {
+    let (representations, parameters) = models.into_iter().unzip();
+    let manifest = Manifest {
+        htex: htex_format::VERSION.to_owned(),
+        name: name.to_owned(),
+        license: None,
+        author: None,
+        tags: Vec::new(),
+        description: None,
+        source: None,
+        doi: None,
+        sensor: None,
+        finger: None,
+        contact: Contact::Unknown,
+        quantity,
+        unit: quantity.unit().to_owned(),
+        band,
+        provenance,
+        conditions,
+        law: None,
+        representations,
+        reference: None,
+        plugins: Vec::new(),
+        extensions: BTreeMap::new(),
+        extensions_required: Vec::new(),
+        other: BTreeMap::new(),
+    };
+    Asset { manifest, parameters, reference: None, plugins: Vec::new(), notes: Vec::new() }
+}

@@ -1,0 +1,179 @@
+//! Measures of agreement with a reference spectrum: the function behind each row of [`Measure`], for
+//! magnitudes, for what a recording of a voice would read, and for rendered samples.
+
+use htex_dsp::bands::{
+    BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
+};
+use htex_dsp::fidelity::{log_spectral_distance_db, third_octave_error_rms_db};
+use htex_dsp::grid::{GRID_HZ, level_rms};
+use htex_format::{Measure, Measures, Quality};
+use htex_host::{HostError, LoadedModel, Stream};
+
+use crate::segments::choose_segments;
+use crate::spectrum::{SpectrumRef, spectra_of_segments};
+use crate::{AuthorError, Averaging, Recording, SegmentChoice, TextureSpectrum};
+
+/// Length of the rendering that is measured, seconds. Its band energies scatter by about 0.2 dB.
+const SECONDS: f64 = 20.0;
+// Always the same, so that measuring an asset again gives the same errors.
+const SEED: u64 = 1;
+
+/// Agreement of a spectrum with a reference: every measure that needs only magnitudes (all but
+/// [`Measure::Felt`]), and the errors in the nine bands of the paper's regression (which uses
+/// standardised absolute differences).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    pub measures: Measures,
+    /// Energy in each of the nine bands relative to the reference, decibels.
+    pub band_error_db: Vec<f64>,
+    /// The gain at which the total energies are equal, decibels.
+    pub matching_gain_db: f64,
+}
+
+impl Agreement {
+    /// Returns a measure; `None` where the reference does not allow it.
+    pub fn get(&self, measure: Measure) -> Option<f64> {
+        self.measures.get(measure)
+    }
+}
+
+impl From<Agreement> for Quality {
+    /// Quality from magnitudes only, without rendered samples.
+    fn from(agreement: Agreement) -> Self {
+        Self {
+            by_magnitude: agreement.measures.only(Measure::stored()),
+            band_error_db: agreement.band_error_db,
+            ..Self::default()
+        }
+    }
+}
+
+/// Compares magnitudes on the reference's grid with the reference.
+pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
+    let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
+    let expected = bank.energies(reference.magnitude);
+    let gain = energy_matching_gain(reference.magnitude, magnitude);
+    let errors_db = |magnitude: &[f64]| band_error_db(&expected, &bank.energies(magnitude));
+    let band_error_db = errors_db(magnitude);
+    let measures = Measures::new(|measure| match measure {
+        Measure::SpectralCorrelation => Some(pearson_correlation(reference.magnitude, magnitude)),
+        Measure::NineBand => Some(rms(&band_error_db)),
+        Measure::NineBandMatched => {
+            let matched: Vec<f64> = magnitude.iter().map(|m| m * gain).collect();
+            Some(rms(&errors_db(&matched)))
+        }
+        Measure::ThirdOctave => {
+            third_octave_error_rms_db(reference.frequency_hz, reference.magnitude, magnitude)
+        }
+        Measure::LogSpectral => log_spectral_distance_db(reference.magnitude, magnitude),
+        Measure::Level => {
+            let ratio = level_rms(magnitude) / level_rms(reference.magnitude);
+            Some(20.0 * libm::log10(ratio))
+        }
+        Measure::Felt => None,
+    });
+    Agreement { measures, band_error_db, matching_gain_db: 20.0 * libm::log10(gain) }
+}
+
+/// Measures how well parameters at a level agree with a recorded spectrum: by magnitude, as a
+/// recording of the voice would read it, and by rendered samples. Also returns the magnitudes as a
+/// recording of the voice would read them ([`read_spectrum`]).
+///
+/// # Errors
+/// When the model refuses the parameters.
+pub(crate) fn measure(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<(Vec<f64>, Quality), AuthorError> {
+    let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
+    let by_samples = agreement(reference, &rendered).measures;
+    // Lines interfere with each other, so what a recording of them shows follows from their samples
+    // and not from their magnitudes.
+    let read = if model.has_lines() {
+        rendered
+    } else {
+        read_spectrum(model, parameters, level_rms, reference)?
+    };
+    let of_both = Measure::of_both().filter(|m| m.row().stored);
+    let quality = Quality {
+        by_samples: by_samples.only(of_both),
+        ..Quality::from(agreement(reference, &read))
+    };
+    Ok((read, quality))
+}
+
+/// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters,
+/// decibels.
+pub(crate) fn rounding_error_db(
+    model: &LoadedModel,
+    fitted: &[f64],
+    stored: &[f64],
+    reference: SpectrumRef<'_>,
+) -> Result<f64, AuthorError> {
+    let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
+    let energies = |parameters: &[f64]| {
+        let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
+        Ok::<_, HostError>(bank.energies(&shape))
+    };
+    Ok(rms(&band_error_db(&energies(fitted)?, &energies(stored)?)))
+}
+
+/// Returns the magnitudes, on the reference's grid, that a recording of the voice would read. For
+/// most models these are computed without chance: the model's magnitudes as a Hann window reads
+/// them ([`LoadedModel::read_magnitude`]). For a model with lines, that covers only the window's
+/// main lobe, so samples are rendered and measured instead ([`rendered_spectrum`]).
+///
+/// # Errors
+/// When the model refuses the parameters, or renders samples that are not finite.
+pub fn read_spectrum(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, AuthorError> {
+    if model.has_lines() {
+        return rendered_spectrum(model, parameters, level_rms, reference);
+    }
+    let shape = model.read_magnitude(parameters, reference.band)?;
+    Ok(shape.iter().map(|m| m * level_rms).collect())
+}
+
+/// Renders parameters at a level and measures the samples like a recording. The average is an RMS,
+/// because a model's magnitudes are RMS values.
+///
+/// # Errors
+/// When the model cannot render, or renders samples that are not finite.
+fn rendered_spectrum(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, AuthorError> {
+    // Four times the band's upper end: a whole number of samples per segment.
+    let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
+    let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
+    Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
+    spectrum_of_samples(&samples, rate_hz, level_rms, reference)
+}
+
+/// Returns the magnitudes of unit-RMS samples scaled to a level, in the level's unit, on the
+/// reference's grid, RMS-averaged. Zero above the samples' Nyquist frequency.
+///
+/// # Errors
+/// When there are too few samples, or they are not finite.
+pub fn spectrum_of_samples(
+    samples: &[f32],
+    rate_hz: f64,
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, AuthorError> {
+    let scaled = samples.iter().map(|&x| f64::from(x) * level_rms).collect();
+    let recording = Recording::new("samples", rate_hz, vec![scaled])?;
+    let segments = choose_segments(&recording, SegmentChoice::Windows);
+    let part = spectra_of_segments(&recording, segments, None)?;
+    let mut magnitude = TextureSpectrum::average(&[part], Averaging::Rms)?.magnitude;
+    magnitude.resize(reference.frequency_hz.len(), 0.0);
+    Ok(magnitude)
+}

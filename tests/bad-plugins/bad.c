@@ -2,7 +2,7 @@
  *
  * Every call is passed to the library GOOD_LIBRARY (a native build of a model), except for the change by one
  * -DFAULT_…. Only the check of this fault must fail; the table of
- * faults and checks is in cli/tests/checker.rs.
+ * faults and checks is in cli/tests/command/checker.rs.
  */
 #include <dlfcn.h>
 #include <fcntl.h>

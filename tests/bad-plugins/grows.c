@@ -1,5 +1,5 @@
 /* A WASM module with one fault: rendering allocates memory. The rest is the example
- * examples/model-c-bursts. The table of faults and checks is in cli/tests/checker.rs.
+ * examples/model-c-bursts. The table of faults and checks is in cli/tests/command/checker.rs.
  */
 #include "htex_model.h"
 

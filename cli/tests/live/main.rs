@@ -29,5 +29,4 @@ mod record;
 #[cfg(all(unix, feature = "lab"))]
 mod record_page;
 #[cfg(unix)]
-#[cfg(unix)]
 mod study;

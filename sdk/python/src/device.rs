@@ -160,8 +160,8 @@ impl Device {
     }
 }
 
-/// The outputs, as in `htex device list --json`: a description of each, its settings, and what is
-/// connected.
+/// The outputs that `htex device list` lists: of each its `descriptor`, which includes its settings,
+/// what is connected (`endpoints`), and why that is not known (`problem`).
 #[pyfunction(name = "devices")]
 #[pyo3(signature = (*, installed=false))]
 pub(crate) fn listed(py: Python<'_>, installed: bool) -> PyResult<Bound<'_, PyAny>> {

@@ -158,14 +158,13 @@ impl Texts {
 }
 
 /// Returns the first word of each line that the command prints. From its help it takes only the
-/// list of commands.
+/// commands, which are indented under the headings of their groups.
 fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>> {
     let printed = htex(command, folder, line)?.stdout;
     let printed = String::from_utf8_lossy(&printed);
-    let list = printed.rsplit("Commands:\n").next().unwrap_or_default();
-    let lines = list.lines().take_while(|line| !line.is_empty());
-    // A third space begins the continuation of a description.
-    let lines = lines.filter(|line| !line.starts_with("   "));
+    let help = printed.split_once("\nOptions:\n").map(|(commands, _)| commands);
+    let lines = help.unwrap_or(&printed).lines();
+    let lines = lines.filter(|line| help.is_none() || line.starts_with("  "));
     let first = |line: &str| line.split_whitespace().next().map(str::to_owned);
     Ok(lines.filter_map(first).collect())
 }

@@ -5,8 +5,8 @@
 //! the position, for example for a pattern that is fixed to the surface;
 //! [`FitInput::condition`](htex_model::FitInput) contains the speed and force of the recording.
 
-use htex_model::{Error, Motion, MotionVoice, Values, Voice};
 use htex_model::shaped::ShapedVoice;
+use htex_model::{Error, Motion, MotionVoice, Values, Voice};
 
 use crate::Shape;
 

@@ -17,10 +17,10 @@ use alloc::vec::Vec;
 
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::nelder_mead::{Options, minimize};
+use htex_model::shaped::{Curve, ShapedVoice};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
 };
-use htex_model::shaped::{Curve, ShapedVoice};
 
 const CENTRE: usize = 0;
 const BANDWIDTH: usize = 1;
@@ -111,7 +111,7 @@ impl Model for {{TYPE}} {
     }
 }
 
-/// Returns the curve of parameters in a band.
+/// The curve of parameters in a band.
 pub struct Shape {
     centre_hz: f64,
     bandwidth_hz: f64,

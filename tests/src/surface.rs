@@ -133,7 +133,8 @@ impl Surface {
     pub fn header_constants(&self) -> Constants {
         let define = |line: &str| {
             let (name, value) = line.strip_prefix("#define ")?.split_once(' ')?;
-            let constant = name.starts_with(self.constant) && !name.contains('(');
+            let is_export = name.contains('(') || name.ends_with("_EXPORT");
+            let constant = name.starts_with(self.constant) && !is_export;
             let value = value.trim().trim_matches(['(', ')']);
             constant.then(|| (name.to_owned(), value.to_owned()))
         };

@@ -71,11 +71,11 @@ pub struct Point {
 /// Converts blocks to a stream of points.
 ///
 /// ```
-/// use htex_dsp::envelope::Measured;
+/// use htex_dsp::envelope::Measurement;
 /// use htex_dsp::reduced::{Points, Scale};
 /// let scale = Scale { gain: 1.0, low_hz: 0.0, high_hz: 500.0 };
 /// let mut points = Points::default();
-/// let block = Measured { level_rms: 0.5, centroid_hz: 250.0, frames: 80 };
+/// let block = Measurement { level_rms: 0.5, centroid_hz: 250.0, frames: 80 };
 /// let made: Vec<_> = points.block(&block, &scale, 8_000.0).collect();
 /// assert_eq!(made.iter().map(|p| p.time_ns).collect::<Vec<_>>(), [0, 10_000_000]);
 /// assert_eq!(made[1].strength, 0.5);

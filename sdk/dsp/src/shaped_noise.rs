@@ -25,6 +25,9 @@ const OVERLAP: usize = 8;
 /// Duration of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
+/// Below this rate the noise ends at the same frequencies as at 2 kHz, hertz.
+const LOW_RATE_HZ: f64 = 2_400.0;
+
 /// An endless stream of noise whose spectrum follows a magnitude curve.
 ///
 /// It has unit RMS as the bins of the band measure it. These bins miss some of the power at the
@@ -176,9 +179,10 @@ impl Frames {
         // Each bin of the texture spectrum represents half a bin on either side, and each component
         // half a spacing. Where the noise ends must not depend on the rate, or a steep spectrum has
         // another level at each rate: the power of a component at the edge is that of the part of
-        // its interval inside. The edges are those of the components at the usual spacing. The
-        // tolerance of 1e-9 keeps a component that rounding has moved just beyond the edge.
-        let usual = 0.5 / HALF_S;
+        // its interval inside. The edges are those of the components at the usual spacing. At
+        // higher rates the difference stays, because files play the same samples in all versions.
+        // The tolerance of 1e-9 keeps a component that rounding has moved just beyond the edge.
+        let usual = if rate_hz < LOW_RATE_HZ { 0.5 / HALF_S } else { spacing };
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / usual - 1e-9).max(1.0);
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / usual + 1e-9).max(low);
         let [low_hz, high_hz] = [(low - 0.5) * usual, (high + 0.5) * usual];

@@ -36,15 +36,17 @@ struct ModelInfo(Descriptor);
 
 impl Display for ModelInfo {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let Descriptor { id, name, version, summary, fields, options, .. } = tamed(&self.0);
+        let Descriptor { id, name, version, summary, fields, options, only_named, .. } =
+            tamed(&self.0);
         let fields: String = fields.iter().map(field).collect();
         let mut options: String = options.iter().map(option).collect();
         if options.is_empty() {
             options += "  none\n";
         }
+        let used = if only_named { "Used only if you name it.\n" } else { "" };
         write!(
             f,
-            "{name} ({id} {version})\n{summary}\n\nparameters\n{fields}\nfit options\n{options}"
+            "{name} ({id} {version})\n{summary}\n{used}\nparameters\n{fields}\nfit options\n{options}"
         )
     }
 }

@@ -46,16 +46,18 @@ fn a_filter_has_one_level_at_all_rates() {
     }
 }
 
-/// A spectrum with most of its power at the lower edge of the band, where noise has components at
-/// other frequencies at each rate. The bins of the band read the same level; the total differs a
-/// little, most for MFCC.
+/// Sample rates at which noise has components at other frequencies than at 2 kHz.
+const LOW_RATES_HZ: [f64; 7] = [2_000.0, 2_001.0, 2_050.0, 2_100.0, 2_200.0, 2_300.0, 2_399.0];
+
+/// A spectrum with most of its power at the lower edge of the band. The bins of the band read the
+/// same level; the total differs a little, most for MFCC.
 #[test]
-fn steep_noise_has_one_level_at_all_rates() {
+fn steep_noise_has_one_level_at_low_rates() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
     let asset = Texture::open(file).unwrap();
     for (model, most_db) in [("sslope", 0.05), ("sbeta", 0.05), ("mfcc", 0.1)] {
         let high = rms(&asset, model, 48_000.0);
-        for rate_hz in RATES_HZ.into_iter().chain([2_001.0, 2_100.0, 2_300.0, 2_399.0, 22_050.0]) {
+        for rate_hz in LOW_RATES_HZ {
             let off_db = 20.0 * (rms(&asset, model, rate_hz) / high).log10();
             println!("{model} at {rate_hz} Hz: {off_db:+.3} dB");
             assert!(off_db.abs() < most_db, "{model} at {rate_hz} Hz: {off_db} dB");

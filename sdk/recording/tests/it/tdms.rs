@@ -63,9 +63,9 @@ fn force(count: u64) -> Vec<u8> {
 
 #[test]
 fn a_channel_without_values_in_a_later_segment_takes_none() {
-    let both = [force(2), object("/'Run'/'fz_n'", &doubles(2), &[])];
+    let both = [force(2), object("/'Run'/'spare'", &doubles(2), &[])];
     let first = segment(NEW_OBJECTS, &both, &[1.0, 2.0, -1.0, -2.0]);
-    let without = [object("/'Run'/'fz_n'", &NONE.to_le_bytes(), &[])];
+    let without = [object("/'Run'/'spare'", &NONE.to_le_bytes(), &[])];
     let second = segment(0, &without, &[3.0, 4.0, 5.0, 6.0]);
     assert_eq!(lateral(&[first, second]), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 }

@@ -200,7 +200,7 @@ impl Surface {
     pub fn listing(&self, constants: &Constants) -> String {
         let constants = constants.iter().map(|(name, value)| format!("{name} {value}\n"));
         let prototypes = self.rust_prototypes();
-        let functions = prototypes.iter().map(|(name, text)| match &self.export[..] {
+        let functions = prototypes.iter().map(|(name, text)| match self.export {
             "" => format!("{name}: {text};\n"),
             _ => format!("{text};\n"),
         });

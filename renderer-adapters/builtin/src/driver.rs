@@ -40,12 +40,12 @@ impl DriverLibrary {
         };
         let loaded = library.map_err(|error| error.to_string());
         let loaded = loaded.and_then(|library| table(library).map_err(|error| error.to_string()));
-        loaded.map_err(|reason| match is_installed {
-            true => DeviceError::Missing(format!("{absent}: {reason}. {remedy}")),
-            false => {
-                let what = format!("`{path}` cannot be loaded as {loaded_as}: {reason}");
-                DeviceError::setting(*setting, what)
+        loaded.map_err(|reason| {
+            if is_installed {
+                return DeviceError::Missing(format!("{absent}: {reason}. {remedy}"));
             }
+            let what = format!("`{path}` cannot be loaded as {loaded_as}: {reason}");
+            DeviceError::setting(*setting, what)
         })
     }
 }

@@ -36,7 +36,7 @@ impl ShapedModel for Plateau {
         let floor = input.level_rms() / 20.0;
         let mut loud = input.frequency_hz.iter().zip(input.magnitude).filter(|(_, m)| **m > floor);
         let (low, _) = loud.next().ok_or_else(|| Error::cannot_fit("the spectrum is zero"))?;
-        let parameters = vec![*low, loud.last().map_or(*low, |(high, _)| *high)];
+        let parameters = vec![*low, loud.next_back().map_or(*low, |(high, _)| *high)];
         Ok(Fit { parameters, level_rms: input.level_rms() })
     }
 }

@@ -123,7 +123,7 @@ pub(crate) fn rounding_error_db(
 /// Returns the magnitudes, on the reference's grid, that a recording of the voice would read. For
 /// most models these are computed without chance: the model's magnitudes as a Hann window reads
 /// them ([`LoadedModel::read_magnitude`]). For a model with lines, that covers only the window's
-/// main lobe, so samples are rendered and measured instead ([`rendered_spectrum`]).
+/// main lobe, so samples are rendered and measured instead (`rendered_spectrum`).
 ///
 /// # Errors
 /// When the model refuses the parameters, or renders samples that are not finite.

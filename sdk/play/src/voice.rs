@@ -118,7 +118,7 @@ impl Voice {
     /// ([`Synthesis`](crate::Synthesis)), only the level changes.
     ///
     /// Outside the recorded conditions, frequencies and level follow the asset's law
-    /// ([`Law`](crate::Law)), starting at the nearest recorded motion. Frequencies are at least
+    /// ([`Law`](htex_format::Law)), starting at the nearest recorded motion. Frequencies are at least
     /// 1/16 and at most 8 times the recorded ones, and never exceed half the sample rate. The level
     /// is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded one. A
     /// finger that does not slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these

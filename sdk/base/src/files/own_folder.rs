@@ -82,7 +82,7 @@ impl OwnFolder {
     /// Creates a folder and the folders above it. An existing folder is left as it is.
     ///
     /// # Errors
-    /// The errors of [`Self::at`], errors for a link or something that is not a folder, and errors
+    /// The errors of [`Self::entry_path`], errors for a link or something that is not a folder, and errors
     /// of the system.
     pub fn make_folder(&self, inside: &Path) -> io::Result<PathBuf> {
         self.make_itself()?;
@@ -103,7 +103,7 @@ impl OwnFolder {
     /// Opens a regular file for reading.
     ///
     /// # Errors
-    /// The errors of [`Self::at`], errors for a link or something that is not a regular file, and
+    /// The errors of [`Self::entry_path`], errors for a link or something that is not a regular file, and
     /// errors of the system.
     pub fn open(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true))
@@ -176,7 +176,7 @@ impl OwnFolder {
     /// Reads a regular file of at most `most_bytes`.
     ///
     /// # Errors
-    /// The errors of [`Self::at`] and [`read_regular`], and an error for a link.
+    /// The errors of [`Self::entry_path`] and [`read_regular`], and an error for a link.
     pub fn read(&self, inside: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         let path = self.entry_path(inside)?;
         refuse_link(&path)?;
@@ -186,7 +186,7 @@ impl OwnFolder {
     /// Opens a file for writing in order to lock it. An existing file keeps its contents.
     ///
     /// # Errors
-    /// The errors of [`Self::at`], errors for a link or something that is not a regular file, and
+    /// The errors of [`Self::entry_path`], errors for a link or something that is not a regular file, and
     /// errors of the system.
     pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
         let mut options = OpenOptions::new();
@@ -246,7 +246,7 @@ impl OwnFolder {
     /// not an error.
     ///
     /// # Errors
-    /// The errors of [`Self::at`], an error for a folder, and errors of the system.
+    /// The errors of [`Self::entry_path`], an error for a folder, and errors of the system.
     pub fn remove(&self, inside: &Path) -> io::Result<()> {
         let path = match self.entry_path(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -270,7 +270,7 @@ impl OwnFolder {
     /// missing.
     ///
     /// # Errors
-    /// The errors of [`Self::at`], an error for a link, and errors of the system.
+    /// The errors of [`Self::entry_path`], an error for a link, and errors of the system.
     pub fn files(&self, inside: &Path) -> io::Result<Vec<String>> {
         let path = self.entry_path(inside)?;
         match check_folder(&path) {
@@ -295,7 +295,7 @@ impl OwnFolder {
     /// folder is not an error.
     ///
     /// # Errors
-    /// The errors of [`Self::at`], errors for a link or something that is not a folder, and errors
+    /// The errors of [`Self::entry_path`], errors for a link or something that is not a folder, and errors
     /// of the system.
     pub fn remove_folder(&self, inside: &Path) -> io::Result<()> {
         let path = match self.entry_path(inside) {

@@ -36,7 +36,7 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     if values.len() < FEWEST_SEGMENTS * segment_len(recording.rate_hz) {
         return false;
     }
-    let Some(centred) = CentredValues::new(values) else {
+    let Some(centred) = CentredSums::new(values) else {
         return false;
     };
     let pointer = format!("/{name}");
@@ -59,43 +59,64 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     true
 }
 
-/// An axis minus its mean, relative to its largest value, so that no square overflows.
-struct CentredValues {
-    values: Vec<f64>,
-    /// Sum of the squares.
+/// Samples after which places within all periods up to [`LONGEST`] repeat.
+const ROUND: usize = 12;
+
+/// Sums over an axis less its mean, relative to its largest value, so that no square overflows.
+struct CentredSums {
+    count: usize,
     squares: f64,
+    /// Sum of the values, each times its sample index.
+    moment: f64,
+    /// Sum of the values of each place within [`ROUND`] samples.
+    places: [f64; ROUND],
 }
 
-impl CentredValues {
+impl CentredSums {
     /// `None` if all values of the axis are the same.
     fn new(values: &[f64]) -> Option<Self> {
         let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         if largest == 0.0 || values.iter().all(|x| *x == values[0]) {
             return None;
         }
-        let mean = values.iter().map(|x| x / largest).sum::<f64>() / values.len() as f64;
-        let values: Vec<f64> = values.iter().map(|x| x / largest - mean).collect();
-        let squares: f64 = values.iter().map(|x| x * x).sum();
-        (squares > 0.0).then_some(Self { values, squares })
+        // Of a subnormal number there may be no inverse.
+        let scale = 1.0 / largest.max(f64::MIN_POSITIVE);
+        // One sum a place, so that no addition waits for the one before it.
+        let mut sums = [0.0; ROUND];
+        for round in values.chunks(ROUND) {
+            sums.iter_mut().zip(round).for_each(|(sum, x)| *sum += x * scale);
+        }
+        let mean = sums.iter().sum::<f64>() / values.len() as f64;
+        let (mut places, mut squares, mut moments) = ([0.0; ROUND], [0.0; ROUND], [0.0; ROUND]);
+        for (first, round) in values.chunks(ROUND).enumerate() {
+            let first = (first * ROUND) as f64;
+            for (place, value) in round.iter().enumerate() {
+                let x = value * scale - mean;
+                places[place] += x;
+                squares[place] += x * x;
+                moments[place] += (first + place as f64) * x;
+            }
+        }
+        let squares = squares.iter().sum();
+        let moment = moments.iter().sum();
+        (squares > 0.0).then_some(Self { count: values.len(), squares, moment, places })
     }
 
     /// Squared correlation of the values with the sample index.
     fn along_line(&self) -> f64 {
-        let count = self.values.len() as f64;
-        let middle = 0.5 * (count - 1.0);
-        let places = self.values.iter().enumerate();
-        let both: f64 = places.map(|(at, x)| (at as f64 - middle) * x).sum();
+        let count = self.count as f64;
+        let both = self.moment - 0.5 * (count - 1.0) * self.places.iter().sum::<f64>();
         // The sum of the squares of the sample numbers less their mean.
         let own = count * (count * count - 1.0) / 12.0;
         both * both / (own * self.squares)
     }
 
-    /// Fraction of the variance that the place within a period explains.
+    /// Fraction of the variance that the place within a period explains. The period divides
+    /// [`ROUND`].
     fn by_place(&self, period: usize) -> f64 {
         let of_place = |place: usize| {
-            let own = || self.values.iter().skip(place).step_by(period);
-            let (sum, count) = (own().sum::<f64>(), own().count() as f64);
-            sum * sum / count
+            let sum: f64 = self.places.iter().skip(place).step_by(period).sum();
+            sum * sum / (self.count - place).div_ceil(period) as f64
         };
         (0..period).map(of_place).sum::<f64>() / self.squares
     }

@@ -2,6 +2,7 @@
 
 use htex_base::finding::Findings;
 
+use super::stuck::mean_size;
 use super::{axis_words, pointer};
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
@@ -68,8 +69,9 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
             return Levels::Coarse;
         }
     }
+    let magnitude = mean_size(values);
     let mut clips: Vec<Clip> =
-        [1.0, -1.0].into_iter().filter_map(|side| clip(values, side)).collect();
+        [1.0, -1.0].into_iter().filter_map(|side| clip(values, side, magnitude)).collect();
     if clips.iter().map(|clip| clip.visits).sum::<usize>() < FEWEST_VISITS {
         clips.clear();
     }
@@ -112,11 +114,9 @@ struct Clip {
 }
 
 /// Finds clipping at the highest value (`side` = 1) or at the lowest value (`side` = -1).
-fn clip(values: &[f64], side: f64) -> Option<Clip> {
+fn clip(values: &[f64], side: f64, magnitude: f64) -> Option<Clip> {
     let (mut top, mut second, mut bottom) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY);
-    let mut magnitude = 0.0;
     for value in values.iter().map(|value| side * value) {
-        magnitude += value.abs();
         bottom = bottom.min(value);
         if value > top {
             (top, second) = (value, top);
@@ -124,24 +124,20 @@ fn clip(values: &[f64], side: f64) -> Option<Clip> {
             second = second.max(value);
         }
     }
-    if top.abs() < REST * magnitude / values.len() as f64 {
+    if top.abs() < REST * magnitude {
         return None;
     }
     // A converter with coarse steps has no value within this fraction, so the next value counts as
     // well.
     let beside = second.min(top - BESIDE * (top - bottom));
-    let (mut count, mut near, mut visits, mut first, mut before) = (0, 0, 0, None, false);
-    for (at, value) in values.iter().map(|value| side * value).enumerate() {
-        let on = value == top;
-        if on {
-            count += 1;
-            visits += usize::from(!before);
-            first = first.or(Some(at));
-        } else if value >= beside {
-            near += 1;
-        }
-        before = on;
+    let sided = || values.iter().map(|value| side * value);
+    let count = sided().filter(|value| *value == top).count();
+    let near = sided().filter(|value| *value >= beside).count() - count;
+    if (count as f64) < CLIPPED * values.len() as f64 || count < OVER_BESIDE * near {
+        return None;
     }
-    let clipped = count as f64 >= CLIPPED * values.len() as f64 && count >= OVER_BESIDE * near;
-    clipped.then_some(Clip { level: side * top, count, visits, first: first? })
+    let level = side * top;
+    let begins = |at: &usize| values[*at] == level && (*at == 0 || values[at - 1] != level);
+    let begins: Vec<usize> = (0..values.len()).filter(begins).collect();
+    Some(Clip { level, count, visits: begins.len(), first: *begins.first()? })
 }

@@ -133,21 +133,17 @@ fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
     if usual == 0.0 {
         return Vec::new();
     }
-    let single = |ratio: f64| -> Vec<usize> {
-        let limit = floor.max(ratio * usual);
-        let is_single = |at: &usize| corners[at - 1] > limit && is_single(values, *at);
-        (3..values.len().saturating_sub(3)).filter(is_single).collect()
-    };
-    let large = single(LARGE.0);
-    let small = single(SMALL.0);
-    // The small ones include the large ones, so they are returned if both are too many.
-    if small.len() as f64 >= SMALL.1 * values.len() as f64 {
-        small
-    } else if large.len() >= LARGE.1 {
-        large
-    } else {
-        Vec::new()
+    let exceeds = |at: usize, ratio: f64| corners[at - 1] > floor.max(ratio * usual);
+    let mut single: Vec<usize> = (3..values.len().saturating_sub(3))
+        .filter(|at| exceeds(*at, SMALL.0) && is_single(values, *at))
+        .collect();
+    if (single.len() as f64) < SMALL.1 * values.len() as f64 {
+        single.retain(|at| exceeds(*at, LARGE.0));
+        if single.len() < LARGE.1 {
+            single.clear();
+        }
     }
+    single
 }
 
 /// Whether repairing the sample removes its corner. The sample must have three others on either

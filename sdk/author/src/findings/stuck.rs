@@ -45,10 +45,14 @@ pub(super) fn judge_axis(
 ) {
     let values = &recording.axes[axis];
     let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
-    let magnitude = mean_size(values);
     let shortest = |seconds: f64| ((seconds * recording.rate_hz) as usize).max(2);
+    let runs = runs(values, shortest(STUCK_S));
+    if runs.is_empty() {
+        return;
+    }
+    let magnitude = mean_size(values);
     let (mut stuck, mut silent) = (Vec::new(), Vec::new());
-    for run in runs(values, shortest(STUCK_S)) {
+    for run in runs {
         let value = values[run.start];
         // A clipped signal stays at its limit too, and that has its own finding.
         if clipped.contains(&value) {
@@ -109,7 +113,7 @@ fn finger(recording: &Recording, run: &Range<usize>) -> Finger {
 }
 
 /// Returns the mean absolute value.
-fn mean_size(values: &[f64]) -> f64 {
+pub(super) fn mean_size(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum::<f64>() / values.len() as f64
 }
 

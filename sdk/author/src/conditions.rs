@@ -114,7 +114,8 @@ impl ConditionSpectra {
         for take in takes {
             let (condition, part, name) = (take.motion, take.spectra, take.source.file.clone());
             let notices = [take.warnings, take.notes];
-            recordings.add(take.source, take.simulated, notices, take.findings);
+            let source = Source { blake3: take.file.blake3(), ..take.source };
+            recordings.add(source, take.simulated, notices, take.findings);
             // The first recording of a condition decides its speed and force, so the order of
             // recordings can matter where they lie close together.
             match gatherings.iter_mut().find(|g| same(g.condition, condition)) {

@@ -446,7 +446,7 @@ impl SegmentReader {
 }
 
 /// Subtracts the slope of the least-squares line through equally spaced samples; the mean stays.
-pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
+fn without_line(segment: &[f64]) -> Vec<f64> {
     let middle = 0.5 * (segment.len() as f64 - 1.0);
     // Positions around the middle have the mean 0, so that the slope does not depend on the mean.
     let place = |i: usize| i as f64 - middle;

@@ -13,11 +13,12 @@ use std::f64::consts::TAU;
 use htex_base::finding::Findings;
 use htex_dsp::Band;
 use htex_dsp::fft::RealFft;
+use htex_dsp::spectrum::Complex;
 use htex_dsp::window::hann_periodic;
 
+use super::lanes;
 use crate::Recording;
 use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};
-use crate::spectrum::without_line;
 use htex_recording::rules::{RECORDING_ABOVE_BAND, RECORDING_BELOW_BAND};
 
 /// Power in the band as segments show it, divided by the power that long windows show, from which
@@ -134,9 +135,9 @@ fn blackman_harris(len: usize) -> Vec<f64> {
 struct Reader<'a> {
     recording: &'a Recording,
     window: Vec<f64>,
-    /// Magnitude of the recording's largest value. All values are divided by it, so that no square
-    /// overflows.
-    largest: f64,
+    /// Inverse of the magnitude of the recording's largest value. All values are multiplied by it,
+    /// so that no square overflows.
+    scale: f64,
     /// Whether a straight line is removed; otherwise the mean is.
     is_level: bool,
 }
@@ -144,7 +145,8 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn new(recording: &'a Recording, window: Vec<f64>, is_level: bool) -> Self {
         let values = recording.axes.iter().flatten();
-        Self { recording, window, largest: values.fold(0.0, |most, x| most.max(x.abs())), is_level }
+        let largest = values.fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+        Self { recording, window, scale: 1.0 / largest, is_level }
     }
 
     /// Returns the mean powers of the stretches that begin at the given samples.
@@ -154,35 +156,42 @@ impl<'a> Reader<'a> {
         let mut bins = fft.make_bins();
         let squares: f64 = self.window.iter().map(|w| w * w).sum();
         let spacing_hz = self.recording.rate_hz / len as f64;
+        let first_bin = |is: &dyn Fn(f64) -> bool| {
+            (0..bins.len()).find(|k| is(*k as f64 * spacing_hz)).unwrap_or(bins.len())
+        };
+        let above = first_bin(&|hz| hz > Band::TACTILE.high_hz);
+        let inside = first_bin(&|hz| Band::TACTILE.contains(hz)).min(above);
         let (mut sum, mut count) = (Power::default(), 0.0);
+        let mut windowed = vec![0.0; len];
         for start in starts {
             count += 1.0;
             for axis in &self.recording.axes {
-                let stretch = axis.get(start..start + len).unwrap_or_default();
-                let windowed = self.windowed(stretch);
+                self.window(axis.get(start..start + len).unwrap_or_default(), &mut windowed);
                 fft.forward(&windowed, &mut bins);
-                for (k, bin) in bins.iter().enumerate() {
-                    let hz = k as f64 * spacing_hz;
-                    if Band::TACTILE.contains(hz) {
-                        sum.inside += bin.norm_sqr();
-                    } else if hz > Band::TACTILE.high_hz {
-                        sum.above += bin.norm_sqr();
-                    }
-                }
+                let power = |bins: &[Complex<f64>]| bins.iter().map(Complex::norm_sqr).sum::<f64>();
+                sum.inside += power(&bins[inside..above]);
+                sum.above += power(&bins[above..]);
             }
         }
         let scale = 1.0 / (count * squares * len as f64);
         Power { inside: scale * sum.inside, above: scale * sum.above }
     }
 
-    fn windowed(&self, stretch: &[f64]) -> Vec<f64> {
-        let mut level: Vec<f64> = stretch.iter().map(|x| x / self.largest).collect();
-        let mean = level.iter().sum::<f64>() / level.len() as f64;
-        if self.is_level {
-            level = without_line(&level);
+    /// Writes a stretch without its mean or line, times the window.
+    fn window(&self, stretch: &[f64], windowed: &mut [f64]) {
+        let (count, scale) = (stretch.len() as f64, self.scale);
+        let mean = lanes::sum(stretch, |_, x| x * scale) / count;
+        let middle = 0.5 * (count - 1.0);
+        let slope = if self.is_level {
+            // The denominator is the sum of the squared distances from the middle.
+            12.0 * lanes::sum(stretch, |at, x| (at - middle) * (x * scale))
+                / (count * (count * count - 1.0))
+        } else {
+            0.0
+        };
+        let values = stretch.iter().zip(&self.window).enumerate();
+        for (windowed, (at, (x, window))) in windowed.iter_mut().zip(values) {
+            *windowed = (x * scale - mean - slope * (at as f64 - middle)) * window;
         }
-        let windowed = level.iter_mut().zip(&self.window);
-        windowed.for_each(|(x, w)| *x = (*x - mean) * w);
-        level
     }
 }

@@ -3,7 +3,7 @@
 
 use htex_base::finding::Findings;
 
-use super::axis_words;
+use super::{axis_words, lanes};
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
 
@@ -81,16 +81,11 @@ impl CentredSums {
         }
         // Of a subnormal number there may be no inverse.
         let scale = 1.0 / largest.max(f64::MIN_POSITIVE);
-        // One sum a place, so that no addition waits for the one before it.
-        let mut sums = [0.0; ROUND];
-        for round in values.chunks(ROUND) {
-            sums.iter_mut().zip(round).for_each(|(sum, x)| *sum += x * scale);
-        }
-        let mean = sums.iter().sum::<f64>() / values.len() as f64;
+        let mean = lanes::sum(values, |_, x| x * scale) / values.len() as f64;
         let (mut places, mut squares, mut moments) = ([0.0; ROUND], [0.0; ROUND], [0.0; ROUND]);
-        for (first, round) in values.chunks(ROUND).enumerate() {
-            let first = (first * ROUND) as f64;
-            for (place, value) in round.iter().enumerate() {
+        for (round, values) in values.chunks(ROUND).enumerate() {
+            let first = (round * ROUND) as f64;
+            for (place, value) in values.iter().enumerate() {
                 let x = value * scale - mean;
                 places[place] += x;
                 squares[place] += x * x;

@@ -4,6 +4,7 @@ mod band;
 mod coefficient;
 mod course;
 mod differing;
+mod lanes;
 mod levels;
 mod page;
 mod plausible;

@@ -8,6 +8,7 @@
 use htex_base::finding::Findings;
 use htex_format::Quantity;
 
+use super::lanes::largest;
 use super::quantile::{median, quantile};
 use super::{axis_words, pointer};
 use crate::Recording;
@@ -100,14 +101,22 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     // At low rates a block would have too few samples for its largest corner to mean anything.
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
-    let sharpest: Vec<(usize, f64)> = (0..values.len())
-        .step_by(block)
-        .filter_map(|start| sharpest(values, start, block))
-        .collect();
-    let usual = quantile(USUAL, sharpest.len(), |at| sharpest[at].1).unwrap_or(0.0);
+    // The corner of sample 1 comes first.
+    let corners: Vec<f64> = values.windows(3).map(corner).collect();
+    let blocks = (0..values.len()).step_by(block).filter_map(|start| {
+        let end = (start + block - 1).min(corners.len());
+        let first = start.saturating_sub(1);
+        (first < end).then(|| (first, end, largest(&corners[first..end])))
+    });
+    let blocks: Vec<(usize, usize, f64)> = blocks.collect();
+    let usual = quantile(USUAL, blocks.len(), |at| blocks[at].2).unwrap_or(0.0);
     let limit = SPIKE * usual.max(floor);
-    let mut found: Vec<(usize, f64)> = sharpest;
-    found.retain(|(_, corner)| limit > 0.0 && *corner > limit);
+    let spikes = blocks.iter().filter(|(_, _, corner)| limit > 0.0 && *corner > limit);
+    let sample = |&(first, end, corner): &(usize, usize, f64)| {
+        let at = corners[first..end].iter().position(|one| *one == corner)?;
+        Some((first + at + 1, corner))
+    };
+    let mut found: Vec<(usize, f64)> = spikes.filter_map(sample).collect();
     // At the edge of a block, the next block's largest sample may be the neighbour of the same
     // spike.
     found.dedup_by(|next, one| {
@@ -121,13 +130,12 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     if found.len() > rare {
         found.clear();
     }
-    let many = many(values, block, SPIKE * floor);
+    let many = many(values, &corners, block, SPIKE * floor);
     if many.len() > found.len() { many } else { found.into_iter().map(|(at, _)| at).collect() }
 }
 
 /// Returns the single-sample outliers, if there are too many of them.
-fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
-    let corners: Vec<f64> = values.windows(3).map(corner).collect();
+fn many(values: &[f64], corners: &[f64], block: usize, floor: f64) -> Vec<usize> {
     let medians: Vec<f64> = corners.chunks_exact(block).filter_map(median).collect();
     let usual = NORMAL * quantile(USUAL, medians.len(), |at| medians[at]).unwrap_or(0.0);
     if usual == 0.0 {
@@ -164,21 +172,6 @@ fn is_single(values: &[f64], at: usize) -> bool {
 /// Absolute difference between a sample and the mean of its neighbours.
 fn corner(w: &[f64]) -> f64 {
     (w[1] - 0.5 * (w[0] + w[2])).abs()
-}
-
-/// Returns the sample of a block that differs most from the mean of its neighbours, and that
-/// difference.
-fn sharpest(values: &[f64], start: usize, block: usize) -> Option<(usize, f64)> {
-    let from = start.saturating_sub(1);
-    let reach = &values[from..(start + block + 1).min(values.len())];
-    let corners = reach.windows(3).enumerate();
-    corners.map(|(at, w)| (from + at + 1, corner(w))).fold(
-        None,
-        |best: Option<(usize, f64)>, next| match best {
-            Some(best) if best.1 >= next.1 => Some(best),
-            _ => Some(next),
-        },
-    )
 }
 
 fn count(samples: usize) -> String {

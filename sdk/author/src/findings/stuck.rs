@@ -5,7 +5,7 @@ use std::ops::Range;
 use htex_base::finding::Findings;
 use htex_format::Quantity;
 
-use super::{axis_words, pointer};
+use super::{axis_words, lanes, pointer};
 use crate::Recording;
 use htex_recording::rules::{RECORDING_SILENT, RECORDING_STUCK};
 
@@ -114,7 +114,7 @@ fn finger(recording: &Recording, run: &Range<usize>) -> Finger {
 
 /// Returns the mean absolute value.
 pub(super) fn mean_size(values: &[f64]) -> f64 {
-    values.iter().map(|value| value.abs()).sum::<f64>() / values.len() as f64
+    lanes::sum(values, |_, value| value.abs()) / values.len() as f64
 }
 
 /// Returns the constant stretches that have at least `shortest` samples.

@@ -25,7 +25,7 @@ mod slopes;
 mod steady;
 
 use htex_base::finding::Findings;
-use htex_format::Condition;
+use htex_format::{Condition, Source};
 
 pub(crate) use held_out::LeftOutBlock;
 pub(crate) use leave_out::left_out;
@@ -71,6 +71,7 @@ impl GridSpectra {
             let recording = &take.recording;
             let steady = read_steady(index, take, options.response.as_ref(), strict)?;
             let source = source_of(recording, steady.windows.len());
+            let source = Source { blake3: recording.file.blake3(), ..source };
             recordings.add(source, recording.simulated, steady.notices, steady.findings);
             looked_at += steady.looked_at;
             windows.extend(steady.windows);

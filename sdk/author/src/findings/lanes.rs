@@ -1,0 +1,31 @@
+//! Sums and maxima of long signals, in eight parts, so that no operation waits for the one before
+//! it. The order of the additions changes only the last digits, which decide no finding.
+
+const LANES: usize = 8;
+
+/// Returns the sum of a term of each value and its index.
+pub(super) fn sum(values: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
+    let (rounds, rest) = values.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (round, values) in rounds.iter().enumerate() {
+        let first = (round * LANES) as f64;
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            *sum += term(first + lane as f64, values[lane]);
+        }
+    }
+    let first = rounds.len() * LANES;
+    let rest = rest.iter().enumerate().map(|(at, x)| term((first + at) as f64, *x));
+    sums.into_iter().chain(rest).sum()
+}
+
+/// Returns the largest of values of at least 0; 0 if there are none.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    let (rounds, rest) = values.as_chunks::<LANES>();
+    let mut most = [0.0; LANES];
+    for values in rounds {
+        for (most, x) in most.iter_mut().zip(values) {
+            *most = if *x > *most { *x } else { *most };
+        }
+    }
+    most.iter().chain(rest).fold(0.0, |most: f64, x| most.max(*x))
+}

@@ -144,8 +144,8 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn new(recording: &'a Recording, window: Vec<f64>, is_level: bool) -> Self {
-        let values = recording.axes.iter().flatten();
-        let largest = values.fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+        let of_axes = recording.axes.iter().map(|axis| lanes::largest(axis, f64::abs));
+        let largest = of_axes.fold(f64::MIN_POSITIVE, f64::max);
         Self { recording, window, scale: 1.0 / largest, is_level }
     }
 

@@ -75,7 +75,7 @@ struct CentredSums {
 impl CentredSums {
     /// `None` if all values of the axis are the same.
     fn new(values: &[f64]) -> Option<Self> {
-        let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let largest = lanes::largest(values, f64::abs);
         if largest == 0.0 || values.iter().all(|x| *x == values[0]) {
             return None;
         }

@@ -18,14 +18,16 @@ pub(super) fn sum(values: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     sums.into_iter().chain(rest).sum()
 }
 
-/// Returns the largest of values of at least 0; 0 if there are none.
-pub(super) fn largest(values: &[f64]) -> f64 {
+/// Returns the largest of a term of each value; minus infinity if there are none.
+pub(super) fn largest(values: &[f64], term: impl Fn(f64) -> f64) -> f64 {
+    // `f64::max` also compares with NaN, which no term is.
+    let larger = |most: f64, x: f64| if x > most { x } else { most };
     let (rounds, rest) = values.as_chunks::<LANES>();
-    let mut most = [0.0; LANES];
+    let mut most = [f64::NEG_INFINITY; LANES];
     for values in rounds {
         for (most, x) in most.iter_mut().zip(values) {
-            *most = if *x > *most { *x } else { *most };
+            *most = larger(*most, term(*x));
         }
     }
-    most.iter().chain(rest).fold(0.0, |most: f64, x| most.max(*x))
+    most.into_iter().chain(rest.iter().map(|x| term(*x))).fold(f64::NEG_INFINITY, larger)
 }

@@ -3,7 +3,7 @@
 use htex_base::finding::Findings;
 
 use super::stuck::mean_size;
-use super::{axis_words, pointer};
+use super::{axis_words, lanes, pointer};
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 
@@ -115,18 +115,13 @@ struct Clip {
 
 /// Finds clipping at the highest value (`side` = 1) or at the lowest value (`side` = -1).
 fn clip(values: &[f64], side: f64, magnitude: f64) -> Option<Clip> {
-    let (mut top, mut second, mut bottom) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY);
-    for value in values.iter().map(|value| side * value) {
-        bottom = bottom.min(value);
-        if value > top {
-            (top, second) = (value, top);
-        } else if value < top {
-            second = second.max(value);
-        }
-    }
+    let top = lanes::largest(values, |value| side * value);
     if top.abs() < REST * magnitude {
         return None;
     }
+    let bottom = -lanes::largest(values, |value| -side * value);
+    let below_top = |value| if side * value < top { side * value } else { f64::NEG_INFINITY };
+    let second = lanes::largest(values, below_top);
     // A converter with coarse steps has no value within this fraction, so the next value counts as
     // well.
     let beside = second.min(top - BESIDE * (top - bottom));

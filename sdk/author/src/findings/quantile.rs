@@ -15,10 +15,17 @@ pub(super) fn definition() -> String {
 /// Returns the quantile `part` (0 to 1) of the values; for long signals, the quantile of evenly
 /// spaced samples. `None` if there are no values.
 pub(crate) fn quantile(part: f64, len: usize, value: impl Fn(usize) -> f64) -> Option<f64> {
-    let mut values: Vec<f64> = (0..len).step_by(len.div_ceil(MOST).max(1)).map(value).collect();
-    let last = values.len().checked_sub(1)?;
+    let places = (0..len).step_by(len.div_ceil(MOST).max(1));
+    let mut keys: Vec<i64> = places.map(|at| key(value(at).to_bits() as i64)).collect();
+    let last = keys.len().checked_sub(1)?;
     let at = (part * last as f64).round() as usize;
-    Some(*values.select_nth_unstable_by(at, f64::total_cmp).1)
+    Some(f64::from_bits(key(*keys.select_nth_unstable(at).1) as u64))
+}
+
+/// Maps the bits of a number to an integer in the order of [`f64::total_cmp`], and back. Comparing
+/// integers takes half the time.
+fn key(bits: i64) -> i64 {
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 /// Returns the median of a list; `None` if it is empty.

@@ -106,7 +106,7 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     let blocks = (0..values.len()).step_by(block).filter_map(|start| {
         let end = (start + block - 1).min(corners.len());
         let first = start.saturating_sub(1);
-        (first < end).then(|| (first, end, largest(&corners[first..end])))
+        (first < end).then(|| (first, end, largest(&corners[first..end], |x| x)))
     });
     let blocks: Vec<(usize, usize, f64)> = blocks.collect();
     let usual = quantile(USUAL, blocks.len(), |at| blocks[at].2).unwrap_or(0.0);

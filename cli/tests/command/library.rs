@@ -223,8 +223,8 @@ fn what_cannot_be_packed_is_refused_and_nothing_is_left() {
     assert_eq!(std::fs::read(place.path("all.htexlib")).unwrap(), kept);
 }
 
-/// A texture that states no licence is packed where a person says so, and the message names it and
-/// what to do.
+/// A texture without a licence is packed only if the user allows it. The message names the texture
+/// and says what to do.
 #[test]
 fn textures_without_a_licence_are_not_packed() {
     let place = packed();

@@ -51,7 +51,7 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
         let found = felt(&place.path(&folder), "Ann");
         assert!(found == felt(&place.path("whole"), "Ann"), "{fault}");
     }
-    // Answers with another source, and recordings that are not those of their trials.
+    // Answers with another source, and recordings that do not belong to their trials.
     let other =
         on_card(&place, "whole", &["--participant", "Ann", "--format", "csv"]).output().unwrap();
     assert_eq!(other.status.code(), Some(1));

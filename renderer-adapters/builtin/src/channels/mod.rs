@@ -67,7 +67,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
             "plays",
             SettingKind::Text,
             plays::DUALSENSE,
-            "What each channel plays, with commas between: `off`, `texture`, or a factor of it from -1 to 1. The default is that of a DualSense.",
+            "What each channel plays, separated by commas: `off`, `texture`, or a factor from -1 to 1 for the texture. The default suits a DualSense.",
         ),
         Setting::hardware(
             "device",

@@ -99,8 +99,8 @@ fn without_defaults(
     options
 }
 
-/// Whether an option has no effect in this setting because its value is above that of the option
-/// that limits it ([`FitOption::not_above`]).
+/// Whether an option has no effect in this setting because its value exceeds the value of the
+/// option that limits it ([`FitOption::not_above`]).
 fn is_idle(model: &LoadedModel, setting: &Setting) -> bool {
     let options = &model.descriptor().options;
     let value = |name: &str| {

@@ -27,7 +27,7 @@ const LEAST_S: f64 = 4.0;
 
 /// What is said about an asset without a licence.
 const UNLICENSED: &str =
-    "It states no licence, without which nobody may pass it on; state that of the file.";
+    "It states no licence, and without one nobody may pass it on; give the licence of the imported file.";
 
 /// How a file is imported.
 #[derive(Debug, Clone, Default)]

@@ -124,7 +124,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
         _ => json,
     };
     let richest =
-        "The loss is that of the envelope of WaveformEnvelopeBuilder, the richest of the three.";
+        "The loss is stated for the envelope of WaveformEnvelopeBuilder, the richest of the three.";
     Ok(WrittenSignal {
         drive: rendered(&[played_by(read.pattern(), job.profile)], RATE_HZ),
         bytes,

@@ -179,8 +179,8 @@ impl Frames {
         // Each bin of the texture spectrum represents half a bin on either side, and each component
         // half a spacing. Where the noise ends must not depend on the rate, otherwise a steep
         // spectrum would have another level at each rate: the power of a component at the edge is
-        // the power of the part of its interval that lies inside. The edges are where the
-        // components have them at the usual spacing. At higher rates the difference stays, because
+        // the power of the part of its interval that lies inside. So the edges are computed for
+        // components at the usual spacing. At higher rates they still depend on the rate, because
         // files play the same samples in all versions. The tolerance of 1e-9 keeps a component that
         // rounding has moved just beyond the edge.
         let usual = if rate_hz < LOW_RATE_HZ { 0.5 / HALF_S } else { spacing };

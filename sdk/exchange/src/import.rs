@@ -26,8 +26,7 @@ use crate::rights::FileRights;
 const LEAST_S: f64 = 4.0;
 
 /// What is said about an asset without a licence.
-const UNLICENSED: &str =
-    "It states no licence, and without one nobody may pass it on; give the licence of the imported file.";
+const UNLICENSED: &str = "It states no licence, and without one nobody may pass it on; give the licence of the imported file.";
 
 /// How a file is imported.
 #[derive(Debug, Clone, Default)]

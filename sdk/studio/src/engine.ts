@@ -12,7 +12,7 @@ export interface Sounding {
   readonly model: string;
   /** RMS of full scale at the default condition, relative to the piece of work's; 1 for the piece itself. */
   readonly gain?: number;
-  /** Its own usual loudness instead of that of the piece of work: for textures that are looked through. */
+  /** Whether it plays at its own usual loudness instead of the loudness of the piece of work: for textures that are browsed. */
   readonly own?: boolean;
   /** A recording that sounds in place of the texture that was made of it. */
   readonly loop?: Loop;

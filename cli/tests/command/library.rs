@@ -251,8 +251,8 @@ fn textures_without_a_licence_are_not_packed() {
     assert_eq!(place.run(&one).code(), 0);
 }
 
-/// What `lib unpack` refuses of a file (sizes, names, hashes), `htex validate` and `lib verify`
-/// refuse, too: a valid file unpacks whole.
+/// `htex validate` and `lib verify` refuse everything in a file that `lib unpack` refuses (sizes,
+/// names, hashes). So a valid file unpacks whole.
 #[test]
 fn what_is_valid_unpacks() {
     let place = Place::new();

@@ -136,13 +136,13 @@ fn a_recipe_runs_no_native_code() {
             assert!(!place.path("loaded").exists());
         }
     }
-    // From a server, too, and under the name of a file elsewhere.
+    // The same for a recipe from a server, and a library named relative to it.
     let bytes = RECIPE.replace("\"surfaces\"", "\"surfaces\"\nplugins = [\"m.so\"]");
     let (url, _) =
         server(move |request| if request.contains(".toml") { ok(&bytes) } else { ok("\u{7f}ELF") });
     let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
     assert!(run.code() == 1 && !place.path("loaded").exists(), "{}", run.error());
-    // A person's word loads it; it is no model, which is said.
+    // If the user names the library, it is loaded. It is no model, and the error says so.
     place.write("library.toml", RECIPE);
     let run = build(&place, &["--plugin", "m.so"]);
     assert!(run.code() == 1 && place.path("loaded").exists(), "{}", run.error());
@@ -489,7 +489,7 @@ fn a_line_break_in_a_variable_is_an_error() {
     }
 }
 
-/// What is downloaded, answered and recorded is the user's alone.
+/// Only the user can read downloads, answers and recordings.
 #[cfg(feature = "lab")]
 #[test]
 fn recordings_of_participants_are_the_users_alone() {

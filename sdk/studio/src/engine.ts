@@ -167,7 +167,7 @@ export function run() {
     if (!node) return;
     node.speed.value = speed;
     node.force.value = force;
-    // Of the models of this page's own, the friction map follows the place, the others speed and force alone.
+    // Of this page's built-in models, only the friction map follows the place. The others follow only speed and force.
     if (playing?.hasModules) node.position = position;
     if (playing?.hasModules || playing?.models.includes("org.htex.map")) node.place = { x: x * padSize.width, y: y * padSize.height };
   });

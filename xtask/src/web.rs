@@ -64,7 +64,7 @@ const PROCESSOR: [&str; 9] = [
     "processor.js",
 ];
 
-/// The parts of the page worker's file, which bundlers also copy alone.
+/// The parts of the page worker's file, which bundlers also copy by itself.
 const WORKER: [&str; 8] = [
     "guests.js",
     "core.js",

@@ -294,8 +294,8 @@ fn a_guardian_that_is_killed_or_stopped_is_replaced_by_zero() {
     }
 }
 
-/// A call of the driver that does not return: the guardian's watchdog writes zero, and if that
-/// hangs as well, the second helper process.
+/// If a call of the driver does not return, the guardian's watchdog writes zero. If that also
+/// hangs, the second helper process writes it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_call_of_the_driver_that_does_not_return_ends_at_zero() {

@@ -29,8 +29,8 @@ impl Adapter for Channels {
         &DESCRIPTOR
     }
 
-    /// Lists the outputs. Sound cards are those that the system names. Their number of channels is
-    /// checked only when one is chosen.
+    /// Lists the outputs. The system names the sound cards. Their number of channels is checked
+    /// only when one is chosen.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let nothing = Endpoint {
             name: "null".to_owned(),

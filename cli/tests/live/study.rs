@@ -120,8 +120,8 @@ fn check_levels(text: &str) {
     assert_eq!(seen.iter().collect::<Vec<_>>(), expected);
 }
 
-/// Felt spectra are compared with the spectra of the recordings. Every model's felt spectrum is close
-/// to its texture's.
+/// Felt spectra are compared with the spectra of the recordings. Every model's felt spectrum is
+/// close to its texture's.
 fn check_spectra(place: &Place) {
     let run = exported("answers", "spectra.csv", &["-o", "ratings.csv", "--json"]);
     assert_eq!(place.json(&run)["recordings"], 14 * 125);

@@ -1,4 +1,5 @@
-// Files of other haptic formats. A file that states everything is opened at once. Otherwise the user first gives what it does not state.
+// Files of other haptic formats. A file that states everything is opened at once. Otherwise the
+// user first gives what it does not state.
 
 import { signal, type Signal } from "@preact/signals";
 import { importFile, type ActuatorRange, type Asked, type Imported, type ImportFormat, type ImportReport, type ImportSettings } from "htex/import";

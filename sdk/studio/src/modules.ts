@@ -37,7 +37,10 @@ const thread = () => {
   return script ? { worker: () => new Worker(script, { type: "module" }) } : {};
 };
 
-/** Sets the author's module. The single-file page has only the module of imports, which includes the author's. */
+/**
+ * Sets the author's module. The single-file page has only the module of imports, which includes the
+ * author's.
+ */
 export async function setAuthor() {
   setAuthorLibrary(await source(block(IMPORTER) === null ? AUTHOR : IMPORTER, author), thread());
 }

@@ -11,7 +11,10 @@ import { HTEX_FIXTURES, HTEX_PACKAGE } from "./fixtures.mjs";
 
 const { HTEX_CHROMIUM = "/usr/bin/chromium", HTEX_EXAMPLE } = process.env;
 const TYPES = { ".js": "text/javascript", ".html": "text/html", ".wasm": "application/wasm", ".css": "text/css" };
-/** A name of this machine whose pages are not secure, like pages from another machine in the network. */
+/**
+ * A name of this machine whose pages are not secure, like pages from another machine in the
+ * network.
+ */
 const ELSEWHERE = "elsewhere.example";
 
 const SURFACE = '<div id=surface tabindex=0 style="width:600px;height:300px"></div>';

@@ -1,5 +1,6 @@
-// A picture of a texture's grain: waves as strong as the spectrum states, drawn as a relief in light from the upper left. Wavelengths are
-// spread so that they can be seen. It is a picture, not a map.
+// A picture of a texture's grain: waves as strong as the spectrum states, drawn as a relief in
+// light from the upper left. Wavelengths are spread so that they can be seen. It is a picture, not
+// a map.
 
 /** Side of the tile, pixels. */
 export const TILE = 256;

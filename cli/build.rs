@@ -1,7 +1,9 @@
-//! The commit of the sources, which `htex --version` says: that of `HTEX_COMMIT`, else of the clone
-//! that an optimised build is made in. Builds for development are not compiled anew with each
-//! commit. And where the sources are, for `htex plugin new`: what is released, for which
-//! `HTEX_COMMIT` is given, names no folder of the machine that built it.
+//! Sets the commit that `htex --version` prints: `HTEX_COMMIT` if it is set, otherwise the commit
+//! of the clone in which an optimised build is made. Development builds print `unknown`, so that a
+//! new commit does not compile them again.
+//!
+//! Also tells `htex plugin new` where the sources are. Releases set `HTEX_COMMIT`, and then no
+//! folder of the build machine is stored in the program.
 
 use std::path::Path;
 use std::process::Command;
@@ -35,7 +37,7 @@ fn features() -> Vec<String> {
     names
 }
 
-/// The commit of the clone around this crate, if it is that of htex.
+/// Returns the commit of the clone that contains this crate; `None` outside a clone.
 fn of_clone() -> Option<String> {
     let log = Path::new("../.git/logs/HEAD");
     if !log.exists() {

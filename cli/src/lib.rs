@@ -175,8 +175,8 @@ fn run_command(command: Command) -> Result {
     Ok(exit)
 }
 
-/// Refuses a relative path in htex's own variables. In variables that other programs read as well,
-/// it only warns, because the XDG base directory specification says to ignore a relative path.
+/// Refuses a relative path in htex's own variables. In variables that other programs also read, it
+/// only warns, because the XDG base directory specification says to ignore a relative path.
 fn check_folders() -> Result<()> {
     let mut ignored = Vec::new();
     for (variable, path) in relative() {

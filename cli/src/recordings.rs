@@ -88,7 +88,7 @@ impl RecordingArgs {
         let own = known_take(file)?;
         if own.is_some() && self.settings.says_columns() {
             note(&[format!(
-                "{}: its columns, rate, quantity and motion are those that the JSON beside it says",
+                "{}: its columns, rate, quantity and motion come from the JSON file next to it",
                 shown(file)
             )]);
         }

@@ -237,7 +237,7 @@ fn capabilities(
     given.insert("path".to_owned(), "display.wav".to_owned());
     let like = Settings::resolve(file.descriptor(), None, &given)?;
     let able = file.adapter.capabilities(&like).map_err(|_| missing)?;
-    let sentence = "the device is not connected: limit and carrier are those of its settings, rates those of a file";
+    let sentence = "the device is not connected, so its limit and carrier come from its settings and its rates from a file device";
     note(&[sentence.to_owned()]);
     Ok(able)
 }

@@ -1,7 +1,7 @@
-/* org.example.bursts: filtered noise bursts, like those of a fingertip that sticks and slips, at a given number per
+/* org.example.bursts: filtered noise bursts, as from a fingertip that sticks and slips, at a given number per
  * millimetre of the path; the voice receives the position by the extension htex.motion/1. White
  * noise is switched on and off and then filtered by a two-pole band-pass. Switched white
- * noise is still white, so the spectrum is that of the filter for all bursts:
+ * noise is still white, so all bursts have the filter's spectrum:
  * 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
  * Includes htex_model.h and htex_motion_1.h and needs no C library, so that the same file is built as a native library
@@ -105,7 +105,7 @@ struct voice {
     struct timing timing;
     double switch_in_mm;
     int sounding;
-    /* Speed and force of the recording, and those of the last motion; the level changes over 10 ms. */
+    /* Speed and force of the recording and of the last motion. The level changes over 10 ms. */
     double recorded_mm_s, recorded_n, speed_mm_s, force_n, level;
     int told;
     struct tone now, next, pending;
@@ -178,7 +178,7 @@ static int sounding(struct voice *v)
     return v->sounding && mm > 0.0;
 }
 
-/* The level is proportional to the force if that of the recording is known. */
+/* The level is proportional to the force if the recording's force is known. */
 static double level(struct voice *v)
 {
     double goal = v->told && v->recorded_n > 0.0 ? v->force_n / v->recorded_n : 1.0;

@@ -1,4 +1,4 @@
-// Plays a texture that is dropped on the page, and draws its spectrum with that of the sound.
+// Plays a texture that is dropped on the page, and draws its spectrum and the sound's spectrum.
 
 import { HtexNode, followPointer, open, prepare } from "./htex/index.js";
 

@@ -50,8 +50,8 @@ const COPIED: [&str; 34] = [
     "worker.node.js",
 ];
 
-/// The parts of the audio worklet's file. It has no imports, because bundlers copy a worklet's file
-/// alone.
+/// The parts of the audio worklet's file. It has no imports, because bundlers copy only a worklet's
+/// file itself.
 const PROCESSOR: [&str; 9] = [
     "guests.js",
     "core.js",
@@ -64,7 +64,7 @@ const PROCESSOR: [&str; 9] = [
     "processor.js",
 ];
 
-/// The parts of the page worker's file, which bundlers also copy alone.
+/// The parts of the page worker's file, which bundlers also copy by itself.
 const WORKER: [&str; 8] = [
     "guests.js",
     "core.js",

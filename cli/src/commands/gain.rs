@@ -27,9 +27,9 @@ const LARGE_STEP_DB: f64 = 4.0;
 /// limit, so a finger feels nothing stronger than the participant asked for. (The paper starts at
 /// the limit.) `htex play --person` then uses the stored gain. Ctrl-C stores nothing.
 ///
-/// A gain is stored for a person, a texture and a device. All representations share it, and so do
-/// assets that are fitted again, because a texture is identified by its name and author. The paper
-/// finds the gain with `--model ar` and plays all models with it.
+/// htex stores one gain for each person, texture and device. All representations of a texture share
+/// it. An asset that is fitted again keeps its gain, because the name and the author identify a
+/// texture. The paper finds the gain with `--model ar` and plays all models with it.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene

@@ -126,7 +126,7 @@ pub(crate) fn kind(path: &Path) -> Kind {
         () if called("json") => Kind::Document,
         () if called("toml") => Kind::Recipe,
         () if called(EXTENSION) || begins(&MAGIC) => Kind::Library,
-        // A damaged asset may not begin as an archive, so its name counts as well.
+        // A damaged asset may not begin as an archive, so the name is also checked.
         () if called("htex") || begins(b"PK") => Kind::Asset,
         () => Kind::Recording,
     }

@@ -25,7 +25,7 @@ textures = "sandpaper"
 gates = { max_bytes = 10 }
 "#;
 
-/// What a person does, and what the page shows after each step.
+/// The user's actions, and what the page shows after each step.
 const STEPS: &str = include_str!("../common/catalogue.js");
 
 #[test]

@@ -205,7 +205,7 @@ fn each_fault_is_found_by_its_own_check() {
     for (fault, name, outcome) in FAULTS {
         let file = bad(folder.path(), &good, fault);
         let timeout_s = if *outcome == Outcome::TimedOut { 5 } else { 120 };
-        // That no other check fails, too, is proved by all of them.
+        // The full proof runs all checks. It shows that only this one fails.
         let only = (!xtask::prove::whole()).then(|| vec![(*name).to_owned()]);
         let report = check_some(&file, timeout_s, 3, only);
         assert_eq!(report.bad(), [*name], "{fault}: {}", report);

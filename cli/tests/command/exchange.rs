@@ -123,7 +123,7 @@ fn a_silent_first_condition_gives_way_to_the_strongest() {
     assert!(!place.path("rest.ahap").exists());
 }
 
-/// An effect that is there, and that nobody can feel.
+/// An effect that exists, but that nobody can feel.
 #[test]
 fn an_effect_below_the_detection_threshold_is_not_exported() {
     let place = Place::new();

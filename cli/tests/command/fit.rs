@@ -254,7 +254,8 @@ fn several_conditions_of_one_texture() {
         let sum: f64 = numbers(&spectrum["magnitude"]).iter().map(|m| m * m / 3.0).sum();
         sum.sqrt()
     };
-    // At a known condition, its level; between, between; outside, that of the law.
+    // At a known condition the level is the condition's own. Between conditions it lies between
+    // their levels. Outside it follows the law.
     let known = fit["manifest"]["representations"][3]["at"][3]["level_rms"].as_f64().unwrap();
     assert!((level("120", "0.7") / known - 1.0).abs() < 1e-6);
     assert!(level("60", "0.3") < level("60", "0.5") && level("60", "0.5") < level("60", "0.7"));

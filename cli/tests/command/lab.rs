@@ -54,7 +54,7 @@ fn two_sensors_and_a_tracker_give_the_spectrum_of_the_recording() {
     let speed = |json: &serde_json::Value| json["speed_mm_s"].as_f64().unwrap();
     assert!((speed(&whole) / speed(&tracked) - 1.0).abs() < 0.01);
 
-    // The asset keeps how it was read, with the names of files alone.
+    // The asset records how the files were read, with their names but not their folders.
     let fit = [&["fit", "force.csv", "--model", "bands", "-o", "a.htex"], &reading[..]].concat();
     assert_eq!(place.run(&fit).code(), 0);
     let asset = htex_format::Asset::open(&place.path("a.htex")).unwrap();

@@ -223,8 +223,8 @@ fn what_cannot_be_packed_is_refused_and_nothing_is_left() {
     assert_eq!(std::fs::read(place.path("all.htexlib")).unwrap(), kept);
 }
 
-/// A texture that states no licence is packed where a person says so, and the message names it and
-/// what to do.
+/// A texture without a licence is packed only if the user allows it. The message names the texture
+/// and says what to do.
 #[test]
 fn textures_without_a_licence_are_not_packed() {
     let place = packed();
@@ -251,8 +251,8 @@ fn textures_without_a_licence_are_not_packed() {
     assert_eq!(place.run(&one).code(), 0);
 }
 
-/// What `lib unpack` refuses of a file (sizes, names, hashes), `htex validate` and `lib verify`
-/// refuse, too: a valid file unpacks whole.
+/// `htex validate` and `lib verify` refuse everything in a file that `lib unpack` refuses (sizes,
+/// names, hashes). So a valid file unpacks whole.
 #[test]
 fn what_is_valid_unpacks() {
     let place = Place::new();

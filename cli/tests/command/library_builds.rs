@@ -252,7 +252,7 @@ fn a_dry_run_checks_and_says_why() {
             let all = run.text() + &run.error();
             assert!(run.code() == 1 && all.contains(said), "{arguments:?} {to}: {all}");
         }
-        // A failure is JSON, too, where that is asked for.
+        // With `--json`, a failure is also JSON.
         let run = place.run(&["build", "library.toml", "-o", "dist", "--dry-run", "--json"]);
         let error: Value = serde_json::from_str(&run.text()).unwrap();
         assert!(error["error"].to_string().contains(said.split('"').next().unwrap()), "{error}");

@@ -113,8 +113,8 @@ fn a_file_that_is_no_journal_is_left_alone() {
     assert_eq!(std::fs::read(place.path("vinyl-2.part")).unwrap(), b"my notes\n");
 }
 
-/// A scene names no file; what is written without a person's word is new, has the ending of its
-/// format, and is not hidden.
+/// A scene cannot name an output file. Output that the user did not name goes to a new, visible
+/// file with the ending of its format.
 #[test]
 fn a_scene_names_no_output() {
     let place = place();

@@ -16,9 +16,9 @@ fn generated_settings_of_python_are_fresh() {
          from __future__ import annotations\n\nimport os\nfrom collections.abc import Mapping, Sequence\n\
          from typing import Annotated, Literal, TypedDict\n"
             .to_owned(),
-        // A response may be one that was measured, too.
+        // `response` also accepts a measured response.
         class::<ReadingSettings>("ReadingSettings", "How recordings are read.", &["response"]),
-        // A grid is a mapping there.
+        // In Python, `grid` is a mapping.
         class::<FitSettings>("FitSettings", "How models are fitted.", &["grid"]),
         class::<Metadata>("Metadata", "What a texture is, who made it, and how it was recorded.", &[]),
         class::<ResponseSettings>("ResponseSettings", "How a response is measured.", &[]),

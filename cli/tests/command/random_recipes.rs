@@ -361,7 +361,7 @@ impl Traps {
         }
     }
 
-    /// All files but those of the results and of the user's own folders, with their bytes.
+    /// All files and their bytes, except results and files in the user's own folders.
     fn untouched(&self) -> BTreeMap<PathBuf, Vec<u8>> {
         let mut files = BTreeMap::new();
         let mut folders = vec![self.place.path("")];

@@ -16,9 +16,9 @@ fn cards_are_listed_whether_or_not_their_driver_is_there() {
     assert_eq!(sound, cfg!(feature = "audio"));
 }
 
-/// All that a file may ask of the devices of the command, by what it may do with it; everything
-/// else is a person's. Settings of files that are written describe the file. A new setting belongs
-/// into this list, or is `never`.
+/// All settings that a file may give to the command's devices, grouped by what it may do with them.
+/// Only the user gives the others. Settings of written files describe the file. A new setting
+/// belongs into this list, or is `never`.
 #[test]
 fn what_a_file_may_ask_of_devices() {
     let any = ["encoding", "format", "full_scale", "path", "quantity", "limit_v", "carrier_hz"];

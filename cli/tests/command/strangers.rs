@@ -105,8 +105,8 @@ fn native(place: &Place) -> bool {
     is_compiled
 }
 
-/// A recipe, here or elsewhere, names no code that runs outside the sandbox, by no key and under no
-/// name; a person does.
+/// No recipe, local or remote, can name code that runs outside the sandbox, whatever the key or the
+/// name. Only the user can.
 #[test]
 fn a_recipe_runs_no_native_code() {
     let place = place();
@@ -136,13 +136,13 @@ fn a_recipe_runs_no_native_code() {
             assert!(!place.path("loaded").exists());
         }
     }
-    // From a server, too, and under the name of a file elsewhere.
+    // The same for a recipe from a server, and a library named relative to it.
     let bytes = RECIPE.replace("\"surfaces\"", "\"surfaces\"\nplugins = [\"m.so\"]");
     let (url, _) =
         server(move |request| if request.contains(".toml") { ok(&bytes) } else { ok("\u{7f}ELF") });
     let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
     assert!(run.code() == 1 && !place.path("loaded").exists(), "{}", run.error());
-    // A person's word loads it; it is no model, which is said.
+    // If the user names the library, it is loaded. It is no model, and the error says so.
     place.write("library.toml", RECIPE);
     let run = build(&place, &["--plugin", "m.so"]);
     assert!(run.code() == 1 && place.path("loaded").exists(), "{}", run.error());
@@ -205,7 +205,7 @@ fn a_build_follows_no_link_in_the_folder_of_its_results() {
             }
         }
     }
-    // The folder that a person names may be a link.
+    // The folder that the user names may be a link.
     fs::remove_dir_all(place.path("dist")).unwrap();
     fs::create_dir(place.path("disk")).unwrap();
     symlink(place.path("disk"), place.path("dist")).unwrap();
@@ -267,8 +267,8 @@ fn only_own_entries_are_removed() {
     assert_eq!(crate::common::entries(&place.path("dist/.htex-build/made")).len(), 3);
 }
 
-/// A recipe requests nothing of this machine or network; its own server, which a person named, it
-/// may.
+/// A recipe requests nothing from this machine or its network. It may request files from its own
+/// server, which the user named.
 #[cfg(feature = "cloud")]
 #[test]
 fn a_recipe_names_no_inner_address() {
@@ -489,7 +489,7 @@ fn a_line_break_in_a_variable_is_an_error() {
     }
 }
 
-/// What is downloaded, answered and recorded is the user's alone.
+/// Only the user can read downloads, answers and recordings.
 #[cfg(feature = "lab")]
 #[test]
 fn recordings_of_participants_are_the_users_alone() {

@@ -237,7 +237,7 @@ fn wrong_usage_writes_nothing() {
         assert!(run.error().contains(said), "{arguments:?}: {}", run.error());
     }
     assert_eq!(entries(&place.path("")), ["text.csv", "vinyl.csv"]);
-    // By default it is then graded by what it was fitted to, which is said.
+    // By default it is then graded by what it was fitted to, and the result says so.
     let found = place.json(&[&short[..], &["--json"]].concat());
     assert_eq!(found["error"], "third_octave");
     assert!(points(&found).iter().all(|p| p["held_out_error"].is_null()));

@@ -83,8 +83,8 @@ fn a_voice_is_as_loud_as_its_ceiling() {
     };
     let free = rms(&[]);
     let bound = rms(&["--ceiling", "1.5"]) / free;
-    // The strongest recorded level is that of 0.12 N, and the law raises that of the strongest
-    // motion by 5.6^0.43 15.8^0.07.
+    // The strongest recorded level is at 0.12 N. The law raises the level of the strongest motion
+    // by 5.6^0.43 15.8^0.07.
     let law = 5.625f64.powf(0.43) * (19.0f64 / 1.2).powf(0.07) * 0.10 / 0.12;
     assert!((bound * law / 1.5 - 1.0).abs() < 0.02, "{bound} {law}");
     for wrong in ["0", "-1", "inf", "nan"] {

@@ -223,7 +223,7 @@ fn an_older_installed_model_does_not_break_an_asset() {
     assert!(asset.with_embedded().representation(ID).unwrap().voice(&options).is_ok());
 }
 
-/// A model that is named and fails is not left out silently; one that nobody named may be.
+/// A model that the user names is never left out silently if it fails. Other models may be.
 #[test]
 fn a_named_model_that_cannot_be_fitted_is_a_failure() {
     let place = Place::new();

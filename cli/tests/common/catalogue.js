@@ -1,4 +1,4 @@
-// What a person does on the page, and what it shows after each step.
+// The user's actions on the page, and what it shows after each one.
 const steps = [];
 const look = (name) => steps.push([name, [...document.querySelectorAll("tbody tr")].map((row) => row.cells[0].firstChild.textContent),
   document.querySelector("#count").textContent, location.hash]);

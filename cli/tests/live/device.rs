@@ -176,7 +176,7 @@ fn the_strip_chart_draws() {
     assert!(svg.contains("viewBox=\"0 0         3600 200\""));
 }
 
-/// Errors of a native device are those of one in Rust.
+/// A native device returns the same kinds of errors as a device in Rust.
 #[test]
 fn errors_keep_their_kind() {
     let place = Place::new();

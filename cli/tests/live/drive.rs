@@ -101,7 +101,7 @@ fn a_scene_never_overrides_the_rig() {
     assert_eq!(error.matches("DEVICE_HARDWARE").count(), 5, "{error}");
     let most = bench.card_v().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     assert!(most > 1.0 && most <= 150.0 / GAIN, "{most} V of the card");
-    // Without settings from a person there is no rig, and nothing is played.
+    // Without settings from the user there is no rig, and nothing is played.
     let driver = format!("driver={}", crate::simulated::built().display());
     let alone = Bench::new(json!({ "duration_s": 1 }));
     let mut play = alone.0.command(&["play", SCENE, "--set", &driver]);
@@ -294,8 +294,8 @@ fn a_guardian_that_is_killed_or_stopped_is_replaced_by_zero() {
     }
 }
 
-/// A call of the driver that does not return: the guardian's watchdog writes zero, and if that
-/// hangs as well, the second helper process.
+/// If a call of the driver does not return, the guardian's watchdog writes zero. If that also
+/// hangs, the second helper process writes it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_call_of_the_driver_that_does_not_return_ends_at_zero() {
@@ -352,8 +352,8 @@ fn an_output_that_nothing_brings_to_zero_is_told_every_second() {
     }
 }
 
-/// A bare name is a file of the current folder; if there is none, the system's loader searches for
-/// it, and the error says so.
+/// A bare name is a file in the current folder. If no such file exists, the system's loader
+/// searches for the name. The error says so.
 #[test]
 fn a_driver_is_found_by_its_bare_name() {
     let place = Place::new();

@@ -181,8 +181,7 @@ fn started(bench: &Bench, play: &mut Command) -> Option<Child> {
     None
 }
 
-/// What a person gives is a limit for a file and for the person: buffer and ramp together have at
-/// most 0.4 s.
+/// Buffer and ramp together last at most 0.4 s, even if the user sets them.
 #[test]
 fn buffer_and_ramp_are_bounded_together() {
     let bench = scene(json!({}));

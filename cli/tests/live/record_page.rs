@@ -133,7 +133,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     becomes(&mut browser, &tab, "state.now.level_db.length === 197");
     fits_tablets(&mut browser, &tab, "record-above");
     assert_eq!(browser.value(&tab, "document.getElementById('finger').className"), "square above");
-    // The target comes from its beginning, by 80 mm/s; the finger moves, too.
+    // The target starts at the beginning and moves at 80 mm/s. The finger also moves.
     becomes(&mut browser, &tab, "state.now.motion_s > 1.2");
     let places = "['target', 'finger'].map((id) => Number(document.getElementById(id).dataset.mm)).concat(state.now.motion_s)";
     let mut finger_mm = Vec::new();
@@ -157,7 +157,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     assert!(reason.starts_with("force: mean 0."), "{reason}");
     let takes = text(&mut browser, &tab, "takes");
     assert!(takes.contains(&format!("Take 1 rejected{reason}")), "{takes}");
-    // What is said of its signals is shown, too.
+    // The page also shows the findings about its signals.
     let findings = rejected["verdict"]["findings"].as_array().unwrap();
     assert!(!findings.is_empty(), "{rejected}");
     assert!(findings.iter().all(|finding| takes.contains(finding.as_str().unwrap())), "{takes}");
@@ -185,7 +185,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let said: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(said["kept"]["number"], 2);
     assert_eq!(entries(&place.path("takes")), ["rejected", "vinyl-002.csv", "vinyl-002.json"]);
-    // What the page says of the take, and its spectrum, are those of the files.
+    // The page shows the same verdict and spectrum of the take as the files.
     let force = &beside("vinyl-002.json")["verdict"]["force_n"];
     let [mean, min, max] =
         ["mean", "min", "max"].map(|what| format!("{:.3}", force[what].as_f64().unwrap()));

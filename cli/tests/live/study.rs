@@ -120,8 +120,8 @@ fn check_levels(text: &str) {
     assert_eq!(seen.iter().collect::<Vec<_>>(), expected);
 }
 
-/// Felt spectra are compared with those of the recordings, and every model is felt like its
-/// texture.
+/// Felt spectra are compared with the spectra of the recordings. Every model's felt spectrum is
+/// close to its texture's.
 fn check_spectra(place: &Place) {
     let run = exported("answers", "spectra.csv", &["-o", "ratings.csv", "--json"]);
     assert_eq!(place.json(&run)["recordings"], 14 * 125);
@@ -161,8 +161,8 @@ fn check_ratings(place: &Place) {
         *sums.entry(cells[2]).or_default() += cells[4].parse::<f64>().unwrap();
     }
     assert_eq!(keys.len(), 14 * 5 * 5 * 5);
-    // Simulated participants rate by the nine-band error: AR's is the smallest, that of sPeak's
-    // single lines the largest.
+    // Simulated participants rate by the nine-band error. AR has the smallest error and sPeak,
+    // which plays single lines, the largest.
     let mean = |model: &str| sums[model] / (14.0 * 25.0);
     assert!(mean("ar") > 4.5 && mean("speak") < 1.5, "{sums:?}");
     assert!(mean("ar") > mean("sslope") && mean("sslope") > mean("speak"), "{sums:?}");

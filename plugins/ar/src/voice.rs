@@ -9,8 +9,8 @@ use htex_model::{Error, Values, Voice};
 
 use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, together};
 
-/// An all-pole filter whose reflection coefficients move linearly to those of the target. Those
-/// between two stable filters are again inside (-1, 1).
+/// An all-pole filter whose reflection coefficients move linearly to the target's coefficients. All
+/// coefficients between two stable filters also lie inside (-1, 1), so the filter stays stable.
 pub struct MovingPoles {
     pub(crate) poles: AllPole,
     target: [f64; MAX_ORDER],

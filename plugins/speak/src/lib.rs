@@ -273,7 +273,8 @@ impl Voice for SpectralPeakVoice {
     }
 }
 
-/// The sinusoids of a parameter set, and the RMS of those in the band, as the bins measure it.
+/// The sinusoids of a parameter set, and the RMS of the sinusoids in the band, as the bins measure
+/// it.
 struct Lines<'a> {
     frequency_hz: &'a [f64],
     amplitude: &'a [f64],

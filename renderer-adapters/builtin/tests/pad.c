@@ -1,7 +1,8 @@
 /* A gamepad without hardware: SDL's own virtual joystick, which records what its motors are told.
  *
- * A library that is linked with SDL, and thus has all of its functions. It is given to the adapter as `driver`; the gamepad is
- * attached when the adapter initialises SDL. With PAD_RECORD=FILE in the environment each call is a line of the file, too. */
+ * A library that is linked with SDL, and thus has all of its functions. The adapter gets it as
+ * `driver`. The gamepad is attached when the adapter initialises SDL. With PAD_RECORD=FILE in the
+ * environment, each call also writes a line to the file. */
 #define _GNU_SOURCE
 #include <SDL2/SDL.h>
 #include <dlfcn.h>

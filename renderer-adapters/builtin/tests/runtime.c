@@ -1,8 +1,10 @@
 /* An OpenXR runtime without hardware, which holds a program to the rules of the specification and records what is played.
  *
- * Written from the text of the OpenXR 1.1 specification; the layouts are those of its structures. Named in brackets: the section of the
- * specification that states a rule. A call that breaks a rule gets the error that the section demands, and the rule is recorded, so that
- * a test sees which one it was. With MOCK_XR_RECORD=FILE in the environment each line of the record is written to the file, too. */
+ * Written from the text of the OpenXR 1.1 specification; the structures have the layouts that it
+ * states. Brackets name the section of the specification that states a rule. A call that breaks a
+ * rule gets the error that the section demands, and the rule is recorded, so that a test sees which
+ * one it was. With MOCK_XR_RECORD=FILE in the environment, each line of the record is also written
+ * to the file. */
 #define _GNU_SOURCE
 #include <pthread.h>
 #include <stdarg.h>

@@ -38,7 +38,7 @@ pub enum DeviceError {
     /// The mean of a display's voltage over 100 ms is beyond its limit; the output is at zero.
     #[error(
         "sample {frame} makes a direct voltage of {mean_v:.3} V over 100 ms, and the limit is {limit_v} V; the output is at zero. \
-         A carrier prevents it; for a rig that has none, a person gives the `setting dc_limit_v=VOLTS`"
+         A carrier prevents direct voltage; for a rig without a carrier, set `dc_limit_v=VOLTS` yourself"
     )]
     DirectVoltage {
         /// Index of the sample since the device was opened.

@@ -49,7 +49,8 @@ pub(crate) enum CallFailure {
     Answer(String),
 }
 
-/// Returns a function of the library's table. Loading has checked those of its direction.
+/// Returns a function from the library's table. When the library was loaded, the functions of its
+/// direction were checked.
 macro_rules! function {
     ($library:expr, $name:ident) => {
         $library.table.$name.ok_or_else(|| $library.lacks(stringify!($name)))?

@@ -1,7 +1,7 @@
 //! Extra conditions between recorded speeds, computed by the texture's law.
 //!
-//! A player mixes the parameters of neighbouring conditions. Where frequencies follow the speed, as
-//! on a relief with lines, mixing makes the lines of one speed fade into those of the next speed
+//! A player mixes the parameters of neighbouring conditions. On a relief with lines, frequencies
+//! follow the speed. Mixing then makes the lines of one speed fade into the lines of the next speed
 //! instead of moving. So further conditions are computed between two recorded speeds: the law moves
 //! both spectra to the speed between them, and the moved spectra are mixed. Halfway between
 //! recorded speeds an octave apart, Bands then matches the true third octaves of corrugated paper

@@ -28,7 +28,7 @@ impl ConditionSpectrum {
 
 /// The spectra of all conditions of an asset.
 pub(crate) struct ConditionSpectra {
-    /// Recorded conditions, and after them those computed between recorded ones.
+    /// Recorded conditions, followed by conditions computed between them.
     pub(crate) all: Vec<ConditionSpectrum>,
     pub(crate) contact: Contact,
     pub(crate) law: Law,

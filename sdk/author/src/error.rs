@@ -247,7 +247,7 @@ pub enum AuthorError {
     #[error("{file}: only WASM modules can be embedded")]
     NoModule { file: PathBuf },
     /// The model of a module to embed is not fitted.
-    #[error("{file}: {model} was not fitted; fit it, too")]
+    #[error("{file}: {model} was not fitted; add it to the models to fit")]
     ModuleNotFitted { file: PathBuf, model: String },
     /// A module to embed cannot be read.
     #[error("cannot read {file}: {error}")]
@@ -344,7 +344,7 @@ pub enum AuthorError {
         low: f64,
         high: f64,
     },
-    /// The true spectrum of sweeps is not known, only that of a free motion.
+    /// The true spectrum is known only for a free motion, not for sweeps.
     #[error(
         "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
     )]

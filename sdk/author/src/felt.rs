@@ -164,8 +164,8 @@ pub fn felt(
         .filter(|((r, m), _)| **r > 0.0 || **m > 0.0)
         .map(|(_, error)| *error)
         .collect();
-    // Energies are added before the threshold applies: several bands, each too weak alone, can be
-    // felt together.
+    // Energies are added before the threshold applies: several bands can be felt together although
+    // each of them is too weak by itself.
     let total = |all: &[Option<f64>]| self::level_db(all.iter().flatten().sum()).max(0.0);
     Felt {
         centre_hz: bands.iter().map(|k| centre_hz(*k)).collect(),

@@ -67,7 +67,7 @@ pub fn segment_take(
     let spectra = spectra_of_segments(recording, segments, options.response.as_ref())?;
     let mut of_segments = off_target;
     judge_segments(recording, &spectra, &mut of_segments);
-    // In the specification the findings of signals come first, and those of the motion last.
+    // As in the specification: findings about signals first, findings about the motion last.
     let mut findings = recording_findings(recording);
     findings.extend(of_segments.into_list());
     findings.extend(unsteady.into_list());
@@ -97,8 +97,8 @@ pub(crate) fn source_of(recording: &Recording, segments: usize) -> Source {
     }
 }
 
-/// Returns the warnings and the notes of a recording: the reader's warnings, those of its spectra,
-/// and its findings, as sentences.
+/// Returns a recording's warnings and notes as sentences: the reader's warnings, the warnings about
+/// its spectra, and its findings.
 ///
 /// # Errors
 /// With `strict`, when a finding is an error or a warning.

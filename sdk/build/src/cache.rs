@@ -39,7 +39,7 @@ impl Cache {
         Ok(Self { kept })
     }
 
-    /// Returns the result for a key; `None` if there is none, or if it is damaged or comes from
+    /// Returns the result for a key; `None` if the result is missing or damaged, or comes from
     /// somebody else.
     pub(crate) fn get(&self, key: &str) -> Option<JobResult> {
         let bytes = self.kept.get(&name(key), MOST_BYTES)?;

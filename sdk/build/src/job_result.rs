@@ -116,7 +116,7 @@ impl JobResult {
         let header: Header = serde_json::from_slice(&bytes[..line])
             .map_err(|error| damaged(&format!("its first line: {error}")))?;
         if header.key != key {
-            return Err(damaged("it is that of another job"));
+            return Err(damaged("it belongs to another job"));
         }
         let parts = &bytes[line + 1..];
         // The lengths come from the file, so their sum may overflow.

@@ -222,8 +222,8 @@ impl RemoteFiles {
     }
 
     /// Returns the storage for files that a recipe names. They are read under the rules for
-    /// untrusted files: no address of this machine or its network is allowed, except that of the
-    /// recipe's own server.
+    /// untrusted files: no address of this machine or its network is allowed, except the address of
+    /// the recipe's own server.
     fn storage(&self) -> Result<&Storage, StorageError> {
         if let Some(storage) = self.storage.get() {
             return Ok(storage);

@@ -52,7 +52,7 @@ static FMOD_DSP_PARAMETER_DESC parameters[PARAMETERS] = {
     [SPEED] = FLOAT("Speed", "mm/s", "Scanning speed in mm/s. 0 to 1000. Default: 0, which is silent", 0.0f, 1000.0f, 0.0f),
     [FORCE] = FLOAT("Force", "N", "Normal force in N. 0 to 20. Default: 0.4", 0.0f, 20.0f, 0.4f),
     [LEVEL] = FLOAT("Level", "dB", "Full scale for one unit of the asset, in dB. -80 (off) to 60. Default: 20", OFF_DB, 60.0f, 20.0f),
-    [MODEL] = INT("Model", "Model that plays. Default: that of least error", MODEL_COUNT - 1, MODELS),
+    [MODEL] = INT("Model", "Model that plays. Default: the one with the least error", MODEL_COUNT - 1, MODELS),
     [SEED] = INT("Seed", "Seed of the noise. Equal seeds give equal samples. Default: 0", INT32_MAX, NULL),
 };
 static FMOD_DSP_PARAMETER_DESC *parameter_list[PARAMETERS] = {

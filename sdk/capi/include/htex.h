@@ -906,8 +906,8 @@ htex_status htex_voice_free(struct htex_voice voice);
 
 /*
  [one thread at a time; not the real-time thread] Restarts the voice with the same options and
- the same handle: its samples are those of a new voice. `motion` may be NULL for the motion in
- its options. After an error the voice plays on as before.
+ the same handle. It then gives the same samples as a new voice. `motion` may be NULL for the
+ motion in its options. After an error the voice plays on as before.
  */
 htex_status htex_voice_reset(struct htex_voice voice, const struct htex_motion *motion);
 

@@ -147,7 +147,7 @@ impl<T: Send + 'static> Table<T> {
         let slot = self.slot(index).ok_or(BAD)?;
         let wanted = generation(handle);
         // Only a first look, so the order does not matter: `enter` checks the generation again. An
-        // even generation is that of an empty slot.
+        // even generation marks an empty slot.
         if wanted.is_multiple_of(2) || generation(slot.state.load(Ordering::Relaxed)) != wanted {
             return Err(BAD);
         }

@@ -72,7 +72,7 @@ pub(crate) unsafe fn motions(
         // Another size would misalign the second motion of an array.
         if !SIZES.contains(&size) || !size.is_multiple_of(align_of::<htex_motion>()) {
             return Err(Failure::argument(
-                "the motion's size is not that of its struct; set it to sizeof(htex_motion)",
+                "the motion's `size` is wrong; set it to sizeof(htex_motion)",
             ));
         }
         // SAFETY: as many motions of this size are there.

@@ -125,7 +125,7 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
     // Far more than any version has. A larger size was never set.
     if !(size_of::<u32>()..=4096).contains(&size) {
         return Err(Failure::argument(
-            "the options' size is not that of their struct; set it to sizeof the struct",
+            "the options' `size` is wrong; set it to the sizeof of their struct",
         ));
     }
     let mut options = zeros;

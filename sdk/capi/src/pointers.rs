@@ -29,7 +29,7 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a
         return Ok(&mut []);
     }
     check(pointer, len)?;
-    // SAFETY: as in `slice`, and the caller's alone.
+    // SAFETY: as in `slice`; nothing else uses the memory during the call.
     Ok(unsafe { std::slice::from_raw_parts_mut(pointer, len) })
 }
 

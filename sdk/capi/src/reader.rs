@@ -77,7 +77,7 @@ impl Reader {
         // A longer struct comes from a newer header, which begins in the same way.
         if (reader.size as usize) < size_of::<htex_reader>() {
             return Err(Failure::argument(
-                "the reader's size is not that of its struct; set it to sizeof(htex_reader)",
+                "the reader's `size` is wrong; set it to sizeof(htex_reader)",
             ));
         }
         let Some(read) = reader.read else {

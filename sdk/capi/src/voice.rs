@@ -95,8 +95,8 @@ pub extern "C" fn htex_voice_free(voice: htex_voice) -> htex_status {
 }
 
 /// [one thread at a time; not the real-time thread] Restarts the voice with the same options and
-/// the same handle: its samples are those of a new voice. `motion` may be NULL for the motion in
-/// its options. After an error the voice plays on as before.
+/// the same handle. It then gives the same samples as a new voice. `motion` may be NULL for the
+/// motion in its options. After an error the voice plays on as before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_reset(
     voice: htex_voice,
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn htex_voice_envelope(
         let (out, bands) = unsafe { (place(out)?, slice_mut(bands, bands_len)?) };
         if (out.size as usize) < size_of::<htex_envelope>() {
             return Err(Failure::argument(
-                "the envelope's size is not that of its struct; set it to sizeof(htex_envelope)",
+                "the envelope's `size` is wrong; set it to sizeof(htex_envelope)",
             ));
         }
         let envelope = voice.envelope(bands)?;

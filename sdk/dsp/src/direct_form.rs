@@ -183,8 +183,8 @@ impl Lane for Quad {
     /// The same sums without multiplications by 0 or 1.
     #[inline(always)]
     fn outputs(&[_, h1, h2, h3]: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP] {
-        // The brackets are those of `sum`, and the products by 0 and 1 that are left out change no
-        // finite number. So one voice and four voices have the same bits.
+        // The brackets are the same as in `sum`. The omitted products by 0 and 1 change no finite
+        // number. So one voice and four voices have the same bits.
         let [a, b, c, d] = *met;
         [a, h1 * a + b, (h2 * a + h1 * b) + c, (h3 * a + h2 * b) + (h1 * c + d)]
     }

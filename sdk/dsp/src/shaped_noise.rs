@@ -177,11 +177,12 @@ impl Frames {
         let hop = len - overlap;
         let spacing = rate_hz / len as f64;
         // Each bin of the texture spectrum represents half a bin on either side, and each component
-        // half a spacing. Where the noise ends must not depend on the rate, or a steep spectrum has
-        // another level at each rate: the power of a component at the edge is that of the part of
-        // its interval inside. The edges are those of the components at the usual spacing. At
-        // higher rates the difference stays, because files play the same samples in all versions.
-        // The tolerance of 1e-9 keeps a component that rounding has moved just beyond the edge.
+        // half a spacing. Where the noise ends must not depend on the rate, otherwise a steep
+        // spectrum would have another level at each rate: the power of a component at the edge is
+        // the power of the part of its interval that lies inside. So the edges are computed for
+        // components at the usual spacing. At higher rates they still depend on the rate, because
+        // files play the same samples in all versions. The tolerance of 1e-9 keeps a component that
+        // rounding has moved just beyond the edge.
         let usual = if rate_hz < LOW_RATE_HZ { 0.5 / HALF_S } else { spacing };
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / usual - 1e-9).max(1.0);
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / usual + 1e-9).max(low);

@@ -39,7 +39,7 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
             Some(table) => table,
             None => {
                 // Made while the lock is held: another thread that wants the same table waits for
-                // it instead of computing it as well.
+                // it instead of computing its own.
                 let table = make();
                 in_use.retain(|(_, table)| table.strong_count() > 0);
                 in_use.push((key, Arc::downgrade(&table)));

@@ -1,7 +1,7 @@
 //! Sines, cosines and tangents of bounded angles, with the same bits as `libm`. They omit the
 //! reduction of large arguments, which takes 2 kB of a WASM module.
 //!
-//! The series and the reduction are those of FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
+//! The series and the reduction come from FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
 //! Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
 //! business. Permission to use, copy, modify, and distribute this software is freely granted,
 //! provided that this notice is preserved.

@@ -280,7 +280,7 @@ fn identifier(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let mut identifier = String::new();
     for word in words {
-        // A split inside a character would panic, but words hold ASCII alone.
+        // A split inside a character would panic, but words hold only ASCII.
         let (first, rest) = word.split_at(1);
         if identifier.is_empty() {
             identifier.push_str(&first.to_ascii_lowercase())

@@ -199,7 +199,7 @@ pub fn export_scene(
             of_signal(playing, export, write, profile)
         }
         Some(Writes::Asset(_) | Writes::Map) => {
-            Err(format.cannot("it holds an asset, and a scene is none; export the scene's assets"))
+            Err(format.cannot("it holds one asset, and this is a scene; export the scene's assets"))
         }
         None => Err(not_written(format)),
     }

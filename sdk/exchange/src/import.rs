@@ -26,8 +26,7 @@ use crate::rights::FileRights;
 const LEAST_S: f64 = 4.0;
 
 /// What is said about an asset without a licence.
-const UNLICENSED: &str =
-    "It states no licence, without which nobody may pass it on; state that of the file.";
+const UNLICENSED: &str = "It states no licence, and without one nobody may pass it on; give the licence of the imported file.";
 
 /// How a file is imported.
 #[derive(Debug, Clone, Default)]
@@ -219,7 +218,7 @@ pub fn recording_of(
     let signal = format.signal(file, bytes, values.speed_mm_s, profile)?;
     let mut samples: Vec<f64> = signal.samples.iter().map(|x| values.full_scale * x).collect();
     let mut warnings = signal.left_out;
-    // Before samples are repeated, so that an empty signal is refused here as well.
+    // Before samples are repeated, so that an empty signal is also refused here.
     if !samples.iter().any(|x| *x != 0.0) {
         let silent = Fault::whole("it is silent, and nothing can be fitted to it");
         return Err(in_file(file)(silent));

@@ -124,7 +124,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
         _ => json,
     };
     let richest =
-        "The loss is that of the envelope of WaveformEnvelopeBuilder, the richest of the three.";
+        "The loss is stated for the envelope of WaveformEnvelopeBuilder, the richest of the three.";
     Ok(WrittenSignal {
         drive: rendered(&[played_by(read.pattern(), job.profile)], RATE_HZ),
         bytes,
@@ -242,9 +242,7 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<WrittenSignal, ExchangeError> {
     let speed = space.speed_mm_s.unwrap_or(1.0);
     let drive = read.rendered(heard.rate_hz, speed).map_err(|fault| job.own(fault))?;
     let over_way = |speed: f64| {
-        format!(
-            "It lies over the way of the finger, and is felt as the asset at {speed} mm/s alone."
-        )
+        format!("It lies along the finger's path, and is felt as the asset only at {speed} mm/s.")
     };
     Ok(WrittenSignal {
         bytes,

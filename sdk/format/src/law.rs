@@ -224,9 +224,9 @@ impl Law {
     /// Returns this law for another quantity or contact. Assumed exponents are assumed anew,
     /// measured ones are pulled towards the new assumption, and given ones stay.
     ///
-    /// The assumed levels follow the frequency exponent that the law has. A surface whose measured
-    /// frequencies scale like those of a relief gets a relief's levels, whatever slid over it. A
-    /// surface whose frequencies stay does not.
+    /// The assumed levels follow the frequency exponent that the law has. If the measured
+    /// frequencies of a surface scale as on a relief, it gets a relief's levels, whatever slid over
+    /// it. If its frequencies do not change, it does not.
     #[must_use]
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);

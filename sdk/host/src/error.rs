@@ -58,7 +58,7 @@ pub enum HostError {
     },
     /// A file that the user did not name, e.g. one from a recipe, is not a WASM module.
     #[error(
-        "{path}: it is no WASM module; only a person names a native library, which runs with all their rights: if you trust it, give it \
+        "{path}: it is no WASM module; only the user may name a native library, because it runs with all of their rights: if you trust it, give it \
          yourself (`--plugin FILE`, `plugins` in Python)"
     )]
     NotModule { path: String },

@@ -296,7 +296,7 @@ impl LoadedModel {
     }
 
     /// Returns whether `rate_hz` is the model's own rate, which does not depend on the requested
-    /// rate: the model would return it for a high rate as well.
+    /// rate: the model would also return it for a high rate.
     ///
     /// # Errors
     /// The errors of [`Self::voice_rate_hz`].

@@ -225,8 +225,8 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model that is described at run time. `written_in` becomes its [`Origin::Runtime`].
-    /// Its precedence is that of [`Self::add_model`].
+    /// Adds a model that is described at run time. `written_in` becomes its [`Origin::Runtime`]. It
+    /// has the same precedence as a model added by [`Self::add_model`].
     ///
     /// # Errors
     /// When the descriptor is invalid, or longer than 1 MiB in JSON.

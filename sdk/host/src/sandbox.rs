@@ -1,6 +1,6 @@
 //! The sandbox of modules: the limits of each module, and the budget that several modules share.
 //!
-//! A registry has one budget. Each asset has its own budget within that of the registry
+//! A registry has one budget. Each asset has its own budget within the registry's budget
 //! ([`crate::Registry::of_asset`]). Voices do not use these budgets, so rendering takes no lock.
 //! Each voice has a time allowance that grows with the samples it renders.
 

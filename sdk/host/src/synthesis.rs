@@ -44,7 +44,7 @@ pub enum Synthesis {
     Streamed,
     /// A part of the voice, 0.1 to 60 s long, which is rendered once and repeated with a
     /// constant-power cross-fade. It needs the least computation per sample, and four bytes of
-    /// memory per sample. The spectrum is that of one section of noise and does not change.
+    /// memory per sample. One section of noise determines the spectrum, which does not change.
     Loop {
         /// Length of the loop, seconds.
         seconds: f64,

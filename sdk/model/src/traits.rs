@@ -312,9 +312,9 @@ pub trait Voice: Send + 'static {
     fn render(&mut self, out: &mut [f32]);
 
     /// Fills `out` with the next `frames` samples of each voice, one voice after another. The
-    /// samples are bit-identical to those of [`Self::render`]. The default calls `render` for each
-    /// voice; override it if the model can render several voices faster in one call. `[render
-    /// thread, no allocation, no lock, no I/O]`
+    /// samples must be bit-identical to the samples of [`Self::render`]. The default calls `render`
+    /// for each voice; override it if the model can render several voices faster in one call.
+    /// `[render thread, no allocation, no lock, no I/O]`
     fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32])
     where
         Self: Sized,

@@ -229,7 +229,7 @@ fn whole_part(x: f64) -> f64 {
 }
 
 fn check_range(field: &Range<'_>, numbers: &[f64]) -> Result<(), Error> {
-    // NaN is in no range, so it is refused as well.
+    // NaN lies in no range, so it is also refused.
     match numbers.iter().position(|x| !(field.min..=field.max).contains(x)) {
         None => Ok(()),
         Some(i) => Err(Error::parameters(text![

@@ -9,9 +9,9 @@
 pub const MAX_VOICES: usize = 16;
 
 /// Renders the next `frames` samples of each of `count` different voices, one voice after another.
-/// The samples are bit-identical to those of `htex_model_voice_render`. Returns a status. If it is
-/// negative, and not [`Panicked`](crate::Status::Panicked), no voice has advanced. `[render thread,
-/// no allocation; one thread at a time for one voice]`
+/// The samples must be bit-identical to the samples of `htex_model_voice_render`. Returns a status.
+/// If it is negative, and not [`Panicked`](crate::Status::Panicked), no voice has advanced.
+/// `[render thread, no allocation; one thread at a time for one voice]`
 pub type VoicesRenderFn =
     unsafe extern "C" fn(voices: *const i64, count: usize, out: *mut f32, frames: usize) -> i64;
 

@@ -101,7 +101,7 @@ impl Motion {
         self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 
-    /// Returns whether speed and force equal those of another motion. Only they determine the
+    /// Returns whether another motion has the same speed and force. Only they determine the
     /// parameters.
     pub(crate) fn has_conditions_of(&self, other: &Self) -> bool {
         (self.speed_mm_s, self.force_n) == (other.speed_mm_s, other.force_n)

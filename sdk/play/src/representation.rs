@@ -218,8 +218,8 @@ impl<'a> Representation<'a> {
     }
 
     /// Returns the parameters (a flat array) and the level (RMS, in the asset's unit) at a motion,
-    /// as recorded or interpolated between recordings. Without a motion they are those at the
-    /// default condition.
+    /// as recorded or interpolated between recordings. Without a motion it uses the default
+    /// condition.
     ///
     /// # Errors
     /// As [`Self::voice`].

@@ -205,9 +205,9 @@ impl Texture {
         self.representation(None)?.level_rms(motion)
     }
 
-    /// Returns the representations from the best to the worst. Those that this program can run come
-    /// first. Among them, those with a measured error come first, and then the smaller
-    /// [`htex_format::Representation::error_db`]. Ties keep the order of the file.
+    /// Returns the representations from the best to the worst. Representations that this program
+    /// can run come first. Among them, the ones with a measured error come first, in the order of
+    /// their [`htex_format::Representation::error_db`]. Ties keep the order of the file.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;
@@ -225,7 +225,8 @@ impl Texture {
         ranked
     }
 
-    /// Returns the indices of the representations, those with a measured error first and by it.
+    /// Returns the indices of the representations: first the ones with a measured error, by that
+    /// error, then the others.
     fn by_error(&self, measure: ErrorMeasure) -> Vec<usize> {
         let all = &self.data.manifest.representations;
         let mut sorted: Vec<_> =

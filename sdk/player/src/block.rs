@@ -109,7 +109,8 @@ pub(crate) struct Target {
     pub(crate) frequency: f32,
 }
 
-/// How many numbers each part after the header has: first those of 32 bits, then those of 16 bits.
+/// How many numbers each part after the header has: first the parts of 32-bit numbers, then the
+/// parts of 16-bit numbers.
 #[derive(Clone, Copy)]
 struct Parts {
     speeds: usize,

@@ -42,7 +42,7 @@ pub(crate) fn register_model(
     let id = descriptor.id.clone();
     let builtin = Registry::builtin();
     if builtin.models().iter().any(|model| model.id() == id) {
-        let text = format!("the id {id} is that of a built-in model; choose another");
+        let text = format!("a built-in model has the id {id}; choose another id");
         return Err(option(text));
     }
     let model = Arc::new(PythonModel { adapter, plays });

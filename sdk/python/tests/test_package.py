@@ -99,7 +99,7 @@ def test_the_lines_of_pages_run(place: pathlib.Path, tmp_path: pathlib.Path, mon
     played: dict[str, Any] = {}
     exec(plays, played)
     assert played["samples"].shape == (48_000,) and played["samples"].any()
-    # The scheduler of the page does not exist: its tests are those of `htex.dask`.
+    # The page's scheduler does not exist. The tests of `htex.dask` test it.
     (builds,) = _blocks("libraries.md", "python")
     call = builds.replace('Client("tcp://scheduler:8786")', "None").replace("htex.dask.build(", "bind(")
     bound: dict[str, Any] = {"bind": inspect.signature(htex.dask.build).bind}

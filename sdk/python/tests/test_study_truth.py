@@ -55,7 +55,7 @@ def test_the_regression_rejects_one_null_study_in_twenty() -> None:
 
 
 def test_normality_is_that_of_residuals() -> None:
-    """Models that differ make cell means two-peaked: of 40 studies their test fails in all, and that of residuals in 1."""
+    """If models differ, cell means have two peaks. Of 40 studies, the test of cell means fails in all, the test of residuals in one."""
     random, cells, residuals = np.random.default_rng(2), 0, 0
     for _ in range(40):
         table = random.normal(size=(PEOPLE, MODELS)) * 0.3 + np.array([0, 4, 0, 4, 4])

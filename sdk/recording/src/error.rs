@@ -72,7 +72,7 @@ pub enum ReadProblem {
         columns: String,
     },
     #[error(
-        "column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
+        "column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as the columns of one run"
     )]
     Lengths { first: String, rows: usize, other: String, got: usize },
     /// The file is damaged or of an unsupported kind, or its numbers are invalid.

@@ -52,7 +52,7 @@ pub(crate) fn follow(
         ).into());
     }
     if recording.speed_mm_s.is_some() {
-        let warning = "The speed is that of the tracker instead of the recording's own.";
+        let warning = "The speed comes from the tracker instead of the recording.";
         recording.warnings.push(warning.into());
     }
     recording.warnings.extend(motion.warnings);

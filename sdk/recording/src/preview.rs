@@ -163,7 +163,7 @@ fn by_order(columns: &mut [PreviewColumn], options: &ReadOptions) -> Result<(), 
         }
         (quantity, channels) => {
             return Err(format!(
-                "{channels} channels of a {}; map those of the recording, as in lateral=#1:SCALE",
+                "{channels} channels of a {}; map the channels of the recording, as in lateral=#1:SCALE",
                 quantity.words()
             ));
         }

@@ -203,7 +203,8 @@ impl Recording {
         to_s: Option<f64>,
     ) -> Result<Self, RecordingError> {
         let sample = |second: f64| {
-            // Times are those of the file, of which this recording may already be a part.
+            // Times count from the start of the file. This recording may already be only a part of
+            // it.
             let at = (second * self.rate_hz).round() - self.first_sample as f64;
             at.clamp(0.0, self.samples() as f64) as usize
         };

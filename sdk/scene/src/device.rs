@@ -113,8 +113,8 @@ fn settle(
     let is_hardware = |s: &Setting| s.from_scene == FromScene::Never;
     if change.rehearsal {
         report_hardware(descriptor, &asked, findings);
-        // In a rehearsal the scene's settings count as the user's, because those of the hardware
-        // would be ignored otherwise.
+        // In a rehearsal the scene's settings count as the user's. Otherwise its hardware settings
+        // would be ignored.
         for (name, value) in std::mem::take(&mut asked) {
             given.entry(name).or_insert(value);
         }

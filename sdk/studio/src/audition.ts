@@ -5,7 +5,10 @@ import { pilot, setPilot } from "./motion.ts";
 
 let lent = false;
 
-/** Plays a texture as long as it is looked at; a resting finger slides to and fro meanwhile. */
+/**
+ * Plays a texture while the user browses it. If the finger rests, an autopilot slides it back and
+ * forth.
+ */
 export function audition(sounding: Sounding) {
   tried.value = sounding;
   if (sound.peek() === "on" && pilot.peek() === "hand") {

@@ -16,7 +16,7 @@ export const sides = signal<Record<Side, string>>({ a: "present", b: "opened" })
 export const isMatched = signal(true);
 export const heardSide = signal<Side | "x" | null>(null);
 
-/** Silence by Escape or by another screen is silence here, too. */
+/** Escape or another screen also silences this one. */
 effect(() => {
   if (!tried.value) heardSide.value = null;
 });
@@ -57,7 +57,7 @@ function modelOf({ models }: Texture, wanted: string) {
 
 export const both = computed(() => ({ a: played(sides.value.a), b: played(sides.value.b) }));
 
-/** The level of a side at the motion of the pad's sliders; that of a recording is its own. */
+/** The level of a side at the motion of the pad's sliders. A recording has its own level. */
 function levelOf({ texture: of, model, loop }: Played) {
   if (loop) return loop.level_rms;
   const { speed, force } = motion.peek();

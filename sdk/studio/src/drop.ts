@@ -50,7 +50,7 @@ export async function take(files: readonly File[]) {
   await takeImports(await Promise.all(others.map(named)));
 }
 
-/** All files of what was dropped, those in folders, too. */
+/** All dropped files, including the files in dropped folders. */
 async function filesOf(transfer: DataTransfer): Promise<File[]> {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   if (entries.length === 0) return [...transfer.files];

@@ -12,7 +12,10 @@ export interface Sounding {
   readonly model: string;
   /** RMS of full scale at the default condition, relative to the piece of work's; 1 for the piece itself. */
   readonly gain?: number;
-  /** Its own usual loudness instead of that of the piece of work: for textures that are looked through. */
+  /**
+   * Whether it plays at its own usual loudness instead of the loudness of the piece of work: for
+   * textures that are browsed.
+   */
   readonly own?: boolean;
   /** A recording that sounds in place of the texture that was made of it. */
   readonly loop?: Loop;
@@ -167,7 +170,8 @@ export function run() {
     if (!node) return;
     node.speed.value = speed;
     node.force.value = force;
-    // Of the models of this page's own, the friction map follows the place, the others speed and force alone.
+    // Of this page's built-in models, only the friction map follows the place. The others follow
+    // only speed and force.
     if (playing?.hasModules) node.position = position;
     if (playing?.hasModules || playing?.models.includes("org.htex.map")) node.place = { x: x * padSize.width, y: y * padSize.height };
   });

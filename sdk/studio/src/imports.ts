@@ -1,4 +1,5 @@
-// Files of other haptic formats: opened at once where they state all, else once a person has said what they do not.
+// Files of other haptic formats. A file that states everything is opened at once. Otherwise the
+// user first gives what it does not state.
 
 import { signal, type Signal } from "@preact/signals";
 import { importFile, type ActuatorRange, type Asked, type Imported, type ImportFormat, type ImportReport, type ImportSettings } from "htex/import";
@@ -31,7 +32,7 @@ export interface Done {
   readonly report: ImportReport;
 }
 
-/** What a person says of a file. */
+/** What the user states about a file. */
 export interface Given extends Pick<ImportSettings, "full_scale" | "quantity" | "speed_mm_s" | "force_n" | "pitch_mm" | "profile"> {
   readonly license: string;
 }

@@ -37,7 +37,10 @@ const thread = () => {
   return script ? { worker: () => new Worker(script, { type: "module" }) } : {};
 };
 
-/** Sets the author's module. The page of one file has that of imports alone, which holds it, too. */
+/**
+ * Sets the author's module. The single-file page has only the module of imports, which includes the
+ * author's.
+ */
 export async function setAuthor() {
   setAuthorLibrary(await source(block(IMPORTER) === null ? AUTHOR : IMPORTER, author), thread());
 }
@@ -54,7 +57,7 @@ async function base64(stream: ReadableStream) {
   return btoa(text);
 }
 
-/** The player's module as a page of one file has it. */
+/** The player's module as the single-file page stores it. */
 export async function compressedLibrary(): Promise<string> {
   const text = block(LIBRARY);
   if (text !== null) return text;

@@ -1,4 +1,4 @@
-// The textures on the shelf: those that come with the page, and one's own.
+// The textures on the shelf: the page's own textures, and the user's.
 
 import { computed, signal } from "@preact/signals";
 import { Library, open, type Texture } from "htex";

@@ -83,7 +83,7 @@ function absent() {
 }
 
 function checkNode(context, texture, options) {
-  if (options.rate !== undefined) throw new HtexError("new HtexNode: the rate is that of the context; leave `rate` out", "invalid-argument");
+  if (options.rate !== undefined) throw new HtexError("new HtexNode: the rate comes from the context; leave `rate` out", "invalid-argument");
   checked(options, NODE, "HtexNode");
   checkContext(context, "new HtexNode");
   if (!prepared.has(context)) throw new HtexError("new HtexNode: call `await prepare(context)` first, once for each context", "invalid-argument");

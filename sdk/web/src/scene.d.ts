@@ -6,7 +6,7 @@ import type { Address, Bytes } from "./index.js";
 export interface SceneOptions {
   /**
    * Another device to use instead of the scene's, by short name or id. It is not opened: the
-   * samples are those that it would receive.
+   * result is the samples that it would receive.
    */
   device?: string;
   /** A profile of the device. */

@@ -13,7 +13,7 @@ const author = await loadAuthor();
 const vinyl = { name: "vinyl.csv", bytes: await bytes("vinyl.csv") };
 const MOTION = { speed_mm_s: 80, force_n: 0.5 };
 
-/** The bytes of a texture are those of a file of the command. */
+/** Checks that a texture has the same bytes as a file that the command wrote. */
 async function isFile(texture, name) {
   assert.ok(Buffer.from(texture.bytes).equals(await bytes(name)), `${name} has other bytes`);
 }
@@ -38,7 +38,7 @@ test("a recording is fitted to the bytes of the command, in a worker and in this
   await isFile(author.fit(vinyl, { name: "vinyl" }).texture, "vinyl.htex");
 });
 
-test("settings are those of the command", async () => {
+test("settings are the same as the command's", async () => {
   const settings = { name: "part", from_s: 2, to_s: 8, models: ["ar", "bands"], options: { ar: { order: 8 } }, keep_reference: true };
   const { texture } = author.fit(vinyl, { ...settings, license: "CC0-1.0", tags: ["smooth"] });
   await isFile(texture, "part.htex");
@@ -120,7 +120,7 @@ test("a recording is a loop: its level, its band and no seam", () => {
   assert.deepEqual([loop.recording, loop.unit, loop.condition], ["vinyl.csv", "N", condition]);
   const rms = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / numbers.length);
   assert.ok(Math.abs(rms(loop.samples) / loop.level_rms - 1) < 1e-4);
-  // Bins of a Hann window: their power is that of one and a half.
+  // The Hann window spreads the power of one bin over one and a half bins.
   assert.ok(Math.abs(Math.sqrt(spectrum.magnitude.reduce((sum, m) => sum + m * m, 0) / 3) / loop.level_rms - 1) < 1e-9);
   const steps = loop.samples.map((x, i) => Math.abs(loop.samples[(i + 1) % loop.samples.length] - x));
   assert.ok(steps.at(-1) <= 1.5 * steps.slice(0, -1).reduce((most, step) => Math.max(most, step)));
@@ -240,7 +240,7 @@ test("textures are mixed and edited as by the command", async () => {
   assert.throws(() => author.mix(a, b, 2), { code: "invalid-argument" });
 });
 
-test("what is felt of a difference is that of its level, and of nothing below the threshold", () => {
+test("a difference is felt by its level, and not at all below the threshold", () => {
   const made = (level) => author.make({ name: "noise", representations: [{ model: "sbeta", conditions: [{ level, parameters: { alpha: 2, beta: 3 } }] }] });
   const [one, same, twice, faint, fainter] = [0.1, 0.1, 0.2, 1e-8, 1e-9].map((level) => ({ texture: made(level) }));
   const none = author.felt(one, same);

@@ -11,12 +11,15 @@ import { HTEX_FIXTURES, HTEX_PACKAGE } from "./fixtures.mjs";
 
 const { HTEX_CHROMIUM = "/usr/bin/chromium", HTEX_EXAMPLE } = process.env;
 const TYPES = { ".js": "text/javascript", ".html": "text/html", ".wasm": "application/wasm", ".css": "text/css" };
-/** A name of this machine whose pages are not secure, as those of a machine in the network are not. */
+/**
+ * A name of this machine whose pages are not secure, like pages from another machine in the
+ * network.
+ */
 const ELSEWHERE = "elsewhere.example";
 
 const SURFACE = '<div id=surface tabindex=0 style="width:600px;height:300px"></div>';
 
-/** Records what an audio node plays: `record(node)`, then `await recorded()`. A quantum without input, as that of a node that was disconnected,
+/** Records what an audio node plays: `record(node)`, then `await recorded()`. A quantum without input, as after a node was disconnected,
  * is silent; one that was not rendered would be an error, since it would look like a click. `hold(context, ms)` has the audio thread do nothing
  * else for a while, as on a machine that is busy. */
 const RECORDER = `

@@ -41,7 +41,7 @@ async function offline(made, asset, options, { seconds = 2, rate = 48000, speed 
   return Float32Array.from(list);
 }
 
-test("the worklet's samples are those of the command", async () => {
+test("the worklet gives the samples of the command", async () => {
   const made = await page();
   for (const model of MODELS) {
     const heard = await offline(made, "vinyl.htex", { model, seed: 7, gain: 1 });

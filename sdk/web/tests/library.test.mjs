@@ -72,7 +72,7 @@ test("a texture whose module others share is whole", async () => {
   await assert.rejects(library.bytes("bursts"), { name: "HtexError", code: "bad-handle" });
 });
 
-test("entries are those of the command", async () => {
+test("entries are the same as the command's", async () => {
   const server = await serve(await bytes("many.htexlib"));
   const library = await Library.open(server.url);
   const listed = JSON.parse(await bytes("many.json"));

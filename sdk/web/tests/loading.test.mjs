@@ -99,7 +99,7 @@ test("calls in the wrong order or with the wrong things say what to do", async (
     ["new htex.HtexNode(context, texture)", /await prepare\(context\)/],
     ["await htex.prepare(context); new htex.HtexNode(context, htex.open('/cloth.htex'))", /await open/],
     ["await htex.prepare(context); new htex.HtexNode(context, texture, { model: 'none' })", /none/],
-    ["await htex.prepare(context); new htex.HtexNode(context, texture, { rate: 8000 })", /rate is that of the context/],
+    ["await htex.prepare(context); new htex.HtexNode(context, texture, { rate: 8000 })", /rate comes from the context/],
     ["await htex.prepare(context); new htex.HtexNode(context, texture, { modle: 'ar' })", /did you mean `model`/],
     ["await htex.prepare(context); texture.free(); new htex.HtexNode(context, texture)", /freed/],
     ["await htex.prepare(context); const node = new htex.HtexNode(context, texture); node.stop(); await node.load(texture)", /was stopped/],
@@ -207,7 +207,7 @@ test("the voices and textures of nodes that were stopped are freed", async () =>
       node.stop();
       texture.free();
     }
-    // In a suspended context, too.
+    // The same in a suspended context.
     await new Promise((done) => setTimeout(done, 300));
     await context.suspend();
     const node = new HtexNode(context, await open("/fixtures/vinyl.htex"), { model: "ar" });

@@ -201,7 +201,7 @@ test("a worker stops a module that does not return", async () => {
   await assert.rejects(worker.render(endless, 100, options), { name: "HtexError", code: "model", message: /longer than 500 ms/ });
   assert.ok(performance.now() - start < 5000);
   await assert.rejects(worker.render(endless, 100, options), { code: "model" });
-  // Another worker plays a module that returns, and its errors are those of a voice.
+  // Another worker plays a module that returns. It gives the same errors as a voice.
   const texture = await open(await bytes("bursts.htex"));
   const guarded = new GuardedWorker();
   const expected = await samples("bursts.wav");

@@ -22,7 +22,7 @@ function pad(more = {}) {
 
 const near = (a, b) => Math.abs(a - b) < 1e-12;
 
-test("strengths are those of the devices in Rust", () => {
+test("strengths are the same as from the devices in Rust", () => {
   // `two_motors` and `Scale::strength` of htex_dsp::reduced.
   const cases = [
     [{ level: 0.5, centroid: 240 }, 1, 0.25, 0.25],
@@ -87,7 +87,7 @@ class Buffer {
   }
 }
 
-test("samples are those of the voice, within full scale, where the gamepad plays them", async () => {
+test("a gamepad that plays samples gets the voice's samples, within full scale", async () => {
   globalThis.AudioBuffer = Buffer;
   try {
     const texture = await open(await bytes("vinyl.htex"));

@@ -122,7 +122,7 @@ test("stop fades within 10 ms", async () => {
 });
 
 test("a friction map follows the place", async () => {
-  // At 80 mm/s a place of 8 mm further on is that of 0.1 s later.
+  // At 80 mm/s, the finger is 8 mm further on 0.1 s later.
   const from = (x) =>
     offline(
       new Function(
@@ -145,7 +145,7 @@ test("a friction map follows the place", async () => {
   const [later, here] = [near.subarray(0.4 * RATE, 0.9 * RATE), far.subarray(0.3 * RATE, 0.8 * RATE)];
   const alike = here.reduce((sum, x, i) => sum + x * later[i], 0) / here.length / rms(here) / rms(later);
   const unlike = here.reduce((sum, x, i) => sum + x * near[0.3 * RATE + i], 0) / here.length / rms(here) ** 2;
-  console.log(`map: correlation ${alike.toFixed(4)} with the samples of 8 mm further on, ${unlike.toFixed(4)} with those of the same time`);
+  console.log(`map: correlation ${alike.toFixed(4)} with the samples of 8 mm further on, ${unlike.toFixed(4)} with the samples of the same time`);
   assert.ok(rms(here) > 0 && alike > 0.98 && unlike < 0.5);
 });
 
@@ -248,7 +248,7 @@ test("swaps in quick succession have no click", async () => {
   assert.ok(swapping <= 1.5 * own, `${swapping} ${own}`);
 });
 
-test("a node that is stopped while the audio thread is late fades out, too", async () => {
+test("a node that is stopped while the audio thread is late also fades out", async () => {
   const made = await here.page();
   const ends = await made.evaluate(async () => {
     const { open, prepare, HtexNode } = await import("/htex/index.js");

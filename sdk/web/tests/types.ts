@@ -55,7 +55,7 @@ export async function play(context: AudioContext, element: HTMLElement, file: Fi
     if (error instanceof HtexError) console.log(error.code);
   }
   end();
-  // @ts-expect-error: the rate of a node is that of its context.
+  // @ts-expect-error: a node has the rate of its context.
   new HtexNode(context, texture, { rate: 8000 });
   // @ts-expect-error: a typo.
   await open("cloth.htex", { embeded: false });

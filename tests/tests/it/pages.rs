@@ -103,7 +103,7 @@ fn the_tests_that_the_pages_name_are_there() {
 #[test]
 fn the_promises_of_security_name_their_tests() {
     const WITHOUT: [&str; 4] =
-        ["The program itself", "**What a person says**", "**Dask**", "A switch on the amplifier"];
+        ["The program itself", "**What the user says**", "**Dask**", "A switch on the amplifier"];
     let (root, text) = (workspace(), page("SECURITY.md"));
     let (text, _) = text.split_once("\n## Reporting").unwrap();
     let mut seen = BTreeSet::new();

@@ -55,7 +55,7 @@ fn cargo(nightly: bool) -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// A separate folder, because the flags differ from those of `cargo fuzz`.
+/// A separate folder, because `cargo fuzz` uses other flags.
 fn target_folder() -> PathBuf {
     match std::env::var_os("CARGO_TARGET_DIR") {
         Some(place) => PathBuf::from(place).join("fuzz"),

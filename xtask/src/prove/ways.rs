@@ -94,7 +94,7 @@ fn link(to: &Path, at: &Path) -> Result<()> {
 
 #[cfg(not(unix))]
 fn link(_: &Path, at: &Path) -> Result<()> {
-    bail!("{}: the commands of the pages are those of a shell of Unix", at.display())
+    bail!("{}: the commands on the pages need a Unix shell", at.display())
 }
 
 /// Processes the blocks of a page in order.

@@ -105,8 +105,8 @@ impl Display for CostTable {
         }
         writeln!(
             f,
-            "ns a sample: least, median ± half the distance between the quartiles, and the least over \
-             that of the first line of the model; ns a call; from the file to the first sample, \
+            "nanoseconds a sample: minimum, median ± half the interquartile range, and the minimum relative to \
+             the model's first line; nanoseconds a call; milliseconds from the file to the first sample, \
              compiled and from the cache"
         )
     }

@@ -82,7 +82,7 @@ impl AskingArgs {
         Err(Failure::Usage(problem.to_owned()))
     }
 
-    /// Whether standard input provides a person's answers or the motion.
+    /// Whether the participant's answers or the motion come from standard input.
     pub(super) fn reads_stdin(&self, is_simulated: bool) -> bool {
         self.motion.as_deref() == Some("-") || !(self.page || is_simulated)
     }

@@ -41,7 +41,7 @@ impl FeltArgs {
     /// Refuses a combination that cannot work.
     pub(super) fn check(&self, asking: &AskingArgs, is_simulated: bool) -> Result<()> {
         let problem = if self.source.is_none() && self.input.is_given() {
-            "--map, --calibration, --quantity, --tracker and --format are about what is felt; give --source, too"
+            "--map, --calibration, --quantity, --tracker and --format need --source; add it"
         } else if self.input.tracks_stdin() && asking.reads_stdin(is_simulated) {
             "--tracker lines:-: standard input cannot be both the tracker and the answers or the motion; give the tracker's port"
         } else {

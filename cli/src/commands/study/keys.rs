@@ -28,7 +28,7 @@ pub(super) enum Press {
 }
 
 impl Press {
-    /// Returns the line that means the same in a view; `None` if there is none.
+    /// Returns the line that has the same meaning in a view; `None` if the key has no meaning.
     pub(super) fn line(self, view: &View) -> Option<String> {
         let is_matching = matches!(view, View::Matching { .. });
         Some(match self {

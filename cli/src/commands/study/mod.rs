@@ -26,7 +26,7 @@ use crate::failure::{Failure, Result};
 
 /// Plan, run and analyse rating studies
 ///
-/// study.toml describes a study (its JSON Schema: `htex schema study`). The defaults are those of
+/// study.toml describes a study (its JSON Schema: `htex schema study`). The defaults come from
 /// the paper's study.
 #[derive(Args)]
 pub(crate) struct Study {

@@ -51,7 +51,7 @@ impl SpectraArgs {
     pub(super) fn table(&self, folder: &Path) -> Result<Option<(&Path, FeltSpectra)>> {
         if self.recorded.is_empty() && self.reading.is_given() {
             return Err(Failure::usage(
-                "the options of reading recordings are about those of --recorded; give one, too",
+                "the options for reading recordings need a recording; add --recorded",
             ));
         }
         let Some(file) = &self.spectra else {

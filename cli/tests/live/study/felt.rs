@@ -51,7 +51,7 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
         let found = felt(&place.path(&folder), "Ann");
         assert!(found == felt(&place.path("whole"), "Ann"), "{fault}");
     }
-    // Answers with another source, and recordings that are not those of their trials.
+    // Answers with another source, and recordings that do not belong to their trials.
     let other =
         on_card(&place, "whole", &["--participant", "Ann", "--format", "csv"]).output().unwrap();
     assert_eq!(other.status.code(), Some(1));
@@ -164,8 +164,8 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         assert_eq!(beside["trial"]["speed_mm_s"], 80.0);
         assert_eq!(beside["trial"]["texture"], line["texture"]);
     }
-    // Each trial was off its target, which is said at once; its rating and its spectrum are
-    // exported all the same.
+    // Each trial was off its target. The command says so at once, and still exports its rating and
+    // its spectrum.
     assert!(error.contains("note: trial-0001 was off its target: force: mean 0.6000"), "{error}");
     let spectra = |more: &[&str]| {
         let export = ["study", "export", "answers", "-o", "r.csv", "--spectra", "s.csv", "--json"];

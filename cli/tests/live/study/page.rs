@@ -105,9 +105,9 @@ fn one_press_is_one_answer_in_one_tab() {
     browser.reload(&tab);
     browser.shows(&tab, "How rough");
     assert_eq!(ratings(&place), [3]);
-    // A key that is not on the scale is none.
+    // A key outside the scale is not an answer.
     browser.press(&tab, "7", 0);
-    // A second tab is refused, and its keys are no answers.
+    // A second tab is refused, and its keys do not answer.
     let second = browser.open(&url);
     browser.shows(&second, "open in another tab");
     fits_tablets(&mut browser, &second, "refused");

@@ -61,8 +61,8 @@ impl Card {
         Ok(())
     }
 
-    /// The voltage at an input: that of the finger, or of the file, after its end 0; without a file
-    /// a sine of 10 Hz times the input's number from 1.
+    /// Returns the voltage at an input: from the finger, or from the file (0 after its end).
+    /// Without a file the input carries a sine of 10 Hz times the input's number, counted from 1.
     fn volts(&self, input: usize, frame: u64, rate_hz: f64) -> f64 {
         if let Some(loopback) = &self.loopback {
             return loopback.volts(frame, rate_hz);

@@ -83,7 +83,8 @@ impl Recorder {
         frames
     }
 
-    /// Returns the reason why no samples will follow those in the ring buffer, if there is one.
+    /// Returns the reason why no more samples will follow the samples in the ring buffer, if there
+    /// is one.
     fn fault(&mut self) -> Option<DeviceError> {
         if let Some(what) = self.failure.peek() {
             return Some(failed(&self.name, what));

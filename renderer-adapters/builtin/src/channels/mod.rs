@@ -29,8 +29,8 @@ impl Adapter for Channels {
         &DESCRIPTOR
     }
 
-    /// Lists the outputs. Sound cards are those that the system names. Their number of channels is
-    /// checked only when one is chosen.
+    /// Lists the outputs. The system names the sound cards. Their number of channels is checked
+    /// only when one is chosen.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let nothing = Endpoint {
             name: "null".to_owned(),
@@ -67,7 +67,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
             "plays",
             SettingKind::Text,
             plays::DUALSENSE,
-            "What each channel plays, with commas between: `off`, `texture`, or a factor of it from -1 to 1. The default is that of a DualSense.",
+            "What each channel plays, separated by commas: `off`, `texture`, or a factor from -1 to 1 for the texture. The default suits a DualSense.",
         ),
         Setting::hardware(
             "device",

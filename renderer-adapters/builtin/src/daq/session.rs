@@ -116,7 +116,7 @@ impl Session {
         if self.task.is_none() {
             self.start(&volts)?;
         }
-        // After the start, because the lead belongs to the mean as well.
+        // After the start, because the lead also counts for the mean.
         self.check_direct(&volts)?;
         let fitting = self.space()?.min(volts.len());
         let taken = self.give(&volts[..fitting])?;

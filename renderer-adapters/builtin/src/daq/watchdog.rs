@@ -24,7 +24,7 @@ pub(crate) enum Watches {
     /// Asks the driver whether the output is still running.
     Output,
     /// Checks only that the session is free from time to time. Makes no call of the driver, because
-    /// that call might hang as well.
+    /// that call might also hang.
     Calls,
 }
 

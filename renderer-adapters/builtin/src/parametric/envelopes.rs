@@ -68,7 +68,7 @@ impl Vibrator {
         let missing = |name: &'static str| refused(format!("`{path}` has no `{name}`"));
         let symbols = Symbols { library, missing: &missing };
         let mut limits = Limits::default();
-        // SAFETY: the types are those that are published for these names.
+        // SAFETY: the functions are published with these names and types.
         let (vibrator, code) = unsafe {
             let get: unsafe extern "C" fn(*mut Limits) -> i32 = symbols.get("htex_pwle_limits")?;
             let code = get(&mut limits);

@@ -41,7 +41,7 @@ impl Instance {
         let table = match Table::from_entry(entry, handle) {
             Ok(table) => table,
             Err(error) => {
-                // SAFETY: the handle is that of the instance, which nobody else has.
+                // SAFETY: the handle belongs to this instance, and nothing else holds it.
                 if let Ok(destroy) =
                     unsafe { function::<pfn::DestroyInstance>(entry, handle, c"xrDestroyInstance") }
                 {
@@ -68,7 +68,7 @@ impl Instance {
             next: null(),
             form_factor: xr::FormFactor::HEAD_MOUNTED_DISPLAY,
         };
-        // SAFETY: the structure is that of the header.
+        // SAFETY: the structure is laid out as the header declares it.
         let code = unsafe { (self.table.get_system)(self.handle, &info, &mut self.system) };
         done("xrGetSystem", code)?;
         if !has_parametric {
@@ -105,7 +105,7 @@ impl Drop for Instance {
 /// Lists the extensions of the runtime.
 fn extensions(entry: Entry) -> Result<Vec<String>, String> {
     let call = "xrEnumerateInstanceExtensionProperties";
-    // SAFETY: the name and the type are those of the header.
+    // SAFETY: the header declares a function of this name and type.
     let enumerate = unsafe {
         function::<pfn::EnumerateInstanceExtensionProperties>(
             entry,
@@ -136,7 +136,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
 }
 
 fn create(entry: Entry, extensions: &[&CStr]) -> Result<xr::Instance, String> {
-    // SAFETY: the name and the type are those of the header.
+    // SAFETY: the header declares a function of this name and type.
     let create =
         unsafe { function::<pfn::CreateInstance>(entry, xr::Instance::NULL, c"xrCreateInstance") }?;
     let names: Vec<*const c_char> = extensions.iter().map(|name| name.as_ptr()).collect();

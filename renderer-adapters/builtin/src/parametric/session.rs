@@ -114,7 +114,8 @@ impl Session {
             system_id: instance.system,
         };
         let mut handle = xr::Session::NULL;
-        // SAFETY: the structure is that of the header; without graphics it has no next one.
+        // SAFETY: the structure is laid out as the header declares it. Without graphics no
+        // structure follows it.
         let code = unsafe { (instance.table.create_session)(instance.handle, &info, &mut handle) };
         done("xrCreateSession", code)?;
         // Built before the next calls, so that `drop` destroys the session if one of them fails.
@@ -143,7 +144,7 @@ impl Session {
             localized_action_set_name: fixed("Textures"),
             priority: 0,
         };
-        // SAFETY: the structure is that of the header.
+        // SAFETY: the structure is laid out as the header declares it.
         let code =
             unsafe { (table.create_action_set)(self.instance.handle, &set, &mut self.action_set) };
         done("xrCreateActionSet", code)?;
@@ -156,7 +157,8 @@ impl Session {
             subaction_paths: self.hands.as_ptr(),
             localized_action_name: fixed("Texture"),
         };
-        // SAFETY: the structure is that of the header, and its paths last until the call returns.
+        // SAFETY: the structure is laid out as the header declares it, and its paths last until the
+        // call returns.
         let code = unsafe { (table.create_action)(self.action_set, &action, &mut self.action) };
         done("xrCreateAction", code)
     }
@@ -180,8 +182,8 @@ impl Session {
                 count_suggested_bindings: bindings.len() as u32,
                 suggested_bindings: bindings.as_ptr(),
             };
-            // SAFETY: the structure is that of the header, and its bindings last until the call
-            // returns.
+            // SAFETY: the structure is laid out as the header declares it, and its bindings last
+            // until the call returns.
             let code = unsafe { (instance.table.suggest_bindings)(instance.handle, &suggested) };
             let taken = done("xrSuggestInteractionProfileBindings", code);
             if last.is_err() {
@@ -198,7 +200,7 @@ impl Session {
             count_action_sets: 1,
             action_sets: &self.action_set,
         };
-        // SAFETY: the structure is that of the header.
+        // SAFETY: the structure is laid out as the header declares it.
         let code = unsafe { (self.instance.table.attach_action_sets)(self.handle, &info) };
         done("xrAttachSessionActionSets", code)
     }
@@ -243,7 +245,7 @@ impl Session {
             count_active_action_sets: 1,
             active_action_sets: &active,
         };
-        // SAFETY: the structure is that of the header.
+        // SAFETY: the structure is laid out as the header declares it.
         let code = unsafe { (self.instance.table.sync_actions)(self.handle, &info) };
         done("xrSyncActions", code)
     }
@@ -282,7 +284,7 @@ impl Session {
             next: null(),
             primary_view_configuration_type: xr::ViewConfigurationType::PRIMARY_STEREO,
         };
-        // SAFETY: the structure is that of the header.
+        // SAFETY: the structure is laid out as the header declares it.
         let code = unsafe { (self.instance.table.begin_session)(self.handle, &info) };
         done("xrBeginSession", code)
     }
@@ -315,7 +317,7 @@ impl Session {
     /// Stops a hand at once.
     pub(crate) fn stop(&self, hand: Hand) -> Result<(), String> {
         let element = self.element(hand);
-        // SAFETY: the structure is that of the header.
+        // SAFETY: the structure is laid out as the header declares it.
         let code = unsafe { (self.instance.table.stop)(self.handle, &element) };
         done("xrStopHapticFeedback", code)
     }
@@ -335,7 +337,7 @@ impl Session {
             min_frequency_hz: 0.0,
             max_frequency_hz: 0.0,
         };
-        // SAFETY: the structures are those of the header and of the registry.
+        // SAFETY: the structures are laid out as the header and the registry declare them.
         let code = unsafe { get(self.handle, &element, &mut properties) };
         done("xrHapticParametricGetPropertiesEXT", code).map(|()| properties)
     }
@@ -352,7 +354,7 @@ impl Session {
             next: std::ptr::null_mut(),
             sample_rate: 0.0,
         };
-        // SAFETY: the structures are those of the header.
+        // SAFETY: the structures are laid out as the header declares them.
         let code = unsafe { get(self.handle, &element, &mut state) };
         done("xrGetDeviceSampleRateFB", code)?;
         match f64::from(state.sample_rate) {

@@ -40,14 +40,14 @@ pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
 
 /// Finds the entry function. A runtime exports the negotiation function, a loader the entry itself.
 fn entry_of(library: Library) -> Result<Entry, String> {
-    // SAFETY: the name is that of `openxr_loader_negotiation.h`, which states the type.
+    // SAFETY: `openxr_loader_negotiation.h` declares a function of this name and type.
     let negotiate = unsafe {
         library.symbol::<pfn::NegotiateLoaderRuntimeInterface>("xrNegotiateLoaderRuntimeInterface")
     };
     if let Some(negotiate) = negotiate {
         return negotiated(negotiate);
     }
-    // SAFETY: the name is that of `openxr.h`, which states the type.
+    // SAFETY: `openxr.h` declares a function of this name and type.
     let entry = unsafe { library.symbol::<Entry>("xrGetInstanceProcAddr") };
     entry.ok_or_else(|| {
         "it has neither `xrNegotiateLoaderRuntimeInterface` nor `xrGetInstanceProcAddr`".to_owned()
@@ -74,7 +74,7 @@ fn negotiated(negotiate: pfn::NegotiateLoaderRuntimeInterface) -> Result<Entry, 
         runtime_api_version: xr::Version::default(),
         get_instance_proc_addr: None,
     };
-    // SAFETY: both structures are those of the header.
+    // SAFETY: both structures are laid out as the header declares them.
     done("xrNegotiateLoaderRuntimeInterface", unsafe { negotiate(&info, &mut request) })?;
     request.get_instance_proc_addr.ok_or_else(|| "it gives no `xrGetInstanceProcAddr`".to_owned())
 }
@@ -118,7 +118,7 @@ macro_rules! table {
 
         impl Table {
             pub(crate) fn from_entry(entry: Entry, instance: xr::Instance) -> Result<Self, String> {
-                // SAFETY: the names and types are those of the header.
+                // SAFETY: the header declares functions of these names and types.
                 unsafe {
                     Ok(Self {
                         $($field: {

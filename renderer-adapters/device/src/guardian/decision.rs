@@ -186,7 +186,7 @@ impl Player {
             Event::Failed(attempt) => self.failed(attempt, now),
             Event::Tick => Vec::new(),
         };
-        // Every event brings the time, so a deadline does not depend on ticks alone.
+        // Every event brings the time, so a deadline does not depend only on ticks.
         actions.extend(self.due(now));
         actions
     }

@@ -4,7 +4,7 @@
 //! logarithm of the energy is fitted linearly against the logarithms of speed and force, over the
 //! windows around the crossing. Each window's spectrum is then scaled by the change that this fit
 //! predicts between its motion and the crossing. Thus all windows of a cell count equally;
-//! otherwise those with a firm touch would dominate the mean.
+//! otherwise windows with a firm touch would dominate the mean.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;

@@ -53,8 +53,8 @@ settings! {
             default_value = "recording",
             display_order = 2,
             help = "Level of a representation: the recording's RMS in the band, so that it plays as strong as the \
-                    recording, or that of its own fit. Bands, which keeps energies, always has \
-                    that of its fit"
+                    recording, or the level of its own fit. Bands keeps energies, so it always has \
+                    the level of its fit"
         ))]
         pub level: Option<Level> = "level",
 

@@ -1,8 +1,8 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! Use them for tests, examples and first steps without a recording rig. The order of the surfaces'
-//! levels and the frequencies of their energy are those that the paper's Results describe for its
-//! five surfaces. They are not measured, and every file says so.
+//! Use them for tests, examples and first steps without a recording rig. The surfaces' levels have
+//! the order, and their energy the frequencies, that the paper's Results describe for its five
+//! surfaces. They are not measured, and every file says so.
 //!
 //! The hand's speed and force vary. The friction coefficient varies along the surface as a fixed
 //! relief read at the finger's position. So the spectrum's frequencies scale with the speed and its

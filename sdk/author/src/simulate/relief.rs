@@ -66,7 +66,7 @@ fn add_line(values: &mut [f64], line: &Line, unit: f64, random: &mut Normal) {
     // A cosine has a standard deviation of 1/√2 of its amplitude.
     let amplitude = unit * line.weight * libm::sqrt(2.0);
     let step = 2.0 * PI * line.per_mm / POINTS_PER_MM;
-    // The variances of the steps of a random walk add up to that of a millimetre.
+    // The variances of the random walk's steps add up to the variance over a millimetre.
     let wander = line.wander / libm::sqrt(POINTS_PER_MM);
     let mut phase = 2.0 * PI * random.next_unit();
     for value in values {

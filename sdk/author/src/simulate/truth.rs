@@ -235,7 +235,7 @@ fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64)
 /// Returns the gain, at a spatial frequency, of smoothing by the contact and of interpolating
 /// between points.
 fn reading(kernel: &[f64], per_mm: f64) -> f64 {
-    // The kernel is symmetric, so its transform has cosines alone.
+    // The kernel is symmetric, so its transform has only cosines.
     let turn = 2.0 * PI * per_mm / POINTS_PER_MM;
     let middle = (kernel.len() / 2) as f64;
     let smoothing =

@@ -36,8 +36,8 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     settings
 }
 
-/// Returns the knobs that are varied in all combinations, and those that are varied one at a time:
-/// the whole range of each option, if the model lists no values.
+/// Returns the knobs that are varied in all combinations, and the knobs that are varied one at a
+/// time: the whole range of each option, if the model lists no values.
 fn knobs(model: &LoadedModel) -> (Vec<Knob>, Vec<Knob>) {
     let options = &model.descriptor().options;
     let listed = |values: fn(&FitOption) -> &[f64]| -> Vec<Knob> {
@@ -99,8 +99,8 @@ fn without_defaults(
     options
 }
 
-/// Whether an option has no effect in this setting because its value is above that of the option
-/// that limits it ([`FitOption::not_above`]).
+/// Whether an option has no effect in this setting because its value exceeds the value of the
+/// option that limits it ([`FitOption::not_above`]).
 fn is_idle(model: &LoadedModel, setting: &Setting) -> bool {
     let options = &model.descriptor().options;
     let value = |name: &str| {

@@ -94,7 +94,7 @@ fn the_truth_agrees_with_an_independent_computation() {
     }
 }
 
-/// When a written truth is evaluated by its own rule, it is correct between its speeds as well.
+/// A written truth, evaluated by its own rule, is also correct between its speeds.
 #[test]
 fn a_written_truth_states_any_speed_and_force() {
     let truth = free(Surface::CoarseFabric).truth().unwrap();

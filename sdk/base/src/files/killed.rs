@@ -1,8 +1,8 @@
 //! Removes unfinished files of killed processes, which could not remove them themselves.
 //!
 //! The name of an unfinished file identifies its process: `.htex-MACHINE-PID-RANDOM.part`.
-//! `MACHINE` is a hash that distinguishes the process numbers of this system from those of other
-//! systems. A folder may be shared with other machines and containers, whose processes cannot be
+//! `MACHINE` is a hash that distinguishes this system's process numbers from other systems'
+//! numbers. A folder may be shared with other machines and containers, whose processes cannot be
 //! seen from here. Their files are removed when they are old.
 
 use std::collections::BTreeSet;

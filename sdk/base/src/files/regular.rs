@@ -85,7 +85,7 @@ fn check_regular(is: &Metadata) -> io::Result<()> {
 #[cfg(unix)]
 fn without_waiting(options: &mut OpenOptions) {
     use std::os::unix::fs::OpenOptionsExt;
-    // The bits of the flags are those of `open`, whose argument is an `int`.
+    // The flags have the bits that `open` takes, whose argument is an `int`.
     let flags = rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY;
     options.custom_flags(flags.bits().cast_signed());
 }

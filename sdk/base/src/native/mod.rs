@@ -26,7 +26,7 @@ pub struct Library(&'static Loaded);
 
 /// The places where a bare name was searched for.
 const SEARCHED: &str = if cfg!(windows) {
-    "; the current folder has no such file, and the system finds none in its folders and those of PATH"
+    "; the current folder has no such file, and the system finds none in its folders or in the folders of PATH"
 } else {
     "; the current folder has no such file, and the system's loader was asked for it (LD_LIBRARY_PATH, the cache of \
      ldconfig, /lib, /usr/lib)"
@@ -70,7 +70,7 @@ impl Library {
     }
 
     /// Loads the library that a setting names: a path, or a bare name. A bare name is a file in the
-    /// current folder, or, if there is none, a library of the system.
+    /// current folder or, if no such file exists, a library of the system.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.

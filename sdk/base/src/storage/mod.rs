@@ -93,7 +93,8 @@ impl Storage {
 
     /// Restricts access to locations that a file such as a recipe may name. `origin` is the
     /// location of that file if it is remote. Of all web servers, only public ones and the server
-    /// of `origin` are allowed. Stores are those in the variables, which the user sets.
+    /// of `origin` are allowed. Object stores are the ones that the user's environment variables
+    /// name.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
         self.named = NameSource::InFileAt(origin.cloned());

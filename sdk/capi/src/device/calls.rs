@@ -53,7 +53,7 @@ fn write_json(
     capacity: usize,
     length: *mut usize,
 ) -> Result<(), Failure> {
-    // SAFETY: the pointers are those of the call's caller.
+    // SAFETY: the caller of the C function passed these pointers.
     unsafe { write_text(&document.to_string(), out, capacity, length) }
 }
 
@@ -178,7 +178,7 @@ pub(super) unsafe fn status(device: htex_device, out: *mut htex_device_counts) -
         let out = unsafe { place(out) }?;
         if (out.size as usize) < size_of::<htex_device_counts>() {
             return Err(Failure::argument(
-                "the counts' size is not that of their struct; set it to sizeof(htex_device_counts)",
+                "the counts' `size` is wrong; set it to sizeof(htex_device_counts)",
             ));
         }
         let status = open.device.status();

@@ -161,7 +161,7 @@ pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -
         let finger = unsafe { slice(finger, 1) }?[0];
         if (finger.size as usize) < size_of::<htex_finger>() {
             return Err(Failure::argument(
-                "the finger's size is not that of its struct; set it to sizeof(htex_finger)",
+                "the finger's `size` is wrong; set it to sizeof(htex_finger)",
             ));
         }
         // A single NaN is a failed reading, not an unknown position.

@@ -1,6 +1,7 @@
-/* What the plugin for FMOD uses of FMOD's header of this name, written from FMOD's published documentation (FMOD Engine User Manual 2.02 and
- * 2.03, "Core API Reference" and "Plug-in API Reference, DSP"): names, values, calling convention. It is not FMOD's header, and no replacement
- * for it: build plugins with those of the FMOD Engine.
+/* The names, values and calling convention that the FMOD plugin uses from FMOD's header of this
+ * name. They were written from FMOD's published documentation (FMOD Engine User Manual 2.02 and
+ * 2.03, "Core API Reference" and "Plug-in API Reference, DSP"). This is not FMOD's header and does
+ * not replace it: build plugins with the headers of the FMOD Engine.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
@@ -41,7 +42,7 @@ typedef enum FMOD_SPEAKERMODE {
     FMOD_SPEAKERMODE_FORCEINT = 65536
 } FMOD_SPEAKERMODE;
 
-/* As in FMOD's, this header brings those of plugins along. */
+/* Like FMOD's header, this one includes the header for plugins. */
 #include "fmod_dsp.h"
 
 #endif

@@ -1,5 +1,5 @@
-/* Counts this program's calls of the allocator, and the bytes that are allocated, those of its libraries included. Without COUNTED, for
- * valgrind and sanitizers, which have their own allocator, nothing is counted.
+/* Counts the allocator calls and the allocated bytes of this program and its libraries. Without
+ * COUNTED nothing is counted: valgrind and the sanitizers have their own allocator.
  */
 #ifndef COUNTED_H
 #define COUNTED_H

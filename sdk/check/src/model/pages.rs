@@ -36,7 +36,7 @@ pub(crate) struct Pages<T> {
     values: PhantomData<T>,
 }
 
-// SAFETY: the mapping belongs to this value alone.
+// SAFETY: only this value owns the mapping.
 unsafe impl<T: Send> Send for Pages<T> {}
 
 impl<T: Copy + Default> Pages<T> {

@@ -74,8 +74,8 @@ pub(crate) fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
 }
 
 /// Returns the relative standard deviation of the RMS of `seconds` of noise with this spectrum. It
-/// is half that of the power, which is `1 / sqrt(B T)` with the equivalent bandwidth
-/// `B = (Σ m²)² Δf / Σ m⁴`.
+/// is half the relative standard deviation of the power, which is `1 / sqrt(B T)` with the
+/// equivalent bandwidth `B = (Σ m²)² Δf / Σ m⁴`.
 pub(crate) fn rms_spread(magnitude: &[f64], seconds: f64) -> f64 {
     rms_spread_at(magnitude, GRID_HZ, seconds)
 }

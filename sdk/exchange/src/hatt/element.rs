@@ -53,7 +53,7 @@ impl Element {
         }
     }
 
-    /// The child with a name; it is an error if there is none.
+    /// Returns the child with a name. A missing child is an error.
     pub(super) fn required(&self, name: &str) -> Result<&Element, Fault> {
         let found = self.one(name)?;
         found.ok_or_else(|| self.fault(format!("it has no element {name}")))

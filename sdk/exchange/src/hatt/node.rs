@@ -106,8 +106,8 @@ fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64
     Ok(rest.to_vec())
 }
 
-/// Compares the line spectral frequencies in the file, if there are any, with those computed from
-/// the coefficients.
+/// Compares the line spectral frequencies in the file, if it has any, with the frequencies computed
+/// from the coefficients.
 fn compare_lines(
     node: &Element,
     name: &str,
@@ -132,7 +132,7 @@ fn compare_lines(
     let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     if error > LINE_ERROR {
         notes.push(format!(
-            "{}: the lines differ from those of the coefficients, which are used, by {error:.4} rad",
+            "{}: the lines differ by {error:.4} rad from the lines of the coefficients; the coefficients are used",
             list.place()
         ));
     }

@@ -117,8 +117,8 @@ fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
             *b -= previous * zero;
         }
     }
-    // The zeros of real coefficients come in conjugate pairs, so imaginary parts are rounding
-    // alone.
+    // The zeros of real coefficients come in conjugate pairs, so imaginary parts are only rounding
+    // errors.
     made.iter().skip(1).map(|b| b.re).collect()
 }
 

@@ -108,7 +108,7 @@ fn export_fit(
         lost: Some(loss(&reference, shape, fit.level_rms)?),
         notes: vec![
             said(&fit.parameters, white, asset),
-            "It is one row, which repeats: it is felt along the row alone, and as the texture at that speed alone.".to_owned(),
+            "It is one row, which repeats. It is felt only along the row, and as the texture only at that speed.".to_owned(),
         ],
         ..ExportedFile::of_asset(format, bytes)
     })

@@ -90,8 +90,8 @@ fn whole_files_are_read() {
         .replace("channels", "tracks")
         .replace("mixing_coefficient", "mixing_weight");
     assert_eq!(said("a.hjif", draft.as_bytes()), "it is read");
-    // Meta's legacy files have a last point whose line crosses the end. Null and missing mean that
-    // there is none.
+    // Meta's legacy files have a last point whose line crosses the end. A null and a missing
+    // envelope both mean no envelope.
     let frequency = "/signals/continuous/envelopes/frequency";
     let across = json!([{"time": 0, "frequency": 0.5}, {"time": 1.5, "frequency": 1}]);
     assert_eq!(changed("a.haptic", &haptic(), frequency, across), "it is read");

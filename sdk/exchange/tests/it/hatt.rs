@@ -1,4 +1,4 @@
-//! Model files like those of the Penn Haptic Texture Toolkit: filters, triangles, silent edges.
+//! Model files like the ones in the Penn Haptic Texture Toolkit: filters, triangles, silent edges.
 
 use crate::common;
 use crate::common::busy;

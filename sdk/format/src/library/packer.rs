@@ -260,7 +260,7 @@ fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryEr
     } else if total > header.payload.end.saturating_mul(limits.ratio) {
         let ratio = limits.ratio;
         format!(
-            "its textures have {total} bytes, over {ratio} times those of the file, which readers refuse; split it"
+            "its textures have {total} bytes, over {ratio} times the bytes of the file, and readers refuse that; split it"
         )
     } else {
         return Ok(());
@@ -278,7 +278,7 @@ fn write(
 ) -> io::Result<()> {
     target.write_all(&header.to_bytes())?;
     target.write_all(index)?;
-    // In this order `sharing` assigned the places of the objects, and `index` those of the
+    // `sharing` assigned the places of the objects in this order, and `index` the places of the
     // textures.
     for object in sharing.objects() {
         spool.copy(object, target)?;

@@ -147,7 +147,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             });
     }
 
-    /// Checks that the own bytes directly follow those of the texture before.
+    /// Checks that a texture's own bytes directly follow the own bytes of the texture before.
     fn check_gap(&mut self, entry: &Entry, place: &str) {
         let (expected, own) = (self.next, &entry.place.own);
         self.next = Some(own.end);

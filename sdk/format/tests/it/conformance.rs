@@ -71,8 +71,8 @@ fn a_newer_minor_version_is_noted_and_kept() {
     assert_eq!(Asset::from_bytes(&asset.to_bytes().unwrap()).unwrap(), asset);
 }
 
-/// Returns the stages of the findings' codes. Each stage is the same as that of the finding before
-/// it, or later.
+/// Returns the stages of the findings' codes. Each stage is the stage of the finding before it, or
+/// a later one.
 fn stages_of(findings: &[Finding]) -> Vec<usize> {
     let mut at = 0;
     let mut places = Vec::new();

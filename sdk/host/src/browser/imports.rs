@@ -14,7 +14,7 @@ mod raw {
         pub(super) fn instance_free(instance: u32);
         /// Returns the size of the instance's memory, bytes.
         pub(super) fn instance_memory(instance: u32) -> usize;
-        /// Calls the export with this index with `len` arguments, whose types are those of `typed`;
+        /// Calls the export with this index with `len` arguments of the types that `typed` states;
         /// 0 if it returns.
         pub(super) fn instance_call(
             instance: u32,
@@ -86,7 +86,8 @@ impl GuestInstance {
         unsafe { raw::instance_memory(self.0) }
     }
 
-    /// Calls a function by its index among the names. Types and result are those of `typed`.
+    /// Calls a function by its index among the names. `typed` states the types of the arguments and
+    /// of the result.
     pub(super) fn call(
         &self,
         function: u32,

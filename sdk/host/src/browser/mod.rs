@@ -1,10 +1,10 @@
 //! Runs models in WASM modules by the browser or Node.js that runs this program.
 //!
-//! The rules are those of the engine of the feature `wasm`: a module imports nothing, its memory
-//! and tables are limited, each voice has a separate instance, and an instance that trapped is not
-//! called again. But a call cannot be interrupted from here. A call that took longer than its limit
-//! becomes an error afterwards, and an endless loop ends only with the worker that runs it
-//! (`sdk/web/src/guarded.js`).
+//! The rules are the same as for the engine of the feature `wasm`: a module imports nothing, its
+//! memory and tables are limited, each voice has a separate instance, and an instance that trapped
+//! is not called again. But a call cannot be interrupted from here. A call that took longer than
+//! its limit becomes an error afterwards, and an endless loop ends only with the worker that runs
+//! it (`sdk/web/src/guarded.js`).
 //!
 //! This is only a second engine. The loader is the one in `wasm` (`calls.rs`, `model.rs`,
 //! `voice.rs`).

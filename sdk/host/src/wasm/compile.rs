@@ -55,7 +55,7 @@ pub(super) fn compiled(bytes: &[u8], sandbox: &Sandbox) -> Result<Module, Compil
     let start = Instant::now();
     let compiled = compile(&engine, bytes, limits, effort, time);
     sandbox.budget.spend(start.elapsed());
-    // After the time was spent, so that modules that cannot be compiled use up the budget as well.
+    // After the time was spent, so that modules that cannot be compiled also use up the budget.
     let module = compiled?;
     if let Some(cache) = cache
         && let Ok(artifact) = module.serialize()

@@ -66,7 +66,7 @@ impl From<BinaryReaderError> for CompileError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompilerError {
-    /// The arguments are not those of a host of this version.
+    /// The arguments do not come from a host of this version.
     #[error("invalid arguments: only a host starts this process, to compile a module")]
     Arguments,
     /// The process cannot limit its memory and time.

@@ -2,8 +2,8 @@
 //!
 //! Time limits use wasmtime's epochs, which a thread counts with at most 20 ticks per second under
 //! the default limits. An endless loop is therefore stopped on every machine. Instructions (`fuel`)
-//! are deterministic and can be counted as well. A memory limit costs no time while a module runs:
-//! the engine reserves addresses, so no access has to be compared with a bound.
+//! are deterministic and can also be counted. A memory limit costs no time while a module runs: the
+//! engine reserves addresses, so no access has to be compared with a bound.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;

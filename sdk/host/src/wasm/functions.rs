@@ -51,7 +51,7 @@ type MotionFitParams =
 type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 
 impl Functions {
-    /// Finds all functions. `motion` says whether to include those of `htex.motion/1`.
+    /// Finds all functions. `motion` says whether to include the functions of `htex.motion/1`.
     pub(super) fn find(module: &mut impl Find, motion: bool) -> Result<Self, Fault> {
         Ok(table_of_symbols!(
             module, Self, "htex_model_",

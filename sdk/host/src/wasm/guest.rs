@@ -30,7 +30,7 @@ impl Guest {
         arm(&mut store, module, time).map_err(fault)?;
         let start = Instant::now();
         let raw = Instance::new(&mut store, &module.module, &[]);
-        // Before the result is checked: a failed start has taken time as well.
+        // Before the result is checked: a failed start has also taken time.
         module.budget.spend(start.elapsed());
         let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
         let memory = raw.get_memory(&mut store, "memory").ok_or(Fault::NoMemory)?;

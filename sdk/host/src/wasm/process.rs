@@ -77,7 +77,7 @@ pub(super) fn compile(
 /// ```
 ///
 /// # Errors
-/// When the arguments are not those of a host of this version, the limits cannot be set, or a pipe
+/// When the arguments do not come from a host of this version, the limits cannot be set, or a pipe
 /// breaks.
 pub fn serve_compiler(arguments: &[String]) -> Result<(), CompilerError> {
     let request = Request::read(arguments).ok_or(CompilerError::Arguments)?;

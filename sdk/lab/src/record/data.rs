@@ -213,10 +213,10 @@ impl TakeHeader {
             (!self.signals.is_empty(), "it has no signals"),
             (
                 has_known_roles(&self.signals) && has_known_roles(&self.tracker),
-                "its signals are not those of a take",
+                "its signals do not belong to a take",
             ),
             (has_units(&self.signals) && has_units(&self.tracker), "its units are no units"),
-            (self.format != Format::Wav || is_whole, "its sample rate is not that of a WAV"),
+            (self.format != Format::Wav || is_whole, "its sample rate is not possible in a WAV"),
         ];
         let failed = checks.into_iter().find(|(holds, _)| !holds);
         failed.map(|(_, problem)| problem)

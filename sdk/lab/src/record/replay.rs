@@ -29,7 +29,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
             "rate_hz",
             SettingKind::Number { min: 0.0, max: 1e7 },
             "0",
-            "Sample rate, hertz; 0: that of the file.",
+            "Sample rate, hertz; 0: the file's own rate.",
         ),
         Setting::hardware(
             "pace",

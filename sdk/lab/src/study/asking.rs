@@ -79,8 +79,8 @@ pub enum Key {
     Quit,
 }
 
-/// The participant who is asked, or a stand-in. Keys that a person presses within [`View::guard`]
-/// must be ignored.
+/// The participant who is asked, or a stand-in. Keys pressed within [`View::guard`] must be
+/// ignored.
 pub trait Asker {
     /// Shows a view. Keys that were pressed before are dropped. `done` of `all` trials have been
     /// rated.

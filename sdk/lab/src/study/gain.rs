@@ -173,7 +173,7 @@ pub(crate) fn takes(method: GainMethod, is_rising: bool, key: GainKey) -> bool {
 mod tests {
     use super::*;
 
-    /// Every method finds the gain that a person wants within one step.
+    /// Every method finds the gain that the participant wants within one step.
     #[test]
     fn every_method_finds_the_gain_that_is_wanted() {
         use GainMethod::{Adjustment, Descending, Staircase};

@@ -151,13 +151,13 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), LabErro
     let changed = if begun.htex_answers != now.htex_answers {
         format!("the file has version {}", begun.htex_answers)
     } else if begun.participant != now.participant {
-        format!("they are those of {}", begun.participant)
+        format!("they belong to {}", begun.participant)
     } else if begun.simulated != now.simulated {
         let who = |header: &Header| match &header.simulated {
             Some(simulated) => format!("a simulated participant (seed {})", simulated.seed),
-            None => "a person".to_owned(),
+            None => "a participant".to_owned(),
         };
-        format!("they are those of {}, not of {}", who(begun), who(now))
+        format!("they come from {}, not from {}", who(begun), who(now))
     } else if let Some(name) = other_file(begun, now) {
         format!("{name} has changed since")
     } else if begun.device != now.device {

@@ -5,7 +5,7 @@
 //! the plan and appends each answer to a file before the next trial begins. Everything else, such
 //! as the table of ratings ([`export`]), is computed from these files.
 //!
-//! The defaults are those of the study in the paper (Methods, "Experiment"): 14 participants, five
+//! The defaults come from the study in the paper (Methods, "Experiment"): 14 participants, five
 //! models, five repetitions, trials of 10 s, training, gain matching with AR, and similarity from 0
 //! "Different" to 6 "Same". There is one difference: the paper starts at the maximum voltage, but
 //! here each texture starts weak and rises until the participant feels it.

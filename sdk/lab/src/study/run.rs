@@ -333,7 +333,7 @@ impl<R: Rig> Run<'_, '_, R> {
             }
             left || pressed.is_some()
         };
-        // A trace ends before a person has decided, so it is played again.
+        // A trace may end before the participant has decided, so it is played again.
         let played = loop {
             let Some(played) = self.attempt(stimulus, &mut ends)? else {
                 continue;

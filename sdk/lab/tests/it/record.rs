@@ -145,7 +145,7 @@ fn formats_hold_the_same_samples() {
     assert!(axes[0] == axes[1], "CSV and NPY have all bits");
     let rounded =
         |axes: &Vec<Vec<f64>>| axes.iter().flatten().map(|v| *v as f32).collect::<Vec<_>>();
-    assert!(rounded(&axes[0]) == rounded(&axes[2]), "WAV has those of f32");
+    assert!(rounded(&axes[0]) == rounded(&axes[2]), "WAV has all bits of f32");
 }
 
 #[test]

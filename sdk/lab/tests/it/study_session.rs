@@ -171,7 +171,7 @@ fn versions_are_not_mixed() {
     let own = &place.plan.participants[0];
     let simulated = place.header(Some(1));
     let error = Session::open(&place.study, own, place.folder.path(), &simulated).unwrap_err();
-    assert!(error.to_string().contains("those of a person"), "{error}");
+    assert!(error.to_string().contains("they come from a participant"), "{error}");
     let weaker = place.header_with(None, [("amplifier_gain", "20"), ("limit_v", "150")]);
     let error = Session::open(&place.study, own, place.folder.path(), &weaker).unwrap_err();
     assert!(

@@ -52,7 +52,8 @@ impl Factors {
         let responses = weighted(conditions.iter().map(respond).collect());
         let columns = independent(&responses, most);
         // The product of the columns with their transpose has the same eigenvalues, but one row for
-        // each condition. Its eigenvectors follow from those of this smaller matrix.
+        // each condition. The eigenvectors of the large matrix follow from the eigenvectors of this
+        // smaller one.
         let (values, vectors) = eigen(products(&columns));
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));

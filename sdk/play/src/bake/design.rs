@@ -45,7 +45,7 @@ pub struct BakeResult {
     /// Number of 32-bit values that the player in C needs for the block, in addition to the struct
     /// `htex_player`.
     pub numbers: usize,
-    /// The conditions of the block: the wanted ones, and those that were inserted between them for
+    /// The conditions of the block: the requested ones, and conditions inserted between them for
     /// accuracy.
     pub grid: Grid,
     /// The id of the model that was baked.

@@ -1,6 +1,6 @@
 /* Runs the DMA example on a board. QEMU has no converter with DMA, so a timer takes its place. The
    timer's interrupt sends one sample every 125 us, and requests the interrupts of the example. Like
-   those of a DMA controller, these have a lower priority. */
+   the interrupts of a DMA controller, they have a lower priority. */
 #include "board.h"
 #include "texture_dma.h"
 

@@ -27,7 +27,7 @@ class FitSettings(TypedDict, total=False):
     """How models are fitted."""
 
     models: Annotated[str | Sequence[str] | None, "Models by short name or id, comma-separated, or `all` [default: all]"]
-    level: Annotated[Literal["fitted", "recording"] | None, "Level of a representation: the recording's RMS in the band, so that it plays as strong as the recording, or that of its own fit. Bands, which keeps energies, always has that of its fit [default: recording]"]
+    level: Annotated[Literal["fitted", "recording"] | None, "Level of a representation: the recording's RMS in the band, so that it plays as strong as the recording, or the level of its own fit. Bands keeps energies, so it always has the level of its fit [default: recording]"]
     keep_reference: Annotated[bool | None, "Keep the recorded spectrum in the asset (788 bytes a condition, before compression)"]
 
 

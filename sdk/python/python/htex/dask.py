@@ -58,7 +58,7 @@ def build(
 ) -> dict[str, Any]:
     """Build a library of textures from a recipe on a Dask cluster.
 
-    The results are byte-identical to those of :func:`htex.build`. If a worker is lost, other
+    The results are byte-identical to the results of :func:`htex.build`. If a worker is lost, other
     workers do its work; each result is written only once, here. If the scheduler is lost, the build
     continues when it is back. If the build itself is interrupted, fitted results stay in
     ``output``.

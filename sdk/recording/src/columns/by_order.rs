@@ -21,7 +21,7 @@ pub(crate) fn by_order(
     if !(1..=3).contains(&width) {
         let problem = format!(
             "{width} channels; without a column map they are 1 (lateral), 2 (lateral x, y), 3 (x, y, normal), or up to 3 axes \
-             of a motion; map those of the recording, as in lateral=#1:SCALE"
+             of a motion; map the channels of the recording, as in lateral=#1:SCALE"
         );
         return Err(sheet.columns().refuse(problem).into());
     }

@@ -111,7 +111,7 @@ impl RowMap {
                     return Err(columns.refuse(problem));
                 }
             }
-            // The words are those of `Selection::assume_unit`: the unit is known after all.
+            // `Selection::assume_unit` writes this sentence. The unit is known after all.
             let assumed =
                 format!("Column {:?} ({}) has no unit", columns.name(column), chosen.role);
             let warnings = &mut self.selection.warnings;

@@ -19,7 +19,7 @@ use crate::value_limit::ValueLimit;
 
 /// Longest metadata of a message or footer that is read, bytes.
 const MOST_METADATA: u64 = 16 << 20;
-/// The first bytes of a file, then those of a message.
+/// The first bytes of a file, then the first bytes of a message.
 const FILE: &[u8] = b"ARROW1";
 const MESSAGE: [u8; 4] = [0xff; 4];
 

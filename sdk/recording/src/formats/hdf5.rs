@@ -108,8 +108,8 @@ impl Scan {
         self.objects += groups.len() + datasets.len();
         if depth == MOST_DEEP || self.objects > MOST_OBJECTS {
             let problem = format!(
-                "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
-                 to a file of their own"
+                "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy the objects of the \
+                 recording to a separate file"
             );
             return Err(ReadProblem::Invalid(problem).at_place(htex_base::finding::plain(path)));
         }
@@ -145,7 +145,7 @@ impl Scan {
         if let (Some(shape), true) = (shape, is_number) {
             if !self.arrays.add(&path, shape, dataset) {
                 let problem = format!(
-                    "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
+                    "more than {MOST_COLUMNS} columns; copy the columns of the recording to a separate file"
                 );
                 return Err(
                     ReadProblem::Invalid(problem).at_place(htex_base::finding::plain(&path))

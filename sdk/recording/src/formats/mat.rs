@@ -25,7 +25,7 @@ use crate::value_limit::ValueLimit;
 
 /// Length of the file's header.
 const HEADER: u64 = 128;
-const NOT_MATLAB: &str = "the header is not that of a MATLAB 5 file (nor of HDF5, which version 7.3 is); in MATLAB: save('out.mat', '-v7')";
+const NOT_MATLAB: &str = "this is no MATLAB 5 header (nor HDF5, which version 7.3 uses); in MATLAB: save('out.mat', '-v7')";
 
 /// An opened file.
 pub(crate) struct Mat {

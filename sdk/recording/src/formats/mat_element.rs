@@ -28,14 +28,14 @@ pub(crate) enum MatError {
     Unexpected { found: String, expected: &'static str },
     #[error("a size in the file is wrong ({0}); save it again")]
     Size(String),
-    #[error("more than {MOST_COLUMNS} variables; save those of the recording alone")]
+    #[error("more than {MOST_COLUMNS} variables; save only the variables of the recording")]
     TooMany,
     #[error(
-        "more than {MOST_BYTES} bytes when decompressed; save the variables of the recording alone"
+        "more than {MOST_BYTES} bytes when decompressed; save only the variables of the recording"
     )]
     TooLarge,
     #[error(
-        "structs are nested more than {MOST_DEEP} deep; save the variables of the recording alone"
+        "structs are nested more than {MOST_DEEP} deep; save only the variables of the recording"
     )]
     TooDeep,
 }

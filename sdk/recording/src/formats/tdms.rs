@@ -108,7 +108,7 @@ impl Sheet for Tdms {
                 Some((_, other)) if other == step_s => {}
                 Some((other, other_s)) => {
                     let problem = format!(
-                        "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
+                        "its samples are {step_s} s apart, and the samples of {} are {other_s} s apart; map channels of one rate",
                         htex_base::finding::plain(&other.name)
                     );
                     return Err(ReadProblem::Invalid(problem)

@@ -27,7 +27,7 @@ pub(crate) enum TdmsError {
         "the object {0} is neither the file, a group nor a channel; the file is damaged, copy it again"
     )]
     Path(String),
-    #[error("more than {MOST_CHANNELS} channels; export those of the recording alone")]
+    #[error("more than {MOST_CHANNELS} channels; export only the channels of the recording")]
     TooManyChannels,
     #[error(
         "its pieces are more than the limit of numbers; export the recording again as one piece (defragmented)"

@@ -159,11 +159,7 @@ fn damaged_files_are_refused_with_their_place() {
     };
     let cut = |name: &str, length: usize| bytes(name)[..length].to_vec();
     for (name, bytes, words) in [
-        (
-            "a.mat",
-            with("plain.mat", 126, b'X'),
-            "byte 126: the header is not that of a MATLAB 5 file",
-        ),
+        ("a.mat", with("plain.mat", 126, b'X'), "byte 126: this is no MATLAB 5 header"),
         (
             "a.mat",
             cut("plain.mat", 900),

@@ -116,7 +116,7 @@ fn the_columns_of_traces_have_the_names_and_units_of_the_text() {
     for (column, row) in rows.iter().enumerate() {
         let (base, unit) = usual[column].split_once('_').unwrap();
         let listed = |cell: &str| -> Vec<String> {
-            // The names for the axis y are those for x with y in place of x.
+            // The names for the axis y are the names for x with y in place of x.
             let x = rows[1][1].replace('x', "y");
             let cell = if cell.starts_with('`') { cell } else { &x };
             cell.split(", ").map(|name| name.trim_matches('`').to_owned()).collect()

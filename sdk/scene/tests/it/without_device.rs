@@ -1,4 +1,4 @@
-//! A program that takes the samples itself gets those of the file device.
+//! A program that takes the samples itself gets the same samples as the file device.
 
 use std::path::Path;
 use std::sync::Arc;

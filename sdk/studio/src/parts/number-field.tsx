@@ -1,4 +1,4 @@
-// A number that a person gives, or leaves to the file.
+// A number that the user enters, or leaves to the file.
 
 import { useEffect, useRef } from "preact/hooks";
 

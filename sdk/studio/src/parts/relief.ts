@@ -1,5 +1,6 @@
-// A picture of a texture's grain: waves whose strengths are those of the spectrum, as a relief in light from the upper left. Wavelengths are
-// spread so that they can be seen: it is a picture, not a map.
+// A picture of a texture's grain: waves as strong as the spectrum states, drawn as a relief in
+// light from the upper left. Wavelengths are spread so that they can be seen. It is a picture, not
+// a map.
 
 /** Side of the tile, pixels. */
 export const TILE = 256;
@@ -12,7 +13,7 @@ const SPREAD = 0.8;
 /** Frequencies at which a texture's spectrum is wanted for its relief. */
 export const RELIEF_HZ = Float64Array.from({ length: WAVES }, (_, i) => LOW_HZ * (HIGH_HZ / LOW_HZ) ** ((i + 0.5) / WAVES));
 
-/** Numbers from 0 to 1 that are the same each time, so that a surface looks the same, too. */
+/** Numbers from 0 to 1. They are the same each time, so that a surface always looks the same. */
 function numbers(seed: number) {
   let state = seed;
   return () => {
@@ -50,7 +51,7 @@ function* heights(magnitude: ArrayLike<number>): Generator<void, Float32Array> {
   return height;
 }
 
-/** Slopes at which a colour is that of the darkest or lightest, and colours between them. */
+/** The slope with the darkest or lightest colour, and the number of colours. */
 const [STEEPEST, SHADES] = [4, 1024];
 
 /** The colours of slopes from `-STEEPEST` to `STEEPEST`, as an image has them in memory. */

@@ -18,7 +18,10 @@ export const toY = (scale: Scale, db: number) => scale.top + (scale.height * (sc
 export const toHz = (scale: Scale, x: number) => LOW_HZ * (HIGH_HZ / LOW_HZ) ** Math.min(Math.max((x - scale.left) / scale.width, 0), 1);
 export const toDb = (scale: Scale, y: number) => scale.ceiling - ((y - scale.top) / scale.height) * (scale.ceiling - scale.floor);
 
-/** Decibels that are shown: those of the curves, in steps of 10, at least 50. */
+/**
+ * The range of decibels that is shown: it covers the curves, in steps of 10 dB, and is at least 50
+ * dB.
+ */
 export function rangeOf(curves: readonly (readonly number[])[]): { floor: number; ceiling: number } {
   const all = curves.flat().filter(Number.isFinite);
   const highest = all.length > 0 ? Math.max(...all) : 0;

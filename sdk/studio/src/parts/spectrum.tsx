@@ -152,7 +152,7 @@ export function Spectrum(props: SpectrumProps) {
   );
 }
 
-/** Sets all bars between the last one and that of the pointer to a line between both. */
+/** Sets all bars from the last one to the pointer's bar to a line between the two. */
 function draw(state: Painted, x: number, y: number) {
   const { scale, handles } = state;
   if (!scale) return;

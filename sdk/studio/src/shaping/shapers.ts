@@ -84,7 +84,10 @@ const betaShaper: Shaper = {
 const MOST_LINES = 64;
 const AMPLITUDES = [1e-6, 4] as const;
 
-/** Changes the lines, and holds the curve at a line that did not move; the level grows with a line that is alone. */
+/**
+ * Changes the lines, and keeps the curve at a line that did not move. If there is only one line,
+ * the level grows with it.
+ */
 function withLines(bench: Bench, spec: Spec, changed: number, of: (hz: readonly number[], amplitude: readonly number[]) => [number[], number[]], gainDb: number): Spec {
   const hz = list(spec.points[bench.shown]?.parameters ?? {}, "frequency_hz");
   const db = at(bench, spec, hz);

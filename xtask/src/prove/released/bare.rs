@@ -167,7 +167,7 @@ fn root(processor: &Processor) -> Result<PathBuf> {
         debootstrap.args(["--variant=minbase", "--include=python3-venv", "--arch"]);
         debootstrap.args([processor.debian, "bookworm"]);
         run(debootstrap.arg(&root).arg("http://deb.debian.org/debian")).context(
-            "as root, with the package debootstrap; for another processor qemu-user-static and binfmt-support, too",
+            "as root, with the package debootstrap; another processor also needs qemu-user-static and binfmt-support",
         )?;
         // Last, so that an interrupted root does not count as made.
         fs::write(is_made, "")?;

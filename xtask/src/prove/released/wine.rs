@@ -111,10 +111,8 @@ fn same_here(work: &Path) -> Result<()> {
     }
     for name in ["rec.csv", "vinyl.htex", "built-in.wav"] {
         let is_same = read(&here, name)? == read(work, name)?;
-        ensure!(is_same, "{name} of Windows is not that of this machine");
+        ensure!(is_same, "{name} differs between Windows and this machine");
     }
-    eprintln!(
-        "released: the recording, the asset and the samples of Windows are those of this machine"
-    );
+    eprintln!("released: Windows and this machine give the same recording, asset and samples");
     Ok(())
 }

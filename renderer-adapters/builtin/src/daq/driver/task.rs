@@ -23,8 +23,8 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// Creates a task that outputs samples at once, within ±`limit_v`. Voltages are those of the
-    /// card.
+    /// Creates a task that outputs samples at once, within ±`limit_v`. Voltages are at the card's
+    /// output.
     pub(crate) fn new(driver: &'static Driver, output: &str, limit_v: f64) -> Result<Self, Fault> {
         let task = Clocked::new(driver)?;
         let (output, name) = (c_text(output), c_text(""));

@@ -70,7 +70,7 @@ fn how_to_read(page: &mut Page) {
          region, and 0 is the best. Third-octave bands do not overlap and are about twice as fine, \
          and the log-spectral distance compares every bin in decibels; no model is fitted to either. What is felt of a difference is what is above a fingertip's detection \
          threshold, in third octaves, after forces have become displacements of the skin. \
-         The measures can differ; none is a rating by a person.",
+         The measures can disagree, and none of them is a rating by a participant.",
     ));
 }
 

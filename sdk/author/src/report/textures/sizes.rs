@@ -4,7 +4,7 @@ use super::data::{ModelResult, Texture, TextureReport};
 use crate::report::number::{bytes, ratio};
 use crate::report::table::{Cell, HeatScale, Row, Table};
 
-const CAPTION: &str = "Bytes (1 kB = 1000 B); for a model, those of its parameters. \
+const CAPTION: &str = "Bytes (1 kB = 1000 B); for a model, the bytes of its parameters. \
                        Below each, the ratio of the recording file's size to it";
 
 pub(super) fn table(report: &TextureReport) -> String {

@@ -25,8 +25,8 @@ pub(super) enum UrlSource {
 pub(super) struct RedirectRefusal(pub(super) &'static str);
 
 /// The message for a file or a redirect that leads to an address that is not public.
-pub(super) const INNER: &str = "it leads to an address of this machine or network, which only a person names: give that URL as an argument \
-                                if you mean it";
+pub(super) const INNER: &str = "it leads to an address of this machine or network, which only the user may name: give that URL as an \
+                                argument if you mean it";
 
 /// Returns whether an address is not public: it belongs to this machine, its network or a provider,
 /// stands for several machines, or is unassigned.

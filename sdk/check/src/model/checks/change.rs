@@ -40,11 +40,11 @@ pub(crate) fn retune(case: &Case) -> CheckResult {
     let ratio = sharpest_bend(&out) / steady;
     let finding = if ratio <= SHARPER {
         Finding::passed(format!(
-            "second differences at retunes are {ratio:.2} times those of the sounds without retunes"
+            "second differences at retunes are {ratio:.2} times as large as in the same sounds without retunes"
         ))
     } else {
         Finding::failed(format!(
-            "retunes click: their second differences are {ratio:.1} times those of the sounds without retunes; \
+            "retunes click: their second differences are {ratio:.1} times as large as in the same sounds without retunes; \
              {SHARPER} times is allowed"
         ))
     };

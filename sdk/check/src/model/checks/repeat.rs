@@ -66,7 +66,8 @@ pub(crate) fn seeds(case: &Case) -> CheckResult {
     Err(Finding::failed("two seeds give equal samples: the seed is ignored"))
 }
 
-/// Checks that voices that play at the same time have the same samples as each voice alone.
+/// Checks that voices that play at the same time have the same samples as when each plays by
+/// itself.
 pub(crate) fn voices_apart(case: &Case) -> CheckResult {
     let sets = case.two_sets()?;
     let (a, b) = match sets {
@@ -101,7 +102,9 @@ pub(crate) fn voices_apart(case: &Case) -> CheckResult {
             return Err(differ(&format!("{way}, compared with it alone"), at));
         }
     }
-    Ok(Finding::passed("two voices have the samples of each alone, in turns and on threads"))
+    Ok(Finding::passed(
+        "two voices have the same samples as each by itself, in turns and on threads",
+    ))
 }
 
 /// Checks that a freed handle is refused.

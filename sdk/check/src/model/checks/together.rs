@@ -80,7 +80,7 @@ pub(crate) fn agrees(case: &Case) -> CheckResult {
             voice.render(&mut own)?;
             if let Some(at) = first_difference(row, &own) {
                 return Err(Finding::failed(format!(
-                    "voice {i} of {VOICES}, {frames} frames: sample {at} differs from that of a separate call"
+                    "voice {i} of {VOICES}, {frames} frames: sample {at} differs between the common call and a separate call"
                 ))
                 .with("sample", at as f64));
             }

@@ -1,6 +1,5 @@
-//! {{LABEL}} ({{ID}}), initially one resonance. The spectrum is that of a two-pole band-pass
-//! filter, `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that
-//! shape.
+//! {{LABEL}} ({{ID}}), initially one resonance. The model plays noise with the spectrum of a
+//! two-pole band-pass filter, `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`.
 //!
 //! `cargo build --release` builds the native library, and with `--target wasm32-unknown-unknown`
 //! the WASM module, which does not link the standard library and is therefore small enough for an

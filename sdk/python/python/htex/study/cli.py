@@ -236,7 +236,7 @@ def _positive(text: str) -> float:
 def _pairs(text: str) -> list[tuple[str, str]]:
     pairs = [part.partition("=") for part in text.split(",")]
     if not all(ours.strip() and theirs.strip() for ours, _, theirs in pairs):
-        raise argparse.ArgumentTypeError("it looks like rating=Bewertung: our name, and that of the column")
+        raise argparse.ArgumentTypeError("it looks like rating=Bewertung: htex's name, then the column's name")
     return [(ours.strip(), theirs.strip()) for ours, _, theirs in pairs]
 
 

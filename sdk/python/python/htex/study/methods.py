@@ -48,7 +48,7 @@ _MIXED = (
     "Linear mixed model of all cell means, by restricted maximum likelihood: fixed effects of texture, model and their "
     "interaction; random effects of the participant, and of the participant's taste in textures and in models where there are "
     "both. It uses participants who have not rated everything. Wald's F-tests, whose errors have the degrees of freedom of the "
-    "effect's interaction with participants: with complete ratings they are those of the ANOVA. By statsmodels."
+    "effect's interaction with participants, which equal the ANOVA's if the ratings are complete. By statsmodels."
 )
 _RELIABILITY = (
     "Intraclass correlations by two-way mean squares (McGraw and Wong 1996): icc2 and icc2k of agreement with random raters, "

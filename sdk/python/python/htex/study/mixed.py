@@ -74,7 +74,7 @@ def _fitted(model: Any, method: str) -> Any:
 def _effect(fit: Any, factors: list[str], sizes: dict[str, int], people: int, cells: int) -> MixedEffect:
     """Run Wald's test.
 
-    The error's degrees of freedom are those of the effect's interaction with participants.
+    The error has as many degrees of freedom as the effect's interaction with participants.
     """
     names = [f"C({factor}, Sum)" for factor in factors]
     parts = [set(part.split("[")[0] for part in name.split(":")) for name in fit.model.exog_names]

@@ -37,11 +37,11 @@ _RATINGS = (
     "join what differs: * p < 0.05, ** p < 0.01, *** p < 0.001, paired t-tests with Holm's correction for the pairs of a picture."
 )
 _EQUIVALENCE = (
-    "That no difference was found does not say that there is none. Intervals within the green bound say that two conditions are as "
+    "If no difference was found, there may still be one. An interval within the green bound says that two conditions are as "
     "good as each other."
 )
 _BANDS = (
-    "p is that of the test that counts the degrees of freedom which z-scores within a participant and texture take."
+    "p comes from the test that counts the degrees of freedom used up by z-scores within a participant and texture."
 )
 
 

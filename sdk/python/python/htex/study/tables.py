@@ -113,7 +113,7 @@ def _names(header: Row, renamed: Mapping[str, str], all_there: bool, findings: F
     for index, name in enumerate(names):
         earlier = names.index(name)
         if name and earlier < index:
-            findings.at("TABLE_COLUMN_DUPLICATE", header.line, index, name, f"column {earlier + 1} has this name, too")
+            findings.at("TABLE_COLUMN_DUPLICATE", header.line, index, name, f"column {earlier + 1} also has this name")
     return names
 
 

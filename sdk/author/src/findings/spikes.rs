@@ -5,12 +5,13 @@
 //! third-party recordings, at most four samples are removed by a repair at 12 times the usual
 //! corner, and no more than 0.1 % at five times (0.62 % in the current of a motor).
 
+use std::ops::Range;
+
 use htex_base::finding::Findings;
 use htex_format::Quantity;
 
-use super::lanes::largest;
 use super::quantile::{median, quantile};
-use super::{axis_words, pointer};
+use super::{axis_words, lanes, pointer};
 use crate::Recording;
 use htex_recording::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 
@@ -101,22 +102,15 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     // At low rates a block would have too few samples for its largest corner to mean anything.
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
-    // The corner of sample 1 comes first.
-    let corners: Vec<f64> = values.windows(3).map(corner).collect();
-    let blocks = (0..values.len()).step_by(block).filter_map(|start| {
-        let end = (start + block - 1).min(corners.len());
-        let first = start.saturating_sub(1);
-        (first < end).then(|| (first, end, largest(&corners[first..end], |x| x)))
-    });
-    let blocks: Vec<(usize, usize, f64)> = blocks.collect();
-    let usual = quantile(USUAL, blocks.len(), |at| blocks[at].2).unwrap_or(0.0);
-    let limit = SPIKE * usual.max(floor);
-    let spikes = blocks.iter().filter(|(_, _, corner)| limit > 0.0 && *corner > limit);
-    let sample = |&(first, end, corner): &(usize, usize, f64)| {
-        let at = corners[first..end].iter().position(|one| *one == corner)?;
-        Some((first + at + 1, corner))
+    let blocks = Blocks::new(values, block);
+    let usual = quantile(USUAL, blocks.largest.len(), |at| blocks.largest[at].corner);
+    let limit = SPIKE * usual.unwrap_or(0.0).max(floor);
+    let is_spike = |largest: &&Largest| limit > 0.0 && largest.corner > limit;
+    let sample = |largest: &Largest| {
+        let at = largest.samples.clone().find(|at| corner_at(values, *at) == largest.corner);
+        (at.unwrap_or(largest.samples.start), largest.corner)
     };
-    let mut found: Vec<(usize, f64)> = spikes.filter_map(sample).collect();
+    let mut found: Vec<_> = blocks.largest.iter().filter(is_spike).map(sample).collect();
     // At the edge of a block, the next block's largest sample may be the neighbour of the same
     // spike.
     found.dedup_by(|next, one| {
@@ -130,23 +124,64 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     if found.len() > rare {
         found.clear();
     }
-    let many = many(values, &corners, block, SPIKE * floor);
+    let many = many(values, &blocks, SPIKE * floor);
     if many.len() > found.len() { many } else { found.into_iter().map(|(at, _)| at).collect() }
 }
 
+/// The corners of a signal, block by block.
+struct Blocks {
+    largest: Vec<Largest>,
+    /// Medians of whole blocks, each of which begins one sample later.
+    medians: Vec<f64>,
+}
+
+/// The largest corner in a block.
+struct Largest {
+    /// The samples of the block that have two neighbours.
+    samples: Range<usize>,
+    corner: f64,
+}
+
+impl Blocks {
+    fn new(values: &[f64], block: usize) -> Self {
+        let last = values.len().saturating_sub(1);
+        let (mut largest, mut medians) = (Vec::new(), Vec::new());
+        let mut corners = Vec::with_capacity(block + 1);
+        for start in (0..values.len()).step_by(block) {
+            let samples = start.max(1)..(start + block).min(last);
+            if samples.is_empty() {
+                continue;
+            }
+            let reach = &values[samples.start - 1..(start + block + 2).min(values.len())];
+            corners.clear();
+            corners.extend(reach.windows(3).map(corner));
+            let corner = lanes::largest(&corners[..samples.len()], |x| x);
+            if start + block < last {
+                medians.extend(median(&corners[corners.len() - block..]));
+            }
+            largest.push(Largest { samples, corner });
+        }
+        Self { largest, medians }
+    }
+}
+
 /// Returns the single-sample outliers, if there are too many of them.
-fn many(values: &[f64], corners: &[f64], block: usize, floor: f64) -> Vec<usize> {
-    let medians: Vec<f64> = corners.chunks_exact(block).filter_map(median).collect();
+fn many(values: &[f64], blocks: &Blocks, floor: f64) -> Vec<usize> {
+    let medians = &blocks.medians;
     let usual = NORMAL * quantile(USUAL, medians.len(), |at| medians[at]).unwrap_or(0.0);
     if usual == 0.0 {
         return Vec::new();
     }
-    let exceeds = |at: usize, ratio: f64| corners[at - 1] > floor.max(ratio * usual);
-    let mut single: Vec<usize> = (3..values.len().saturating_sub(3))
-        .filter(|at| exceeds(*at, SMALL.0) && is_single(values, *at))
+    let [small, large] = [SMALL.0, LARGE.0].map(|ratio| floor.max(ratio * usual));
+    let inner = 3..values.len().saturating_sub(3);
+    let blocks = blocks.largest.iter().filter(|block| block.corner > small);
+    let mut single: Vec<usize> = blocks
+        .flat_map(|block| block.samples.clone())
+        .filter(|at| corner_at(values, *at) > small && inner.contains(at))
+        .filter(|at| is_single(values, *at))
         .collect();
     if (single.len() as f64) < SMALL.1 * values.len() as f64 {
-        single.retain(|at| exceeds(*at, LARGE.0));
+        single.retain(|at| corner_at(values, *at) > large);
         if single.len() < LARGE.1 {
             single.clear();
         }
@@ -157,16 +192,19 @@ fn many(values: &[f64], corners: &[f64], block: usize, floor: f64) -> Vec<usize>
 /// Whether repairing the sample removes its corner. The sample must have three others on either
 /// side.
 fn is_single(values: &[f64], at: usize) -> bool {
-    let corner_at = |at: usize| corner(&values[at - 1..=at + 1]);
-    let own = corner_at(at);
+    let own = corner_at(values, at);
     // Of equal neighbouring corners, only the last one counts.
-    if own < corner_at(at - 1) || own <= corner_at(at + 1) {
+    if own < corner_at(values, at - 1) || own <= corner_at(values, at + 1) {
         return false;
     }
     let mut around: [f64; 7] = core::array::from_fn(|i| values[at + i - 3]);
     // Repairs the sample by the cubic through two neighbours on either side.
     around[3] = (4.0 * (around[2] + around[4]) - (around[1] + around[5])) / 6.0;
     around.windows(3).all(|w| REPAIRED * corner(w) < own)
+}
+
+fn corner_at(values: &[f64], at: usize) -> f64 {
+    corner(&values[at - 1..=at + 1])
 }
 
 /// Absolute difference between a sample and the mean of its neighbours.

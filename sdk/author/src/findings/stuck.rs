@@ -120,14 +120,17 @@ pub(super) fn mean_size(values: &[f64]) -> f64 {
 /// Returns the constant stretches that have at least `shortest` samples.
 fn runs(values: &[f64], shortest: usize) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
-    let mut start = 0;
-    for at in 1..=values.len() {
-        if values.get(at) != Some(&values[start]) {
-            if at - start >= shortest {
-                runs.push(start..at);
-            }
-            start = at;
+    // Every such stretch has a sample at one of these places, from which it is followed both ways.
+    let step = (shortest / 2).max(1);
+    let (mut at, mut end) = (0, 0);
+    while at < values.len() {
+        let same = |value: &&f64| **value == values[at];
+        let start = at - values[end..at].iter().rev().take_while(same).count();
+        end = at + values[at..].iter().take_while(same).count();
+        if end - start >= shortest {
+            runs.push(start..end);
         }
+        at = end.max(at + step);
     }
     runs
 }

@@ -47,7 +47,7 @@ pub(super) fn definition() -> String {
          squared magnitudes of the windowed stretch, over its length and the sum of the squared window. It is read twice: of each \
          segment less its mean under a periodic Hann window, and of a *long* stretch of {LONG} segments (the whole recording if that is shorter) less its line of least squares \
          under a periodic Blackman-Harris window, `{a} - {b} cos t + {c} cos 2t - {d} cos 3t`. The long stretch has the segment in its middle, as far as it lies within the recording; a segment that \
-         begins less than a quarter of a long stretch after the last one with a long stretch has none. Powers are averaged. The band is from 20 Hz to 1000 Hz, or to half the rate if that is less; above it is what exceeds 1000 Hz. \
+         begins less than half a long stretch after the last one with a long stretch has none. Powers are averaged. The band is from 20 Hz to 1000 Hz, or to half the rate if that is less; above it is what exceeds 1000 Hz. \
          The finding is `RECORDING_BELOW_BAND` if the segments' power in the band is above {LEAST} of the square of the largest magnitude of a value and at least {LEAKS} times that of the long stretches, and `RECORDING_ABOVE_BAND` if the long stretches' power above the band is above the same limit and at least {ABOVE} times \
          that in it. Segments are those that would be read without a choice. A recording with an axis that is a ramp, alternates or is coarse is not checked.\n"
     )
@@ -110,7 +110,7 @@ impl Powers {
             let is_due = *start >= next;
             // Segments overlap, and a window of one second around each of them would read the same
             // samples ten times.
-            next = if is_due { start + long_len / 4 } else { next };
+            next = if is_due { start + long_len / 2 } else { next };
             is_due
         };
         let due = segments.starts.into_iter().filter(is_due);

@@ -222,13 +222,13 @@ fn each_fault_is_found_by_its_own_check() {
     assert_eq!(unbroken, ["cost", "twin"]);
 }
 
-/// A module that takes memory while it renders, from C; `None` where there is no compiler for it.
-fn growing_module(folder: &Path) -> Option<PathBuf> {
+/// A faulty module from C, `tests/bad-plugins/NAME.c`; `None` where there is no compiler for it.
+fn bad_module(folder: &Path, name: &str) -> Option<PathBuf> {
     let runs = |program| Command::new(program).arg("--version").output().is_ok();
     if !(runs("clang") && runs("wasm-ld")) {
         return None;
     }
-    let out = folder.join("grows.wasm");
+    let out = folder.join(name).with_extension("wasm");
     let status = Command::new("clang")
         .args(["--target=wasm32", "-std=c11", "-O2", "-Wall", "-Werror"])
         .args(["-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"])
@@ -237,23 +237,27 @@ fn growing_module(folder: &Path) -> Option<PathBuf> {
         .arg(workspace().join("spec/include"))
         .arg("-I")
         .arg(workspace().join("sdk/check/templates/c"))
-        .arg(workspace().join("tests/bad-plugins/grows.c"))
+        .arg(workspace().join("tests/bad-plugins").join(name).with_extension("c"))
         .args(["-o".as_ref(), out.as_os_str()])
         .status();
-    assert!(status.unwrap().success(), "grows.c does not compile");
+    assert!(status.unwrap().success(), "{name}.c does not compile");
     Some(out)
 }
 
+/// Faults that only a module shows: it takes memory while it renders, or voices of one instance
+/// share a state.
 #[test]
-fn a_module_that_takes_memory_while_it_renders_is_found() {
+fn faults_of_a_module_are_found() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(file) = growing_module(folder.path()) else {
-        println!("skipped: clang and lld are not installed");
-        return;
-    };
-    let report = checked(&file, 120);
-    println!("{report}");
-    assert_eq!(report.bad(), ["allocation"], "{}", report);
+    for (name, check) in [("grows", "allocation"), ("counts", "reproducible")] {
+        let Some(file) = bad_module(folder.path(), name) else {
+            println!("skipped: clang and lld are not installed");
+            return;
+        };
+        let report = checked(&file, 120);
+        println!("{report}");
+        assert_eq!(report.bad(), [check], "{}", report);
+    }
 }
 
 /// A file that is not there is no fault of a model, and one that does not load has no marker.

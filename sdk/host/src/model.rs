@@ -331,6 +331,26 @@ impl LoadedModel {
         }
     }
 
+    /// For checkers: renders two equal voices of `frames` samples, one after the other, in one
+    /// instance of a WASM module, where this host gives each voice its own. `None` for other models.
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn two_voices(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+        frames: usize,
+    ) -> Result<Option<[Vec<f32>; 2]>, HostError> {
+        let mut out = [vec![0.0; frames], vec![0.0; frames]];
+        match self.raw.two_voices(parameters, band, rate_hz, seed, &mut out) {
+            None => Ok(None),
+            Some(status) => self.check("voice_render", status).map(|_| Some(out)),
+        }
+    }
+
     /// Returns whether the model has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
     ///
     /// # Errors

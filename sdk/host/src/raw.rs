@@ -34,6 +34,17 @@ pub(crate) trait RawModel: Send + Sync {
     fn unusable_arrays(&self, _: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         None
     }
+    /// For checkers: renders two equal voices, one after the other, in one instance of a module.
+    fn two_voices(
+        &self,
+        _parameters: &[f64],
+        _band: Band,
+        _rate_hz: f64,
+        _seed: u64,
+        _out: &mut [Vec<f32>; 2],
+    ) -> Option<i64> {
+        None
+    }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Creates a voice. An error is a status.
     fn voice_new(

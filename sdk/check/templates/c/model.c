@@ -1,4 +1,4 @@
-/* {{LABEL}} ({{ID}}), to begin with one resonance. White noise runs through a two-pole band-pass filter; the spectrum is the
+/* {{LABEL}}, to begin with one resonance. White noise runs through a two-pole band-pass filter; the spectrum is the
  * filter's own: 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
  * Against htex_model.h and htex_motion_1.h alone: no C library, so that the same file is a native library and a WASM

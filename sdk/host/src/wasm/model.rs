@@ -7,6 +7,7 @@ use htex_model::motion_1::MotionTable;
 use htex_model::shim::copy;
 use htex_model::{Band, FitInput, Status};
 
+use super::calls::BLOCK;
 use super::fault::Fault;
 use super::instance::Instance;
 use super::module::WasmModule;
@@ -142,6 +143,32 @@ impl RawModel for WasmModel {
             |rate_hz| rate_hz < 0.0,
             |instance| instance.voice_rate(parameters, band, wanted_hz),
         )
+    }
+
+    fn two_voices(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+        out: &mut [Vec<f32>; 2],
+    ) -> Option<i64> {
+        Some(self.status(|instance| {
+            for out in out {
+                let handle = instance.voice_new(parameters, band, rate_hz, seed)?;
+                if handle < 0 {
+                    return Ok(handle);
+                }
+                for block in out.chunks_mut(BLOCK) {
+                    let status = instance.voice_render(handle, block)?;
+                    if status < 0 {
+                        return Ok(status);
+                    }
+                }
+                instance.voice_free(handle)?;
+            }
+            Ok(0)
+        }))
     }
 
     fn voice_new(

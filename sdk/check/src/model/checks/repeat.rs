@@ -3,7 +3,7 @@
 use htex_host::{Band, HostError, Status};
 
 use crate::harness::{CheckResult, Finding};
-use crate::model::case::Case;
+use crate::model::case::{Case, RATE_HZ};
 use crate::model::checks::magnitude::fine_grid;
 use crate::model::signal::{first_difference, is_line_spectrum};
 
@@ -22,6 +22,12 @@ pub(crate) fn reproducible(case: &Case) -> CheckResult {
             let what = format!("spectrum `{}`, the same seed twice", fitted.reference);
             return Err(differ(&what, at));
         }
+    }
+    let parameters = case.parameters()?;
+    let rate_hz = case.model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)?;
+    let two = case.model.two_voices(&parameters, Band::TACTILE, rate_hz, case.seed, SAMPLES)?;
+    if let Some(at) = two.and_then(|[first, second]| first_difference(&first, &second)) {
+        return Err(differ("two equal voices in one instance of the module", at));
     }
     Ok(Finding::passed(format!("{SAMPLES} samples are equal in two voices")))
 }

@@ -22,7 +22,7 @@ pub(crate) struct CheckArgs {
     #[arg(long, default_value_t = 60.0, value_name = "S")]
     timeout: f64,
 
-    /// Run this one check in a single process, e.g. under a debugger
+    /// Run only the check NAME, in this process instead of one of its own, e.g. under a debugger
     #[arg(long, value_name = "NAME", conflicts_with = "timeout")]
     pub(crate) reproduce: Option<String>,
 }

@@ -41,7 +41,8 @@ const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: So
 ///
 /// Needs nothing but this program. Writes these files to DIR: NAME.csv (the simulated recording),
 /// NAME.htex, NAME-MODEL.wav, rig.csv (the response of the simulated rig, which is divided out of
-/// the recordings), report.html and spectra.svg (all recordings with the Bands and AR models).
+/// the recordings), report.html and spectra.svg (all recordings with the Bands and AR models). The
+/// WAV files hold newtons as 32-bit floats and are quiet: to listen, raise them in an audio editor.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder to write to; created if it does not exist
@@ -128,7 +129,11 @@ impl Demo {
 
     fn page(&self, textures: Vec<Texture>, shares: Vec<Share>) -> TextureReport {
         TextureReport {
-            title: "Five simulated surfaces, six models".to_owned(),
+            title: format!(
+                "{} simulated surfaces, {} models",
+                Surface::ALL.len(),
+                Registry::builtin().by_default().count()
+            ),
             intro: vec![
                 "Recordings come from a simulator of a finger sliding to and fro, not from a \
                  finger: they show the way of the data, not the quality of the models on real \

@@ -24,8 +24,9 @@ const LARGE_STEP_DB: f64 = 4.0;
 ///
 /// The surface plays without end. `+` and `-`, each followed by Enter, make it 1 dB stronger or
 /// weaker, `++` and `--` 4 dB. Enter alone accepts the gain. It starts 20 dB below the device's
-/// limit, so a finger feels nothing stronger than the participant asked for. (The paper starts at
-/// the limit.) `htex play --person` then uses the stored gain. Ctrl-C stores nothing.
+/// limit, so a finger feels nothing stronger than the participant asked for. In the paper,
+/// participants start at the device's limit; htex does not. `htex play --person` then uses the
+/// stored gain. Ctrl-C stores nothing.
 ///
 /// htex stores one gain for each person, texture and device. All representations of a texture share
 /// it. An asset that is fitted again keeps its gain, because the name and the author identify a

@@ -37,8 +37,8 @@ pub(crate) struct Build {
     /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
     recipe: Anywhere,
 
-    /// The folder for the results, or its URI (s3://, gs://, az://), to which complete results are
-    /// copied
+    /// A folder for the results, or a URI (s3://, gs://, az://). For a URI, results are made in
+    /// --work and copied when complete
     #[arg(short, long, value_name = "DIR|URI")]
     output: OsString,
 

@@ -44,7 +44,8 @@ pub(crate) struct Response {
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     output: String,
 
-    /// Name and scale of the time column, if its name is not known: time=stamp_ms:0.001
+    /// The time column and its scale to seconds, if htex does not recognise its name:
+    /// time=stamp_ms:0.001
     #[arg(long, value_name = "MAP")]
     map: Option<String>,
 

@@ -46,11 +46,13 @@ pub(crate) struct ChoiceArgs {
     #[arg(long, value_name = "ID")]
     pub(crate) model: Option<String>,
 
-    /// Scanning speed, mm/s [default: the first condition, or the strongest if the first is silent]
+    /// Scanning speed, mm/s [default: the speed of the first condition, or of the strongest if the
+    /// first is silent]
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force, N [default: the first condition, or the strongest if the first is silent]
+    /// Normal force, N [default: the force of the first condition, or of the strongest if the first
+    /// is silent]
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 }

@@ -16,7 +16,8 @@ use crate::wav::write_wav;
 
 /// Play an asset to a WAV file
 ///
-/// Samples are 32-bit floats in the asset's unit, such as newtons.
+/// Samples are 32-bit floats in the asset's unit, such as newtons. Forces of a few millinewtons are
+/// quiet: to listen, raise the file in an audio editor, or use `htex play` in a build with sound.
 #[derive(Args)]
 pub(crate) struct Synth {
     /// The asset

@@ -27,9 +27,9 @@ use crate::recordings::RecordingArgs;
 ///
 /// Sweeps models and their options over your recordings.
 ///
-/// Measures each recording and the medians over all. Writes a page with pictures, and the same
-/// points as CSV and JSON next to it. An interrupted sweep continues when the same command is given
-/// again.
+/// Measures each recording and the medians over all. Writes a page that plots each setting as a
+/// point, and these points as CSV and JSON next to it. An interrupted sweep continues when the same
+/// command is given again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
     #[arg(help = format!("Recordings: {}", format_names()))]

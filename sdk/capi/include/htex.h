@@ -217,8 +217,8 @@ typedef struct htex_open_options {
      */
     uint32_t no_embedded;
     /*
-     If not 0, installed models are also searched for, in the folders of HTEX_PLUGIN_PATH and in
-     the user's folder.
+     If not 0, htex also looks for installed models, in the folders that HTEX_PLUGIN_PATH names
+     and in the user's folder.
      */
     uint32_t installed;
 } htex_open_options;

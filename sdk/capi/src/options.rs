@@ -64,8 +64,8 @@ pub struct htex_open_options {
     pub cache: *const c_char,
     /// If not 0, modules embedded in assets do not run even with an engine.
     pub no_embedded: u32,
-    /// If not 0, installed models are also searched for, in the folders of HTEX_PLUGIN_PATH and in
-    /// the user's folder.
+    /// If not 0, htex also looks for installed models, in the folders that HTEX_PLUGIN_PATH names
+    /// and in the user's folder.
     pub installed: u32,
 }
 

@@ -101,8 +101,8 @@ pub fn rms(values: &[f64]) -> f64 {
     crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
-/// Pearson correlation of two slices, in `[-1, 1]`. A longer slice is cut to the length of the
-/// other.
+/// Returns the Pearson correlation of two slices, a number from -1 to 1. A longer slice is cut to
+/// the length of the other.
 ///
 /// The result is never NaN for finite input. If either slice is constant, the correlation is
 /// undefined and the result is 0, except that two equal slices give 1.

@@ -6,7 +6,8 @@
 //! Recurrences generate the samples, and restart from the counted phase at regular anchors. While
 //! nothing changes, an oscillator generates eight samples at a time from the previous sixteen:
 //! `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are independent, which suits vector
-//! instructions. While amplitudes or frequencies change, oscillators rotate sample by sample.
+//! instructions. While amplitudes or frequencies change, each sample is computed from the one
+//! before, by rotating the oscillator's point by its angle per sample.
 
 use alloc::vec::Vec;
 

@@ -5,12 +5,33 @@
 //! let texture = Texture::open("sandpaper.htex")?;
 //! let mut voice = texture.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
-//! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
+//! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s and newtons, neither of them negative
 //! voice.render(&mut block)?; // in the texture's unit
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
+//! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread. A
+//! [`Voice`] is [`Send`], so another thread can make it. Call [`Voice::set_motion`] once per block
+//! of 1 to 10 ms. Longer blocks lag behind the finger. Shorter ones only cost time, because a voice
+//! takes 10 ms to reach a new spectrum and level.
+//!
+//! # On a sound card
+//!
+//! Samples are in the texture's unit: a few millinewtons RMS for a force. A gain and a limit bring
+//! them to the full scale of a sound card, which is 1:
+//!
+//! ```no_run
+//! use htex::{Texture, VoiceOptions};
+//! let texture = Texture::open("sandpaper.htex")?;
+//! let options = VoiceOptions::default()
+//!     .with_rate_hz(48_000.0) // the card's rate
+//!     .with_gain(0.1 / texture.level_rms(None)?) // an RMS of 0.1 at the default condition
+//!     .with_limit(0.9);
+//! let mut voice = texture.voice(&options)?;
+//! # Ok::<(), htex::Error>(())
+//! ```
+//!
+//! The example `live` is a complete program with a sound card and a ring buffer of commands.
 //!
 //! # Features
 //!

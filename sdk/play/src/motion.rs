@@ -15,8 +15,8 @@ use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S, slides};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Motion {
-    /// Scanning speed, mm/s, finite. For a texture it is not negative; over a scene it is negative
-    /// on the back stroke.
+    /// Scanning speed, mm/s, finite. For a texture it is a magnitude: a voice refuses a negative
+    /// speed. Over a scene it is negative on the back stroke.
     pub speed_mm_s: f64,
     /// Normal force, newtons; finite and not negative.
     pub force_n: f64,

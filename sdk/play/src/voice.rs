@@ -25,7 +25,8 @@ const RAMP_S: f64 = 0.010;
 
 /// A voice: an endless stream of samples in the asset's unit
 /// ([`Texture::quantity`](crate::Texture::quantity)). It follows the finger's motion with the same
-/// [`Effects`](crate::Effects) as a scene.
+/// [`Effects`](crate::Effects) as a scene. A voice is [`Send`]: one thread can make it, and an
+/// audio thread can render it.
 ///
 /// ```no_run
 /// use htex::{Motion, Texture, VoiceOptions};

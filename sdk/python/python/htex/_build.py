@@ -27,7 +27,8 @@ def build(
 
     Args:
         recipe: The recipe, ``library.toml``, as a path or URI. Its recordings may also be URIs.
-        output: The folder for the results, or its URI (``s3://``, ``gs://``, ``az://``).
+        output: A folder for the results, or a URI (``s3://``, ``gs://``, ``az://``). For a URI,
+            results are made in ``work`` and copied when complete.
         keep_going: Leave out a texture that cannot be made instead of raising.
         work: The folder in which results for a URI are made. Default: one in the user's cache.
         plugins: Plugins to fit with: WASM modules (sandboxed), or native libraries, which run with

@@ -67,7 +67,8 @@ def build(
         recipe: The recipe, ``library.toml``, as a path or URI. Its recordings may also be URIs,
             which the workers read.
         client: The cluster.
-        output: The folder for the results, or its URI.
+        output: A folder for the results, or a URI. For a URI, results are made in ``work`` and
+            copied when complete.
         keep_going: Leave out a texture that cannot be made instead of raising.
         work: The folder in which results for a URI are made. Default: one in the user's cache.
         plugins: Plugins to fit with, as for :func:`htex.build`, under the same paths on every worker.

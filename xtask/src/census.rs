@@ -52,7 +52,10 @@ fn rows(sources: &[Source], packages: &Packages, list: bool) -> Result<Vec<Row>>
         row("crates that htex-cli needs to be published", packages.needed("htex-cli").len()),
         row("error types", errors.len()),
         row("traits for Result, which attach context", contexts.len()),
-        row("`pub` items of internal crates that no other crate names", unused.len()),
+        row(
+            "`pub` items of internal crates that no other crate and no public signature names",
+            unused.len(),
+        ),
         row("names at the root of htex", root_names(packages)?),
     ];
     let share = 100.0 * whys as f64 / lines.max(1) as f64;
@@ -81,6 +84,8 @@ struct Source {
     errors: Vec<String>,
     contexts: Vec<String>,
     public: Vec<String>,
+    /// Names in public signatures and fields.
+    interface: BTreeSet<String>,
     /// Every identifier of the file.
     words: BTreeSet<String>,
 }
@@ -120,6 +125,7 @@ fn source(path: &Path) -> Result<Source> {
         errors: kept.errors,
         contexts: kept.contexts,
         public: kept.public,
+        interface: kept.interface,
         words,
     })
 }
@@ -210,14 +216,27 @@ struct FileCount {
     errors: Vec<String>,
     contexts: Vec<String>,
     public: Vec<String>,
+    /// Names in the types of public functions, fields, variants, constants and traits.
+    interface: BTreeSet<String>,
 }
 
 impl FileCount {
-    fn add(&mut self, visibility: &syn::Visibility, name: &syn::Ident) {
-        if matches!(visibility, syn::Visibility::Public(_)) {
+    fn add(&mut self, visibility: &syn::Visibility, name: &syn::Ident, types: impl ToTokens) {
+        if is_public(visibility) {
             self.public.push(name.to_string());
+            collect(types.into_token_stream(), &mut self.interface);
         }
     }
+}
+
+fn is_public(visibility: &syn::Visibility) -> bool {
+    matches!(visibility, syn::Visibility::Public(_))
+}
+
+/// Returns the types of the public fields.
+fn public_fields(fields: &syn::Fields) -> TokenStream {
+    let public = fields.iter().filter(|field| is_public(&field.vis));
+    public.map(|field| field.ty.to_token_stream()).collect()
 }
 
 impl<'a> Visit<'a> for FileCount {
@@ -229,12 +248,20 @@ impl<'a> Visit<'a> for FileCount {
             return;
         }
         match item {
-            syn::Item::Const(item) => self.add(&item.vis, &item.ident),
-            syn::Item::Enum(item) => self.add(&item.vis, &item.ident),
-            syn::Item::Fn(item) => self.add(&item.vis, &item.sig.ident),
-            syn::Item::Struct(item) => self.add(&item.vis, &item.ident),
-            syn::Item::Trait(item) => self.add(&item.vis, &item.ident),
-            syn::Item::Type(item) => self.add(&item.vis, &item.ident),
+            syn::Item::Const(item) => self.add(&item.vis, &item.ident, &item.ty),
+            syn::Item::Enum(item) => {
+                let fields = item.variants.iter().map(|variant| variant.fields.to_token_stream());
+                self.add(&item.vis, &item.ident, fields.collect::<TokenStream>());
+            }
+            syn::Item::Fn(item) => self.add(&item.vis, &item.sig.ident, &item.sig),
+            syn::Item::Struct(item) => {
+                self.add(&item.vis, &item.ident, public_fields(&item.fields));
+            }
+            syn::Item::Trait(item) => {
+                let items = item.items.iter().map(ToTokens::to_token_stream);
+                self.add(&item.vis, &item.ident, items.collect::<TokenStream>());
+            }
+            syn::Item::Type(item) => self.add(&item.vis, &item.ident, &item.ty),
             _ => {}
         }
         let derives = attributes(item).iter().any(|attribute| {
@@ -258,6 +285,17 @@ impl<'a> Visit<'a> for FileCount {
             match (last(of).as_deref(), last(&ours.path)) {
                 (Some("Error"), Some(name)) => self.errors.push(name),
                 (Some(of), Some(name)) if name == "Result" => self.contexts.push(of.to_owned()),
+                _ => {}
+            }
+        }
+        for part in &item.items {
+            match part {
+                syn::ImplItem::Fn(part) if is_public(&part.vis) || item.trait_.is_some() => {
+                    collect(part.sig.to_token_stream(), &mut self.interface);
+                }
+                syn::ImplItem::Type(part) => {
+                    collect(part.ty.to_token_stream(), &mut self.interface);
+                }
                 _ => {}
             }
         }
@@ -323,7 +361,8 @@ impl Packages {
     }
 }
 
-/// Returns `pub` items of internal crates whose name occurs in no other crate, as `crate::item`.
+/// Returns `pub` items of internal crates whose name occurs in no other crate and in no public
+/// signature or field of its own crate, as `crate::item`.
 fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
     let mut words: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for source in sources {
@@ -332,12 +371,21 @@ fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
             words.entry(word).or_default().insert(package);
         }
     }
+    let mut interfaces: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for source in sources {
+        let package = packages.package(&source.path).unwrap_or_default();
+        let names = source.interface.iter().map(String::as_str);
+        interfaces.entry(package).or_default().extend(names);
+    }
     let mut unused = Vec::new();
     for source in sources.iter().filter(|source| !source.is_test) {
         let package = packages.package(&source.path).unwrap_or_default();
+        let interface = &interfaces[package];
         let is_internal = !FOR_USERS.contains(&package) && !package.is_empty();
-        let is_unused =
-            |name: &&String| words.get(name.as_str()).is_none_or(|packages| packages.len() < 2);
+        let is_unused = |name: &&String| {
+            let is_named = words.get(name.as_str()).is_some_and(|packages| packages.len() > 1);
+            !is_named && !interface.contains(name.as_str())
+        };
         if is_internal {
             unused.extend(
                 source.public.iter().filter(is_unused).map(|name| format!("{package}::{name}")),

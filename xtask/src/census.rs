@@ -364,11 +364,12 @@ impl Packages {
 /// Returns `pub` items of internal crates whose name occurs in no other crate and in no public
 /// signature or field of its own crate, as `crate::item`.
 fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
-    let mut words: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    // Integration tests are crates of their own.
+    let mut words: BTreeMap<&str, BTreeSet<(&str, bool)>> = BTreeMap::new();
     for source in sources {
         let package = packages.package(&source.path).unwrap_or_default();
         for word in &source.words {
-            words.entry(word).or_default().insert(package);
+            words.entry(word).or_default().insert((package, source.is_test));
         }
     }
     let mut interfaces: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();

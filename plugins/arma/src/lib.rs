@@ -37,7 +37,7 @@ pub(crate) const MAX_ORDER: usize = all_zero::MAX_ORDER;
 /// Highest line spectral frequency: π rounded to a 32-bit float, which is slightly more than π.
 const MAX_LINE: f64 = core::f32::consts::PI as f64;
 
-pub struct PolesAndZeros;
+pub(crate) struct PolesAndZeros;
 
 htex_model::export_model!(PolesAndZeros, symbols: "plugin");
 

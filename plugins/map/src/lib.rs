@@ -48,7 +48,7 @@ const EQUAL: f64 = 1e-9;
 const MOST_GREY: f64 = 255.0;
 
 /// The model `org.htex.map`.
-pub struct FrictionMap;
+pub(crate) struct FrictionMap;
 
 htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 

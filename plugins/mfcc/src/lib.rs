@@ -39,7 +39,7 @@ const FLOOR: f64 = 1e-20;
 
 const WHOLE: Store = Store::U8 { scale: 1.0, offset: 0.0, log: false };
 
-pub struct MelCepstrum;
+pub(crate) struct MelCepstrum;
 
 htex_model::export_model!(MelCepstrum, symbols: "plugin");
 

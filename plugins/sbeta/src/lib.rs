@@ -24,7 +24,7 @@ use htex_model::{
 const ALPHA: usize = 0;
 const BETA: usize = 1;
 
-pub struct SpectralBeta;
+pub(crate) struct SpectralBeta;
 
 htex_model::export_model!(SpectralBeta, symbols: "plugin");
 

@@ -44,7 +44,7 @@ const HERTZ: Store = Store::U16 { scale: 0.03125, offset: 0.0, log: false };
 /// Amplitudes in steps of 0.003 dB.
 const RATIO: Store = Store::U16 { scale: 0.0003, offset: -18.0, log: true };
 
-pub struct SpectralPeak;
+pub(crate) struct SpectralPeak;
 
 htex_model::export_model!(SpectralPeak, symbols: "plugin");
 

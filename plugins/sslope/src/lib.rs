@@ -39,7 +39,7 @@ const fn steps(scale: f64) -> Store {
     Store::U16 { scale, offset: 0.0, log: false }
 }
 
-pub struct SpectralSlope;
+pub(crate) struct SpectralSlope;
 
 htex_model::export_model!(SpectralSlope, symbols: "plugin");
 

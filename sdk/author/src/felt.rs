@@ -14,7 +14,7 @@ use crate::spectrum::{SpectrumRef, TextureSpectrum};
 /// Smallest difference in level that people notice, decibels: 20 %. This is the smallest median
 /// reported by Forta, Griffin & Morioka 2012, *Experimental Brain Research* 220, whose conditions
 /// range from 20 % to 58 %.
-pub const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
+pub(crate) const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 
 /// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands,
 /// and the difference between them. Below the threshold nothing can be felt, so a level below 0 dB

@@ -76,7 +76,7 @@ pub use edit::edit;
 pub use embed::embed_plugins;
 pub use error::{AuthorError, AuthorErrorKind};
 pub use exploration::{Exploration, Spread};
-pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, FeltShare, felt, threshold_magnitude};
+pub use felt::{Felt, FeltError, FeltShare, felt, threshold_magnitude};
 pub use findings::recording_findings;
 pub use fit::{representation, stored_fields};
 pub use grid::{CellStatus, Grid, GridCell, GridReport};

@@ -23,7 +23,7 @@ use crate::wide::{Work, wide};
 /// assert!((out[0] - 1.0).abs() < 1e-6 && (out[4] + 1.0).abs() < 1e-6);
 /// ```
 #[derive(Debug, Clone)]
-pub struct InverseRealFft {
+pub(crate) struct InverseRealFft {
     half: usize,
     stages: Vec<Stage>,
     /// `exp(2πi k / len)` for each `k` below `half`.
@@ -76,7 +76,7 @@ pub(crate) fn smooth_length(least: usize) -> usize {
 impl InverseRealFft {
     /// Makes a transform to `2 * half` samples. If `half` has a prime factor above 5, the next
     /// number without one is used.
-    pub fn new(half: usize) -> Self {
+    pub(crate) fn new(half: usize) -> Self {
         let half = smooth_length(half);
         let (mut length, mut stride) = (half, 1);
         let stages = factors(half).unwrap_or_default().into_iter().map(|radix| {
@@ -92,7 +92,7 @@ impl InverseRealFft {
     }
 
     /// Allocates the memory for [`Self::run`].
-    pub fn workspace(&self) -> Workspace {
+    pub(crate) fn workspace(&self) -> Workspace {
         Workspace { from: Complexes::zeros(self.half), to: Complexes::zeros(self.half) }
     }
 
@@ -100,7 +100,7 @@ impl InverseRealFft {
     ///
     /// The bins `X_k` from `first` on, in 1 to `half - 1`, are directions (cosines and sines) times
     /// amplitudes. All other bins are zero, and surplus values are ignored. Does not allocate.
-    pub fn run(
+    pub(crate) fn run(
         &self,
         workspace: &mut Workspace,
         first: usize,

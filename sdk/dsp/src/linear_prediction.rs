@@ -11,7 +11,7 @@ use core::f64::consts::PI;
 /// Largest absolute value of an estimated reflection coefficient. A stage that would exceed it has
 /// predicted the signal completely (a pure sinusoid, or rounding). The limit corresponds to a
 /// resonance of 10¹⁰ samples.
-pub const MAX_REFLECTION: f64 = 1.0 - 1e-10;
+pub(crate) const MAX_REFLECTION: f64 = 1.0 - 1e-10;
 
 /// An all-pole model; always stable.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,7 +10,7 @@ use crate::triangles::TriangleBank;
 
 /// Weight of the squared norm of the power, the ridge term. It makes the solution unique, and
 /// changes energies that can be reached by about a millionth.
-pub const RIDGE: f64 = 1e-6;
+pub(crate) const RIDGE: f64 = 1e-6;
 /// Maximum number of Newton steps; energies of recordings need three to eight.
 const STEPS: usize = 100;
 /// Maximum number of halvings of a step.

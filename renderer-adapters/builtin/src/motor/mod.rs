@@ -17,9 +17,8 @@ mod plan;
 mod worker;
 
 pub use paced::PacedOutput;
-pub use plan::{
-    DEFAULT_GAIN, Plan, buffer_setting, has_usual_buffer, rate_error, reducing_settings,
-};
+pub(crate) use plan::DEFAULT_GAIN;
+pub use plan::{Plan, buffer_setting, has_usual_buffer, rate_error, reducing_settings};
 
 use htex_dsp::envelope::Measurement;
 

@@ -10,7 +10,7 @@ const DEFAULT_RATE_HZ: f64 = 8_000.0;
 /// Defaults of the setting `buffer_ms`: the general one, and the one for a live motion.
 const DEFAULT_BUFFER_MS: [&str; 2] = ["100", "30"];
 /// Default of the setting `gain`.
-pub const DEFAULT_GAIN: &str = "3";
+pub(crate) const DEFAULT_GAIN: &str = "3";
 
 /// Returns the settings `gain`, `block_ms` and `buffer_ms`.
 pub fn reducing_settings() -> Vec<Setting> {

@@ -6,7 +6,7 @@
 //! 17 or more).
 
 /// Colour of the recording: dark grey, distinct from the models' colours.
-pub const RECORDING_COLOR: &str = "#4d4d4d";
+pub(crate) const RECORDING_COLOR: &str = "#4d4d4d";
 
 /// Colours of the models, in the order of their registry; also used for series.
 const PALETTE: [&str; 6] = ["#0072b2", "#009e73", "#d55e00", "#7d1f6b", "#5b2c00", "#006b7a"];

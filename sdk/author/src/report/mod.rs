@@ -30,7 +30,8 @@ mod ticks;
 
 pub use axis::{Axis, Scale};
 pub use chain::{Chain, ChainStage};
-pub use color::{RECORDING_COLOR, model_color, series_color};
+pub(crate) use color::RECORDING_COLOR;
+pub use color::{model_color, series_color};
 pub use number::fixed;
 pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;

@@ -5,7 +5,7 @@ use htex_host::FitOption;
 
 /// Options for storing and playing. They are varied one at a time, with the fit at its defaults.
 /// Ways to load a model are added to these.
-pub const PLAYING: &[(&str, &[&str])] = &[
+pub(crate) const PLAYING: &[(&str, &[&str])] = &[
     (
         "synthesis",
         &["loop:0.5", "loop:2", "loop:10", "filter:127", "filter:255", "filter:511", "filter:1023"],

@@ -13,7 +13,7 @@ pub const EXTENSION: &str = "org.htex.hatt/1";
 /// not need.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Hatt {
+pub(crate) struct Hatt {
     /// Number of the texture in the toolkit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texture: Option<u32>,

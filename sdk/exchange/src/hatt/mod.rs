@@ -26,6 +26,6 @@ mod zeros;
 pub use asset::asset;
 pub(crate) use asset::import;
 pub use document::MOST_BYTES;
-pub use extension::{EXTENSION, Hatt, extension_schema};
+pub use extension::{EXTENSION, extension_schema};
 pub use node::Node;
 pub use texture::{Texture, read};

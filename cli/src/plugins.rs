@@ -56,11 +56,6 @@ impl PluginArgs {
         self.search(&[])
     }
 
-    /// Returns the models that are found without any arguments, without reports.
-    pub(crate) fn installed() -> Result<Registry> {
-        Ok(Registry::search(&Search::default().with_limits(WasmLimit::all(&[])))?)
-    }
-
     /// Returns the model in the file of this name if the file exists, else the model with this short
     /// name or id.
     pub(crate) fn find(&self, name: &str) -> Result<LoadedModel> {

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_base::finding::Notice;
+use htex_base::finding::{Finding, Notice};
 use htex_device::{AdapterEntry, Capabilities, DeviceError, Devices, SettingKind, Settings};
-use htex_host::Registry;
+use htex_host::{Registry, Search, WasmLimits};
 use htex_scene::file::{Constant, Motion};
 use htex_scene::{Costs, DeviceOverride, Plan, Scene, Surroundings};
 use serde_json::Value;
@@ -16,8 +16,9 @@ use crate::failure::{Failure, Result, for_file};
 use crate::located;
 use crate::output::{note, shown, warn};
 use crate::outputs::check_outputs;
-use crate::plugins::{PlayerArgs, PluginArgs};
+use crate::plugins::PlayerArgs;
 use crate::schemas::SchemaFile;
+use crate::wasm_limits::WasmLimit;
 
 /// Models and devices for a scene.
 #[derive(Args)]
@@ -136,14 +137,26 @@ impl SceneArgs {
         })
     }
 
-    pub(crate) fn validate(file: &Path) -> Result<htex_base::finding::Report> {
-        let registry = PluginArgs::installed()?;
+    /// Validates a scene. Models that its assets embed run only with limits for them.
+    pub(crate) fn validate(
+        file: &Path,
+        embedded: Option<WasmLimits>,
+    ) -> Result<htex_base::finding::Report> {
+        let is_allowed = embedded.is_some();
+        let limits = embedded.unwrap_or_else(|| WasmLimit::all(&[]));
+        let registry = Registry::search(&Search::default().with_limits(limits))?;
         let around = Surroundings {
             models: &registry,
-            embedded: false,
+            embedded: is_allowed,
             devices: Some(&DeviceArgs::default().devices_quietly()?),
         };
-        htex_scene::validate(file, &around).map_err(for_file(file))
+        let mut report = htex_scene::validate(file, &around).map_err(for_file(file))?;
+        let is_embedded =
+            |f: &&mut Finding| !is_allowed && f.message.contains("embedded models are not allowed");
+        for finding in report.findings.iter_mut().filter(is_embedded) {
+            finding.message.push_str(" (`--embedded-plugins` allows them)");
+        }
+        Ok(report)
     }
 
     /// Returns the schema for the settings of a scene's device, if the device is known.

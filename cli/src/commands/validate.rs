@@ -41,8 +41,8 @@ pub(crate) struct Validate {
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models embedded in assets, in their sandbox, and compare them with the asset's
-    /// fields. Without this, nothing embedded in an asset is run
+    /// Also load the models embedded in assets and in the assets of scenes, in their sandbox, and
+    /// compare them with the asset's fields. Without this, nothing embedded in an asset is run
     #[arg(long)]
     embedded_plugins: bool,
 
@@ -80,7 +80,7 @@ impl Validate {
             let report = match kind {
                 Kind::Asset => self.validate_asset(path, &schemas),
                 Kind::Library => check(path),
-                Kind::Document => validate_json(path),
+                Kind::Document => self.validate_json(path),
                 Kind::Recipe => validate_recipe(path),
                 Kind::Recording => self.reading.validate(path),
             }?;
@@ -97,6 +97,45 @@ impl Validate {
         // An invalid asset may not open.
         if self.embedded_plugins && report.valid {
             check_plugins(path, &WasmLimit::all(&self.wasm_limit), &mut report)?;
+        }
+        Ok(report)
+    }
+
+    fn validate_json(&self, path: &Path) -> Result<Report> {
+        let bytes = read_asset(path)?;
+        // What is not JSON goes on as a scene, whose reader reports the place.
+        let document = htex_format::parse_json(&bytes).unwrap_or_default();
+        let text = || String::from_utf8_lossy(&bytes);
+        let has = |key: &str| document.get(key).is_some();
+        if has("id") && has("fields") {
+            let refused = htex_host::read_descriptor(&text()).err();
+            let problem = refused.map(|error| error.to_string());
+            return descriptor(
+                &document,
+                problem,
+                SchemaFile::new("descriptor-1.json", &htex_model::descriptor_schema())?,
+            );
+        }
+        if has("id") && has("settings") {
+            let read = serde_json::from_str::<htex_device::Descriptor>(&text());
+            let problem = match read {
+                Ok(descriptor) => descriptor.check().err().map(|error| match error {
+                    DeviceError::Invalid { what, .. } => what,
+                    other => other.to_string(),
+                }),
+                Err(error) => Some(error.to_string()),
+            };
+            let [(file, schema), ..] = htex_device::schemas();
+            return descriptor(&document, problem, SchemaFile::new(file, &schema)?);
+        }
+        let embedded = self.embedded_plugins.then(|| WasmLimit::all(&self.wasm_limit));
+        let mut report = SceneArgs::validate(path, embedded)?;
+        if document.get("htex_scene").is_some_and(|v| v == htex_scene::file::VERSION) {
+            SchemaFile::new("scene-1.json", &htex_scene::scene_schema())?
+                .check(&document, &mut report);
+            if let Some(settings) = SceneArgs::settings_schema(&document)? {
+                settings.check(&document, &mut report);
+            }
         }
         Ok(report)
     }
@@ -287,43 +326,6 @@ fn validate_recipe(path: &Path) -> Result<Report> {
 }
 
 /// Validates a scene or a descriptor. Their keys tell them apart.
-fn validate_json(path: &Path) -> Result<Report> {
-    let bytes = read_asset(path)?;
-    // What is not JSON goes on as a scene, whose reader reports the place.
-    let document = htex_format::parse_json(&bytes).unwrap_or_default();
-    let text = || String::from_utf8_lossy(&bytes);
-    let has = |key: &str| document.get(key).is_some();
-    if has("id") && has("fields") {
-        let refused = htex_host::read_descriptor(&text()).err();
-        let problem = refused.map(|error| error.to_string());
-        return descriptor(
-            &document,
-            problem,
-            SchemaFile::new("descriptor-1.json", &htex_model::descriptor_schema())?,
-        );
-    }
-    if has("id") && has("settings") {
-        let read = serde_json::from_str::<htex_device::Descriptor>(&text());
-        let problem = match read {
-            Ok(descriptor) => descriptor.check().err().map(|error| match error {
-                DeviceError::Invalid { what, .. } => what,
-                other => other.to_string(),
-            }),
-            Err(error) => Some(error.to_string()),
-        };
-        let [(file, schema), ..] = htex_device::schemas();
-        return descriptor(&document, problem, SchemaFile::new(file, &schema)?);
-    }
-    let mut report = SceneArgs::validate(path)?;
-    if document.get("htex_scene").is_some_and(|v| v == htex_scene::file::VERSION) {
-        SchemaFile::new("scene-1.json", &htex_scene::scene_schema())?.check(&document, &mut report);
-        if let Some(settings) = SceneArgs::settings_schema(&document)? {
-            settings.check(&document, &mut report);
-        }
-    }
-    Ok(report)
-}
-
 fn descriptor(document: &Value, problem: Option<String>, schema: SchemaFile) -> Result<Report> {
     let mut findings = Findings::default();
     if let Some(problem) = problem {

@@ -52,6 +52,19 @@ fn a_third_party_model_travels_with_its_asset() {
     for words in ["org.example.bursts", "embeds it", "--no-embedded-plugins"] {
         assert!(forbidden.error().contains(words), "{}", forbidden.error());
     }
+
+    // A scene plays it too, so it is valid where embedded models may run.
+    let scene = r#"{"htex_scene": "1.0", "surfaces": [{"asset": "b.htex", "representation": "bursts"}],
+        "motion": {"constant": {"speed_mm_s": 80, "force_n": 0.4}}, "duration_s": 1}"#;
+    place.write("scene.json", scene);
+    let validate = ["validate", "scene.json"];
+    let unplayed = place.run(&validate);
+    assert_eq!(unplayed.code(), 1);
+    assert!(unplayed.text().contains("`--embedded-plugins` allows them"), "{}", unplayed.text());
+    let allowed = place.run(&[&validate[..], &["--embedded-plugins"]].concat());
+    assert_eq!(allowed.code(), 0, "{}", allowed.text());
+    let rendered = place.run(&["render", "scene.json", "-o", "scene.wav"]);
+    assert_eq!(rendered.code(), 0, "{}", rendered.error());
 }
 
 /// A module that is declared, or even signed, as another model does not replace it.

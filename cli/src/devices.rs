@@ -146,12 +146,6 @@ impl OneDeviceArgs {
         found.cloned().map_err(|error| explained(name, direction, error))
     }
 
-    /// Returns the arguments that name the device, as they are typed.
-    pub(crate) fn shown(&self) -> String {
-        let flag = if self.input { "--input " } else { "" };
-        format!("{flag}{}", self.device)
-    }
-
     /// Loads the library, or finds the device.
     pub(crate) fn load(&self) -> Result<AdapterEntry, Failure> {
         Ok(match self.file() {

@@ -1,5 +1,6 @@
 //! Standard output and standard error.
 
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -197,4 +198,17 @@ fn bar_like(length: u64, template: &str) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Returns a line that a POSIX shell splits into these arguments.
+pub(crate) fn command_line(arguments: &[OsString]) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-+=.,:/@%".contains(c);
+    let quoted = |argument: &OsString| {
+        let text = plain(&argument.to_string_lossy()).into_owned();
+        if !text.is_empty() && text.chars().all(is_plain) {
+            return text;
+        }
+        format!("'{}'", text.replace('\'', r"'\''"))
+    };
+    arguments.iter().map(quoted).collect::<Vec<_>>().join(" ")
 }

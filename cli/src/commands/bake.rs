@@ -158,7 +158,7 @@ fn warn_of_frequencies(baked: &BakeResult) {
     };
     if is_narrow {
         warn(&[format!(
-            "beyond {lowest} to {highest} mm/s the player keeps the frequencies of this model, which the texture's law moves by the \
+            "beyond {lowest:.1} to {highest:.1} mm/s the player keeps the frequencies of this model, which the texture's law moves by the \
              speed to the power {}: {beyond_db:.1} dB at half or twice the speed; bake all speeds that will be played (see --grid)",
             baked.law.frequency_speed
         )]);

@@ -1,3 +1,5 @@
+use std::ffi::OsString;
+
 use clap::Args;
 use htex_check::device::{Subject, check, run_one};
 use htex_check::harness::Finding;
@@ -6,7 +8,7 @@ use htex_device::Origin;
 use crate::checking::CheckArgs;
 use crate::devices::OneDeviceArgs;
 use crate::failure::{Exit, Failure, Result};
-use crate::output::print_json;
+use crate::output::{command_line, print_json};
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
 ///
@@ -43,7 +45,11 @@ impl Check {
         let mut arguments = vec!["device".into(), "check-one".into()];
         arguments.extend(device.again());
         let report = check(&device.device, &subject, &checking.runner(arguments)?);
-        let again = |name: &str| format!("htex device check {} --reproduce {name}", device.shown());
+        let again = |name: &str| {
+            let mut arguments = device.again();
+            arguments.extend(["--reproduce", name].map(OsString::from));
+            format!("htex device check {}", command_line(&arguments))
+        };
         checking.print_report(&report, again)
     }
 }

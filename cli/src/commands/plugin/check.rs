@@ -1,3 +1,4 @@
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -7,7 +8,7 @@ use htex_check::model::{CheckError, Options, Report, Settings, check, run_one};
 
 use crate::checking::CheckArgs;
 use crate::failure::{Exit, Failure, Result};
-use crate::output::print_json;
+use crate::output::{command_line, print_json};
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
 ///
@@ -88,8 +89,13 @@ impl Check {
         }
         let report = check(file, &self.options()?).map_err(failed)?;
         let again = |name: &str| {
-            let (file, seed) = (file.display(), seed_of(&report, name));
-            format!("htex plugin check {file} --reproduce {name} --seed {seed}")
+            let seed = seed_of(&report, name).to_string();
+            let mut arguments: Vec<OsString> = vec![file.into()];
+            arguments.extend(["--reproduce", name, "--seed", &seed].map(OsString::from));
+            if let Some(other) = &self.against {
+                arguments.extend(["--against".into(), other.into()]);
+            }
+            format!("htex plugin check {}", command_line(&arguments))
         };
         self.checking.print_report(&report, again)
     }

@@ -7,27 +7,45 @@ use crate::bake::BakeResult;
 /// Number of bytes per line.
 const IN_LINE: usize = 16;
 
+/// Begins names that would otherwise begin with a digit or be a keyword.
+const PREFIX: &str = "texture_";
+
 /// Reserved words, which an array in C or C++ cannot have as its name.
 const RESERVED: &[&str] = &[
     "alignas",
     "alignof",
     "and",
+    "and_eq",
     "asm",
     "auto",
+    "bitand",
+    "bitor",
     "bool",
     "break",
     "case",
     "catch",
     "char",
+    "char16_t",
+    "char32_t",
+    "char8_t",
     "class",
+    "co_await",
+    "co_return",
+    "co_yield",
+    "compl",
+    "concept",
     "const",
+    "const_cast",
+    "consteval",
     "constexpr",
+    "constinit",
     "continue",
     "decltype",
     "default",
     "delete",
     "do",
     "double",
+    "dynamic_cast",
     "else",
     "enum",
     "explicit",
@@ -47,23 +65,30 @@ const RESERVED: &[&str] = &[
     "new",
     "noexcept",
     "not",
+    "not_eq",
     "nullptr",
     "operator",
     "or",
+    "or_eq",
     "private",
     "protected",
     "public",
     "register",
+    "reinterpret_cast",
+    "requires",
     "restrict",
     "return",
     "short",
     "signed",
     "sizeof",
     "static",
+    "static_assert",
+    "static_cast",
     "struct",
     "switch",
     "template",
     "this",
+    "thread_local",
     "throw",
     "true",
     "try",
@@ -71,25 +96,30 @@ const RESERVED: &[&str] = &[
     "typeid",
     "typename",
     "typeof",
+    "typeof_unqual",
     "union",
     "unsigned",
     "using",
     "virtual",
     "void",
     "volatile",
+    "wchar_t",
     "while",
     "xor",
+    "xor_eq",
 ];
 
-/// Returns the name of an array in C for the stem of a file name. Characters that are not allowed
-/// become underscores.
+/// Returns the name of an array in C and C++ for the stem of a file name ([`is_c_name`]). Characters
+/// that are not allowed become underscores, never two in a row.
 ///
 /// ```
-/// assert_eq!(htex_play::bake::c_name("my-texture"), "my_texture");
+/// assert_eq!(htex_play::bake::c_name("my--texture"), "my_texture");
 /// assert_eq!(htex_play::bake::c_name("cloth"), "texture_cloth");
+/// assert_eq!(htex_play::bake::c_name("static-assert"), "texture_static_assert");
 /// ```
 pub fn c_name(stem: &str) -> String {
-    identifier(stem)
+    let name = identifier(stem);
+    if is_c_name(&name) { name } else { format!("{PREFIX}{name}") }
 }
 
 /// Returns the name of a constant in Rust for the stem of a file name.
@@ -114,6 +144,13 @@ pub fn is_c_name(name: &str) -> bool {
         && name.chars().all(is_word)
         && !name.contains("__")
         && !RESERVED.contains(&name)
+        && !is_integer_type(name)
+}
+
+/// Whether `stdint.h`, which the header includes, may define a type of this name.
+fn is_integer_type(name: &str) -> bool {
+    let name = name.strip_prefix('u').unwrap_or(name);
+    name.starts_with("int") && name.ends_with("_t")
 }
 
 /// Returns whether a constant in Rust may have this name: a capital letter, then capital letters,
@@ -169,11 +206,16 @@ fn lines(bytes: &[u8]) -> String {
     text
 }
 
-/// Returns an identifier for C and Rust. Characters that are not allowed become underscores. A
-/// prefix prevents a leading digit and keywords.
+/// Returns an identifier for C and Rust. Characters that are not allowed become underscores, never
+/// two in a row.
 fn identifier(stem: &str) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    let name: String = stem.chars().map(plain).collect();
+    let mut name = String::new();
+    for c in stem.chars() {
+        let c = if c.is_ascii_alphanumeric() { c } else { '_' };
+        if c != '_' || !name.ends_with('_') {
+            name.push(c);
+        }
+    }
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.contains('_');
-    if is_word { name } else { format!("texture_{name}") }
+    if is_word { name } else { format!("{PREFIX}{}", name.trim_start_matches('_')) }
 }

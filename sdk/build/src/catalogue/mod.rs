@@ -23,10 +23,11 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
     });
     // Inside a script element, only `<` could end the data.
     let data = data.to_string().replace('<', "\\u003c");
-    // The data is inserted last, because the texts in it may contain the other marks.
+    // The data is inserted last, because the texts in it may contain the other marks, and the title
+    // has none.
     PAGE.replace("@STYLE@", STYLE)
         .replace("@SCRIPT@", SCRIPT)
-        .replace("@TITLE@", &escaped(&report.library.name))
+        .replace("@TITLE@", &escaped(&report.library.name).replace('@', "&#64;"))
         .replace("@DATA@", &data)
 }
 

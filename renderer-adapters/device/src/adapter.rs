@@ -311,9 +311,9 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 /// # Known doubts
 ///
 /// - [`Status::latency_s`] is the device's own estimate. The host does not measure it.
-/// - An output that runs dry returns [`DeviceError::Underflow`] and stays at zero, as the ABI
-///   demands. The built-in sound card is an exception: it fades to silence, counts an underrun and
-///   continues.
+/// - A display that runs dry must return [`DeviceError::Underflow`] and stay at zero. Other outputs
+///   may continue, as the built-in sound card does: it fades to silence and counts an underrun. A
+///   host learns of it only from [`Status::underruns`].
 ///
 /// [`Adapter`] has a complete example.
 pub trait Output: Send {

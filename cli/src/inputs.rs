@@ -9,7 +9,7 @@ use clap::Args;
 use htex_author::recording::ColumnMap;
 use htex_base::files::AtFile;
 use htex_device::Input;
-use htex_format::Quantity;
+use htex_format::{Quantity, UnknownName};
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 
 use crate::failure::{Failure, Result};
@@ -124,8 +124,7 @@ fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>> {
 
 /// Parses a quantity that can be recorded, by its name on the command line.
 fn quantity(name: &str) -> Result<Quantity, String> {
-    Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
-        let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));
-        format!("the quantities are {}", names.collect::<Vec<_>>().join(", "))
+    name.replace('-', "_").parse().map_err(|unknown: UnknownName| {
+        format!("the quantities are {}", unknown.known.join(", ").replace('_', "-"))
     })
 }

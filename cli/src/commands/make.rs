@@ -4,7 +4,7 @@ use clap::Args;
 use htex_author::Exploration;
 use htex_author::by_hand::{ByHand, make};
 use htex_author::settings::Metadata;
-use htex_format::{Condition, Quantity};
+use htex_format::{Condition, Quantity, UnknownName};
 
 use crate::assets::{check_metadata, write_and_show};
 use crate::failure::{Failure, Result};
@@ -105,9 +105,6 @@ fn parameter(text: &str) -> Result<(String, Vec<f64>)> {
 }
 
 fn quantity(text: &str) -> Result<Quantity, String> {
-    let found = Quantity::ALL.iter().find(|quantity| quantity.name() == text);
-    found.copied().ok_or_else(|| {
-        let names: Vec<&str> = Quantity::ALL.iter().map(|quantity| quantity.name()).collect();
-        format!("it is one of {}", names.join(", "))
-    })
+    text.parse()
+        .map_err(|unknown: UnknownName| format!("it is one of {}", unknown.known.join(", ")))
 }

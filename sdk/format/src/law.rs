@@ -7,11 +7,12 @@
 //! ([`Law::assumed`]).
 
 use std::fmt;
+use std::str::FromStr;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::Quantity;
+use crate::quantity::{Quantity, UnknownName};
 
 /// What slid over the surface.
 #[derive(
@@ -28,6 +29,19 @@ pub enum Contact {
     Unknown,
 }
 
+/// Reads the name used in a manifest.
+///
+/// ```
+/// assert_eq!("tool".parse(), Ok(htex_format::Contact::Tool));
+/// ```
+impl FromStr for Contact {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("contact", text, Self::ALL, Self::name)
+    }
+}
+
 impl Contact {
     /// All kinds of contact.
     pub const ALL: &[Self] = &[Self::Finger, Self::Tool, Self::Unknown];
@@ -39,15 +53,6 @@ impl Contact {
             Self::Tool => "tool",
             Self::Unknown => "unknown",
         }
-    }
-
-    /// Returns the contact that has this name in a manifest.
-    ///
-    /// ```
-    /// assert_eq!(htex_format::Contact::from_name("tool"), Some(htex_format::Contact::Tool));
-    /// ```
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|contact| contact.name() == name)
     }
 
     /// Returns whether the contact is not known.

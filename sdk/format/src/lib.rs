@@ -79,7 +79,7 @@ pub use manifest::{
 pub use measure::{By, ErrorMeasure, Measure, MeasureKind, MeasureRow};
 pub use page::{manifest_schema, report_schema, validation_page};
 pub use quality::{KeyedMeasures, LeftOut, Measures, Quality};
-pub use quantity::Quantity;
+pub use quantity::{Quantity, UnknownName};
 pub use rights::{Rights, license_file, read_license_file};
 pub use rules::{
     DESCRIPTOR_INVALID, EXTENSION_SCHEMA_BROKEN, PLUGIN_UNUSABLE, RULES, SCHEMA_BROKEN,

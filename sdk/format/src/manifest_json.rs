@@ -50,11 +50,10 @@ fn check_quantity(manifest: &Value, findings: &mut Findings) -> Option<()> {
     let Some(Value::String(name)) = manifest.get("quantity") else {
         return Some(());
     };
-    if Quantity::from_name(name).is_some() {
+    let Err(unknown) = name.parse::<Quantity>() else {
         return Some(());
-    }
-    let names: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
-    let names = names.join(", ");
+    };
+    let names = unknown.known.join(", ");
     let message = format!("{name:?} is not a quantity of version 1; write one of {names}");
     findings.add(rule::QUANTITY_UNKNOWN, "/quantity", message);
     None

@@ -1,6 +1,7 @@
 //! Physical quantities of an asset's samples.
 
 use std::fmt;
+use std::str::FromStr;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 /// use htex_format::Quantity;
 /// assert_eq!(Quantity::Acceleration.unit(), "m/s2");
-/// assert_eq!(Quantity::from_name("lateral_force"), Some(Quantity::LateralForce));
+/// assert_eq!("lateral_force".parse(), Ok(Quantity::LateralForce));
 /// ```
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema,
@@ -28,6 +29,44 @@ pub enum Quantity {
     Velocity,
     /// Displacement of the finger or tool, m.
     Displacement,
+}
+
+/// An error for a text that names none of the known values.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no {what} is called {name:?}; there are {}", known.join(", "))]
+pub struct UnknownName {
+    /// What was looked for, such as `quantity`.
+    pub what: &'static str,
+    /// The text.
+    pub name: String,
+    /// The names that exist.
+    pub known: Vec<&'static str>,
+}
+
+impl UnknownName {
+    /// Returns the value with this name.
+    pub(crate) fn find<T: Copy>(
+        what: &'static str,
+        text: &str,
+        all: &[T],
+        name: impl Fn(T) -> &'static str,
+    ) -> Result<T, Self> {
+        let found = all.iter().copied().find(|one| name(*one) == text);
+        found.ok_or_else(|| Self {
+            what,
+            name: text.to_owned(),
+            known: all.iter().copied().map(name).collect(),
+        })
+    }
+}
+
+/// Reads the name used in a manifest.
+impl FromStr for Quantity {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("quantity", text, Self::ALL, Self::name)
+    }
 }
 
 impl Quantity {
@@ -49,11 +88,6 @@ impl Quantity {
             Self::Velocity => "velocity",
             Self::Displacement => "displacement",
         }
-    }
-
-    /// Returns the quantity with the given name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|q| q.name() == name)
     }
 
     /// Returns the unit's symbol, as in a manifest.

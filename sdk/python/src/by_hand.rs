@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use htex::format::Quantity;
+use htex::format::{Quantity, UnknownName};
 use htex_author::by_hand::{self, ByHand, MixedAsset};
 use htex_author::edit as edited;
 use htex_author::settings::Metadata;
@@ -92,9 +92,8 @@ impl ByHandTexture {
         let metadata = checked(&self.metadata)?;
         let registry = registry(&self.plugins, self.installed)?;
         let model = registry.find(&self.model).map_err(raised)?;
-        let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
-            let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
-            unknown("quantity", &self.quantity, &known.join(", "))
+        let quantity: Quantity = self.quantity.parse().map_err(|error: UnknownName| {
+            unknown(error.what, &error.name, &error.known.join(", "))
         })?;
         let name = metadata.name.as_deref().unwrap_or("texture");
         let (speed_mm_s, force_n) = self.at;

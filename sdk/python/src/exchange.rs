@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::format::Quantity;
+use htex::format::{Quantity, UnknownName};
 use htex_author::settings::{FitSettings, Metadata};
 use htex_base::files::read_regular;
 use htex_exchange::{
@@ -95,9 +95,8 @@ impl Importing {
         let metadata: Metadata = parsed(&self.metadata)?;
         metadata.check().map_err(|error| option(error.to_string()))?;
         let fit: FitSettings = parsed(&self.settings)?;
-        let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
-            let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
-            unknown("quantity", &self.quantity, &known.join(", "))
+        let quantity: Quantity = self.quantity.parse().map_err(|error: UnknownName| {
+            unknown(error.what, &error.name, &error.known.join(", "))
         })?;
         let profile = self.profile.as_deref();
         let beside =

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use htex::format::Quantity;
+use htex::format::{Quantity, UnknownName};
 use htex::model::Band;
 use htex::model::Registry;
 use htex_author::by_hand::{self, ByHandAt, ByHandModel, ByHandModels, MixedAsset};
@@ -55,11 +55,7 @@ pub(crate) fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
     let Some(name) = name else {
         return Ok(Quantity::default());
     };
-    Quantity::from_name(&name).ok_or_else(|| {
-        let known: Vec<&str> = Quantity::ALL.iter().map(|quantity| quantity.name()).collect();
-        let name = htex_base::finding::plain(&name);
-        Refusal::argument(format!("{name} is no quantity; there are {}", known.join(", ")))
-    })
+    name.parse().map_err(|error: UnknownName| Refusal::argument(error.to_string()))
 }
 
 fn band(edges: &[Value]) -> Result<Band, Refusal> {

@@ -14,12 +14,12 @@ int main(int argc, char **argv)
     }
     htex::VoiceOptions options;
     options.seed = 7;
-    auto asset = htex::Asset::open(argv[1]);
-    if (!asset) {
-        std::fprintf(stderr, "%s: %s\n", argv[1], asset.status().text.c_str());
+    auto texture = htex::Texture::open(argv[1]);
+    if (!texture) {
+        std::fprintf(stderr, "%s: %s\n", argv[1], texture.status().text.c_str());
         return 1;
     }
-    auto voice = asset->voice(options);
+    auto voice = texture->voice(options);
     if (!voice) {
         std::fprintf(stderr, "voice: %s\n", voice.status().text.c_str());
         return 1;

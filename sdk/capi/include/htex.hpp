@@ -217,7 +217,7 @@ public:
     }
 
 private:
-    friend class Asset;
+    friend class Texture;
     explicit Voice(htex_voice handle) noexcept : handle_(handle) {}
     detail::Owned<htex_voice, htex_voice_free> handle_;
 };
@@ -260,12 +260,12 @@ struct OpenOptions {
     }
 };
 
-/* An opened asset. [any thread] */
-class Asset {
+/* An opened asset, which plays. [any thread] */
+class Texture {
 public:
-    Asset() noexcept = default;
+    Texture() noexcept = default;
 
-    static Result<Asset> open(const std::string &path, const OpenOptions &options = {})
+    static Result<Texture> open(const std::string &path, const OpenOptions &options = {})
     {
         htex_asset asset{};
         htex_status code = options.with(
@@ -273,7 +273,7 @@ public:
         return made(code, asset);
     }
 #ifdef _WIN32
-    static Result<Asset> open(const std::wstring &path, const OpenOptions &options = {})
+    static Result<Texture> open(const std::wstring &path, const OpenOptions &options = {})
     {
         htex_asset asset{};
         htex_status code = options.with([&](const htex_open_options *open) {
@@ -283,14 +283,14 @@ public:
     }
 #endif
     /* Opens an asset that the program reads; the reader is closed before this returns. */
-    static Result<Asset> open(const Reader &reader, const OpenOptions &options = {})
+    static Result<Texture> open(const Reader &reader, const OpenOptions &options = {})
     {
         htex_asset asset{};
         htex_status code = options.with(
             [&](const htex_open_options *open) { return htex_asset_open_reader(&reader, open, &asset); });
         return made(code, asset);
     }
-    static Result<Asset> from_bytes(const uint8_t *bytes, size_t len, const OpenOptions &options = {})
+    static Result<Texture> from_bytes(const uint8_t *bytes, size_t len, const OpenOptions &options = {})
     {
         htex_asset asset{};
         htex_status code = options.with(
@@ -400,12 +400,12 @@ public:
 
 private:
     friend class Library;
-    explicit Asset(htex_asset handle) noexcept : handle_(handle) {}
-    static Result<Asset> made(htex_status code, htex_asset asset)
+    explicit Texture(htex_asset handle) noexcept : handle_(handle) {}
+    static Result<Texture> made(htex_status code, htex_asset asset)
     {
         if (Status status = status_of(code); !status)
             return status;
-        return Asset(asset);
+        return Texture(asset);
     }
     detail::Owned<htex_asset, htex_asset_free> handle_;
 };
@@ -440,13 +440,13 @@ public:
     }
 
     /* Opens a texture; reads only its bytes. */
-    Result<Asset> asset(const std::string &name, const OpenOptions &options = {}) const
+    Result<Texture> texture(const std::string &name, const OpenOptions &options = {}) const
     {
         htex_asset asset{};
         htex_status code = options.with([&](const htex_open_options *open) {
             return htex_library_asset(handle_.get(), name.c_str(), open, &asset);
         });
-        return Asset::made(code, asset);
+        return Texture::made(code, asset);
     }
     Result<std::string> name() const
     {

@@ -46,20 +46,20 @@ int main(int argc, char **argv)
                        nullptr};
     htex::OpenOptions open;
     open.engine = htex::Engine::checked;
-    auto asset = htex::Asset::open(reader, open);
-    if (!asset)
-        return std::fprintf(stderr, "%s\n", asset.status().text.c_str()), 1;
+    auto texture = htex::Texture::open(reader, open);
+    if (!texture)
+        return std::fprintf(stderr, "%s\n", texture.status().text.c_str()), 1;
     auto library = htex::Library::from_bytes(packed.data(), packed.size());
     std::printf("library %d\n", static_cast<int>(*library->count()));
-    std::printf("name %s\n", asset->name()->c_str());
-    std::printf("level %.17g\n", *asset->level_rms());
-    std::printf("band %.17g %.17g\n", asset->band()->low_hz, asset->band()->high_hz);
+    std::printf("name %s\n", texture->name()->c_str());
+    std::printf("level %.17g\n", *texture->level_rms());
+    std::printf("band %.17g %.17g\n", texture->band()->low_hz, texture->band()->high_hz);
     htex::VoiceOptions options;
     options.seed = 7;
     options.gain = 0.5;
     options.limit = 0.01;
     options.envelope_bands = 3;
-    auto voice = asset->voice(options);
+    auto voice = texture->voice(options);
     std::printf("model %s\n", voice->model()->c_str());
     std::vector<float> samples(4000), sum(4000);
     htex::Envelope envelope;

@@ -39,10 +39,10 @@ pub const MODEL: Surface = Surface {
     function: "htex_model_",
     constant: "HTEX_",
     export: "HTEX_EXPORT(",
-    code: "sdk/model/src/abi.rs",
+    code: "sdk/core/model/src/abi.rs",
     table: "ModelTable",
     more: &[("alloc", "AllocFn"), ("free", "FreeFn")],
-    statuses: Some(("sdk/model/src/error.rs", "Status")),
+    statuses: Some(("sdk/core/model/src/error.rs", "Status")),
 };
 
 /// The extension of the model ABI that renders several voices in one call.
@@ -51,7 +51,7 @@ pub const VOICES: Surface = Surface {
     function: "htex_voices_1_",
     constant: "HTEX_VOICES_1_",
     export: "HTEX_EXPORT(",
-    code: "sdk/model/src/voices_1.rs",
+    code: "sdk/core/model/src/voices_1.rs",
     table: "VoicesTable",
     more: &[],
     statuses: None,
@@ -63,7 +63,7 @@ pub const MOTION: Surface = Surface {
     function: "htex_motion_1_",
     constant: "HTEX_MOTION_1_",
     export: "HTEX_EXPORT(",
-    code: "sdk/model/src/motion_1.rs",
+    code: "sdk/core/model/src/motion_1.rs",
     table: "MotionTable",
     more: &[],
     statuses: None,

@@ -15,28 +15,28 @@ type Own = (&'static str, &'static str);
 /// A folder, and its files: where each is in the workspace, and its name in the layout.
 type Layout = (&'static str, &'static [(Own, &'static str)]);
 
-const SOURCE: Own = ("sdk/player/c", "htex_player.c");
-const HEADER: Own = ("sdk/player/c", "htex_player.h");
+const SOURCE: Own = ("sdk/runtime/player/c", "htex_player.c");
+const HEADER: Own = ("sdk/runtime/player/c", "htex_player.h");
 
 const LAYOUTS: [Layout; 3] = [
     (
         "arduino/HtexPlayer",
         &[
-            (("sdk/player/c/arduino", "library.properties"), "library.properties"),
+            (("sdk/runtime/player/c/arduino", "library.properties"), "library.properties"),
             (SOURCE, "src/htex_player.c"),
             (HEADER, "src/htex_player.h"),
             (
-                ("sdk/player/c/arduino/examples/Texture", "Texture.ino"),
+                ("sdk/runtime/player/c/arduino/examples/Texture", "Texture.ino"),
                 "examples/Texture/Texture.ino",
             ),
-            (("sdk/player/c/examples", "cloth.h"), "examples/Texture/cloth.h"),
+            (("sdk/runtime/player/c/examples", "cloth.h"), "examples/Texture/cloth.h"),
         ],
     ),
     (
         "esp-idf/htex_player",
         &[
-            (("sdk/player/c/esp-idf", "CMakeLists.txt"), "CMakeLists.txt"),
-            (("sdk/player/c/esp-idf", "idf_component.yml"), "idf_component.yml"),
+            (("sdk/runtime/player/c/esp-idf", "CMakeLists.txt"), "CMakeLists.txt"),
+            (("sdk/runtime/player/c/esp-idf", "idf_component.yml"), "idf_component.yml"),
             (SOURCE, "htex_player.c"),
             (HEADER, "include/htex_player.h"),
         ],
@@ -44,9 +44,9 @@ const LAYOUTS: [Layout; 3] = [
     (
         "zephyr/htex_player",
         &[
-            (("sdk/player/c/zephyr", "module.yml"), "zephyr/module.yml"),
-            (("sdk/player/c/zephyr", "CMakeLists.txt"), "zephyr/CMakeLists.txt"),
-            (("sdk/player/c/zephyr", "Kconfig"), "zephyr/Kconfig"),
+            (("sdk/runtime/player/c/zephyr", "module.yml"), "zephyr/module.yml"),
+            (("sdk/runtime/player/c/zephyr", "CMakeLists.txt"), "zephyr/CMakeLists.txt"),
+            (("sdk/runtime/player/c/zephyr", "Kconfig"), "zephyr/Kconfig"),
             (SOURCE, "src/htex_player.c"),
             (HEADER, "include/htex_player.h"),
         ],

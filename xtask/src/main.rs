@@ -52,7 +52,7 @@ enum Task {
     Web(Out),
     /// Build the studio: DIR/studio.html, one file, and DIR/static, for a web server
     Studio(Out),
-    /// Make the textures that come with the studio anew: sdk/studio/shelf/shelf.htexlib
+    /// Make the textures that come with the studio anew: sdk/bindings/studio/shelf/shelf.htexlib
     StudioShelf,
     /// Run a proof that takes too long for continuous integration, which runs a sample of it
     #[command(subcommand, arg_required_else_help = true)]

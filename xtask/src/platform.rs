@@ -162,7 +162,7 @@ impl Build {
     /// Returns maturin, which builds wheels, with a subcommand.
     pub fn maturin(&self, verb: &str) -> Command {
         let mut command = Command::new(tools().join("maturin"));
-        command.arg(verb).current_dir(workspace().join("sdk/python"));
+        command.arg(verb).current_dir(workspace().join("sdk/bindings/python"));
         if let Some(commit) = &self.commit {
             self.for_release(&mut command, commit);
         }

@@ -1,4 +1,4 @@
-//! Remakes the textures that come with the studio, `sdk/studio/shelf/shelf.htexlib`.
+//! Remakes the textures that come with the studio, `sdk/bindings/studio/shelf/shelf.htexlib`.
 
 use anyhow::Result;
 

@@ -1,4 +1,4 @@
-//! Builds the studio of `sdk/studio`: one page, as a file and as a folder.
+//! Builds the studio of `sdk/bindings/studio`: one page, as a file and as a folder.
 
 use std::path::{Path, PathBuf};
 
@@ -39,5 +39,5 @@ pub(crate) fn install(folder: &Path) -> Result<()> {
 }
 
 pub(crate) fn source() -> PathBuf {
-    workspace().join("sdk/studio")
+    workspace().join("sdk/bindings/studio")
 }

@@ -1,4 +1,4 @@
-//! Builds the npm package of `sdk/web`.
+//! Builds the npm package of `sdk/bindings/web`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -80,7 +80,7 @@ const WORKER: [&str; 8] = [
 const AUTHOR_WORKER: [&str; 5] =
     ["guests.js", "core.js", "author-core.js", "author-serve.js", "author-worker.js"];
 
-/// Features of `sdk/web/author`, and the modules built with them.
+/// Features of `sdk/bindings/web/author`, and the modules built with them.
 const MODULES: [(&str, &str); 3] =
     [("make", "htex-author.wasm"), ("import", "htex-import.wasm"), ("scene", "htex-scene.wasm")];
 
@@ -89,7 +89,7 @@ const MODULES: [(&str, &str); 3] =
 /// # Errors
 /// A message with the file or the program.
 pub fn web(out: &Path) -> Result<()> {
-    let source = workspace().join("sdk/web");
+    let source = workspace().join("sdk/bindings/web");
     let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
     fs::create_dir_all(out)?;
     // Each feature is built to the same file name, so it is copied before the next one is built.

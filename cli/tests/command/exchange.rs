@@ -16,7 +16,7 @@ fn haptic() -> String {
 }
 
 /// A model file of the Penn Haptic Texture Toolkit with four nodes, of which two are silent.
-const HATT: &str = include_str!("../../../sdk/exchange/tests/felt.xml");
+const HATT: &str = include_str!("../../../sdk/make/exchange/tests/felt.xml");
 
 const GIVEN: &str = "--full-scale 0.2 --speed 80 --force 0.4";
 

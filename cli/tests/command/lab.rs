@@ -94,7 +94,7 @@ fn files_of_a_tracker_are_never_overwritten_and_must_fit() {
 
 #[test]
 fn a_file_of_another_format_is_validated_and_processed() {
-    let lab = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sdk/recording/tests/lab");
+    let lab = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sdk/make/recording/tests/lab");
     let place = Place::new();
     for (file, map) in [
         ("compressed.mat", "lateral=run.forces#1:1,normal=run.forces#3:1"),

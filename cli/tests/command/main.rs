@@ -6,7 +6,7 @@
 mod browser;
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../../../sdk/host/tests/it/common/mod.rs"]
+#[path = "../../../sdk/core/host/tests/it/common/mod.rs"]
 mod model;
 
 mod bake;

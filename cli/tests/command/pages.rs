@@ -145,7 +145,8 @@ fn studies_on_pages_are_read() {
 /// What pages import from the npm package is there.
 #[test]
 fn imports_on_pages_exist() {
-    let types = std::fs::read_to_string(workspace().join("sdk/web/src/index.d.ts")).unwrap();
+    let types =
+        std::fs::read_to_string(workspace().join("sdk/bindings/web/src/index.d.ts")).unwrap();
     let scripts = texts("docs/devices.md", "js");
     assert_eq!(scripts.len(), 1);
     for script in scripts {

@@ -23,7 +23,7 @@ fn generated_settings_of_python_are_fresh() {
         class::<Metadata>("Metadata", "What a texture is, who made it, and how it was recorded.", &[]),
         class::<ResponseSettings>("ResponseSettings", "How a response is measured.", &[]),
     ];
-    file("sdk/python/python/htex/_settings.py", module.join("\n\n").as_bytes());
+    file("sdk/bindings/python/python/htex/_settings.py", module.join("\n\n").as_bytes());
 }
 
 /// A class of keywords, without those that the package defines by itself.

@@ -1,4 +1,4 @@
-//! `htex studio`: which folder it serves. `sdk/studio/tests/served.test.mjs` opens what is served.
+//! `htex studio`: which folder it serves. `sdk/bindings/studio/tests/served.test.mjs` opens what is served.
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpListener;

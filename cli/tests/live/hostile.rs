@@ -1,7 +1,7 @@
 //! Hostile models, through the command: each gives one sentence on standard error that names the
 //! model and the call, and exit status 1, within bounded time and memory.
 
-#[path = "../../../sdk/host/tests/it/common/mod.rs"]
+#[path = "../../../sdk/core/host/tests/it/common/mod.rs"]
 mod model;
 
 use std::time::Duration;

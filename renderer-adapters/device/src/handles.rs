@@ -1,7 +1,7 @@
 //! Open devices behind handles. A handle is never used twice.
 //!
 //! A lock protects each open device, because opening and writing may block. The voices of
-//! a model must not block, so they use slots and generations instead (`sdk/model/src/voices.rs`).
+//! a model must not block, so they use slots and generations instead (`sdk/core/model/src/voices.rs`).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -9,7 +9,7 @@ use htex_host::{
 use crate::body::{Bytes, body, signature};
 use crate::promise::{finite, sentence};
 
-#[path = "../../../sdk/host/tests/it/common/mod.rs"]
+#[path = "../../../sdk/core/host/tests/it/common/mod.rs"]
 pub(crate) mod model;
 
 /// Tight limits on time and memory.

@@ -493,7 +493,7 @@ fn lab_files() -> Vec<Seed> {
             vec![$((
                 $target,
                 $name.to_owned(),
-                include_bytes!(concat!("../../../sdk/recording/tests/lab/", $name)).to_vec(),
+                include_bytes!(concat!("../../../sdk/make/recording/tests/lab/", $name)).to_vec(),
             )),*]
         };
     }

@@ -7,7 +7,7 @@
 //! (the schema's verdict). Manifests are read in an archive with an entry `a.bin` of nine zero
 //! bytes.
 
-#[path = "../../../sdk/format/tests/it/common/raw_zip.rs"]
+#[path = "../../../sdk/core/format/tests/it/common/raw_zip.rs"]
 #[allow(dead_code)]
 mod raw_zip;
 

@@ -98,7 +98,7 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
     let prefix = folder.join("prefix");
     dist(&Dist { prefix: prefix.clone(), whole: true, build: Build::here()? })?;
     crate::web::web(&folder.join("htex"))?;
-    let costs = workspace.join("sdk/capi/tests/costs");
+    let costs = workspace.join("sdk/bindings/capi/tests/costs");
     let mut compile = program("cc", folder);
     compile.args(["-std=c11", "-O2", "-I"]).arg(prefix.join("include"));
     compile.arg(costs.join("block.c")).arg("-L").arg(prefix.join("lib/whole"));
@@ -106,12 +106,12 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
     let mut compile = program("mcs", folder);
     compile.args(["-optimize+", "-out:Block.exe"]).arg(costs.join("Block.cs"));
     run(compile.arg(prefix.join("share/htex/unity/Runtime/Htex.cs")))?;
-    copy(&workspace.join("sdk/web/tests/block.mjs"), &folder.join("block.mjs"))?;
+    copy(&workspace.join("sdk/bindings/web/tests/block.mjs"), &folder.join("block.mjs"))?;
     let python = super::python::environment(folder, "test")?;
     let rust = fs_err::canonicalize(target().join("release/examples/block"))?;
     let words = |words: &[&str]| words.iter().map(OsString::from).collect();
     let cost = |language, command, samples, most| Cost { language, command, samples, most };
-    let block = workspace.join("sdk/python/tests/costs/block.py");
+    let block = workspace.join("sdk/bindings/python/tests/costs/block.py");
     let python = vec![python.into(), block.into()];
     let all = vec![
         cost("C", words(&["./block"]), BLOCK, 1.02),

@@ -9,7 +9,7 @@ use super::copy;
 use crate::places::workspace;
 
 /// A model file of the Penn Haptic Texture Toolkit. Nothing can write this format.
-const HATT: &str = "sdk/exchange/tests/felt.xml";
+const HATT: &str = "sdk/make/exchange/tests/felt.xml";
 /// Settings that no signal states.
 const GIVEN: [&str; 6] = ["--full-scale", "0.2", "--speed", "80", "--force", "0.4"];
 

@@ -49,7 +49,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
             copy(&module, &folder.join(name))?;
         }
     }
-    for source in ["examples/model-c-bursts/bursts.c", "sdk/web/tests/endless.c"] {
+    for source in ["examples/model-c-bursts/bursts.c", "sdk/bindings/web/tests/endless.c"] {
         let name = Path::new(source).with_extension("wasm");
         c_module::build(source, &folder.join(name.file_name().unwrap_or_default()))?;
     }
@@ -114,7 +114,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
 /// recording (`process.json`).
 fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     for name in ["pcm16.flac", "pcm16.wav"] {
-        let source = workspace().join("sdk/recording/tests/lab").join(name);
+        let source = workspace().join("sdk/make/recording/tests/lab").join(name);
         copy(&source, &folder.join(name))?;
     }
     let given = ["--speed", SPEED, "--force", FORCE];

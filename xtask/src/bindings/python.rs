@@ -47,5 +47,5 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
 
 /// The folder of the sources.
 fn package() -> Result<PathBuf> {
-    Ok(fs_err::canonicalize(workspace().join("sdk/python"))?)
+    Ok(fs_err::canonicalize(workspace().join("sdk/bindings/python"))?)
 }

@@ -14,7 +14,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     crate::studio::studio(&page)?;
     let tests = folder.join("tests");
     fs_err::create_dir_all(&tests)?;
-    for file in files(&workspace().join("sdk/studio/tests"))? {
+    for file in files(&workspace().join("sdk/bindings/studio/tests"))? {
         copy(&file, &tests.join(file.file_name().unwrap_or_default()))?;
     }
     exchanged::copy_model_file(&tests)?;

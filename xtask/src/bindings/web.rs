@@ -16,7 +16,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     catalogue(&fixtures, &package)?;
     let tests = folder.join("tests");
     fs_err::create_dir_all(&tests)?;
-    for file in files(&workspace().join("sdk/web/tests"))? {
+    for file in files(&workspace().join("sdk/bindings/web/tests"))? {
         copy(&file, &tests.join(file.file_name().unwrap_or_default()))?;
     }
     let quiet = ["--silent", "--no-audit", "--no-fund"];

@@ -131,7 +131,7 @@ fn put_dll(build: &Build, built: &Path, lib: &Path) -> Result<()> {
 
 /// The functions of the header.
 fn functions() -> Result<Vec<String>> {
-    let header = fs::read_to_string(workspace().join("sdk/capi/include/htex.h"))?;
+    let header = fs::read_to_string(workspace().join("sdk/bindings/capi/include/htex.h"))?;
     let mut names: Vec<String> = header.lines().filter_map(function).map(str::to_owned).collect();
     names.sort();
     names.dedup();

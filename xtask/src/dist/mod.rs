@@ -40,7 +40,7 @@ pub fn dist(options: &Dist) -> Result<()> {
     if options.whole {
         links::put(build, &build_whole(build)?, &lib.join("whole"), true)?;
     }
-    let source = workspace().join("sdk/capi");
+    let source = workspace().join("sdk/bindings/capi");
     for header in HEADERS {
         let to = prefix.join("include").join(header);
         copy(&source.join("include").join(header), &to)?;

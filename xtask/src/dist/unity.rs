@@ -16,7 +16,7 @@ const SET_ASIDE: &str = "Plugins~";
 
 /// Writes the package into a folder, with the libraries of platforms from their `lib` folders.
 pub(crate) fn package(libraries: &[(Platform, PathBuf)], to: &Path) -> Result<()> {
-    copy_folder(&workspace().join("sdk/capi/unity"), to)?;
+    copy_folder(&workspace().join("sdk/bindings/capi/unity"), to)?;
     let plugins = to.join(PLUGINS);
     for (platform, lib) in libraries {
         if let Some((folder, name)) = plugin(*platform) {

@@ -143,7 +143,7 @@ fn follow(name: &str, folder: &Path, write: bool) -> Result<()> {
 
 /// Whether the README of the npm package contains the same block.
 fn is_example_of_npm(block: &Block) -> Result<bool> {
-    let readme = fs::read_to_string(workspace().join("sdk/web/README.md"))?;
+    let readme = fs::read_to_string(workspace().join("sdk/bindings/web/README.md"))?;
     Ok(blocks(&readme).iter().any(|example| example.language == "js" && example.text == block.text))
 }
 

@@ -110,7 +110,7 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
         return run(maturin.arg("--out").arg(out));
     };
     // Next to the Python modules, because that folder is packed as it is.
-    let package = workspace().join("sdk/python/python/htex");
+    let package = workspace().join("sdk/bindings/python/python/htex");
     put_notices(notices, &package)?;
     let folder = anew("wheel")?;
     let built = run(maturin.arg("--out").arg(&folder));
@@ -146,7 +146,7 @@ pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let name = format!("htex-{version}.tar.gz");
     run(program("tar", &trees).arg("-xzf").arg(packed.join(&name)))?;
     let metadata = |more: &str| -> Result<()> {
-        let mut cargo = program(cargo(), &folder.join("sdk/python"));
+        let mut cargo = program(cargo(), &folder.join("sdk/bindings/python"));
         cargo.args(["metadata", "--format-version", "1", more]);
         run(cargo.stdout(Stdio::null()))
     };

@@ -47,7 +47,7 @@ pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Com
     let sources = sources()?;
     let mut billed = vec![("cli", "")];
     if platform.has_wheel() {
-        billed.push(("sdk/python", "-python"));
+        billed.push(("sdk/bindings/python", "-python"));
     }
     for (package, of) in billed {
         let name = format!("htex-{version}{of}-{}.cdx", platform.name);

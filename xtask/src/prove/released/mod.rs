@@ -68,7 +68,7 @@ impl Compiler {
     /// Builds the C player against the unpacked archive, with pkg-config and with CMake, into a
     /// folder.
     fn players(&self, prefix: &Path, work: &Path) -> Result<()> {
-        let source = workspace().join("sdk/capi/examples/play.c");
+        let source = workspace().join("sdk/bindings/capi/examples/play.c");
         let build = work.join("built");
         fs::create_dir_all(&build)?;
         fs::copy(source, build.join("play.c"))?;

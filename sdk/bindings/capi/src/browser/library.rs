@@ -1,0 +1,332 @@
+//! Libraries whose bytes JavaScript fetches (`sdk/bindings/web/src/htexlib.js`). Each call says which bytes
+//! it needs next, and JavaScript then passes them in. Offsets are doubles, as in JavaScript, so a
+//! file has less than 2^53 bytes.
+
+use std::ffi::c_char;
+use std::ops::Range;
+
+use htex::library::{Entry, Index, LibraryError, Limits, Opening, Progress, Query};
+use serde::Deserialize;
+
+use crate::handles::{Kind, Table};
+use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
+use crate::status::{Failure, guarded, htex_status};
+
+/// A library that is open or being opened.
+enum State {
+    /// `None` after an error.
+    Opening(Option<Opening>),
+    /// The index, and the entries of the page that was read last.
+    Open(Box<Index>, Vec<Entry>),
+}
+
+static INDEXES: Table<State> = Table::new(Kind::Index);
+
+impl State {
+    fn index(&self) -> Result<&Index, Failure> {
+        match self {
+            Self::Open(index, _) => Ok(index),
+            Self::Opening(_) => Err(Failure::argument("the library is not open yet")),
+        }
+    }
+
+    /// The entries of the page that was read last.
+    fn entries(&self) -> &[Entry] {
+        match self {
+            Self::Open(_, entries) => entries,
+            Self::Opening(_) => &[],
+        }
+    }
+
+    /// The index, and the entry with this name in the page that was read last.
+    fn entry(&self, name: &str) -> Result<(&Index, &Entry), Failure> {
+        let index = self.index()?;
+        match self.entries().iter().find(|entry| entry.name == name) {
+            Some(entry) => Ok((index, entry)),
+            None => Err(absent(name)),
+        }
+    }
+}
+
+fn absent(name: &str) -> Failure {
+    let name = name.to_owned();
+    LibraryError::Absent { name }.into()
+}
+
+/// Starts opening a library.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_new(out: *mut u64) -> htex_status {
+    guarded(|| {
+        let opening = Opening::new(Limits::default());
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = INDEXES.insert(State::Opening(Some(opening)))?;
+        Ok(())
+    })
+}
+
+/// Frees a library.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_index_free(index: u64) -> htex_status {
+    guarded(|| INDEXES.remove(index).map(drop))
+}
+
+/// Writes which bytes are needed next to open the library: start and end. They are equal when it is
+/// open.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let wanted = match &*state {
+            State::Opening(Some(opening)) => opening.wanted(),
+            _ => 0..0,
+        };
+        // SAFETY: the place is the caller's.
+        unsafe { write_range(&wanted, out) }
+    })
+}
+
+/// Receives the requested bytes, or fewer if the file ends earlier. The file has `file_bytes`
+/// bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_give(
+    index: u64,
+    bytes: *const u8,
+    len: usize,
+    file_bytes: f64,
+) -> htex_status {
+    guarded(|| {
+        let mut state = INDEXES.exclusive(index)?;
+        // SAFETY: the pointers are the caller's.
+        let bytes = unsafe { slice(bytes, len) }?;
+        let State::Opening(opening) = &mut *state else {
+            return Err(Failure::argument("the library is open already"));
+        };
+        // `give` consumes it. After an error nothing is left to go on with.
+        let opening = opening.take().ok_or(Failure::argument("the library could not be opened"))?;
+        *state = match opening.give(bytes, file_bytes as u64)? {
+            Progress::More(opening) => State::Opening(Some(opening)),
+            Progress::Open(index) => State::Open(Box::new(index), Vec::new()),
+        };
+        Ok(())
+    })
+}
+
+/// Writes the library's name, its number of textures and its number of pages, as JSON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_json(
+    index: u64,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let index = state.index()?;
+        let json = serde_json::json!({
+            "name": index.name(),
+            "count": index.len(),
+            "pages": index.leaves(),
+        });
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&json.to_string(), out, capacity, length) }
+    })
+}
+
+/// Writes which page of the index contains a texture, if any does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_page_of(
+    index: u64,
+    name: *const c_char,
+    out: *mut u32,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (name, out) = unsafe { (needed_text(name)?, place(out)?) };
+        let page = state.index()?.leaf_of(name);
+        *out = page.ok_or_else(|| absent(name))? as u32;
+        Ok(())
+    })
+}
+
+/// Writes the byte range of a page: start and end.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_page_range(
+    index: u64,
+    page: u32,
+    out: *mut f64,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let range = state
+            .index()?
+            .leaf_range(page as usize)
+            .ok_or(Failure::argument("no page of this index"))?;
+        // SAFETY: the place is the caller's.
+        unsafe { write_range(&range, out) }
+    })
+}
+
+/// Reads a page of the index. The calls below look up entries in it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_read_page(
+    index: u64,
+    page: u32,
+    bytes: *const u8,
+    len: usize,
+) -> htex_status {
+    guarded(|| {
+        let mut state = INDEXES.exclusive(index)?;
+        // SAFETY: the pointers are the caller's.
+        let bytes = unsafe { slice(bytes, len) }?;
+        // Read before it replaces the old page, which stays after an error.
+        let read = state.index()?.read_leaf(page as usize, bytes)?;
+        if let State::Open(_, entries) = &mut *state {
+            *entries = read;
+        }
+        Ok(())
+    })
+}
+
+/// Writes the entries of the page that was read, as JSON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_entries_json(
+    index: u64,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let entries: Vec<&Entry> = state.entries().iter().collect();
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_entries(&entries, out, capacity, length) }
+    })
+}
+
+/// Writes those entries of the page that match a query (`LibraryQuery` in
+/// `sdk/bindings/web/src/index.d.ts`), as JSON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_find_json(
+    index: u64,
+    query: *const c_char,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let query = unsafe { needed_text(query) }?;
+        let asked: QueryDocument = serde_json::from_str(query)
+            .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INVALID_ARGUMENT, error))?;
+        let query = Query::from(asked);
+        let entries = state.entries().iter();
+        let found: Vec<&Entry> = entries.filter(|entry| query.matches(entry)).collect();
+        // SAFETY: as above.
+        unsafe { write_entries(&found, out, capacity, length) }
+    })
+}
+
+/// A query in the form that JavaScript writes.
+#[derive(Deserialize, Default)]
+#[serde(default, deny_unknown_fields)]
+struct QueryDocument {
+    words: Vec<String>,
+    tags: Vec<String>,
+    speed: Option<f64>,
+    force: Option<f64>,
+    model: Option<String>,
+}
+
+impl From<QueryDocument> for Query {
+    fn from(asked: QueryDocument) -> Self {
+        Self {
+            words: asked.words,
+            tags: asked.tags,
+            speed_mm_s: asked.speed,
+            force_n: asked.force,
+            model: asked.model,
+        }
+    }
+}
+
+/// Writes entries as JSON.
+///
+/// # Safety
+/// As for pointers.
+unsafe fn write_entries(
+    entries: &[&Entry],
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> Result<(), Failure> {
+    let json = serde_json::to_string(entries)
+        .map_err(|error| Failure::new(htex_status::HTEX_STATUS_INTERNAL, error))?;
+    // SAFETY: the caller says so.
+    unsafe { write_text(&json, out, capacity, length) }
+}
+
+/// Writes the byte ranges of a texture in the page that was read: start and end of each, for at
+/// most `capacity` ranges. `length` receives the number of ranges.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_ranges(
+    index: u64,
+    name: *const c_char,
+    out: *mut f64,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (name, length) = unsafe { (needed_text(name)?, place(length)?) };
+        let (index, entry) = state.entry(name)?;
+        let ranges = index.asset_ranges(entry);
+        *length = ranges.len();
+        for (i, range) in ranges.iter().take(capacity).enumerate() {
+            // SAFETY: two numbers for each of `capacity` ranges.
+            unsafe { write_range(range, out.wrapping_add(2 * i)) }?;
+        }
+        Ok(())
+    })
+}
+
+/// Assembles a texture in the page that was read from the bytes of its ranges, one after the other,
+/// and compares it with its hash. The texture has as many bytes as the ranges.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_assemble(
+    index: u64,
+    name: *const c_char,
+    bytes: *const u8,
+    len: usize,
+    out: *mut u8,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (name, mut bytes) = unsafe { (needed_text(name)?, slice(bytes, len)?) };
+        let (index, entry) = state.entry(name)?;
+        let mut parts = Vec::new();
+        for range in index.asset_ranges(entry) {
+            let length = usize::try_from(range.end - range.start).unwrap_or(usize::MAX);
+            let part = bytes.split_off(..length);
+            parts.push(part.ok_or(Failure::argument("bytes of the ranges are missing"))?);
+        }
+        let asset = index.assemble(entry, &parts)?;
+        // SAFETY: as many bytes as the ranges have.
+        unsafe { slice_mut(out, len) }?[..asset.len()].copy_from_slice(&asset);
+        Ok(())
+    })
+}
+
+/// Writes the start and end of a range.
+///
+/// # Safety
+/// As for pointers: there are two numbers, or the pointer is NULL.
+unsafe fn write_range(range: &Range<u64>, out: *mut f64) -> Result<(), Failure> {
+    // SAFETY: as here.
+    let out = unsafe { slice_mut(out, 2) }?;
+    out.copy_from_slice(&[range.start as f64, range.end as f64]);
+    Ok(())
+}

@@ -1,0 +1,48 @@
+//! Generator of `spec/validation.md` and `spec/schemas/manifest-1.json`.
+
+use htex_base::finding::{FileReport, rules_page};
+use serde_json::Value;
+
+use crate::{Manifest, RULES, STAGES, rules_of};
+
+const HEAD: &str = "\
+# Findings of validation
+
+Generated from the table of rules in `sdk/core/format/src/rules.rs` by
+`cargo xtask generate`.
+
+A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
+and a message. An asset is valid when no finding is an error. The meaning of a code never changes.
+Section 12 of [htex-1.md](htex-1.md) specifies reports.
+
+## Stages
+
+A reader goes through these stages in order. After an error in a stage that ends the reading, the later
+stages are skipped.
+
+";
+
+/// Generates the page of all rules: `spec/validation.md`.
+pub fn validation_page() -> String {
+    let mut head = format!("{HEAD}| stage | findings | errors end the reading |\n|---|---|---|\n");
+    for stage in STAGES {
+        let ends = if stage.ends { "yes" } else { "no" };
+        let codes: Vec<String> = rules_of(*stage).map(|rule| format!("`{}`", rule.code)).collect();
+        head += &format!("| {} | {} | {ends} |\n", stage.of, codes.join(", "));
+    }
+    head += "\n## Codes\n";
+    rules_page(&head, RULES)
+}
+
+/// Generates the JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
+pub fn manifest_schema() -> Value {
+    htex_base::schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
+}
+
+/// Generates the JSON Schema of a validation report: `spec/schemas/report-1.json`.
+pub fn report_schema() -> Value {
+    htex_base::schema::document::<FileReport>(
+        "report-1.json",
+        "report of validation of an htex file",
+    )
+}

@@ -1,0 +1,44 @@
+//! Measures the duration of calls.
+
+#[cfg(not(target_family = "wasm"))]
+pub use std::time::Instant;
+
+/// A time of the browser, which the standard library cannot read. Elsewhere the standard library's
+/// type is used.
+#[cfg(target_family = "wasm")]
+#[derive(Debug, Clone, Copy)]
+pub struct Instant {
+    ms: f64,
+}
+
+#[cfg(target_family = "wasm")]
+#[allow(unsafe_code)]
+mod imported {
+    #[link(wasm_import_module = "htex")]
+    unsafe extern "C" {
+        /// Milliseconds since a fixed moment. JavaScript provides the function
+        /// (`sdk/bindings/web/src/guests.js`).
+        pub(super) safe fn now_ms() -> f64;
+    }
+}
+
+#[cfg(target_family = "wasm")]
+impl Instant {
+    /// Returns the current time.
+    #[must_use]
+    pub fn now() -> Self {
+        Self { ms: imported::now_ms() }
+    }
+
+    /// Returns the time elapsed since then.
+    #[must_use]
+    pub fn elapsed(self) -> std::time::Duration {
+        Self::now().saturating_duration_since(self)
+    }
+
+    /// Returns the time elapsed since an earlier time; zero if that time is later.
+    #[must_use]
+    pub fn saturating_duration_since(self, earlier: Self) -> std::time::Duration {
+        std::time::Duration::try_from_secs_f64((self.ms - earlier.ms) / 1e3).unwrap_or_default()
+    }
+}

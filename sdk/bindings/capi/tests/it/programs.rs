@@ -107,8 +107,8 @@ fn look_into_a_library(language: Language) -> &'static str {
                 if (!library)
                     return 1;
                 std::cout << *library->count() << "\n" << *library->page_json(0) << "\n";
-                std::cout << library->asset("floor/vinyl")->models()->at(0) << "\n";
-                std::cout << library->asset("none").status().text << "\n";
+                std::cout << library->texture("floor/vinyl")->models()->at(0) << "\n";
+                std::cout << library->texture("none").status().text << "\n";
             }"#
         }
         Language::Csharp => {

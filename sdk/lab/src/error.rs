@@ -167,7 +167,8 @@ pub enum LabError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column { channel: Channel, problem: String },
-    /// The columns of the channels cannot be read, or cannot be read together.
+    /// Input and output make no column map: they name the same column, or the further roles include
+    /// an axis.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// No recording was given.

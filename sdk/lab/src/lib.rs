@@ -1,5 +1,5 @@
-//! Experiments with textures: guided recordings, measuring the frequency response of a setup, and
-//! rating studies.
+//! Runs experiments with textures: guided recordings, measurements of the frequency response of a
+//! setup, and rating studies.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

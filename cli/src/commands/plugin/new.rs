@@ -25,8 +25,8 @@ pub(crate) struct New {
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 
-    /// Folder `sdk` of the htex sources, for Rust [default: the sources from which this program was
-    /// built, if it was not released]
+    /// For --lang rust: the folder `sdk` of the htex sources [default: of the sources this program
+    /// was built from; a released program has no default]
     #[arg(long, value_name = "DIR")]
     sdk: Option<PathBuf>,
 }

@@ -1,7 +1,8 @@
 //! Reads, writes and validates `.htex` files (tactile texture assets).
 //!
-//! `spec/htex-1.md` is the normative text. This crate does no signal processing and never loads a
-//! model. It only uses a model's descriptor, to compare the fields.
+//! `spec/htex-1.md` is the normative specification of the format. This crate does no signal
+//! processing and never loads a model. To check the parameters in a file, it compares their fields
+//! with the descriptor of the model, which the caller provides.
 //!
 //! ```
 //! use htex_format::{Limits, validate};

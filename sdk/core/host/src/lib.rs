@@ -1,10 +1,10 @@
-//! Finds and calls texture models, with one registry and one calling interface for models of all
-//! origins.
+//! Finds and calls texture models. There is one registry, and one way to call a model, wherever the
+//! model comes from.
 //!
 //! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]). [`Search`]
-//! lists the places that are searched. Every model, including the built-in ones, is called through
-//! the plain C functions of the model ABI. The results of each call are checked here, so an invalid
-//! result is an error of that call only.
+//! lists the places in which this crate looks for models. It calls every model, including the
+//! built-in ones, through the plain C functions of the model ABI, and checks the results of each
+//! call. If a result is invalid, only this call returns an error.
 //!
 //! ```
 //! use htex_host::{Band, Registry};

@@ -3,17 +3,17 @@
 //!
 //! A *model* describes a magnitude spectrum by a few parameters. It does five things: it describes
 //! itself, fits parameters to a spectrum, computes the spectrum of given parameters, interpolates
-//! parameters, and makes voices, which render samples. In Rust, these are the traits [`Model`] and
-//! [`Voice`].
+//! parameters, and makes voices, which render samples. In Rust, the trait [`Model`] has these five
+//! functions, and a voice implements the trait [`Voice`].
 //!
-//! A Rust author implements both traits and calls [`export_model!`]. The macro generates the
-//! model's table of C functions ([`abi::ModelTable`]). Every host calls a model through this table,
-//! even if the model is built into the host.
+//! To write a model in Rust, implement both traits and call [`export_model!`]. The macro generates
+//! the model's table of C functions ([`abi::ModelTable`]). Every host calls a model through this
+//! table, even if the model is built into the host.
 //!
 //! Parameters cross the ABI as one flat array of `f64`, in the order of the descriptor's fields. A
-//! scalar is one value; a list is its length followed by its values ([`Values`]). Spectra are
-//! *shapes*: they have unit RMS in the asset's band. The asset stores their level separately, in
-//! the unit of its quantity.
+//! scalar is one value; a list is its length followed by its values ([`Values`]). The spectra of a
+//! model are *shapes*: they have an RMS of 1 in the asset's band. The asset stores the level of
+//! each spectrum separately, in the unit of the asset's quantity.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -1,28 +1,34 @@
 //! Authoring: makes fitted and measured texture assets from recordings.
 //!
-//! [`fit_asset`] goes through four stages. Each is a function that gets what the one before it
-//! returned; only the first reads a recording. The definitions follow the paper's section Texture
-//! processing. Where the paper is silent, the documentation of the option says what is done.
+//! [`fit_asset`] goes through four stages. Each stage is a function that takes the result of the
+//! stage before it. Only the first stage reads a recording. The definitions follow the section
+//! *Texture processing* of Balasubramanian & Vardar (2026), called the paper here. If the paper
+//! leaves a choice open, the documentation of the corresponding option states the choice made here.
 //!
-//! 1. `take`, a [`Take`] to a [`SegmentedTake`] ([`segment_take`]). `segments` chooses segments of
-//!    0.2 s: one in each complete sweep (by mean threshold), or half-overlapping windows.
-//!    `exploration` leaves out segments that are off their speed and force, and measures the motion
-//!    in the others. `spectrum` removes the mean, applies a Hann window and an FFT, folds two axes
-//!    into one and divides by the setup's response. `findings` reports problems of the signals,
-//!    with stable codes (`spec/recording-findings.md`). It gets the options of the spectrum.
-//! 2. `conditions`, the segmented takes to the spectrum of each condition. Recordings with the same
-//!    speed and force are averaged ([`TextureSpectrum::average`]); others become further conditions.
-//!    `blocks` separates odd from even blocks of time: two readings that share no sample. `law`
-//!    estimates how frequencies and level follow the motion, and `between` adds conditions that the
-//!    law computes. It gets the kind of average. For recordings of a free motion, `grid` replaces
-//!    both stages: it reads windows of steady motion around the crossings of lines of speed and
-//!    force.
-//! 3. `fit`, the conditions to the parameters of each model. Parameters are rounded as the file
-//!    stores them. The *rounded* parameters get a `level` and are measured by magnitude and by
-//!    samples (`measure`). Where band errors are large, other options and models are tried and
-//!    listed (`alternatives`). In a grid, each condition is also predicted from its neighbours, by
-//!    the player's mesh. It gets the models with their options, and the source of the level.
-//! 4. `asset`, all of this to a [`FittedAsset`]. It gets name, licence, author and tags.
+//! 1. `take` turns a [`Take`] into a [`SegmentedTake`] ([`segment_take`]). Its module `segments`
+//!    chooses segments of 0.2 s: one in each complete sweep (where the friction exceeds its mean),
+//!    or half-overlapping windows. `exploration` leaves out the segments whose speed or force is
+//!    off the target, and measures the motion in the others. `spectrum` removes the mean of each
+//!    segment, applies a Hann window and an FFT, combines two axes into one and divides by the
+//!    setup's response. `findings` reports problems of the signals, with stable codes
+//!    (`spec/recording-findings.md`). The stage also takes the options of the spectrum.
+//! 2. `conditions` turns the segmented takes into the spectrum of each condition. It averages
+//!    recordings with the same speed and force ([`TextureSpectrum::average`]); recordings with
+//!    another speed or force become further conditions. `blocks` averages the odd and the even
+//!    blocks of time separately, which gives two spectra that share no sample. `law` estimates how
+//!    frequencies and level follow the motion, and `between` adds conditions that are computed by
+//!    this law. The stage also takes the kind of average. For recordings of a free motion, `grid`
+//!    replaces stages 1 and 2: it lays a grid over the speeds and forces, and averages, for each
+//!    point of the grid, the windows of steady motion near it.
+//! 3. `fit` turns the conditions into the parameters of each model, rounded as the file stores
+//!    them. `level` computes the level of the *rounded* parameters, and `measure` compares their
+//!    magnitudes and their samples with the recording. If the error in bands is large,
+//!    `alternatives` tries other options and models, and lists the better ones. In a grid, the
+//!    stage also predicts each condition from its neighbours, by the mesh of conditions that a
+//!    player uses. The stage also takes the models with their options, and where the level comes
+//!    from.
+//! 4. `asset` puts all of this together as a [`FittedAsset`]. The stage also takes name, licence,
+//!    author and tags.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};

@@ -1,23 +1,25 @@
 //! Builds a checked library of textures from recordings, as described by a recipe.
 //!
-//! A recording may also be a file of another haptic format: a signal, which is fitted, or a file
-//! that states its texture, which is used unchanged (`imports`).
+//! In place of a recording, a recipe may name a file of another haptic format (`imports`). If the
+//! file contains a signal, the build fits models to the signal. If the file states a texture, the
+//! build uses this texture unchanged.
 //!
-//! A recipe is data, and it determines the build. The key of a texture is the hash of everything
-//! its bytes depend on: the contents of its recordings, its settings, the program and the plugins.
-//! What has been made for a key is stored. So the same mechanism continues after a kill, builds
-//! only what changed, and builds on many machines ([`Build::pending`], [`Job::run`],
-//! [`Build::store`]).
+//! A recipe is data, and it determines the result of the build. Each texture has a key. The key is
+//! the hash of everything that the texture's bytes depend on: the contents of its recordings, its
+//! settings, the program and the plugins. Results are stored by key. This one mechanism lets a
+//! killed build continue, a repeated build make only what changed, and many machines share a build
+//! ([`Build::pending`], [`Job::run`], [`Build::store`]).
 //!
-//! From recordings to a library:
+//! These modules lead from recordings to a library:
 //!
-//! 1. `recipe`, `plan`: a recipe becomes textures, each with its recordings and settings. The
-//!    settings are the same as in the command and in Python.
-//! 2. `hashes`, `job`: a texture becomes a job, which is data with a key.
-//! 3. `cache`: either the result for a key is stored, or the job is pending. Threads or a cluster
-//!    (`htex.dask`) do the pending jobs.
-//! 4. `assemble`: only from the stored results, applies the gates and writes textures, library,
-//!    report and catalogue.
+//! 1. `recipe` and `plan` read a recipe and list the textures that it describes, each with its
+//!    recordings and settings. The settings are the same as those of the command and of the Python
+//!    package.
+//! 2. `hashes` and `job` turn each texture into a job, which is data with a key.
+//! 3. `cache` looks up the key of each job. If no result is stored for the key, the job is pending.
+//!    Threads or a cluster (`htex.dask`) run the pending jobs.
+//! 4. `assemble` reads only the stored results. It applies the gates, and writes the textures, the
+//!    library, the report and the catalogue.
 //!
 //! ```no_run
 //! use htex_build::{Build, BuildOptions};

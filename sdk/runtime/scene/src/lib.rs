@@ -1,18 +1,20 @@
-//! Plays scenes: surfaces, a motion, and a device. The planner finds the shortest chain of stages
-//! for a scene, and states a reason for every stage that it includes or leaves out. The renderer
-//! runs exactly that chain.
+//! Plays scenes. A scene is a file that describes surfaces, a motion and a device. The planner
+//! finds the shortest chain of processing stages that plays a scene, and states a reason for every
+//! stage that it includes or leaves out. The renderer runs exactly that chain.
 //!
-//! From a scene to samples:
+//! These modules lead from a scene to samples:
 //!
-//! 1. `load` reads the file, its assets, trace and response. Problems become findings.
-//! 2. `requirements` simulates the motion as the renderer will play it: which surfaces are touched,
-//!    which speeds and forces occur, and what the device needs.
-//! 3. `representation` chooses the model of each surface within the budget.
-//! 4. `plan` asks each effect in the table (`stages`) whether it is needed. An effect that is not
-//!    needed is not built. Each decision has a reason.
-//! 5. `render` pulls samples through the chain, from the end to the start: the device's stages, the
-//!    resampler, the sum of the surfaces of one rate, the stages of each surface (`track`), and its
-//!    voice.
+//! 1. `load` reads the scene's file, and the assets, the trace and the response that the scene
+//!    names. It reports problems as findings.
+//! 2. `requirements` simulates the motion as the renderer will play it. This shows which surfaces
+//!    are touched, which speeds and forces occur, and what the device needs.
+//! 3. `representation` chooses the model of each surface within the scene's budget of time and
+//!    error.
+//! 4. `plan` asks each effect in the table of effects (`stages`) whether the scene needs it, and
+//!    builds only those that are needed. The plan gives a reason for each decision.
+//! 5. `render` pulls samples through the chain, from its end to its start. The end consists of the
+//!    device's stages. Before them come the resampler, the sum of all surfaces with the same sample
+//!    rate, the stages of each surface (`track`) and, at the start, the surface's voice.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -14,11 +14,13 @@ pub(crate) const PROFILE: &str = "module";
 
 /// Enables 128-bit vectors, which every engine supports. Larger functions are not inlined. Loops
 /// with an unknown number of rounds stay a single loop, without extra copies for several rounds,
-/// for the first round, or for vectors. Loops that should use vectors work on arrays.
+/// for the first round, or for vectors. Loops that should use vectors work on arrays. Places of
+/// panics are named without the folder of the crates.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
     "-Ctarget-feature=+simd128 -Cno-vectorize-loops -Cllvm-args=-inline-threshold=75 \
-     -Cllvm-args=-unroll-runtime=false -Cllvm-args=-unroll-allow-partial=false -Cllvm-args=-unroll-allow-peeling=false",
+     -Cllvm-args=-unroll-runtime=false -Cllvm-args=-unroll-allow-partial=false -Cllvm-args=-unroll-allow-peeling=false \
+     --remap-path-prefix=sdk/core/=",
 );
 
 const NO_TOOLCHAIN: &str = "no toolchain for WASM modules was found: `rustup target add \

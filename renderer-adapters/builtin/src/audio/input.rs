@@ -16,7 +16,7 @@ const MOST_SAMPLES: f64 = 67_108_864.0;
 
 /// The inputs of sound cards as inputs, where 1 is full scale.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct AudioInput;
+pub struct AudioInput;
 
 impl Adapter for AudioInput {
     fn descriptor(&self) -> &Descriptor {

@@ -34,4 +34,4 @@ pub use adapter::Audio;
 #[cfg(feature = "audio")]
 pub use channels::{capabilities_of_channels, open_channels, outputs};
 #[cfg(feature = "audio")]
-pub(crate) use input::AudioInput;
+pub use input::AudioInput;

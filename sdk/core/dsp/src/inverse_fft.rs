@@ -14,14 +14,6 @@ use crate::lanes::{Lanes, WIDTH};
 use crate::wide::{Work, wide};
 
 /// Inverse real FFT of one even length, with precomputed tables.
-///
-/// ```
-/// use htex_dsp::inverse_fft::InverseRealFft;
-/// let fft = InverseRealFft::new(4);
-/// let mut out = [0.0; 8];
-/// fft.run(&mut fft.workspace(), 1, [&[1.0], &[0.0]], &[0.5], &mut out);
-/// assert!((out[0] - 1.0).abs() < 1e-6 && (out[4] + 1.0).abs() < 1e-6);
-/// ```
 #[derive(Debug, Clone)]
 pub(crate) struct InverseRealFft {
     half: usize,
@@ -32,7 +24,7 @@ pub(crate) struct InverseRealFft {
 
 /// Working memory for transforms of one length.
 #[derive(Debug, Clone)]
-pub struct Workspace {
+pub(crate) struct Workspace {
     from: Complexes,
     to: Complexes,
 }

@@ -33,7 +33,7 @@ pub mod fir;
 pub mod glide;
 pub mod grid;
 pub mod interpolated_peaks;
-pub mod inverse_fft;
+mod inverse_fft;
 mod kernels;
 mod lanes;
 pub mod lattice;

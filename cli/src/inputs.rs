@@ -39,7 +39,8 @@ pub(crate) struct InputArgs {
     #[arg(long, value_name = "NAME:TARGET")]
     tracker: Option<String>,
 
-    /// Roles and scales of the columns in a tracker's file: time=stamp_ms:0.001,x=#2
+    /// Columns of a tracker's file by role, as ROLE=COLUMN or ROLE=COLUMN:SCALE; COLUMN is a name or
+    /// a number (#2). For example time=stamp_ms:0.001,x=#2
     #[arg(long, value_name = "MAP", requires = "tracker")]
     tracker_map: Option<String>,
 

@@ -48,8 +48,8 @@ pub(crate) struct Bake {
     #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Largest nine-band error between conditions, dB; conditions are added until it is reached, up
-    /// to 64
+    /// Largest allowed nine-band error midway between conditions, dB. Conditions are added until the
+    /// error is within this limit or there are 64 conditions
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 

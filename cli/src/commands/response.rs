@@ -35,8 +35,9 @@ pub(crate) struct Response {
     #[arg(value_parser = located::RECORDING, required = true)]
     recordings: Vec<PathBuf>,
 
-    /// The force of the hammer, or the drive of the display: a column by name, number (#1) or path,
-    /// COLUMN:SCALE, or an expression. Without a scale, the unit is the file's
+    /// The force of the hammer, or the drive of the display: COLUMN, COLUMN:SCALE, or an expression
+    /// of columns (fx1+fx2). A column is given by its name, its number (#1) or its path in the file
+    /// (/run1/fx). Without a scale, the unit is the file's
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     input: String,
 

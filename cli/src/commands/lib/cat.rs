@@ -12,7 +12,7 @@ use crate::outputs::check_outputs;
 /// Take one texture out of a library: its .htex file, byte for byte.
 #[derive(Args)]
 pub(crate) struct Cat {
-    /// The library, a path or URI
+    /// Path or URI of the library
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 

@@ -12,7 +12,7 @@ use crate::output::show;
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 #[derive(Args)]
 pub(crate) struct Diff {
-    /// A library, a path or URI
+    /// Path or URI of a library
     #[arg(value_parser = LibraryArg::parser())]
     a: LibraryArg,
 

@@ -9,7 +9,7 @@ use crate::output::note;
 /// Search a library; all that is asked for must hold.
 #[derive(Args)]
 pub(crate) struct Find {
-    /// The library, a path or URI
+    /// Path or URI of the library
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 

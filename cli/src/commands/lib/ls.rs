@@ -11,7 +11,7 @@ use crate::output::note;
 /// the speed, and of the level over the force. Only the index is read.
 #[derive(Args)]
 pub(crate) struct Ls {
-    /// The library, a path or URI
+    /// Path or URI of the library
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 

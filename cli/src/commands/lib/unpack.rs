@@ -13,7 +13,7 @@ use crate::output::{bar, print, shown};
 /// An existing file is kept and is an error, unless --force is given.
 #[derive(Args)]
 pub(crate) struct Unpack {
-    /// The library, a path or URI
+    /// Path or URI of the library
     #[arg(value_parser = LibraryArg::parser())]
     library: LibraryArg,
 

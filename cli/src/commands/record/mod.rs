@@ -95,8 +95,8 @@ pub(crate) struct Record {
     min_on_target: f64,
 
     /// Minimum number of complete sweeps in a take; a take with fewer is recorded again, and 0
-    /// disables the test [default: half of the strokes that the target makes in a take, not
-    /// counting the first and the last, e.g. 4 in 10 s at 80 mm/s; without a target speed 0]
+    /// disables the test [default: half of the strokes that the target makes in a take without the
+    /// first and the last one, such as 4 for 10 s at 80 mm/s; 0 if there is no target speed]
     #[arg(long, value_name = "N")]
     min_sweeps: Option<u32>,
 

@@ -65,8 +65,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
 }
 
 impl Reads {
-    /// Returns what files of this format never state. For an image this includes the distance
-    /// between pixels, although some files state it.
+    /// Returns what files of this format do not state, or need not state. For an image this includes
+    /// the distance between pixels, which only some files state.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         match self {

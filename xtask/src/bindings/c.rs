@@ -74,7 +74,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let capi = fs_err::canonicalize(workspace().join("sdk/bindings/capi"))?;
     let installed = Installation {
-        asset: capi.join("../../examples/scenes/vinyl.htex"),
+        asset: capi.join("../../../examples/scenes/vinyl.htex"),
         prefix: folder.join("prefix"),
         folder: folder.clone(),
     };

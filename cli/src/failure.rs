@@ -162,7 +162,10 @@ impl Failure {
         let first = with_flags(first, self.flags());
         let for_finding = findings.iter().map(|finding| {
             let line = format!("  {} {finding}", finding.severity);
-            with_hint(&line, finding.hint).into_owned()
+            // Commands that play run embedded models unless a flag forbids it.
+            let is_off = finding.hint == htex_scene::ALLOW_EMBEDDED;
+            let flags = is_off.then(|| "--no-embedded-plugins".to_owned());
+            with_flags(&line, flags.or_else(|| flags_for(finding.hint))).into_owned()
         });
         let lines = std::iter::once(first.into_owned()).chain(for_finding);
         lines.map(|line| shown_line(&line)).collect()

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_base::finding::{Finding, Notice};
+use htex_base::finding::Notice;
 use htex_device::{AdapterEntry, Capabilities, DeviceError, Devices, SettingKind, Settings};
 use htex_host::{Registry, Search, WasmLimits};
 use htex_scene::file::{Constant, Motion};
@@ -150,13 +150,7 @@ impl SceneArgs {
             embedded: is_allowed,
             devices: Some(&DeviceArgs::default().devices_quietly()?),
         };
-        let mut report = htex_scene::validate(file, &around).map_err(for_file(file))?;
-        let is_embedded =
-            |f: &&mut Finding| !is_allowed && f.message.contains("embedded models are not allowed");
-        for finding in report.findings.iter_mut().filter(is_embedded) {
-            finding.message.push_str(" (`--embedded-plugins` allows them)");
-        }
-        Ok(report)
+        htex_scene::validate(file, &around).map_err(for_file(file))
     }
 
     /// Returns the schema for the settings of a scene's device, if the device is known.

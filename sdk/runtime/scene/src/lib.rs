@@ -54,7 +54,7 @@ pub use gains::{
     texture_name,
 };
 pub use limits::Limits;
-pub use load::{FileSource, Scene, Surroundings, validate};
+pub use load::{ALLOW_EMBEDDED, FileSource, Scene, Surroundings, validate};
 pub use output::output_name;
 pub use page::{findings_page, scene_schema};
 pub use plan::{ModelChoice, OmittedEffect, Plan, PlannedStage, plan};

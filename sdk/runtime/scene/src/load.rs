@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use htex_base::finding::{Finding, Findings, Report, Rule};
+use htex_base::finding::{Finding, Findings, Hint, Notice, Report, Rule};
 use htex_device::{Capabilities, Devices, Rates, Settings};
 use htex_format::Quantity;
 use htex_play::{Registry, Texture, VoiceOptions};
@@ -233,6 +233,9 @@ impl Scene {
     }
 }
 
+/// The hint of a finding that is gone if embedded models may run ([`Surroundings::embedded`]).
+pub const ALLOW_EMBEDDED: Hint = Hint::new(&["embedded_plugins"]);
+
 /// Validates a scene file and the files it names.
 ///
 /// # Errors
@@ -432,8 +435,14 @@ fn check_representation(asset: &Texture, surface: &Surface, i: usize, findings: 
             htex_play::Error::NoRepresentation { .. } => rule::REPRESENTATION_MISSING,
             _ => rule::REPRESENTATION_UNPLAYABLE,
         };
+        let hint = match error {
+            htex_play::Error::EmbeddedOff { .. }
+            | htex_play::Error::ModelOlder { embedded: true, .. } => ALLOW_EMBEDDED,
+            _ => Hint::NONE,
+        };
         let message = format!("{}: {error}", surface.asset.display());
-        findings.add(rule, format!("/surfaces/{i}/representation"), message);
+        let notice = Notice::new(message, hint);
+        findings.add(rule, format!("/surfaces/{i}/representation"), notice);
     }
 }
 

@@ -88,7 +88,7 @@ fn manifests(ready: &Ready) -> impl Iterator<Item = &Manifest> {
     ready.scene.assets.iter().map(|asset| asset.manifest())
 }
 
-/// Applies the stored gain of a person to a scene.
+/// Applies the stored gain of the user to a scene.
 pub(crate) fn apply_gain(person: &str, texture: Option<&str>, ready: &mut Ready) -> Result<()> {
     let (gains, _) = gains()?;
     let key = key(person, texture, ready);

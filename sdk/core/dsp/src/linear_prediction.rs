@@ -23,8 +23,8 @@ pub struct LinearPrediction {
     /// Power of the prediction error, in the squared unit of the signal.
     pub error: f64,
     /// Number of stages that the data determine. It is below p if the signal is completely
-    /// predicted earlier. The last usable coefficient is then limited to [`MAX_REFLECTION`], and
-    /// the later ones are zero.
+    /// predicted earlier. The last usable coefficient is then at most 1 - 1e-10 in magnitude,
+    /// and the later ones are zero.
     pub usable_stages: usize,
     /// Whether the estimate was changed to make it stable (see `usable_stages`, and [`stabilize`]
     /// for the covariance method).

@@ -39,7 +39,7 @@ pub struct Felt {
 }
 
 impl Felt {
-    /// Whether every difference is below the difference threshold ([`DIFFERENCE_THRESHOLD_DB`]).
+    /// Whether every difference is below the difference threshold of 1.584 dB.
     pub fn is_below_difference_threshold(&self) -> bool {
         self.largest_error_db < DIFFERENCE_THRESHOLD_DB
             && self.total_error_db.abs() < DIFFERENCE_THRESHOLD_DB

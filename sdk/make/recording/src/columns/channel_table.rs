@@ -13,7 +13,7 @@ use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
 
-/// The channels of a recording as its file has them, without roles and scales.
+/// The channels of a recording as they are in the file: without roles, and not scaled.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ChannelTable {
@@ -27,8 +27,9 @@ pub struct ChannelTable {
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Reads all channels of a file. The sample rate is the given one, the file's own, or the one that
-/// follows from its time column. The time column is not among the channels.
+/// Reads all channels of a file. A sample rate in the options takes precedence; otherwise the rate
+/// comes from the time column, or from the file if it has no time column. The time column is not
+/// among the channels.
 ///
 /// # Errors
 /// As [`read_recording`](crate::read_recording).

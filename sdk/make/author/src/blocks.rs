@@ -28,12 +28,12 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// Returns how much two readings like this one differ, in decibels: the RMS over nine bands of the
-/// difference between the spectra of odd and even blocks, divided by √2. `None` if there are fewer
-/// than four blocks, or half of them are silent.
+/// Returns the repeatability in decibels: by how much the spectra of two such recordings would
+/// differ. This is the RMS over nine bands of the difference between the spectra of odd and even
+/// blocks, divided by √2. `None` if there are fewer than four blocks, or half of them are silent.
 ///
-/// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks; dividing
-/// by √2 takes that out.
+/// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks. The
+/// division by √2 corrects for this.
 pub(crate) fn repeatability_rms_db(
     band: Band,
     spectra: &[&[Complex<f64>]],

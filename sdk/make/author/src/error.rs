@@ -57,7 +57,7 @@ pub enum AuthorError {
         "recordings of one condition have different bands because of their sample rates; fit them separately"
     )]
     BandsDiffer,
-    /// The recordings of one texture have different quantities.
+    /// The recordings of one texture measure different quantities.
     #[error(
         "the recordings hold different quantities, such as forces and accelerations; fit them separately"
     )]
@@ -198,7 +198,7 @@ pub enum AuthorError {
     /// that this program does not know.
     #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
     EditLoses { lost: Vec<String> },
-    /// The asset and the recording hold different quantities.
+    /// The asset and the recording describe different quantities.
     #[error("the asset holds {held}, the recording is read as {recorded}")]
     OtherQuantity {
         /// The asset's quantity.
@@ -235,7 +235,7 @@ pub enum AuthorError {
     /// An option is not of the form `MODEL.NAME=VALUE`.
     #[error("option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6")]
     OptionForm { text: String },
-    /// Metadata that asset validation would reject.
+    /// An asset with these metadata would be invalid.
     #[error("{field}: {problem}")]
     Metadata {
         field: &'static str,
@@ -317,13 +317,14 @@ pub enum AuthorError {
     )]
     Weight { weight: f64 },
 
-    /// The journal of a sweep could not be written. Points that were finished are in it.
+    /// The journal of a sweep, which stores finished points, could not be written. It still
+    /// contains the points that were stored before.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: io::Error },
-    /// Nothing can be held out of a recording.
+    /// The recording has no two parts of which one could test a model that is fitted to the other.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
-    /// A knob of a sweep does not have this value.
+    /// A sweep cannot give this value to this setting (knob).
     #[error("knob {name}: `{value}` is not one of its values")]
     Knob { name: String, value: String },
 
@@ -358,7 +359,7 @@ pub enum AuthorError {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AuthorErrorKind {
-    /// The recording, or how the recordings go together.
+    /// A recording, or a combination of recordings.
     Recording,
     /// A given setting, parameter or option.
     Setting,

@@ -12,7 +12,8 @@ const REACH_S: f64 = 0.05;
 /// rows, the position counts as linear. The result is exact for a constant velocity at any spacing
 /// of the rows, and a 60 Hz tracker that repeats its last value does not disturb it. Within 50 ms
 /// of the ends, and beyond them, the velocity is constant. Its unit is the position's unit per
-/// second.
+/// second. The function computes it as the second difference, over 50 ms, of the position's
+/// integral.
 ///
 /// ```
 /// # use htex_recording::velocity;

@@ -8,8 +8,8 @@ use htex_format::Quantity;
 use htex_host::HostError;
 use htex_recording::{ReadError, hertz};
 
-/// An error of reading, fitting, making, comparing or simulating textures. Each message says what is
-/// wrong, where, and what to do. [`Self::kind`] says what an error is about.
+/// An error of reading, fitting, making, comparing or simulating textures. Each message says what
+/// is wrong, where, and what to do. [`Self::kind`] returns what an error is about.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AuthorError {

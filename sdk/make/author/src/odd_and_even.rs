@@ -20,9 +20,8 @@ pub(crate) struct OddAndEven {
     pub(crate) block_s: f64,
 }
 
-/// Cuts what is read of recordings at one condition into equal blocks, as for repeatability
-/// ([`TextureSpectrum::repeatability_rms_db`]), and averages the odd and the even blocks
-/// separately.
+/// Cuts the segments of recordings at one condition into equal blocks, as for repeatability
+/// ([`TextureSpectrum::repeatability_rms_db`]). Averages the odd and the even blocks separately.
 ///
 /// `None` if there are fewer than four blocks, or if quantities or bands differ.
 pub(crate) fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<OddAndEven> {

@@ -1,12 +1,12 @@
 //! Playback of a recording: the segments that are read, limited to the band, joined into a loop.
 //!
 //! The segments of a spectrum are windowed (Hann) and overlap by half. After the frequencies
-//! outside of the band are removed, a segment's ends are no longer zero, and adding the segments
-//! would leave a step every 0.1 s. So each segment is windowed once more before it is added, and
-//! the sum is divided by the sum of the squared windows, which gives back the recorded signal. Two
-//! segments from different stretches share no signal. Where one fades into the other, the sum is
-//! divided by the root of the sum of the fourth powers instead, which keeps the power. The last
-//! segment fades into the first one in this way, so that the loop has no seam.
+//! outside the band are removed, the ends of a segment are no longer zero, and a plain sum of the
+//! segments would have a step every 0.1 s. So each segment is windowed once more before it is
+//! added. The sum is then divided by the sum of the squared windows, which gives back the recorded
+//! signal. Two segments from different stretches share no signal. Where one fades into the other,
+//! the sum is divided by the root of the sum of the fourth powers instead, which preserves the
+//! power. The last segment fades into the first one in this way, so that the loop has no seam.
 
 use htex_dsp::bands::rms;
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -23,7 +23,7 @@ const MOST_RATE_HZ: f64 = 192_000.0;
 /// Largest number of segments in a loop: 30 s.
 const MOST_SEGMENTS: usize = 300;
 
-/// A recording as a loop of samples, to be played again and again.
+/// A recording as a loop of samples that can be played again and again.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RecordedLoop {
@@ -35,9 +35,9 @@ pub struct RecordedLoop {
     /// of one axis keeps its signal.
     pub samples: Vec<f64>,
     pub rate_hz: f64,
-    /// RMS of the samples: the level of models that are fitted to the recording.
+    /// RMS of the samples. Models that are fitted to the recording have the same level.
     pub level_rms: f64,
-    /// Number of segments in the loop; only the first 30 s that are read are used.
+    /// Number of segments in the loop: those from the first 30 s that are read.
     pub segments: usize,
 }
 
@@ -58,8 +58,8 @@ impl RecordedLoop {
         let spectrum = TextureSpectrum::average(std::slice::from_ref(part), options.averaging)?;
         let len = frame_len(rate_hz, part.band)?;
         let mut samples = joined(part, len);
-        // The level of all segments, as models have it; the loop may hold only the first 30 s of
-        // them.
+        // The level of all segments, because models also have this level. The loop may contain only
+        // the first 30 s of them.
         let level_rms = recorded_level(&spectrum.magnitude);
         set_level(&mut samples, level_rms);
         Ok(Self {

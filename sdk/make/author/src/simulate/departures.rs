@@ -12,7 +12,8 @@ use super::check_range;
 use super::hand::Finger;
 use crate::AuthorError;
 
-/// The motion at which nothing departs: the paper's recording condition.
+/// The motion at which departures have no effect: the paper's recording condition, in mm/s and
+/// newtons.
 const SPEED_MM_S: f64 = 80.0;
 const FORCE_N: f64 = 0.4;
 /// Speed below which exponents do not apply, mm/s. A turning finger slides more slowly than this.
@@ -21,8 +22,8 @@ const SLOWEST_MM_S: f64 = 1.0;
 const LIFTED_S: [f64; 2] = [0.05, 0.25];
 const TOUCHDOWN_S: f64 = 0.01;
 
-/// How a surface and a hand differ from a rigid relief under a steady hand; by default not at all.
-/// Exponents are relative to 80 mm/s and 0.4 N.
+/// How a surface and a hand differ from a rigid relief under a steady hand. By default they do not
+/// differ. Exponents are relative to 80 mm/s and 0.4 N.
 ///
 /// ```
 /// use htex_author::simulate::{Departures, SimulationOptions, Surface, simulate};
@@ -140,7 +141,7 @@ impl Departures {
     }
 }
 
-/// A power; the common exponent 0 takes a short cut.
+/// Returns a power, with a short cut for the common exponent 0.
 fn power(base: f64, exponent: f64) -> f64 {
     if exponent == 0.0 {
         return 1.0;
@@ -177,8 +178,8 @@ impl Course {
         course
     }
 
-    /// Reduces the finger's force while it is off the surface, and returns the factor of the
-    /// texture.
+    /// Reduces the finger's force while the finger is off the surface. Returns the factor of the
+    /// texture: its level at this speed and force, times the drift.
     pub(super) fn tick(&mut self, finger: &mut Finger) -> f64 {
         self.time_s += self.step_s;
         self.since_s += self.step_s;

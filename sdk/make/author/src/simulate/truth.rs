@@ -94,9 +94,9 @@ impl Truth {
         self.band.grid_hz()
     }
 
-    /// Returns the true magnitudes at the frequencies [`Self::frequency_hz`], newtons: the root of
-    /// the expected power in a segment of 0.2 s, with both lateral axes together, the rig's
-    /// response and the sensor's noise.
+    /// Returns the true magnitudes at the frequencies [`Self::frequency_hz`], newtons. A magnitude
+    /// is the root of the expected power in a segment of 0.2 s. It combines both lateral axes, and
+    /// includes the rig's response and the sensor's noise.
     ///
     /// # Errors
     /// When speed or force is out of the simulator's range.

@@ -72,8 +72,8 @@ impl Against {
         (cost, error)
     }
 
-    /// Returns which points are on the front. On the front of time, points whose times differ by no
-    /// more than their spreads count as one point: the one with the smallest error.
+    /// Returns which points are on the front. Times that differ by no more than their spreads count
+    /// as equal: of such points, only the one with the smallest error is on the front of time.
     pub(crate) fn on_front(self, points: &[&Point]) -> Vec<bool> {
         let places: Vec<(f64, f64)> = points.iter().map(|p| self.place(p)).collect();
         let mut on = front(&places);
@@ -95,8 +95,8 @@ impl Against {
     }
 }
 
-/// Cuts items, given in the order of their costs, into runs. All items of a run are tied with its
-/// first item.
+/// Cuts items into runs. The items are in the order of their costs, and all items of a run are tied
+/// with its first item.
 fn ties(mut along: &[usize], tied: impl Fn(usize, usize) -> bool) -> Vec<&[usize]> {
     let mut runs = Vec::new();
     while let Some(&first) = along.first() {

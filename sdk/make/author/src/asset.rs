@@ -53,10 +53,10 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     fit_asset_watched(takes, request, &mut |_| {})
 }
 
-/// As [`fit_asset`], but calls `begins` with each model before it is fitted.
+/// Does the same as [`fit_asset`], and also calls `begins` with each model before it is fitted.
 ///
 /// # Errors
-/// As [`fit_asset`].
+/// The errors of [`fit_asset`].
 pub fn fit_asset_watched(
     takes: &[Take],
     request: &AssetRequest,

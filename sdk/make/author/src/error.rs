@@ -321,7 +321,8 @@ pub enum AuthorError {
     /// contains the points that were stored before.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: io::Error },
-    /// The recording has no two parts of which one could test a model that is fitted to the other.
+    /// No part of the recording can be held out to test a fit: there are too few blocks of time, or
+    /// they are silent or equal.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
     /// A sweep cannot give this value to this setting (knob).

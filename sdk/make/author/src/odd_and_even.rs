@@ -1,4 +1,5 @@
-//! Odd and even blocks of time in recordings: two readings of a texture that share no sample.
+//! Odd and even blocks of time in recordings. They give two spectra of a texture that share no
+//! sample.
 
 use htex_dsp::spectrum::Complex;
 

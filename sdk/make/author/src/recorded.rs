@@ -31,8 +31,8 @@ pub struct RecordedLoop {
     pub condition: Exploration,
     /// The recorded quantity; the samples are in its unit.
     pub quantity: Quantity,
-    /// The samples in the band of the spectrum, compensated for the setup's response. A recording
-    /// of one axis keeps its signal.
+    /// The samples in the band of the spectrum, compensated for the setup's response. For a
+    /// recording of one axis, they are the recorded signal in the band.
     pub samples: Vec<f64>,
     pub rate_hz: f64,
     /// RMS of the samples. Models that are fitted to the recording have the same level.
@@ -45,8 +45,8 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// As [`segment_take`]. Also when the rate is not a multiple of 10 Hz, is not above twice the
-    /// band's highest frequency, or is above 192 kHz.
+    /// The errors of [`segment_take`]. Also when the rate is not a multiple of 10 Hz, is not above
+    /// twice the band's highest frequency, or is above 192 kHz.
     pub fn new(
         take: &Take,
         options: &SpectrumOptions,

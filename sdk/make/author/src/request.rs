@@ -61,7 +61,7 @@ pub struct AssetRequest {
     pub alternatives: Vec<LoadedModel>,
     /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
-    /// Grid of conditions, for recordings of a free motion. Without it, each recording has one
+    /// Grid of conditions, for recordings of a free motion. Without a grid, each recording has one
     /// condition.
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.

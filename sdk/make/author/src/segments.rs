@@ -81,7 +81,7 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// How much of the sliding the segments of sweeps would represent.
+/// How much of the finger's sliding the segments would represent if only sweeps were read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
     /// Sliding that the segments represent, seconds.
@@ -107,7 +107,8 @@ pub struct Segments {
     /// Set if `auto` uses windows although there are sweeps, because their segments would represent
     /// too little of the sliding.
     pub unread: Option<Unread>,
-    /// Mean length of the signal vector, in the signal's unit: the threshold that separates sweeps.
+    /// The threshold that separates sweeps: the mean length of the signal vector, in the signal's
+    /// unit.
     pub threshold: f64,
 }
 
@@ -172,8 +173,8 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     }
 }
 
-/// Returns for each sample whether the finger slides there: the length of the signal vector,
-/// averaged over 50 ms, is at least half of its mean over the recording.
+/// Returns for each sample whether the finger slides. The finger slides where the length of the
+/// signal vector, averaged over 50 ms, is at least half of its mean over the recording.
 pub fn sliding(recording: &Recording) -> Vec<bool> {
     let friction = Friction::new(recording);
     let slides = |at| friction.slides(friction.smooth(at));

@@ -30,8 +30,8 @@ pub struct Take {
 pub struct SegmentedTake {
     /// The recording's entry in the provenance of an asset, without the hash of its file.
     pub source: Source,
-    /// The recording's file. It is hashed only if an asset needs the hash, which takes a tenth of
-    /// the time for reading it.
+    /// The recording's file. It is hashed only if an asset needs the hash, because hashing takes a
+    /// tenth of the time of reading.
     pub file: RecordedFile,
     /// Whether the recording is simulated.
     pub simulated: bool,
@@ -140,7 +140,8 @@ pub(crate) fn refuse(source: &str, findings: &[Finding]) -> Result<(), AuthorErr
     }
 }
 
-/// Validates a recording and returns all findings; it is valid when none is an error.
+/// Validates a recording and returns all findings. The recording is valid if no finding is an
+/// error.
 ///
 /// # Errors
 /// When the file cannot be opened, or an option does not apply. A file that is not a recording is

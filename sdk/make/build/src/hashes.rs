@@ -24,7 +24,7 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Largest size of a file that a recipe names, bytes: the largest recording that is read.
 const MOST_FILE_BYTES: u64 = 4 << 30;
 
-/// Size and times of a file. They show that the file has changed without reading it.
+/// Size and times of a file. A build compares them to notice a change without reading the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     pub bytes: u64,

@@ -55,8 +55,8 @@ pub struct BuildOptions {
     /// The URI to which the results are copied. If there is no previous library on this machine,
     /// the one at this URI is used for comparison.
     pub published: Option<Location>,
-    /// Whether to remove all stored results that no texture uses any more at once. Otherwise they
-    /// stay for 30 days.
+    /// Whether to remove a stored result immediately when no texture uses it any more. Otherwise it
+    /// stays for 30 days.
     pub prune: bool,
 }
 
@@ -199,8 +199,8 @@ impl Build {
         workbench
     }
 
-    /// Returns the names of textures that are in the library before this build but no longer in the
-    /// recipe.
+    /// Returns the names of textures that were in the library before this build but are no longer
+    /// in the recipe.
     pub fn removed(&self) -> Vec<String> {
         self.plan.removed(&self.before)
     }

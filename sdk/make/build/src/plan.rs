@@ -26,17 +26,17 @@ pub struct Plan {
 /// A texture to be made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedTexture {
-    /// Its name, unique in the library.
+    /// Name of the texture, unique in the library.
     pub name: String,
-    /// Its recordings, sorted by file.
+    /// Recordings of the texture, sorted by file.
     pub recordings: Vec<PlannedRecording>,
     /// What kind of files the recordings are.
     pub kind: FileKind,
-    /// Its settings. Paths in them are relative to the recipe.
+    /// Settings of the texture. Paths in them are relative to the recipe.
     pub settings: Settings,
-    /// Its metadata, with templates filled.
+    /// Metadata of the texture, in which the templates are filled.
     pub metadata: Metadata,
-    /// The requirements that its asset must meet.
+    /// The requirements that the texture's asset must meet.
     pub gates: Gates,
 }
 

@@ -184,7 +184,7 @@ pub struct Gates {
     pub max_repeatability_db: Option<f64>,
     /// Codes of findings that no recording may have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,
-    /// Smallest number of 0.2 s segments at every condition.
+    /// Smallest number of 0.2 s segments that every condition must have.
     pub min_segments: Option<usize>,
     /// Whether recordings with findings that are errors or warnings are forbidden. Such findings
     /// are, for example, an unsteady motion or clipping.
@@ -192,7 +192,7 @@ pub struct Gates {
     /// Whether every texture must state a licence. The default is true for files of other haptic
     /// formats, and false for recordings.
     pub license: Option<bool>,
-    /// Largest size of the asset, bytes.
+    /// Largest allowed size of the asset, bytes.
     pub max_bytes: Option<u64>,
 }
 

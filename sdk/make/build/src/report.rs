@@ -28,7 +28,7 @@ pub struct Report {
     /// build left, if there was one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
-    /// The library.
+    /// The library that the build made.
     pub library: LibraryReport,
     /// Names of textures that were in the library before this build but are no longer in the
     /// recipe.

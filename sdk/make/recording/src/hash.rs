@@ -8,8 +8,8 @@ use std::time::SystemTime;
 
 /// The file that a recording was read from: what is needed to compute its hash.
 ///
-/// A file is hashed only when provenance asks for it. To hash every file would mean to read it a
-/// second time, which takes a tenth longer.
+/// A file is hashed only when provenance asks for it. If every file were hashed, it would be read a
+/// second time, and reading a recording would take a tenth longer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedFile(FileIdentity);
 

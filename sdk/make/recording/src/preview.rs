@@ -39,9 +39,9 @@ pub struct Preview {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PreviewColumn {
-    /// The column's name, or `#` and its number if it has no name.
+    /// The column's name. A column without a name is called by its number, such as `#3`.
     pub name: String,
-    /// The role that the column is read as; `None` if it is not read.
+    /// The role in which the column is read; `None` if it is not read.
     pub role: Option<Role>,
     /// Factor to the unit of the role; 1 if the column is read only as part of an expression.
     pub scale: f64,

@@ -93,7 +93,7 @@ impl Recording {
     /// Creates a recording of a lateral force with one or two axes, in newtons.
     ///
     /// # Errors
-    /// As [`Self::from_axes`].
+    /// The errors of [`Self::from_axes`].
     ///
     /// ```
     /// # use htex_recording::Recording;

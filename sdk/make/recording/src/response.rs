@@ -144,7 +144,7 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
 /// Reads a setup response from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read_response`].
+/// The errors of [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(response);
     read.map_err(|fault| fault.in_file(file))

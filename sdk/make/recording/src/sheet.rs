@@ -41,7 +41,8 @@ impl Columns {
         self.names.len()
     }
 
-    /// Returns the column's whole name, or `#` and its number if it has none.
+    /// Returns the column's whole name. A column without a name is called by its number, such as
+    /// `#3`.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.names.get(column) {
             Some(name) if !name.is_empty() => htex_base::finding::plain(name).into_owned(),

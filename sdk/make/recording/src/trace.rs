@@ -48,7 +48,7 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
 /// Reads a trace from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read_trace`].
+/// The errors of [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(trace);
     read.map_err(|fault| fault.in_file(file))
@@ -71,7 +71,7 @@ pub struct StrokeColumns {
 /// without a speed is read as a trace, and the speed is computed from its positions.
 ///
 /// # Errors
-/// As [`read_trace`].
+/// The errors of [`read_trace`].
 pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
     let read = InputFile::file(path).and_then(stroke);
     read.map_err(|fault| fault.in_file(&file_name(path)))
@@ -80,7 +80,7 @@ pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
 /// Reads a stroke from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read_stroke`].
+/// The errors of [`read_stroke`].
 pub fn stroke_from_bytes(file: &str, bytes: &[u8]) -> Result<StrokeColumns, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(stroke);
     read.map_err(|fault| fault.in_file(file))

@@ -135,8 +135,8 @@ pub struct ByHandAt {
 /// ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// As [`make`]. Also when there is no model or no condition, or when only some conditions have a
-/// speed or a force.
+/// The errors of [`make`]. Also when there is no model or no condition, or when only some
+/// conditions have a speed or a force.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {

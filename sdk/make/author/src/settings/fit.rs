@@ -195,7 +195,7 @@ impl FitSettings {
     /// read with `reading`.
     ///
     /// # Errors
-    /// As [`Self::models`], and when the setup's response or the grid cannot be read.
+    /// The errors of [`Self::models`]. Also when the setup's response or the grid cannot be read.
     pub fn request(
         &self,
         registry: &Registry,

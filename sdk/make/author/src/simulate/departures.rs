@@ -36,12 +36,13 @@ const TOUCHDOWN_S: f64 = 0.01;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Departures {
-    /// Exponent of frequencies over the speed, -0.5 to 2: 1 for a relief, 0 if frequencies stay the
-    /// same.
+    /// Exponent with which frequencies follow the speed, -0.5 to 2. It is 1 for a relief, and 0 if
+    /// frequencies do not depend on the speed.
     pub frequency_speed: f64,
-    /// Exponent of the texture's level over the speed, -2 to 2; 0 for a relief.
+    /// Exponent with which the texture's level follows the speed, -2 to 2. It is 0 for a relief.
     pub level_speed: f64,
-    /// Exponent of the texture's level over the normal force, -1 to 3; 1 for friction.
+    /// Exponent with which the texture's level follows the normal force, -1 to 3. It is 1 for
+    /// friction.
     pub level_force: f64,
     /// Drift of the texture's level during the recording, -60 to 60 dB per minute.
     pub drift_db_per_min: f64,
@@ -63,19 +64,19 @@ impl Default for Departures {
 }
 
 impl Departures {
-    /// Sets the exponent of frequencies over the speed.
+    /// Sets the exponent with which frequencies follow the speed.
     #[must_use]
     pub const fn with_frequency_speed(self, frequency_speed: f64) -> Self {
         Self { frequency_speed, ..self }
     }
 
-    /// Sets the exponent of the level over the speed.
+    /// Sets the exponent with which the level follows the speed.
     #[must_use]
     pub const fn with_level_speed(self, level_speed: f64) -> Self {
         Self { level_speed, ..self }
     }
 
-    /// Sets the exponent of the level over the normal force.
+    /// Sets the exponent with which the level follows the normal force.
     #[must_use]
     pub const fn with_level_force(self, level_force: f64) -> Self {
         Self { level_force, ..self }

@@ -127,7 +127,8 @@ pub struct SimulationOptions {
 }
 
 impl SimulationOptions {
-    /// Returns the paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; the seed is 1.
+    /// Returns options for the paper's recording condition: 10 s at 20 kHz, with 80 mm/s and 0.4 N.
+    /// The seed is 1.
     #[must_use]
     pub fn new(surface: Surface) -> Self {
         Self {

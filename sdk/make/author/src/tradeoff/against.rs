@@ -8,14 +8,14 @@ use crate::tradeoff::front::front;
 use crate::tradeoff::point::Point;
 use crate::tradeoff::setting::Keep;
 
-/// The cost against which the error is compared.
+/// The cost with which the error is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
-    /// Bytes of stored parameters. The error relative to the fitted spectrum is then the error of
-    /// the magnitudes.
+    /// Size of the stored parameters, bytes. For this cost, the error relative to the fitted
+    /// spectrum is measured on the model's magnitudes.
     Bytes,
-    /// Nanoseconds per sample. The error relative to the fitted spectrum is then the error of the
-    /// samples.
+    /// Computing time, nanoseconds per sample. For this cost, the error relative to the fitted
+    /// spectrum is measured on rendered samples.
     Time,
 }
 

@@ -13,8 +13,9 @@ pub enum ErrorAxis {
     /// even blocks themselves, so 1 is as good as a second recording.
     #[default]
     HeldOut,
-    /// Error relative to what the setting was fitted to, in decibels. Against bytes it is measured
-    /// on the model's magnitudes, against time on rendered samples.
+    /// Error relative to the spectrum to which the setting was fitted, in decibels. When errors are
+    /// plotted against bytes, it is measured on the model's magnitudes; against time, on rendered
+    /// samples.
     Fitted(ErrorMeasure),
 }
 

@@ -61,11 +61,11 @@ pub struct Point {
     /// The measures of rendered samples.
     #[serde(flatten)]
     pub by_samples: RenderedAccuracy,
-    /// Whether the point is on the front of bytes and magnitude error, among settings that play at
-    /// their defaults.
+    /// Whether the point is on the Pareto front of bytes and error. Only settings that play like
+    /// the default setting are compared.
     pub on_front: bool,
-    /// Whether the point is on the front of time and sample error, among settings with the default
-    /// block size and output rate.
+    /// Whether the point is on the Pareto front of time and error. Only settings with the default
+    /// block size, output rate and storage are compared.
     pub on_time_front: bool,
 }
 
@@ -76,7 +76,7 @@ pub struct Shares {
     /// of them together.
     #[serde(rename = "share_below_threshold")]
     pub below_threshold: f64,
-    /// The same for a person with a sensitive finger and soft skin.
+    /// The same share for a person with a sensitive finger and soft skin.
     #[serde(rename = "share_below_threshold_if_sensitive")]
     pub below_threshold_if_sensitive: f64,
     /// Share whose difference is within the recording's own variation. This says nothing about what

@@ -21,7 +21,7 @@ pub struct ChannelTable {
     pub rate_hz: f64,
     /// Times of the samples, seconds, ascending; only if the file has a time column.
     pub time_s: Option<Vec<f64>>,
-    /// Names of the channels. A channel without a name is called `#` and its number.
+    /// Names of the channels. A channel without a name is called by its number, such as `#3`.
     pub names: Vec<String>,
     /// The samples of each channel: at least two, finite, and equally many in every channel.
     pub channels: Vec<Vec<f64>>,
@@ -32,7 +32,7 @@ pub struct ChannelTable {
 /// among the channels.
 ///
 /// # Errors
-/// As [`read_recording`](crate::read_recording).
+/// The errors of [`read_recording`](crate::read_recording).
 pub fn read_channels(path: &Path, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
     let file = file_name(path);
     let read = || {

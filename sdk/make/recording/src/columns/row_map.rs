@@ -60,7 +60,7 @@ impl RowMap {
     /// [`Tracker`](crate::Tracker).
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn of_motion(
         source: &str,
         channels: &[(String, String)],

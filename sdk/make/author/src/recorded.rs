@@ -1,4 +1,4 @@
-//! Playback of a recording: the segments that are read, limited to the band, joined into a loop.
+//! Playback of a recording: its segments are limited to the band and joined into a loop.
 //!
 //! The segments of a spectrum are windowed (Hann) and overlap by half. After the frequencies
 //! outside the band are removed, the ends of a segment are no longer zero, and a plain sum of the

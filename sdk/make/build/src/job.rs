@@ -1,4 +1,5 @@
-//! A job: the fit of one texture as data. Equal jobs give equal bytes on any machine.
+//! A job: the fit or import of one texture, described as data. Equal jobs give equal bytes on any
+//! machine.
 //!
 //! Models that are installed on a machine are not used, and a key contains no paths or times. A key
 //! also does not contain the texture's name and metadata, except for the metadata that decides how

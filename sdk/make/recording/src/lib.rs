@@ -1,5 +1,5 @@
-//! Recordings of a finger sliding on a texture, and the readers of their files: CSV, and the other
-//! [`FORMATS`] if the crate's features for them are on.
+//! Recordings of a finger sliding on a texture, and the readers of their files. The crate always
+//! reads CSV. It reads the other [`FORMATS`] if it is built with their features.
 //!
 //! ```no_run
 //! # use std::path::Path;

@@ -2,11 +2,11 @@
 //! band leaks from lower frequencies, or it is far weaker than the power above the band.
 //!
 //! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, or a drift from noise. A
-//! window of one second whose side lobes are 92 dB down can (four-term Blackman-Harris; Harris
+//! window of one second can, if its side lobes are 92 dB down (four-term Blackman-Harris; Harris
 //! 1978). In 240 third-party recordings of fingers, tools and microphones, the segments show at
-//! most 4.3 dB more power in the band than the long windows do. Normal forces and positions of such
-//! fingers, when read as a texture, show 32 dB more or above. Noise of 1 to 15 Hz shows 11 dB more
-//! or above.
+//! most 4.3 dB more power in the band than the long windows do. If normal forces and positions of
+//! such fingers are read as a texture, the segments show at least 32 dB more. For noise of 1 to 15
+//! Hz they show at least 11 dB more.
 
 use std::f64::consts::TAU;
 

@@ -1,11 +1,11 @@
 //! Spectra of windows over equal lengths of path.
 //!
-//! Most of a texture's spectrum is its relief, read at the finger's speed. If the finger passes a
-//! window at another speed than the grid line's, the window is made as long as the finger needs for
-//! the path of 0.2 s at the line's speed. Its bins then lie at the frequencies that the relief has
-//! at the line (order tracking, as for rotating machines). This keeps the lines of a weave sharp
-//! although the speed scatters within a cell; components that do not follow the speed are blurred
-//! by the same amount instead.
+//! Most of a texture's spectrum is its relief, read at the finger's speed. The finger may have
+//! another speed in a window than the speed of the grid line. The window is then made as long as
+//! the finger needs for the path that it would cover in 0.2 s at the line's speed. Its bins then
+//! lie at the frequencies that the relief has at the line (order tracking, as for rotating
+//! machines). This keeps the lines of a weave sharp although the speed scatters within a cell;
+//! components that do not follow the speed are blurred by the same amount instead.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

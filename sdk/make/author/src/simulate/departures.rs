@@ -4,7 +4,8 @@
 //! friction has a level proportional to the normal force. Recorded textures depart from both: over
 //! three speeds on four materials, the level rose with the speed to the power of 0.69 to 0.82;
 //! exponents of the force were between -0.07 and 2.6; and accelerations of tools keep their
-//! frequencies. A method that is tested only on a rigid relief is tested on its own assumption.
+//! frequencies. If a method assumes a rigid relief, a test on only such reliefs would not show
+//! where it fails.
 
 use htex_dsp::normal::Normal;
 

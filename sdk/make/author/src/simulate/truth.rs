@@ -2,8 +2,9 @@
 //!
 //! The relief is a stationary process along the path, with a known spectral density over spatial
 //! frequency. The speed converts spatial frequency to hertz, the force scales it, and skin and rig
-//! filter it. Seen through the periodic Hann window of 0.2 s, the expected power at a multiple of 5
-//! Hz is the integral of that density multiplied by the window's power transfer.
+//! filter it. A spectrum is computed with a periodic Hann window of 0.2 s. Its expected power at a
+//! multiple of 5 Hz is the integral of the filtered density multiplied by the window's power
+//! transfer.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};

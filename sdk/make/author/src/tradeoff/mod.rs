@@ -5,7 +5,6 @@
 //! options for playing (knobs), and two baselines for comparison. [`Tradeoff::new`] finds fronts,
 //! knees and warnings in the result; [`page`] and [`csv`] write it. An interrupted sweep continues
 //! from its [`Journal`].
-//! [`Journal`].
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

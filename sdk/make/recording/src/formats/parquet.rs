@@ -1,6 +1,7 @@
 //! Reader of Parquet: numeric columns that are not lists.
 //!
-//! In three places the crate `parquet` panics on damaged files; these are checked here beforehand.
+//! The crate `parquet` panics on damaged files in three places. This module checks the files for
+//! such damage before the crate reads them.
 
 use std::io::{BufReader, Read};
 

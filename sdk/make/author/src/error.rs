@@ -22,9 +22,9 @@ pub enum AuthorError {
     )]
     RateTooLow {
         source_name: String,
-        /// Its sample rate, hertz.
+        /// Sample rate of the recording, hertz.
         rate_hz: f64,
-        /// Its Nyquist frequency, hertz.
+        /// Nyquist frequency of the recording, hertz.
         nyquist_hz: f64,
     },
     /// The recording is shorter than one segment.
@@ -34,7 +34,7 @@ pub enum AuthorError {
     TooShort {
         source_name: String,
         samples: usize,
-        /// Samples of a segment.
+        /// Number of samples in a segment.
         needed: usize,
     },
     /// No sweep is long enough to hold a segment.
@@ -49,7 +49,7 @@ pub enum AuthorError {
          needed at every frequency that is to be divided by it: measure the setup again"
     )]
     Response {
-        /// Its largest magnitude in the band; NaN if any magnitude is not a number.
+        /// The response's largest magnitude in the band; NaN if any magnitude is not a number.
         largest: f64,
     },
     /// The recordings of one condition have different bands.

@@ -36,7 +36,7 @@ impl Dist {
         Path::new("sounds").join(format!("{name}.wav"))
     }
 
-    /// Returns the path of a file that another function than [`Self::put`] writes. None of the
+    /// Returns the path of a file, for code that writes the file without [`Self::put`]. None of the
     /// folders above the file is a link.
     pub(crate) fn path_of(&self, file: &Path) -> Result<PathBuf, BuildError> {
         let at = self.own.entry_path(file);

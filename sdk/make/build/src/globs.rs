@@ -77,8 +77,8 @@ pub(crate) fn is_glob(text: &str) -> bool {
     text[path].contains(GLOB)
 }
 
-/// Returns the range of a text that is a path: for a URI without scheme and host, for a URL also
-/// without the query.
+/// Returns which part of a text is a path. The path of a URI excludes scheme and host; the path of
+/// a URL also excludes the query.
 fn path_of(text: &str) -> Range<usize> {
     let Some(host) = text.find("://").map(|at| at + 3) else {
         return 0..text.len();

@@ -31,7 +31,7 @@ use crate::plan::PlannedTexture;
 use crate::recipe::Gates;
 use crate::remote::{RemoteFiles, is_remote, joined, remote_location};
 
-/// Version of the meaning of jobs and their results. Changing it makes everything again.
+/// Version of the meaning of jobs and their results. If it changes, all textures are made again.
 const JOB: &str = "htex-job/5";
 
 /// The plugins named by the user and by the recipe, and the location of the recipe.

@@ -54,8 +54,8 @@ pub struct PlannedRecording {
 }
 
 impl PlannedTexture {
-    /// Returns the files that its job reads, relative to the recipe. Plugins of the whole library
-    /// are not included.
+    /// Returns the files that the texture's job reads, relative to the recipe. Plugins of the whole
+    /// library are not included.
     pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let recordings =
             self.recordings.iter().flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));

@@ -9,7 +9,8 @@ use htex_recording::rules::{
 };
 
 /// Largest plausible ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at
-/// a light touch, where adhesion dominates; twice that allows for offsets of the sensors.
+/// a light touch, where adhesion dominates. The limit is twice as high, to allow for offsets of the
+/// sensors.
 const LARGEST_FRICTION: f64 = 10.0;
 /// Speed below which the finger counts as standing still, mm/s. The skin yields by a millimetre,
 /// and at this speed it takes a quarter of an hour to stretch that far.

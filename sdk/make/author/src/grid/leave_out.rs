@@ -75,8 +75,8 @@ impl<'a> HeldOutGrid<'a> {
         is_finite.then_some(error.measures)
     }
 
-    /// Returns the magnitudes at a motion that would be measured in a recording of the played
-    /// texture. Where frequencies are scaled, it returns the same magnitudes as
+    /// Returns the magnitudes that would be measured in a recording of the texture, when it is
+    /// played at the given motion. Where frequencies are scaled, it returns the same magnitudes as
     /// [`htex_play::Representation::magnitude`].
     fn magnitude(
         &self,

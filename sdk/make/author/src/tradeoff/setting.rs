@@ -54,8 +54,8 @@ impl Setting {
         *self == other
     }
 
-    /// Whether the times can be compared with the times of the default setting, because block size
-    /// and output rate are the same.
+    /// Whether the times can be compared with the times of the default setting. They can if block
+    /// size and output rate are the same.
     pub(crate) fn times_compare(&self) -> bool {
         let default = Self::default();
         self.block_samples == default.block_samples && self.output_rate_hz == default.output_rate_hz

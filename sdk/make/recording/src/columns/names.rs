@@ -76,7 +76,8 @@ const SHORT: [&str; 5] = ["cm", "um", "nm", "m", "g"];
 /// Standard gravity, m/s².
 const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Returns the role and the unit that a column's name stands for in a recording of a quantity.
+/// Returns the role and the unit that a column's name stands for, if the recording is of
+/// `quantity`.
 pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> {
     let name = normalise(name);
     let known = |name: &str| signal_role(name, quantity).or_else(|| known_role(name));

@@ -12,10 +12,10 @@ use crate::request::ModelRequest;
 
 /// Nine-band RMS error above which a warning is given, decibels.
 const LIMIT_DB: f64 = 12.0;
-/// Error of a single band (of the nine) above which a warning is given, decibels.
-/// `sbeta.error=magnitude` with bins beside the peaks follows only the strongest bins: on a
-/// spectrum that falls steeply it is 26 dB off in the highest band at an RMS of 10 dB, and there is
-/// no better fit of its kind.
+/// Error of a single band (of the nine) above which a warning is given, decibels. The worst known
+/// fit without a better one is from `sbeta.error=magnitude` with bins beside the peaks, which
+/// follows only the strongest bins. On a spectrum that falls steeply, its error is 26 dB in the
+/// highest band and 10 dB RMS.
 const BAND_LIMIT_DB: f64 = 24.0;
 
 /// A fit that was tried, with its nine-band RMS error in decibels.
@@ -25,7 +25,8 @@ struct TrialFit {
 }
 
 /// Returns a warning if a representation exceeds an error limit at one of its `measured`
-/// conditions. Besides the model's own options it tries each of `models` at its default options.
+/// conditions. To name better fits in the warning, the function tries other options of the model,
+/// and each of `models` with its default options.
 pub(crate) fn warning<'a>(
     choice: &ModelRequest,
     measured: &[(&Quality, &ConditionSpectrum)],
@@ -88,8 +89,8 @@ fn best(tried: impl Iterator<Item = TrialFit>) -> Option<TrialFit> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 
-/// Returns variants of the request's options, each named `model.option=value`. In each variant one
-/// option has another of its choices, or one end of its range.
+/// Returns variants of the request's options, each named `model.option=value`. Each variant changes
+/// one option: to another of its choices, or to one end of its range.
 fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     let mut others = Vec::new();
     let model = &choice.model;
@@ -116,8 +117,8 @@ fn other_values(option: &FitOption) -> Vec<f64> {
     }
 }
 
-/// Returns the nine-band RMS error of a model's stored fit, measured on the magnitudes that a
-/// recording of the voice would read. `None` if the model cannot be fitted.
+/// Returns the nine-band RMS error of a model's stored fit. The error is computed from the spectrum
+/// that a recording of the played texture would have. `None` if the model cannot be fitted.
 fn error_of(
     model: &LoadedModel,
     options: &[f64],

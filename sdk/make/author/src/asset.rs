@@ -1,5 +1,5 @@
-//! The way from recordings to a fitted asset: the stages in their order, and the last of them, which
-//! puts the asset together.
+//! Runs the stages that lead from recordings to a fitted asset. This module also contains the last
+//! stage, which puts the asset together.
 
 use std::collections::BTreeMap;
 
@@ -22,28 +22,28 @@ use crate::{AuthorError, TextureSpectrum};
 #[derive(Debug, Clone)]
 pub struct FittedAsset {
     pub asset: Asset,
-    /// Time taken by each representation's fits, milliseconds.
+    /// Time that the fits of each representation took, milliseconds.
     pub fit_ms: Vec<f64>,
     /// Models that could not be fitted, with the reasons.
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// How much of the difference from these spectra can be felt, for each representation at each
-    /// of its conditions. `None` at a condition that was computed between recorded ones, where
-    /// there is no recording to compare with.
+    /// How much of the difference between each representation and these spectra can be felt, at
+    /// each of the representation's conditions. `None` at a condition that was computed between
+    /// recorded ones, where there is no recording to compare with.
     pub felt: Vec<Vec<Option<FeltError>>>,
-    /// The warnings in the asset's provenance, each with settings that help.
+    /// The warnings in the asset's provenance, each with the settings that can fix the problem.
     pub warnings: Vec<Notice>,
-    /// Findings of the recordings that are less severe than a warning: what was left out, and why.
+    /// Notes about the recordings, less severe than warnings: what was left out, and why.
     pub notes: Vec<Notice>,
-    /// All findings of the recordings, recording by recording.
+    /// All findings about the recordings, in the order of the recordings.
     pub findings: Vec<RecordingFinding>,
     /// The grid of conditions, if one was requested.
     pub grid: Option<GridReport>,
 }
 
-/// Fits every model at every condition, measures the parameters as they are stored, and returns the
-/// asset.
+/// Fits every model at every condition, measures how well the stored (rounded) parameters agree
+/// with the recordings, and returns the asset.
 ///
 /// A model that cannot be fitted is left out and listed in `skipped`.
 ///
@@ -53,10 +53,10 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     fit_asset_watched(takes, request, &mut |_| {})
 }
 
-/// As [`fit_asset`], but calls `begins` with each model before it is fitted.
+/// Does the same as [`fit_asset`], and also calls `begins` with each model before it is fitted.
 ///
 /// # Errors
-/// As [`fit_asset`].
+/// The errors of [`fit_asset`].
 pub fn fit_asset_watched(
     takes: &[Take],
     request: &AssetRequest,
@@ -138,8 +138,9 @@ fn assemble(
     }
 }
 
-/// Returns an asset with these models: each has a representation, and parameters for each of its
-/// conditions. Everything that is not given is left out of its manifest.
+/// Returns an asset with the given models. Each model consists of a representation and the
+/// parameters for each of the representation's conditions. Optional keys of the manifest, such as
+/// the licence and the law, are left out.
 pub fn new_asset(
     name: &str,
     quantity: Quantity,

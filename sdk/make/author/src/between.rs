@@ -18,10 +18,11 @@ use htex_play::Mesh;
 use crate::TextureSpectrum;
 use crate::conditions::{ConditionSpectrum, four_digits};
 
-/// Smallest frequency exponent at which lines move enough to need conditions in between.
+/// Smallest frequency exponent at which lines move enough to need conditions between the recorded
+/// ones.
 const LEAST_EXPONENT: f64 = 0.5;
-/// Largest ratio of neighbouring speeds once conditions are added: frequencies move by a fifth at
-/// most.
+/// Largest ratio of neighbouring speeds after conditions are added. Between neighbours, frequencies
+/// then move by a fifth at most.
 const RATIO: f64 = 1.2;
 /// Largest number of conditions that are added.
 const MOST: usize = 64;
@@ -46,7 +47,8 @@ pub(crate) fn conditions(recorded: &[ConditionSpectrum], law: &Law) -> Vec<Condi
     neighbours(recorded).into_iter().flat_map(between).take(MOST).collect()
 }
 
-/// Pairs of conditions at one force with no third speed between them, the slower one first.
+/// Returns the pairs of conditions at the same force with no third speed between them, the slower
+/// one first.
 fn neighbours(recorded: &[ConditionSpectrum]) -> Vec<[usize; 2]> {
     let known = |i: usize| recorded[i].condition.speed_mm_s.zip(recorded[i].condition.force_n);
     let mut order: Vec<usize> = (0..recorded.len()).filter(|i| known(*i).is_some()).collect();
@@ -64,8 +66,8 @@ fn neighbours(recorded: &[ConditionSpectrum]) -> Vec<[usize; 2]> {
     (0..order.len()).filter_map(next).collect()
 }
 
-/// Motions (speed, force) between two conditions. Their speeds divide the ratio of the two speeds
-/// into equal factors.
+/// Returns the motions (speed, force) to add between two conditions. Each speed follows the one
+/// before it by the same factor.
 fn inner(slow: &Condition, fast: &Condition) -> Vec<[f64; 2]> {
     let both = |of: fn(&Condition) -> Option<f64>| {
         of(slow).zip(of(fast)).filter(|(a, b)| *a > 0.0 && *b > 0.0)
@@ -83,9 +85,9 @@ fn inner(slow: &Condition, fast: &Condition) -> Vec<[f64; 2]> {
     (1..steps).map(motion).collect()
 }
 
-/// Returns the spectrum at a motion between two recorded conditions. Both spectra are moved there
-/// and mixed with the weights and the level that a player would use. Where one of them has moved
-/// out of the band, only the other one counts.
+/// Returns the spectrum at a motion between two recorded conditions. Both recorded spectra are
+/// moved to this motion and mixed with the weights and the level that a player would use. In bins
+/// where one of the moved spectra has no value, only the other spectrum counts.
 fn mixed(both: [&ConditionSpectrum; 2], motion: [f64; 2], exponent: f64) -> TextureSpectrum {
     let motions =
         both.map(|one| [one.condition.speed_mm_s, one.condition.force_n].map(|x| x.unwrap_or(1.0)));

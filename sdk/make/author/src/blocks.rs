@@ -1,9 +1,9 @@
 //! Repeatability: how much the spectra of different blocks of time differ within one texture.
 //!
-//! Overlapping windows share samples, and so would two halves made of every second window: their
-//! difference would be several times too small. Blocks share no samples. Each block lasts up to a
-//! second, so that the difference between blocks includes the drift of texture, finger and motion,
-//! as far as it shows within a second.
+//! Overlapping windows share samples. If each half consisted of every second window, both halves
+//! would share samples, and their difference would be several times too small. Blocks share no
+//! samples. Each block lasts up to a second, so that the difference between blocks includes the
+//! drift of texture, finger and motion, as far as it shows within a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -28,12 +28,12 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// Returns how much two readings like this one differ, in decibels: the RMS over nine bands of the
-/// difference between the spectra of odd and even blocks, divided by √2. `None` if there are fewer
-/// than four blocks, or half of them are silent.
+/// Returns the repeatability in decibels: by how much the spectra of two such recordings would
+/// differ. This is the RMS over nine bands of the difference between the spectra of odd and even
+/// blocks, divided by √2. `None` if there are fewer than four blocks, or half of them are silent.
 ///
-/// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks; dividing
-/// by √2 takes that out.
+/// Each half has n/2 blocks, so its deviation is √2 times the deviation of all n blocks. The
+/// division by √2 corrects for this.
 pub(crate) fn repeatability_rms_db(
     band: Band,
     spectra: &[&[Complex<f64>]],

@@ -13,7 +13,8 @@ use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, fel
 pub struct Difference {
     /// RMS of the compared spectrum in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// The measures of agreement. Measures on samples exist only for representations.
+    /// The measures of agreement. Measures on samples exist only for representations, because only
+    /// they can be played.
     #[serde(flatten)]
     pub quality: Quality,
     /// How much of the difference can be felt.
@@ -25,9 +26,9 @@ pub struct Difference {
 pub struct FeltDifference {
     /// Centre frequencies of third-octave bands, hertz.
     pub centre_hz: Vec<f64>,
-    /// Difference of the levels above the detection threshold in each band, decibels.
+    /// In each band, difference of the levels above the detection threshold, decibels.
     pub error_db: Vec<f64>,
-    /// The same as a few summary numbers.
+    /// The difference over all bands, in a few numbers.
     #[serde(flatten)]
     pub error: FeltError,
 }

@@ -19,7 +19,7 @@ pub(crate) struct ConditionSpectrum {
 }
 
 impl ConditionSpectrum {
-    /// Returns the motion at which it was recorded, as far as it is known.
+    /// Returns the speed and force of the condition, as far as they are known.
     pub(crate) fn motion(&self) -> FitCondition {
         let Condition { speed_mm_s, force_n, .. } = self.condition;
         FitCondition { speed_mm_s, force_n }
@@ -35,7 +35,7 @@ pub(crate) struct ConditionSpectra {
     pub(crate) recordings: RecordingsReport,
 }
 
-/// A finding of one of several recordings.
+/// A finding about one of several recordings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordingFinding {
     /// The recording's name, as in its warnings.
@@ -55,7 +55,7 @@ pub(crate) struct RecordingsReport {
 }
 
 impl RecordingsReport {
-    /// Adds what is said about one recording.
+    /// Adds the source, notices and findings of one recording.
     pub(crate) fn add(
         &mut self,
         source: Source,
@@ -87,7 +87,7 @@ struct Gathering {
 }
 
 impl Gathering {
-    /// Recordings whose level differs from the others' level, with the findings.
+    /// Returns the recordings whose level differs from the level of the others, with the findings.
     fn differing(&self) -> impl Iterator<Item = (&str, Vec<Finding>)> {
         let levels: Vec<f64> = self.parts.iter().map(level_of).collect();
         let found = differing(&levels).into_iter().map(Findings::into_list);
@@ -128,8 +128,8 @@ impl ConditionSpectra {
                 }
             }
         }
-        // Only after all recordings, because a level differs from the median of its whole
-        // condition.
+        // This has to wait until all recordings are added, because each level is compared with the
+        // median of its whole condition.
         for (name, found) in gatherings.iter().flat_map(Gathering::differing) {
             if strict {
                 refuse(name, &found)?;
@@ -165,8 +165,8 @@ impl ConditionSpectra {
     }
 }
 
-/// What slid over the surface, as far as the recordings show it: the simulator always uses a
-/// finger.
+/// Returns what slid over the surface: a finger if all recordings are simulated, because the
+/// simulator always uses a finger. Otherwise it is unknown.
 pub(crate) fn contact(mut simulated: impl Iterator<Item = bool>) -> Contact {
     if simulated.all(|is| is) { Contact::Finger } else { Contact::Unknown }
 }
@@ -195,7 +195,8 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
 
 /// Rounds to four digits, the precision of measured speeds and forces.
 pub(crate) fn four_digits(x: f64) -> f64 {
-    // By way of text: the nearest number to four digits has the shortest form in the manifest.
+    // Rounded as text: of all numbers that agree to four digits, this one has the shortest form in
+    // the manifest.
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 

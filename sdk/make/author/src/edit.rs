@@ -1,4 +1,4 @@
-//! Editing an asset's metadata without a new fit.
+//! Edits an asset's metadata without a new fit.
 
 use htex_format::{Asset, Limits};
 use serde_json::Value;
@@ -7,7 +7,7 @@ use crate::AuthorError;
 use crate::settings::Metadata;
 
 /// Reads an asset and changes its metadata. Parameters, recorded spectra, embedded models and their
-/// signatures are kept.
+/// signatures stay as they are.
 ///
 /// # Errors
 /// When the bytes are not a valid asset, or saving it would lose data.
@@ -21,7 +21,7 @@ pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, AuthorError> {
     Ok(asset)
 }
 
-/// What would be lost if the asset were written again.
+/// Returns what would be lost if the asset were written again.
 fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
     let limits = Limits::default();
     let report = htex_format::validate(bytes, &limits);

@@ -1,4 +1,4 @@
-//! Embedding of models' WASM modules into an asset.
+//! Embeds the WASM modules of models into an asset.
 
 use std::path::{Path, PathBuf};
 
@@ -7,8 +7,8 @@ use htex_host::{LoadedModel, Origin, Registry};
 
 use crate::AuthorError;
 
-/// Embeds the modules of fitted models into an asset, and signs them with an ed25519 secret key if
-/// one is given. `registry` must have loaded the models from these files.
+/// Embeds the WASM modules of fitted models into an asset, and signs each with an ed25519 secret
+/// key if a key is given. `registry` must have loaded the models from the same files.
 ///
 /// # Errors
 /// See [`AuthorError`].

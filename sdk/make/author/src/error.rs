@@ -8,8 +8,8 @@ use htex_format::Quantity;
 use htex_host::HostError;
 use htex_recording::{ReadError, hertz};
 
-/// An error of reading, fitting, making, comparing or simulating textures. Each message says what is
-/// wrong, where, and what to do. [`Self::kind`] says what an error is about.
+/// An error of reading, fitting, making, comparing or simulating textures. Each message says what
+/// is wrong, where, and what to do. [`Self::kind`] returns what an error is about.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AuthorError {
@@ -22,9 +22,9 @@ pub enum AuthorError {
     )]
     RateTooLow {
         source_name: String,
-        /// Its sample rate, hertz.
+        /// Sample rate of the recording, hertz.
         rate_hz: f64,
-        /// Its Nyquist frequency, hertz.
+        /// Nyquist frequency of the recording, hertz.
         nyquist_hz: f64,
     },
     /// The recording is shorter than one segment.
@@ -34,7 +34,7 @@ pub enum AuthorError {
     TooShort {
         source_name: String,
         samples: usize,
-        /// Samples of a segment.
+        /// Number of samples in a segment.
         needed: usize,
     },
     /// No sweep is long enough to hold a segment.
@@ -49,7 +49,7 @@ pub enum AuthorError {
          needed at every frequency that is to be divided by it: measure the setup again"
     )]
     Response {
-        /// Its largest magnitude in the band; NaN if any magnitude is not a number.
+        /// The response's largest magnitude in the band; NaN if any magnitude is not a number.
         largest: f64,
     },
     /// The recordings of one condition have different bands.
@@ -57,7 +57,7 @@ pub enum AuthorError {
         "recordings of one condition have different bands because of their sample rates; fit them separately"
     )]
     BandsDiffer,
-    /// The recordings of one texture have different quantities.
+    /// The recordings of one texture measure different quantities.
     #[error(
         "the recordings hold different quantities, such as forces and accelerations; fit them separately"
     )]
@@ -198,7 +198,7 @@ pub enum AuthorError {
     /// that this program does not know.
     #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
     EditLoses { lost: Vec<String> },
-    /// The asset and the recording hold different quantities.
+    /// The asset and the recording describe different quantities.
     #[error("the asset holds {held}, the recording is read as {recorded}")]
     OtherQuantity {
         /// The asset's quantity.
@@ -235,7 +235,7 @@ pub enum AuthorError {
     /// An option is not of the form `MODEL.NAME=VALUE`.
     #[error("option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6")]
     OptionForm { text: String },
-    /// Metadata that asset validation would reject.
+    /// An asset with these metadata would be invalid.
     #[error("{field}: {problem}")]
     Metadata {
         field: &'static str,
@@ -317,13 +317,15 @@ pub enum AuthorError {
     )]
     Weight { weight: f64 },
 
-    /// The journal of a sweep could not be written. Points that were finished are in it.
+    /// The journal of a sweep, which stores finished points, could not be written. It still
+    /// contains the points that were stored before.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal { path: PathBuf, error: io::Error },
-    /// Nothing can be held out of a recording.
+    /// No part of the recording can be held out to test a fit: there are too few blocks of time, or
+    /// they are silent or equal.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
     NothingHeldOut { recording: String, reason: &'static str },
-    /// A knob of a sweep does not have this value.
+    /// A sweep cannot give this value to this setting (knob).
     #[error("knob {name}: `{value}` is not one of its values")]
     Knob { name: String, value: String },
 
@@ -358,7 +360,7 @@ pub enum AuthorError {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AuthorErrorKind {
-    /// The recording, or how the recordings go together.
+    /// A recording, or a combination of recordings.
     Recording,
     /// A given setting, parameter or option.
     Setting,

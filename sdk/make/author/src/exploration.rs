@@ -7,8 +7,8 @@ use crate::segments::Segments;
 use crate::{AuthorError, Recording};
 use htex_recording::Sums;
 
-/// Allowed relative deviation of speed and force from their target (the paper discarded and
-/// repeated recordings beyond it).
+/// Allowed relative deviation of speed and force from their target. The paper discarded recordings
+/// with a larger deviation and repeated them.
 const TOLERANCE: f64 = 0.10;
 /// Half the length of the moving average of speed and force that is compared with the target,
 /// seconds. Faster changes come from the texture, not from the hand.
@@ -63,8 +63,8 @@ impl Exploration {
     }
 }
 
-/// Lowest and highest speed and force over the segments that are read, averaged over 50 ms; `None`
-/// if the signal is not known.
+/// Lowest and highest speed and force in the segments that are read, after a moving average of 50
+/// ms. `None` if the recording does not contain the signal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     /// Range of the scanning speed, mm/s.
@@ -84,7 +84,7 @@ pub(crate) struct MotionSignal<'a> {
     half: usize,
 }
 
-/// Returns the recording's speed and normal force, each if the recording contains it.
+/// Returns the recording's speed and normal force; `None` for a signal that it does not contain.
 pub(crate) fn motion_signals(
     recording: &Recording,
     target: Exploration,
@@ -126,7 +126,7 @@ impl MotionSignal<'_> {
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
-    /// Returns the median over the samples of all segments; a few outliers do not change it.
+    /// Returns the median over the samples of all segments, which a few outliers do not change.
     fn median(&self, segments: &Segments) -> Option<f64> {
         let (starts, len) = (&segments.starts, segments.len);
         quantile(0.5, starts.len() * len, |at| self.values[starts[at / len] + at % len])
@@ -137,8 +137,8 @@ impl MotionSignal<'_> {
         self.target.is_none_or(|target| is_near(target, TOLERANCE, self.range(start, len)))
     }
 
-    /// Returns the target, or else the median. Adds a finding if the motion is not steady about the
-    /// median.
+    /// Returns the target, or else the median. Adds a finding if there is no target and the motion
+    /// leaves the range of 10 % around the median.
     fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
         if self.target.is_some() {
             return self.target;
@@ -155,7 +155,8 @@ impl MotionSignal<'_> {
         Some(median)
     }
 
-    /// Describes a signal with a target: its median and range over the segments.
+    /// If the signal has a target, returns a text that compares it with the signal's median and
+    /// range over the segments.
     fn comparison(&self, segments: &Segments) -> Option<String> {
         let (target, median) = (self.target?, self.median(segments)?);
         let ([low, high], unit) = (self.spread(segments), self.unit);
@@ -184,8 +185,8 @@ pub(crate) struct SegmentMotion {
 }
 
 impl SegmentMotion {
-    /// Leaves out the segments in which the speed or force differs from its target by more than
-    /// 10 %, and measures the motion in the others.
+    /// Leaves out the segments in which the speed or force differs from its target by more than 10
+    /// %. Measures the motion in the remaining segments.
     ///
     /// # Errors
     /// When the target or a measured value is out of range, or no segment remains.

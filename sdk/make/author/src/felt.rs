@@ -1,6 +1,6 @@
 //! How much of the difference between two spectra a fingertip can feel: the part above the
-//! detection threshold. It shares nothing with the measures by which models are fitted and
-//! compared, so it judges them independently.
+//! detection threshold. The computation shares nothing with the measures by which models are fitted
+//! and compared, so it judges the models independently.
 
 use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
 use htex_dsp::vibrotactile::{Listener, Skin};
@@ -32,9 +32,10 @@ pub struct Felt {
     /// RMS of these differences over the bands in which at least one spectrum is above the
     /// threshold, decibels; 0 if there is no such band.
     pub error_rms_db: f64,
-    /// The largest absolute difference of a band, decibels.
+    /// The largest absolute difference in any band, decibels.
     pub largest_error_db: f64,
-    /// Difference of the sensation levels over all bands together, decibels.
+    /// Difference of the total levels above the threshold, for the energy of all bands together,
+    /// decibels.
     pub total_error_db: f64,
 }
 
@@ -52,14 +53,16 @@ pub struct FeltError {
     /// RMS difference of the levels above the detection threshold, over third-octave bands,
     /// decibels.
     pub error_rms_db: f64,
-    /// The largest absolute difference of a band, decibels.
+    /// The largest absolute difference in any band, decibels.
     pub largest_error_db: f64,
-    /// Difference of the sensation levels over all bands together, decibels.
+    /// Difference of the total levels above the detection threshold, for the energy of all bands
+    /// together, decibels.
     pub total_error_db: f64,
-    /// Whether the difference in every band and over all bands together is below the difference
-    /// threshold.
+    /// Whether both the difference in every band and the total difference are below the difference
+    /// threshold: too small to notice.
     pub below_difference_threshold: bool,
-    /// The same for a person with a sensitive finger and soft skin ([`Listener::sensitive`]).
+    /// As `below_difference_threshold`, but for a person with a sensitive finger and soft skin
+    /// ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
     /// Whether the nine-band error is at or below the recording's own repeatability; false if the
     /// repeatability is not known.
@@ -101,16 +104,17 @@ impl FeltError {
     }
 }
 
-/// How many of some textures a model keeps below a listener's difference threshold. Counted
-/// separately: how many it keeps within the recording's own variation. That second count says
-/// nothing about what can be felt: the worse a recording repeats, the more textures are within it.
+/// For how many textures a model's error cannot be felt, because it is below a listener's
+/// difference threshold. A separate count says for how many textures the error is within the
+/// recording's own variation. That count says nothing about what can be felt: the worse the
+/// repeatability of the recordings, the higher it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
     /// Textures whose difference is below the difference threshold.
     pub below_difference_threshold: usize,
-    /// Textures for which that also holds for a person with a sensitive finger and soft skin.
+    /// The same count for a person with a sensitive finger and soft skin.
     pub below_if_sensitive: usize,
     /// Textures whose nine-band error is at or below the recording's own repeatability.
     pub within_repeatability: usize,
@@ -126,7 +130,7 @@ impl FeltShare {
     }
 }
 
-/// Compares what can be felt of a spectrum with what can be felt of a reference on the same grid.
+/// Compares what a listener can feel of two spectra on the same grid: a reference and `magnitude`.
 /// Forces are converted to displacements of the skin through its impedance, accelerations and
 /// velocities by integration.
 ///
@@ -178,7 +182,8 @@ pub fn felt(
     }
 }
 
-/// Energies relative to the threshold, by third-octave band; `None` for a band without a bin.
+/// Returns the energies relative to the threshold in each third-octave band; `None` for a band
+/// without a bin.
 fn energies(
     frequency_hz: &[f64],
     magnitude: &[f64],
@@ -199,7 +204,7 @@ fn energies(
     energies
 }
 
-/// Displacement of the skin, in metres, caused by a sample of value 1.
+/// Returns the displacement of the skin, in metres, that a sample of value 1 causes.
 fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
     let omega = 2.0 * std::f64::consts::PI * hertz;
     match quantity {
@@ -225,12 +230,13 @@ pub fn threshold_magnitude(hertz: f64, quantity: Quantity, listener: &Listener) 
     listener.threshold_m(hertz) / displacement_m(hertz, quantity, &listener.skin)
 }
 
-/// Level of an energy relative to the threshold; for zero energy, a level far below it.
+/// Returns the level of an energy relative to the threshold. For zero energy the level is far below
+/// the threshold.
 fn level_db(energy: f64) -> f64 {
     10.0 * libm::log10(energy.max(1e-30))
 }
 
-/// Geometric mean of a band's edges, 20 · 2^(k/3) Hz.
+/// Returns the geometric mean of a band's edges, 20 · 2^(k/3) Hz.
 fn centre_hz(band: usize) -> f64 {
     20.0 * libm::exp2((band as f64 + 0.5) / 3.0)
 }

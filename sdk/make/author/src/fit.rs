@@ -1,5 +1,5 @@
-//! The third stage of a fit: each model is fitted at each condition. Its parameters are rounded as
-//! the file stores them, and the rounded parameters get a level and are measured.
+//! The third stage of a fit: fits each model at each condition, rounds the parameters as the file
+//! stores them, computes a level for the rounded parameters, and measures them.
 
 use htex_base::finding::Notice;
 use htex_format::{
@@ -31,16 +31,17 @@ pub(crate) struct FittedModel {
     pub(crate) representation: Representation,
     pub(crate) parameters: Vec<Vec<f64>>,
     pub(crate) felt: Vec<Option<FeltError>>,
-    /// Time taken by the fits, milliseconds.
+    /// Time that the fits took, milliseconds.
     pub(crate) fit_ms: f64,
 }
 
-/// Fits models at all conditions. `blocks` are the blocks of time that a grid leaves out, for
-/// held-out errors; `alternatives` are tried where a model has a large error; `begins` is called
-/// with each model before it is fitted.
+/// Fits models at all conditions. `blocks` are the blocks of time that a grid leaves out, which are
+/// needed for held-out errors. If a model has a large error, `alternatives` are tried. `begins` is
+/// called with each model before it is fitted.
 ///
 /// # Errors
-/// When no model could be fitted, or an error is not a refusal by the model.
+/// When no model could be fitted, or when a fit fails for another reason than a refusal by the
+/// model.
 pub(crate) fn fit_models(
     choices: &[ModelRequest],
     all: &[ConditionSpectrum],
@@ -141,8 +142,8 @@ fn fit_model(
     Ok(FittedModel { representation, parameters, felt, fit_ms })
 }
 
-/// Returns the representation of a texture by a model, with what it has at each condition. Its
-/// parameters are in the file `parameters/NAME.bin`, with the model's short name.
+/// Returns a model's representation, with its level and quality at each condition in `at`. The
+/// parameters are stored in `parameters/NAME.bin`, where NAME is the model's short name.
 pub fn representation(model: &LoadedModel, at: Vec<AtCondition>) -> Representation {
     Representation {
         model: model.id().to_owned(),
@@ -165,7 +166,7 @@ fn origin_warning(model: &LoadedModel) -> Option<String> {
     ))
 }
 
-/// Returns the asset's fields for a model.
+/// Returns the descriptions of a model's parameters, as an asset stores them.
 pub fn stored_fields(descriptor: &Descriptor) -> Vec<StoredField> {
     let field = |f: &Field| StoredField {
         name: f.name.clone(),

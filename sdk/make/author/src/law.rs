@@ -1,16 +1,15 @@
 //! The law of a texture recorded at several motions: exponents with their standard errors.
 //!
 //! Levels: a least-squares fit of `ln L = k + b ln v + c ln F` over the conditions. The level of
-//! one recording is assumed to be known within [`LEVEL_ERROR_DB`] at best, so that two conditions
-//! alone do not give a certain exponent.
+//! one recording is assumed to be known only within [`LEVEL_ERROR_DB`]. Two conditions are
+//! therefore not enough for a certain exponent.
 //!
-//! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, its level is
-//! removed, and the exponent `a` is the one at which the spectra differ least. Spectra also change
-//! with the speed for other reasons: without lines that move, the best shift of recorded strokes
+//! Frequencies: each spectrum is shifted by `(v / v0)^a` on a logarithmic axis, and its level is
+//! removed. The exponent `a` is the value at which the spectra differ least. Spectra also change
+//! with the speed for other reasons. In recorded strokes without lines that move, the best shift
 //! was anywhere between -0.5 and 1.5, and it lowered the squared difference only to 0.25 to 0.9 of
-//! the difference without a shift. So an exponent counts as measured only if the squared difference
-//! falls to a quarter of the difference without a shift, or of the difference at the assumed
-//! exponent.
+//! its value without a shift. So an exponent counts as measured only if the squared difference
+//! falls to a quarter: of its value without a shift, or of its value at the assumed exponent.
 
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 
@@ -19,8 +18,8 @@ use crate::spectrum::TextureSpectrum;
 
 /// Smallest error assumed for a recorded level, decibels.
 const LEVEL_ERROR_DB: f64 = 2.0;
-/// An exponent counts as measured only if at most this fraction of the squared difference without a
-/// shift, or at the assumed exponent, is left.
+/// An exponent counts as measured only if it reduces the squared difference to this fraction of its
+/// value without a shift, or of its value at the assumed exponent.
 const MOST_LEFT: f64 = 0.25;
 /// Points per octave at which spectra are compared, and half the width over which each is read,
 /// octaves.
@@ -187,8 +186,8 @@ struct Difference {
     count: f64,
 }
 
-/// Returns how much the curves differ after each is shifted by `a` times its speed in octaves. Only
-/// octaves that all curves cover are compared.
+/// Shifts each curve by `a` times the logarithm of its speed in octaves, and returns how much the
+/// shifted curves differ. Only octaves that all curves cover are compared.
 fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
     let shifted = || curves.iter().zip(octaves).map(|(curve, o)| (curve, -a * o));
     let low = shifted().map(|(c, s)| c.low + s).fold(f64::MIN, f64::max);

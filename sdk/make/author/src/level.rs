@@ -1,17 +1,17 @@
 //! The level (RMS) stored with each representation.
 //!
-//! By default a representation has the level of its recording, for the shape as stored. With
-//! `--level fitted` it has the level of the model's own fit, which differs from the recording by up
-//! to 6 dB on simulated surfaces. sBeta is fitted to the ten largest peaks, among other bins, and
-//! sSlope to the largest bin: these are too high in a noisy estimate. MFCC averages logarithms,
-//! which is too low. A model whose level is one of the energies that it stores (Bands) declares
-//! this ([`htex_host::Descriptor::keeps_level`]) and keeps that level. sBeta and sSlope round their
-//! parameters as files do before they compute the level.
+//! By default the level of a representation is the level of its recording. With `--level fitted` it
+//! is the level of the model's own fit, which differs from the recording by up to 6 dB on simulated
+//! surfaces. sBeta is fitted to the ten largest peaks and to some other bins, and sSlope to the
+//! largest bin; in a noisy estimate these bins are too high. MFCC averages logarithms, and the
+//! result is too low. For a model such as Bands, the level follows from the energies that it
+//! stores. Such a model declares this ([`htex_host::Descriptor::keeps_level`]) and keeps the level
+//! of its fit. sBeta and sSlope round their parameters as files do before they compute the level.
 //!
-//! A model with its own sample rate plays too weakly where its spectrum reaches up to half that
-//! rate, because the conversion to the player's rate takes away up to half the power there: AR by
-//! up to 3.0 dB at its Nyquist frequency of 1000 Hz. The stored level makes up for this
-//! ([`LoadedModel::played_part`]), so that what is played has the level of the recording.
+//! A model with its own sample rate plays too weakly if its spectrum reaches up to half that rate:
+//! the conversion to the player's rate removes up to half of the power there. For AR the loss is up
+//! to 3.0 dB at its Nyquist frequency of 1000 Hz. The stored level compensates for this loss
+//! ([`LoadedModel::played_part`]), so that the texture is played at the level of the recording.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};
@@ -24,13 +24,14 @@ use crate::SpectrumRef;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// The recording's RMS in the band: the asset plays at the level of its recording, and a copy
-    /// of a copy at the level of the first. A model whose parameters contain the level
-    /// ([`htex_host::Descriptor::keeps_level`]) keeps the level of its fit.
+    /// The recording's RMS in the band. The asset then plays at the level of its recording. If the
+    /// played samples are recorded and fitted again, the level stays the same. A model whose
+    /// parameters contain the level ([`htex_host::Descriptor::keeps_level`]) keeps the level of its
+    /// fit.
     #[default]
     Recording,
-    /// The level of the model's fit, for the parameters as stored. The paper gives no rule for
-    /// levels.
+    /// The level of the model's fit, adapted to the parameters as they are stored. The paper gives
+    /// no rule for levels.
     Fitted,
 }
 
@@ -47,7 +48,8 @@ impl Level {
     }
 }
 
-/// Returns the level of a fit whose parameters are stored as `stored`: RMS in the spectrum's unit.
+/// Returns the level to store for a fit: an RMS in the spectrum's unit. `stored` are the fit's
+/// parameters as the file stores them.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -85,8 +87,8 @@ fn fitted_level(
     Ok(fit.level_rms * (both / own))
 }
 
-/// Returns the RMS of magnitudes. It is computed relative to the largest one to avoid overflow and
-/// underflow.
+/// Returns the RMS of magnitudes. Magnitudes are divided by the largest one first, to avoid
+/// overflow and underflow.
 pub(crate) fn recorded_level(magnitude: &[f64]) -> f64 {
     let largest = magnitude.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {

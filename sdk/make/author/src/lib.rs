@@ -23,10 +23,10 @@
 //! 3. `fit` turns the conditions into the parameters of each model, rounded as the file stores
 //!    them. `level` computes the level of the *rounded* parameters, and `measure` compares their
 //!    magnitudes and their samples with the recording. If the error in bands is large,
-//!    `alternatives` tries other options and models, and lists the better ones. In a grid, the
-//!    stage also predicts each condition from its neighbours, by the mesh of conditions that a
-//!    player uses. The stage also takes the models with their options, and where the level comes
-//!    from.
+//!    `alternatives` tries other options and models, and lists the better ones. For a grid, the
+//!    stage also measures held-out errors: it leaves out a block of time, and compares the block
+//!    with what a player plays from the other blocks. The stage also takes the models with their
+//!    options, and where the level comes from.
 //! 4. `asset` puts all of this together as a [`FittedAsset`]. The stage also takes name, licence,
 //!    author and tags.
 //!

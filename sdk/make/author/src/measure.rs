@@ -1,5 +1,6 @@
-//! Measures of agreement with a reference spectrum: the function behind each row of [`Measure`], for
-//! magnitudes, for what a recording of a voice would read, and for rendered samples.
+//! Measures of agreement with a reference spectrum. This module computes each row of [`Measure`]:
+//! for magnitudes, for a spectrum measured in a recording of the played texture, and for rendered
+//! samples.
 
 use htex_dsp::bands::{
     BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
@@ -15,23 +16,23 @@ use crate::{AuthorError, Averaging, Recording, SegmentChoice, TextureSpectrum};
 
 /// Length of the rendering that is measured, seconds. Its band energies scatter by about 0.2 dB.
 const SECONDS: f64 = 20.0;
-// Always the same, so that measuring an asset again gives the same errors.
+// The seed is always the same, so that measuring an asset again gives the same errors.
 const SEED: u64 = 1;
 
-/// Agreement of a spectrum with a reference: every measure that needs only magnitudes (all but
-/// [`Measure::Felt`]), and the errors in the nine bands of the paper's regression (which uses
-/// standardised absolute differences).
+/// Agreement of a spectrum with a reference. It consists of all measures that need only magnitudes
+/// (all but [`Measure::Felt`]), and of the errors in nine bands. The paper's regression uses the
+/// same bands, but standardised absolute differences in them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub measures: Measures,
     /// Energy in each of the nine bands relative to the reference, decibels.
     pub band_error_db: Vec<f64>,
-    /// The gain at which the total energies are equal, decibels.
+    /// The gain that makes the total energy equal to the reference's, decibels.
     pub matching_gain_db: f64,
 }
 
 impl Agreement {
-    /// Returns a measure; `None` where the reference does not allow it.
+    /// Returns a measure; `None` if it cannot be computed for the reference.
     pub fn get(&self, measure: Measure) -> Option<f64> {
         self.measures.get(measure)
     }
@@ -48,7 +49,7 @@ impl From<Agreement> for Quality {
     }
 }
 
-/// Compares magnitudes on the reference's grid with the reference.
+/// Compares magnitudes with a reference. The magnitudes are at the reference's frequencies.
 pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
     let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
     let expected = bank.energies(reference.magnitude);
@@ -75,9 +76,9 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
     Agreement { measures, band_error_db, matching_gain_db: 20.0 * libm::log10(gain) }
 }
 
-/// Measures how well parameters at a level agree with a recorded spectrum: by magnitude, as a
-/// recording of the voice would read it, and by rendered samples. Also returns the magnitudes as a
-/// recording of the voice would read them ([`read_spectrum`]).
+/// Measures how well parameters at a level agree with a recorded spectrum, in two ways: with the
+/// magnitudes that would be measured in a recording of the played texture ([`read_spectrum`]), and
+/// with rendered samples. Also returns these magnitudes.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -89,8 +90,8 @@ pub(crate) fn measure(
 ) -> Result<(Vec<f64>, Quality), AuthorError> {
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
-    // Lines interfere with each other, so what a recording of them shows follows from their samples
-    // and not from their magnitudes.
+    // Lines interfere with each other. So the spectrum that is measured in a recording of them
+    // follows from their samples and not from their magnitudes.
     let read = if model.has_lines() {
         rendered
     } else {
@@ -120,10 +121,11 @@ pub(crate) fn rounding_error_db(
     Ok(rms(&band_error_db(&energies(fitted)?, &energies(stored)?)))
 }
 
-/// Returns the magnitudes, on the reference's grid, that a recording of the voice would read. For
-/// most models these are computed without chance: the model's magnitudes as a Hann window reads
-/// them ([`LoadedModel::read_magnitude`]). For a model with lines, that covers only the window's
-/// main lobe, so samples are rendered and measured instead (`rendered_spectrum`).
+/// Returns the magnitudes that would be measured in a recording of the played texture, at the
+/// reference's frequencies. For most models they are computed without random numbers, from the
+/// model's magnitudes and the Hann window ([`LoadedModel::read_magnitude`]). This method covers
+/// only the main lobe of the window, so for a model with lines, samples are rendered and measured
+/// instead (`rendered_spectrum`).
 ///
 /// # Errors
 /// When the model refuses the parameters, or renders samples that are not finite.
@@ -140,8 +142,8 @@ pub fn read_spectrum(
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Renders parameters at a level and measures the samples like a recording. The average is an RMS,
-/// because a model's magnitudes are RMS values.
+/// Renders parameters at a level and measures the spectrum of the samples like that of a recording.
+/// The average is an RMS, because a model's magnitudes are RMS values.
 ///
 /// # Errors
 /// When the model cannot render, or renders samples that are not finite.
@@ -158,8 +160,9 @@ fn rendered_spectrum(
     spectrum_of_samples(&samples, rate_hz, level_rms, reference)
 }
 
-/// Returns the magnitudes of unit-RMS samples scaled to a level, in the level's unit, on the
-/// reference's grid, RMS-averaged. Zero above the samples' Nyquist frequency.
+/// Scales samples with an RMS of 1 to a level, and returns their magnitudes at the reference's
+/// frequencies, in the level's unit. The average over segments is an RMS. Magnitudes above the
+/// samples' Nyquist frequency are 0.
 ///
 /// # Errors
 /// When there are too few samples, or they are not finite.

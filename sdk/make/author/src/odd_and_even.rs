@@ -1,4 +1,5 @@
-//! Odd and even blocks of time in recordings: two readings of a texture that share no sample.
+//! Odd and even blocks of time in recordings. They give two spectra of a texture that share no
+//! sample.
 
 use htex_dsp::spectrum::Complex;
 
@@ -20,9 +21,8 @@ pub(crate) struct OddAndEven {
     pub(crate) block_s: f64,
 }
 
-/// Cuts what is read of recordings at one condition into equal blocks, as for repeatability
-/// ([`TextureSpectrum::repeatability_rms_db`]), and averages the odd and the even blocks
-/// separately.
+/// Cuts the segments of recordings at one condition into equal blocks, as for repeatability
+/// ([`TextureSpectrum::repeatability_rms_db`]). Averages the odd and the even blocks separately.
 ///
 /// `None` if there are fewer than four blocks, or if quantities or bands differ.
 pub(crate) fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<OddAndEven> {

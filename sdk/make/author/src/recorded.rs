@@ -1,12 +1,12 @@
-//! Playback of a recording: the segments that are read, limited to the band, joined into a loop.
+//! Playback of a recording: its segments are limited to the band and joined into a loop.
 //!
 //! The segments of a spectrum are windowed (Hann) and overlap by half. After the frequencies
-//! outside of the band are removed, a segment's ends are no longer zero, and adding the segments
-//! would leave a step every 0.1 s. So each segment is windowed once more before it is added, and
-//! the sum is divided by the sum of the squared windows, which gives back the recorded signal. Two
-//! segments from different stretches share no signal. Where one fades into the other, the sum is
-//! divided by the root of the sum of the fourth powers instead, which keeps the power. The last
-//! segment fades into the first one in this way, so that the loop has no seam.
+//! outside the band are removed, the ends of a segment are no longer zero, and a plain sum of the
+//! segments would have a step every 0.1 s. So each segment is windowed once more before it is
+//! added. The sum is then divided by the sum of the squared windows, which gives back the recorded
+//! signal. Two segments from different stretches share no signal. Where one fades into the other,
+//! the sum is divided by the root of the sum of the fourth powers instead, which preserves the
+//! power. The last segment fades into the first one in this way, so that the loop has no seam.
 
 use htex_dsp::bands::rms;
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -23,7 +23,7 @@ const MOST_RATE_HZ: f64 = 192_000.0;
 /// Largest number of segments in a loop: 30 s.
 const MOST_SEGMENTS: usize = 300;
 
-/// A recording as a loop of samples, to be played again and again.
+/// A recording as a loop of samples that can be played again and again.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RecordedLoop {
@@ -31,13 +31,13 @@ pub struct RecordedLoop {
     pub condition: Exploration,
     /// The recorded quantity; the samples are in its unit.
     pub quantity: Quantity,
-    /// The samples in the band of the spectrum, compensated for the setup's response. A recording
-    /// of one axis keeps its signal.
+    /// The samples in the band of the spectrum, compensated for the setup's response. For a
+    /// recording of one axis, they are the recorded signal in the band.
     pub samples: Vec<f64>,
     pub rate_hz: f64,
-    /// RMS of the samples: the level of models that are fitted to the recording.
+    /// RMS of the samples. Models that are fitted to the recording have the same level.
     pub level_rms: f64,
-    /// Number of segments in the loop; only the first 30 s that are read are used.
+    /// Number of segments in the loop: those from the first 30 s that are read.
     pub segments: usize,
 }
 
@@ -45,8 +45,8 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a sample rate.
     ///
     /// # Errors
-    /// As [`segment_take`]. Also when the rate is not a multiple of 10 Hz, is not above twice the
-    /// band's highest frequency, or is above 192 kHz.
+    /// The errors of [`segment_take`]. Also when the rate is not a multiple of 10 Hz, is not above
+    /// twice the band's highest frequency, or is above 192 kHz.
     pub fn new(
         take: &Take,
         options: &SpectrumOptions,
@@ -58,8 +58,8 @@ impl RecordedLoop {
         let spectrum = TextureSpectrum::average(std::slice::from_ref(part), options.averaging)?;
         let len = frame_len(rate_hz, part.band)?;
         let mut samples = joined(part, len);
-        // The level of all segments, as models have it; the loop may hold only the first 30 s of
-        // them.
+        // The level of all segments, because models also have this level. The loop may contain only
+        // the first 30 s of them.
         let level_rms = recorded_level(&spectrum.magnitude);
         set_level(&mut samples, level_rms);
         Ok(Self {

@@ -56,12 +56,12 @@ pub struct AssetRequest {
     pub models: Vec<ModelRequest>,
     pub spectrum: SpectrumOptions,
     pub level: Level,
-    /// Models to try at their default options when a representation has a large band error; those
-    /// in `models` are always tried.
+    /// Models to try with their default options, in addition to `models`, when a representation has
+    /// a large band error.
     pub alternatives: Vec<LoadedModel>,
     /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
-    /// Grid of conditions, for recordings of a free motion. Without it, each recording has one
+    /// Grid of conditions, for recordings of a free motion. Without a grid, each recording has one
     /// condition.
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.

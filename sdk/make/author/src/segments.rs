@@ -13,14 +13,14 @@ use htex_recording::Sums;
 pub(crate) const SEGMENTS_PER_S: f64 = 5.0;
 /// Half the length of the moving average used to detect sweeps (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
-/// A recording has sweeps if its friction falls below this fraction of the threshold between them;
-/// above it the finger slides.
+/// A finger slides while its friction is at least this fraction of the threshold. A recording has
+/// sweeps only if the friction falls below it between them.
 const REST_LEVEL: f64 = 0.5;
-/// Longest sliding that a sweep's single segment can represent, seconds: ten segments. A sweep
-/// across the paper's samples, 100 mm at 80 mm/s, lasts at most 1.25 s.
+/// Longest stretch of sliding that one segment can represent, seconds: ten segments. A sweep across
+/// the paper's samples, 100 mm at 80 mm/s, lasts at most 1.25 s.
 const REPRESENTED_S: f64 = 2.0;
-/// Smallest fraction of the sliding that the segments of sweeps must represent; otherwise windows
-/// are used.
+/// Smallest fraction of the sliding that the segments of sweeps must represent. If they represent
+/// less, windows are used.
 const REPRESENTED: f64 = 0.5;
 
 /// Defines which parts of a recording are read, for `spec/recording-findings.md`.
@@ -42,18 +42,19 @@ pub(crate) fn definition() -> String {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentChoice {
-    /// Sweeps, if the recording has them and their segments represent at least half of its sliding;
-    /// otherwise windows.
+    /// Sweeps, if the recording has sweeps and their segments represent at least half of the
+    /// sliding. Otherwise windows.
     ///
-    /// A segment represents its sweep, but at most 2 s of it.
+    /// A segment represents its whole sweep, up to 2 s of it.
     #[default]
     Auto,
-    /// One segment in the middle of each complete sweep (paper, Texture processing). A sweep cut
-    /// off by the recording's beginning or end is left out, because its middle is not known.
+    /// One segment in the middle of each complete sweep (paper, Texture processing). Sweeps that
+    /// the beginning or end of the recording cuts off are left out, because their middle is not
+    /// known.
     Sweeps,
     /// Windows over the whole recording, each overlapping the previous one by half (Welch 1967).
-    /// Without overlap, Hann windows leave half of the recording unused, and the level of 10 s of
-    /// noise is uncertain by 0.2 dB.
+    /// Without overlap, Hann windows would leave half of the recording unused, and the level of 10
+    /// s of noise would be uncertain by 0.2 dB.
     Windows,
 }
 
@@ -80,7 +81,7 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// How much of the sliding the segments of sweeps would represent.
+/// How much of the finger's sliding the segments would represent if only sweeps were read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
     /// Sliding that the segments represent, seconds.
@@ -97,15 +98,17 @@ pub struct Segments {
     pub starts: Vec<usize>,
     /// Whether the segments are in sweeps; otherwise they are evenly spaced windows.
     pub from_sweeps: bool,
-    /// The detected sweeps, also when windows are used.
+    /// The detected sweeps, even if windows are used.
     pub sweeps: Vec<Sweep>,
     /// Number of sweeps cut off by the recording's beginning or end, which are not read.
     pub cut_off: usize,
     /// First samples of the segments that are left out because the motion differs from its target.
     pub off_target: Vec<usize>,
-    /// Set if `auto` uses windows although there are sweeps: how little the sweeps would represent.
+    /// Set if `auto` uses windows although there are sweeps, because their segments would represent
+    /// too little of the sliding.
     pub unread: Option<Unread>,
-    /// Mean length of the signal vector, in the signal's unit: the threshold that separates sweeps.
+    /// The threshold that separates sweeps: the mean length of the signal vector, in the signal's
+    /// unit.
     pub threshold: f64,
 }
 
@@ -170,8 +173,8 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     }
 }
 
-/// Returns for each sample whether the finger slides there: the length of the signal vector,
-/// averaged over 50 ms, is at least half of its mean over the recording.
+/// Returns for each sample whether the finger slides. The finger slides where the length of the
+/// signal vector, averaged over 50 ms, is at least half of its mean over the recording.
 pub fn sliding(recording: &Recording) -> Vec<bool> {
     let friction = Friction::new(recording);
     let slides = |at| friction.slides(friction.smooth(at));

@@ -28,14 +28,14 @@ const GRID_TOLERANCE: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Averaging {
-    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The
-    /// mean of noise is 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
+    /// Mean of the magnitudes: one way to read "averaged the FFTs" (paper, Texture processing). For
+    /// noise, the mean is 1.05 dB below the RMS (a factor of √π/2, Rayleigh distribution).
     Magnitude,
-    /// Root of the mean power: the RMS of noise and tones.
+    /// Root of the mean power, which is the RMS of noise and tones.
     #[default]
     Rms,
-    /// Magnitude of the mean of the complex spectra: keeps only what has the same phase in all
-    /// segments.
+    /// Magnitude of the mean of the complex spectra. Only signals with the same phase in all
+    /// segments remain.
     Complex,
 }
 
@@ -83,8 +83,8 @@ impl SpectrumOptions {
     }
 }
 
-/// The spectra of a recording's segments in the band, compensated for the setup and folded into one
-/// axis.
+/// The spectra of a recording's segments in the band. They are compensated for the setup's
+/// response, and the axes are combined into one.
 #[derive(Debug, Clone)]
 pub struct SegmentSpectra {
     pub quantity: Quantity,
@@ -104,23 +104,22 @@ pub struct TextureSpectrum {
     /// The recorded quantity; magnitudes and the signal are in its unit.
     pub quantity: Quantity,
     pub band: Band,
-    /// The band's grid, hertz.
+    /// The frequencies of the band's grid, hertz.
     pub frequency_hz: Vec<f64>,
     /// Magnitude at each frequency of the grid, in the quantity's unit.
     pub magnitude: Vec<f64>,
     /// Number of averaged segments; 0 if the spectrum was computed between two recorded speeds.
     pub segments: usize,
-    /// Repeatability, decibels: how much two recordings like this one differ. It is the RMS over
-    /// nine bands of the difference between the spectra of odd and even blocks of time, divided by
-    /// √2.
+    /// Repeatability, decibels: how much two such recordings would differ. It is the RMS over nine
+    /// bands of the difference between the spectra of odd and even blocks of time, divided by √2.
     ///
-    /// What is read is cut into at least four equal blocks of 0.2 to 1 s that share no sample. A
-    /// segment in the middle of a sweep is a block. `None` if fewer than four segments without
-    /// common samples are read, or if half of the blocks are silent.
+    /// The stretches that are read are cut into at least four equal blocks of 0.2 to 1 s, which
+    /// share no sample. A segment in the middle of a sweep is one block. `None` if there are fewer
+    /// than four such blocks, or if half of them are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
-    /// Sample rate of that signal, hertz.
+    /// Sample rate of `signal`, hertz.
     pub signal_rate_hz: f64,
 }
 
@@ -133,8 +132,8 @@ pub struct SpectrumRef<'a> {
 }
 
 impl TextureSpectrum {
-    /// Whether the spectrum was recorded. Otherwise it was computed between two recorded ones by
-    /// the texture's law.
+    /// Whether the spectrum was recorded. Otherwise it was computed by the texture's law, between
+    /// two recorded spectra.
     pub fn is_recorded(&self) -> bool {
         self.segments > 0
     }
@@ -158,8 +157,8 @@ impl TextureSpectrum {
         Ok(Self::from_segments(quantity, band, &all, &spans, averaging))
     }
 
-    /// Averages spectra on the grid of a band; `spans` says which part of a recording each of them
-    /// comes from.
+    /// Averages spectra on the grid of a band. For each spectrum, `spans` contains the part of a
+    /// recording that it comes from.
     pub(crate) fn from_segments(
         quantity: Quantity,
         band: Band,
@@ -230,8 +229,8 @@ pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<
 /// Cuts a recording into segments and computes their spectra.
 ///
 /// # Errors
-/// When the sample rate leaves no useful band, no segment is found, or the setup's response cannot
-/// be divided by.
+/// When the sample rate leaves no useful band, when no segment is found, or when the setup's
+/// response is zero or not finite in the band.
 pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
@@ -278,8 +277,8 @@ pub(crate) struct CheckedBand {
 
 impl CheckedBand {
     /// # Errors
-    /// When the sample rate leaves no useful band, there is no segment, or the setup's response
-    /// cannot be divided by.
+    /// When the sample rate leaves no useful band, when there is no segment, or when the setup's
+    /// response is zero or not finite in the band.
     pub(crate) fn new(
         recording: &Recording,
         segments: &Segments,
@@ -397,15 +396,15 @@ pub(crate) fn inverse_at(
 fn inverse(h: Complex<f64>, floor: f64) -> Complex<f64> {
     let norm = magnitude(h);
     if norm == 0.0 {
-        // A response of zero has no phase that could be taken back.
+        // A response of zero has no phase that could be reversed.
         return Complex::new(1.0 / floor, 0.0);
     }
-    // The floor limits the magnitude; the phase is always taken back.
+    // The floor limits the magnitude. The phase is always reversed.
     h.conj() / (norm * norm.max(floor))
 }
 
-/// Computes spectra of segments: mean removed, Hann window, FFT; axes folded into one (Landin
-/// 2010).
+/// Computes spectra of segments: removes the mean, applies a Hann window and an FFT, and combines
+/// the axes into one (Landin 2010).
 pub(crate) struct SegmentReader {
     analyzer: SegmentAnalyzer,
     len: usize,

@@ -1,5 +1,5 @@
-//! The first stage of a fit: from a recording to the spectra of its segments, the motion in them
-//! and its findings. No later stage reads the recording again.
+//! The first stage of a fit. It turns a recording into the spectra of its segments, the motion in
+//! them, and its findings. No later stage reads the recording again.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::segments::choose_segments;
 use crate::spectrum::spectra_of_segments;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
 
-/// A recording, with its condition as far as it is given.
+/// A recording, with the speed and force that the user gives for it.
 #[derive(Debug, Clone)]
 pub struct Take {
     pub recording: Recording,
@@ -30,7 +30,8 @@ pub struct Take {
 pub struct SegmentedTake {
     /// The recording's entry in the provenance of an asset, without the hash of its file.
     pub source: Source,
-    /// The recording's file. Only an asset needs its hash, which takes a tenth of reading it.
+    /// The recording's file. It is hashed only if an asset needs the hash, because hashing takes a
+    /// tenth of the time of reading.
     pub file: RecordedFile,
     /// Whether the recording is simulated.
     pub simulated: bool,
@@ -53,8 +54,8 @@ pub struct SegmentedTake {
 ///
 /// # Errors
 /// When the recording is too short, its sample rate is too low, no segment remains, the setup's
-/// response cannot be divided by, or a speed or force is out of range. With `strict`, also when a
-/// finding is an error or a warning.
+/// response is zero or not finite in the band, or a speed or force is out of range. With `strict`,
+/// also when a finding is an error or a warning.
 pub fn segment_take(
     take: &Take,
     options: &SpectrumOptions,
@@ -86,8 +87,8 @@ pub fn segment_take(
     })
 }
 
-/// Returns the provenance entry of a recording of which `segments` are read, without the hash of
-/// its file.
+/// Returns the provenance entry of a recording, without the hash of its file. `segments` is the
+/// number of segments that are read.
 pub(crate) fn source_of(recording: &Recording, segments: usize) -> Source {
     Source {
         file: recording.source.clone(),
@@ -139,7 +140,8 @@ pub(crate) fn refuse(source: &str, findings: &[Finding]) -> Result<(), AuthorErr
     }
 }
 
-/// Validates a recording and returns all findings; it is valid when none is an error.
+/// Validates a recording and returns all findings. The recording is valid if no finding is an
+/// error.
 ///
 /// # Errors
 /// When the file cannot be opened, or an option does not apply. A file that is not a recording is
@@ -193,8 +195,8 @@ fn report(
             read.findings
         }
         Err(error) => {
-            // The signals can still be judged, and their findings often say why nothing could be
-            // read.
+            // The signals can still be judged, and their findings often explain why nothing could
+            // be read.
             rest.add(RECORDING_UNUSABLE, "", error.to_string());
             recording_findings(&take.recording)
         }

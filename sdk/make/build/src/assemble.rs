@@ -34,7 +34,8 @@ pub(crate) const MOST_REPORT_BYTES: u64 = 1 << 30;
 /// File with facts about the library that was written last, in the folder of stored data.
 const KEPT_LIBRARY: &str = "library.json";
 
-/// Writes everything and returns the report. `made` returns the result of the job with a key.
+/// Writes all results of the build and returns the report. `made` returns the result of the job
+/// with a key.
 pub(crate) fn assemble(
     plan: &Plan,
     jobs: &[(String, Job)],
@@ -55,8 +56,7 @@ pub(crate) fn assemble(
         bytes => job.apply_metadata(bytes),
     };
     let library = path.display();
-    // Everything is judged once before anything is written, so that a refused build changes
-    // nothing.
+    // All textures are judged before anything is written, so that a refused build changes nothing.
     if options.no_removals {
         let judge = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
             let mut made = found(key, texture)?;
@@ -130,8 +130,8 @@ pub(crate) fn assemble(
     Ok(report)
 }
 
-/// Adds the licence and author of a texture to its sound. They are added here so that a change of
-/// metadata does not require a new sound.
+/// Adds the licence and author of a texture to its sound. The stored sound does not contain them,
+/// so that a change of metadata does not require a new sound.
 fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildError> {
     let asset = report.asset.as_ref();
     let license = asset.and_then(|asset| asset.license.as_deref());
@@ -141,7 +141,7 @@ fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildE
     Ok(wav.into_inner())
 }
 
-/// Reports a texture with the gates that it misses.
+/// Reports a texture together with the gates that it misses.
 fn judged(
     texture: &PlannedTexture,
     key: &str,
@@ -168,7 +168,7 @@ fn judged(
 /// Facts about the library file that was written last.
 #[derive(Serialize, Deserialize)]
 struct KeptLibrary {
-    /// Hash of its name, and of the names and hashes of its textures.
+    /// Hash of the library's name, and of the names and hashes of its textures.
     contents: String,
     stamp: Stamp,
     bytes: u64,
@@ -182,7 +182,8 @@ fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
     blake3::hash(parts.to_string().as_bytes()).to_hex().to_string()
 }
 
-/// Returns the existing library if it has these contents and nobody has written to it since.
+/// Returns the existing library if it has these contents and nobody has written to it since the
+/// last build.
 fn kept_library(kept: &StateFolder, path: &Path, contents: &str) -> Option<KeptLibrary> {
     let bytes = kept.get(KEPT_LIBRARY, MOST_REPORT_BYTES)?;
     let kept: KeptLibrary = serde_json::from_slice(&bytes).ok()?;

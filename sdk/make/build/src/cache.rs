@@ -1,9 +1,9 @@
-//! The cache of job results, by key. Entries are authenticated ([`StateFolder`]): a result that comes from
-//! somebody else, or that a crash left incomplete, is not used and is made again. Entries are not
-//! flushed to disk one by one.
+//! The cache of job results, by key. Entries are authenticated ([`StateFolder`]). A result that
+//! comes from somebody else, or that a crash left incomplete, is not used; its job runs again.
+//! Entries are not flushed to disk one by one.
 //!
-//! An entry that no texture uses any more stays for [`UNUSED`], so that trying a setting and taking
-//! it back does not fit anything again.
+//! An entry that no texture uses any more stays for [`UNUSED`]. So a user can try a setting and
+//! undo it without a new fit.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,9 +20,9 @@ use crate::state::{StateFolder, inside};
 const MADE: &str = "made";
 /// Largest size of an entry, bytes: an asset of 16 MiB, its sound, and its record.
 const MOST_BYTES: u64 = 64 << 20;
-/// How long an entry stays that no build uses.
+/// How long an entry stays in the cache if no build uses it.
 const UNUSED: Duration = Duration::from_secs(30 * 24 * 3600);
-/// When an entry is used, its time is renewed if it is older than this.
+/// When an entry is used and its time is older than this, the time is renewed.
 const RENEWED: Duration = Duration::from_secs(24 * 3600);
 
 /// The cache of job results.

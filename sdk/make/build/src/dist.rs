@@ -1,6 +1,6 @@
 //! The folder of a build's results. A file is written under another name and then renamed. A file
-//! that already has the same bytes is left alone, so that its time says when its contents changed.
-//! Links in the folder are not followed ([`OwnFolder`]).
+//! that already has the same bytes is not written, so that its time still says when its contents
+//! changed. Links in the folder are not followed ([`OwnFolder`]).
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -17,7 +17,7 @@ const PARTS: &str = "parts";
 #[derive(Debug)]
 pub(crate) struct Dist {
     own: OwnFolder,
-    /// Number of files written.
+    /// Number of files that were written.
     written: AtomicU64,
 }
 
@@ -36,8 +36,8 @@ impl Dist {
         Path::new("sounds").join(format!("{name}.wav"))
     }
 
-    /// Returns the path of a file that is not written by [`Self::put`]. None of the folders above
-    /// it is a link.
+    /// Returns the path of a file, for code that writes the file without [`Self::put`]. None of the
+    /// folders above the file is a link.
     pub(crate) fn path_of(&self, file: &Path) -> Result<PathBuf, BuildError> {
         let at = self.own.entry_path(file);
         Ok(at.writing(self.own.path().join(file))?)

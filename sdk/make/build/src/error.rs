@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
-/// Error that stops a build. No existing file is lost, and what was fitted is stored for the next
+/// Error that stops a build. No existing file is lost, and finished fits are stored for the next
 /// build.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -11,7 +11,7 @@ pub enum BuildError {
     /// The recipe is not TOML, or not a valid recipe. The text says what is wrong, and where.
     #[error("{0}")]
     Recipe(String),
-    /// The recipe cannot be executed.
+    /// The recipe cannot be carried out.
     #[error("{place}: {problem}")]
     At {
         /// The part of the recipe, the texture, or the file.

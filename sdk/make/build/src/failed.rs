@@ -11,8 +11,8 @@ use crate::report::{REPORT, Report};
 use crate::state::{STATE, StateFolder};
 
 /// Writes an error, line by line, into the report of a folder in which a build has begun. Returns
-/// whether it was written. It is not written if no build has begun there, or while another build
-/// uses the folder.
+/// whether the error was written. The function writes nothing if no build has begun in the folder,
+/// or while another build uses it.
 ///
 /// # Errors
 /// If the report cannot be written.

@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::report::{Status, TextureReport};
 
-/// Number of texture names in a share.
+/// Number of texture names in a [`FindingShare`].
 const NAMED: usize = 3;
-/// Codes that no recording of an asset can have. The first two stop a fit; the last one is used for
-/// a reader's sentence.
+/// Codes that no recording of an asset can have. Findings with the first two codes stop a fit. The
+/// last code stands for a sentence of a reader.
 const NOT_OF_ASSETS: [&str; 3] = ["RECORDING_UNREADABLE", "RECORDING_UNUSABLE", "RECORDING_NOTED"];
 
 /// The findings of one code in the recordings of a texture.
@@ -21,25 +21,24 @@ const NOT_OF_ASSETS: [&str; 3] = ["RECORDING_UNREADABLE", "RECORDING_UNUSABLE", 
 pub struct FindingReport {
     /// Code of the rule (`spec/recording-findings.md`).
     pub code: String,
-    /// Severity.
+    /// Severity of the finding.
     pub severity: Severity,
     /// Names of the recordings with this finding.
     pub recordings: Vec<String>,
-    /// Message for the first of these recordings.
+    /// Message for the first recording in `recordings`.
     pub message: String,
 }
 
-/// Counts the textures with a finding of one code, among the textures of a build that have an
-/// asset.
+/// How many textures have a finding with one code. Only textures with an asset count.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FindingShare {
-    /// Severity.
+    /// Severity of the finding.
     pub severity: Severity,
-    /// Number of textures.
+    /// Number of textures with the finding.
     pub textures: usize,
-    /// Number of them that are in the library.
+    /// Number of textures with the finding that are in the library.
     pub in_library: usize,
-    /// Names of the first three of these textures.
+    /// Names of the first three textures with the finding.
     pub first: Vec<String>,
 }
 

@@ -1,7 +1,6 @@
 //! Gates: the requirements that an asset must meet to be in the library.
 //!
-//! They are judged when the results are assembled, so that changing a gate does not fit anything
-//! again.
+//! The gates are applied when the results are assembled, so that a changed gate needs no new fit.
 
 use crate::recipe::{Gates, ModelGate};
 use crate::report::{AssetReport, MissedGate};
@@ -57,7 +56,7 @@ fn denied(gates: &Gates, asset: &AssetReport) -> Vec<MissedGate> {
     found.map(|f| MissedGate::new("deny", reason(f))).collect()
 }
 
-/// Returns the problem if the repeatability is above the gate or not known.
+/// Returns the missed gate if the repeatability value is above the gate or not known.
 fn repeatability(most: f64, asset: &AssetReport) -> Option<MissedGate> {
     let reason = match asset.repeatability_rms_db {
         None => {
@@ -86,7 +85,7 @@ fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<MissedGate> {
     by_model(gate, &errors, "max_band_error_db", &above)
 }
 
-/// Returns the models whose difference from the recording is felt more than the gate allows.
+/// Returns the models whose felt difference from the recording is above the gate.
 fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<MissedGate> {
     let felt = asset.felt.iter();
     let errors = felt.map(|(id, felt)| {
@@ -104,7 +103,7 @@ fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<MissedGate> {
 }
 
 /// Returns the models whose error is above the gate, and the models that the gate names but the
-/// asset lacks. `above` describes the problem from a model, its error and the largest allowed
+/// asset lacks. `above` returns a text about a model whose error is above the largest allowed
 /// error.
 fn by_model(
     gate: &ModelGate,

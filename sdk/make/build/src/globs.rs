@@ -1,7 +1,7 @@
 //! Finds files by glob, local and remote.
 //!
-//! A glob comes from a recipe, which may come from anyone. So its length and its braces are
-//! limited, because the library that compiles globs is recursive. The number of folder entries that
+//! A glob comes from a recipe, which may come from anyone. The library that compiles globs is
+//! recursive, so the length and the braces of a glob are limited. The number of folder entries that
 //! are examined is also limited.
 
 use std::collections::BTreeSet;
@@ -70,15 +70,15 @@ fn check(glob: &str) -> Result<(), String> {
     }
 }
 
-/// Returns whether a text is a glob. The `?` of a URL starts its query, and a host may be in
-/// brackets, so both are ignored.
+/// Returns whether a text is a glob. The query of a URL and its host are ignored, because a query
+/// starts with `?` and a host may be in brackets.
 pub(crate) fn is_glob(text: &str) -> bool {
     let path = path_of(text);
     text[path].contains(GLOB)
 }
 
-/// Returns the range of a text that is a path: for a URI without scheme and host, for a URL also
-/// without the query.
+/// Returns which part of a text is a path. The path of a URI excludes scheme and host; the path of
+/// a URL also excludes the query.
 fn path_of(text: &str) -> Range<usize> {
     let Some(host) = text.find("://").map(|at| at + 3) else {
         return 0..text.len();
@@ -104,8 +104,9 @@ pub(crate) fn split(text: &str) -> (&str, &str) {
     }
 }
 
-/// Returns the local files that match a glob of a recipe in `folder`. They are relative to the
-/// folder if the glob is, else absolute. Files in `output` are left out.
+/// Returns the local files that match a glob. The glob comes from a recipe in `folder`. If it is
+/// relative, the files are relative to the folder; otherwise they are absolute. Files in `output`
+/// are left out.
 pub(crate) fn files(
     glob: &str,
     place: &str,
@@ -158,7 +159,7 @@ pub(crate) fn files(
     Ok(found)
 }
 
-/// Returns a path without `.`, and without the parts that `..` takes back.
+/// Returns a path without `.`, in which each `..` is resolved.
 fn normalised(path: &Path) -> PathBuf {
     let mut parts: Vec<Component<'_>> = Vec::new();
     for part in path.components() {
@@ -173,7 +174,7 @@ fn normalised(path: &Path) -> PathBuf {
     parts.iter().collect()
 }
 
-/// Returns those paths in a remote folder that match a glob.
+/// Returns the paths in a remote folder that match a glob.
 pub(crate) fn matching(
     paths: Vec<(PathBuf, PathBuf)>,
     pattern: &str,

@@ -1,5 +1,4 @@
-//! Hashes of files. A hash is stored from build to build as long as the file's size and times stay
-//! the same.
+//! Hashes of files. Builds reuse a stored hash as long as the file's size and times stay the same.
 
 use std::collections::BTreeMap;
 use std::fs::Metadata;
@@ -25,7 +24,7 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Largest size of a file that a recipe names, bytes: the largest recording that is read.
 const MOST_FILE_BYTES: u64 = 4 << 30;
 
-/// Size and times of a file, by which a change is noticed without reading the file.
+/// Size and times of a file. A build compares them to notice a change without reading the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     pub bytes: u64,
@@ -62,7 +61,7 @@ impl Stamp {
     /// Returns the stamp of a local file.
     ///
     /// # Errors
-    /// Errors of the system, and a file without a time of change.
+    /// Errors of the system, or if the file has no time of change.
     pub fn read(file: &Path) -> io::Result<Self> {
         Self::of_metadata(&file.metadata()?)
     }
@@ -92,7 +91,7 @@ fn number(_: &Metadata) -> u64 {
     0
 }
 
-/// Hash of a file's contents, and the file's stamp when it was hashed.
+/// Hash of a file's contents, with the file's stamp at the time of hashing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileHash {
     /// BLAKE3 of the contents, hexadecimal.
@@ -111,7 +110,8 @@ pub(crate) struct Hashes {
 }
 
 impl Hashes {
-    /// Reads the hashes that an earlier build stored. A missing or damaged file holds none.
+    /// Reads the hashes that an earlier build stored. If the file with the hashes is missing or
+    /// damaged, there are none.
     pub(crate) fn open(kept: &StateFolder, name: &str, remote: Arc<RemoteFiles>) -> Self {
         let known =
             kept.get(name, MOST_BYTES).and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -205,7 +205,7 @@ pub(crate) fn hash_local(path: &Path) -> io::Result<FileHash> {
     let before = Stamp::of_metadata(&file.metadata()?)?;
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(&mut file)?;
-    // By the path and not by the open file, so that a replaced file is noticed too.
+    // The path is read again and not the open file, so that a replaced file is also noticed.
     if Stamp::read(path)? != before {
         return Err(changed());
     }

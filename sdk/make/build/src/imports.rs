@@ -1,6 +1,7 @@
-//! Files of other haptic formats in a recipe, recognised by their extension. Signals are fitted
-//! like recordings once full scale, speed and force are given. Files that state a texture become
-//! assets unchanged. Both take the settings of `htex import`, under the keys of recipes.
+//! Files of other haptic formats in a recipe. They are recognised by their extension. Signals are
+//! fitted like recordings; they need settings for full scale, speed and force. Files that state a
+//! texture become assets unchanged. The settings are those of `htex import`, under the keys of
+//! recipes.
 
 use std::path::Path;
 
@@ -69,9 +70,9 @@ impl FileKind {
     }
 }
 
-/// Determines the kind of a texture's files, and checks that they go together and that the settings
-/// apply to them. A licence is required unless the recipe says that none must be stated:
-/// third-party files have a licence, but seldom state it.
+/// Determines the kind of a texture's files, and checks that the files can form one texture and
+/// that the settings apply to them. For imports a licence is required unless the recipe turns this
+/// gate off, because third-party files have a licence but seldom state it.
 pub(crate) fn check_files(texture: &mut PlannedTexture) -> Result<(), BuildError> {
     texture.kind = kind(texture).map_err(at_place(&texture.name))?;
     check_settings(texture).map_err(at_place(&texture.name))?;

@@ -23,10 +23,10 @@ const MOST_TABLE_BYTES: u64 = 64 << 20;
 /// A recording found by a rule.
 #[derive(Debug)]
 pub(crate) struct Input {
-    /// The file, relative to the recipe's folder if it lies inside it, or its URI.
+    /// The file: a URI, or a path relative to the recipe's folder if the file lies inside it.
     pub(crate) file: PathBuf,
-    /// The path for fields and patterns, with `/` between its parts. For a URI, it is the part
-    /// inside the listed folder.
+    /// The path from which fields and patterns are taken, with `/` between its parts. For a URI, it
+    /// is the part inside the listed folder.
     path: String,
     /// Fields of templates.
     pub(crate) fields: Fields,
@@ -37,7 +37,7 @@ pub(crate) struct Input {
 pub(crate) enum Missing {
     /// Report an error.
     Error,
-    /// Plan it like any other. Its texture is left out when the file cannot be read.
+    /// Plan the row like any other row. When the file cannot be read, the texture is left out.
     LeftOut,
 }
 

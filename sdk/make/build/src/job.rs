@@ -1,4 +1,5 @@
-//! A job: the fit of one texture as data. Equal jobs give equal bytes on any machine.
+//! A job: the fit or import of one texture, described as data. Equal jobs give equal bytes on any
+//! machine.
 //!
 //! Models that are installed on a machine are not used, and a key contains no paths or times. A key
 //! also does not contain the texture's name and metadata, except for the metadata that decides how
@@ -30,7 +31,7 @@ use crate::plan::PlannedTexture;
 use crate::recipe::Gates;
 use crate::remote::{RemoteFiles, is_remote, joined, remote_location};
 
-/// Version of the meaning of jobs and their results. Changing it makes everything again.
+/// Version of the meaning of jobs and their results. If it changes, all textures are made again.
 const JOB: &str = "htex-job/5";
 
 /// The plugins named by the user and by the recipe, and the location of the recipe.
@@ -72,7 +73,7 @@ impl NamedPlugins {
     }
 }
 
-/// What makes one texture: a fit or an import.
+/// A job: everything that is needed to make one texture, by a fit or an import.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
     /// Kind and version of the job, and the program that fits.
@@ -82,32 +83,32 @@ pub struct Job {
     /// What kind of files the recordings are.
     #[serde(default)]
     pub kind: FileKind,
-    /// Facts that signals do not state.
+    /// Settings for signals, which state facts that the signals do not.
     #[serde(default)]
     pub signal: SignalSettings,
-    /// How the recordings are read. The paths of files are in `files`.
+    /// How the recordings are read. `files` contains the paths of files in these settings.
     pub reading: ReadingSettings,
     pub fit: FitSettings,
     pub metadata: Metadata,
     /// The frequency response of the setup.
     pub response: Option<JobFile>,
     pub plugins: Vec<JobFile>,
-    /// Number of plugins, counted from the first, that the user named. They may be native
+    /// The user named this many of the plugins, counted from the first. They may be native
     /// libraries. All others are WASM modules.
     #[serde(default)]
     pub named: usize,
-    /// Number of plugins, counted from the last, that are embedded in the asset.
+    /// This many of the plugins, counted from the last, are embedded in the asset.
     pub embedded: usize,
-    /// Location of the recipe, if it is remote. Of all servers on this machine or network, the
-    /// recipe may only name its own.
+    /// Location of the recipe, if it is remote. The recipe may name its own server, but no other
+    /// server on this machine or network.
     #[serde(default)]
     pub origin: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// Its name in reports and messages: the file's name, with enough folders to tell it from the
-    /// other recordings of the texture.
+    /// The recording's name in reports and messages: the file's name, with enough folders before it
+    /// to distinguish it from the other recordings of the texture.
     pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,
@@ -136,7 +137,7 @@ impl JobFile {
         }
     }
 
-    /// Returns the path or URI as it is shown in texts.
+    /// Returns the path or URI for use in texts.
     fn shown(&self) -> String {
         match remote_location(&self.path) {
             Ok(Some(location)) => location.to_string(),
@@ -157,7 +158,7 @@ impl JobFile {
 }
 
 impl Job {
-    /// Returns the job of a texture. This hashes its files.
+    /// Hashes the files of a texture and returns its job.
     pub(crate) fn new(
         texture: &PlannedTexture,
         named: &NamedPlugins,
@@ -204,12 +205,12 @@ impl Job {
         })
     }
 
-    /// Returns the job, and its key, of a texture with a recording or a tracker that cannot be
-    /// read. This job makes nothing, and no executable job has its key.
+    /// Returns the job and the key of a texture with a recording or a tracker that cannot be read.
+    /// The job makes nothing, and no job that can run has its key.
     ///
     /// # Errors
-    /// If another of its files cannot be read: a response or a plugin, which other textures also
-    /// need.
+    /// If another file of the texture cannot be read: a response or a plugin, which other textures
+    /// also need.
     pub(crate) fn absent(
         texture: &PlannedTexture,
         named: &NamedPlugins,
@@ -218,7 +219,8 @@ impl Job {
     ) -> Result<(String, Self), BuildError> {
         let without = PlannedTexture { recordings: Vec::new(), ..texture.clone() };
         let job = Self::new(&without, named, program, hashes)?;
-        // The name keeps unreadable textures apart, because their recordings cannot.
+        // The name is part of the key, because without their recordings unreadable textures may be
+        // equal.
         let key = hash_of(&serde_json::json!(["absent", texture.name, job.key()]));
         Ok((key, job))
     }
@@ -380,7 +382,7 @@ fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
     })
 }
 
-/// The models with which a thread fits, loaded once for each set of plugins.
+/// The models with which a thread fits. They are loaded once for each set of plugins.
 #[derive(Debug)]
 pub struct Workbench {
     limits: WasmLimits,
@@ -434,8 +436,8 @@ fn hash_of(value: &serde_json::Value) -> String {
     blake3::hash(value.to_string().as_bytes()).to_hex().to_string()
 }
 
-/// Returns the names of a texture's recordings: the file names, each with as many folders before it
-/// as are needed to tell all of them apart.
+/// Returns the names of a texture's recordings. Each is the file name, with as many folders before
+/// it as are needed to make all names different.
 fn told_apart(texture: &PlannedTexture) -> Vec<String> {
     let paths = texture.recordings.iter().map(|r| slashed(&shown_path(&r.file)));
     let paths: Vec<String> = paths.collect();

@@ -19,7 +19,7 @@ pub struct JobResult {
     pub record: Record,
     /// The asset; empty if there is none.
     pub asset: Vec<u8>,
-    /// A second of its sound, a WAV; empty if there is none.
+    /// One second of the texture's sound, a WAV; empty if there is none.
     pub sound: Vec<u8>,
 }
 
@@ -29,12 +29,13 @@ pub struct Record {
     pub outcome: Outcome,
     /// Number of segments of each condition.
     pub segments: Vec<usize>,
-    /// How much of the difference from the recordings is felt, by model, at the worst condition.
+    /// For each model, how much of the difference from the recordings is felt at the worst
+    /// condition.
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of the recordings, by code.
     pub findings: Vec<FindingReport>,
-    /// The recorded spectrum of the first condition. For a texture that a file states, the spectrum
-    /// of its default condition.
+    /// The recorded spectrum of the first condition. If the texture comes unchanged from a file of
+    /// another format, the spectrum of its default condition.
     pub thumbnail: Thumbnail,
 }
 
@@ -44,7 +45,7 @@ pub struct Record {
 pub enum Outcome {
     /// There is an asset.
     Fitted,
-    /// The gate `strict` refused it: recordings have findings.
+    /// The gate `strict` refused the texture, because its recordings have findings.
     NotStrict(String),
     /// A recording, a setting or a model cannot be used.
     Refused(String),

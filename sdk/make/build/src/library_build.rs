@@ -1,4 +1,4 @@
-//! A build: plans, fits what is missing, and assembles the library.
+//! A build: plans the textures, fits those without a stored result, and assembles the library.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -41,8 +41,8 @@ pub struct BuildOptions {
     /// Whether to leave out a texture that cannot be made, and continue.
     pub keep_going: bool,
     pub limits: WasmLimits,
-    /// Program and version, for the assets' provenance. Textures that were fitted by another
-    /// program or version are fitted again.
+    /// Program and version, for the assets' provenance. Textures that another program or version
+    /// has fitted are fitted again.
     pub program: String,
     /// Folder of the browser package with which the catalogue plays textures. Without it, the
     /// catalogue has short sounds.
@@ -55,8 +55,8 @@ pub struct BuildOptions {
     /// The URI to which the results are copied. If there is no previous library on this machine,
     /// the one at this URI is used for comparison.
     pub published: Option<Location>,
-    /// Whether to remove stored results at once that no texture uses any more. Otherwise they stay
-    /// for 30 days.
+    /// Whether to remove a stored result immediately when no texture uses it any more. Otherwise it
+    /// stays for 30 days.
     pub prune: bool,
 }
 
@@ -81,7 +81,7 @@ impl BuildOptions {
     }
 }
 
-/// A planned build. All files are hashed, so it is known which results exist.
+/// A planned build. All files are hashed, so it is known which textures already have results.
 #[derive(Debug)]
 pub struct Build {
     options: BuildOptions,
@@ -185,7 +185,7 @@ impl Build {
         Ok(())
     }
 
-    /// Returns the reason for each pending job, by its texture.
+    /// Returns the reason why each pending job has to run, with the name of its texture.
     pub fn reasons(&self) -> Vec<(&str, Why)> {
         let before = Reasons::open(&self.kept);
         let pending = self.pending.iter().map(|i| &self.jobs[*i]);
@@ -199,8 +199,8 @@ impl Build {
         workbench
     }
 
-    /// Returns the names of textures that are in the library before this build but no longer in the
-    /// recipe.
+    /// Returns the names of textures that were in the library before this build but are no longer
+    /// in the recipe.
     pub fn removed(&self) -> Vec<String> {
         self.plan.removed(&self.before)
     }
@@ -223,11 +223,12 @@ impl Build {
         jobs.map(|(key, job)| (&key[..], job))
     }
 
-    /// Stores the result of a job that was done elsewhere ([`JobResult::to_bytes`]).
+    /// Stores the result of a job that ran elsewhere ([`JobResult::to_bytes`]).
     ///
     /// # Errors
-    /// If the bytes are not the result of a job with this key or cannot be written, or if the
-    /// texture cannot be made, unless the build keeps going.
+    /// - The bytes are not the result of the job with this key.
+    /// - The result cannot be written.
+    /// - The texture cannot be made, and the options do not say to keep going.
     pub fn store(&mut self, key: &str, bytes: &[u8]) -> Result<(), BuildError> {
         let Some(at) = self.pending.iter().position(|i| self.jobs[*i].0 == key) else {
             // Somebody else has already done the job.
@@ -240,11 +241,11 @@ impl Build {
         Ok(())
     }
 
-    /// Does the pending jobs, several at a time. Calls `done` after each, from any thread.
+    /// Runs the pending jobs, several at a time. Calls `done` after each job, from any thread.
     ///
     /// # Errors
-    /// If a texture cannot be made, unless the build keeps going, or if a file cannot be read or
-    /// written. Results up to then are stored.
+    /// If a file cannot be read or written. Also if a texture cannot be made, and the options do
+    /// not say to keep going. The results up to the error are stored.
     pub fn run(&mut self, done: &(dyn Fn(&Job) + Sync)) -> Result<(), BuildError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
@@ -282,7 +283,8 @@ impl Build {
         Ok(())
     }
 
-    /// Does a job and stores its result. Returns a result that is not stored.
+    /// Runs a job and stores its result. If the result cannot be reused by the next build, returns
+    /// it instead.
     fn make(
         &self,
         key: &str,
@@ -298,7 +300,8 @@ impl Build {
         self.keep(key, job, made)
     }
 
-    /// Stores the result of a job. Returns a result that is not stored.
+    /// Stores the result of a job. If the result cannot be reused by the next build, returns it
+    /// instead.
     fn keep(&self, key: &str, job: &Job, made: JobResult) -> Result<Option<JobResult>, BuildError> {
         let Outcome::Refused(problem) = &made.record.outcome else {
             self.cache.put(key, &made)?;
@@ -322,8 +325,8 @@ impl Build {
     /// Writes the library, the textures, the report and the catalogue. Returns the report.
     ///
     /// # Errors
-    /// If jobs are still pending, or a file cannot be written. If a texture of the previous library
-    /// is left out and the options forbid removals; nothing was written then.
+    /// If jobs are still pending, or a file cannot be written. Also if a texture of the previous
+    /// library is left out and the options forbid removals; in this case nothing is written.
     pub fn finish(self) -> Result<Report, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
@@ -337,7 +340,8 @@ impl Build {
         let assemble = || assemble(&self.plan, &self.jobs, &made, put, &self.options, &self.before);
         let built = self.pool.install(assemble)?;
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
-        // Only when everything is written, so that a failed build loses no result.
+        // The cache is cleaned only after everything is written, so that a failed build loses no
+        // result.
         self.cache.keep(&keys, self.options.prune)?;
         Reasons::new(self.jobs.iter().map(|(_, job)| job)).keep(&self.kept)?;
         self.remote.forget()?;
@@ -354,8 +358,8 @@ fn is_of_input(error: &BuildError) -> bool {
     }
 }
 
-/// Returns the files of a recipe that a build would have to read to know their hashes. Other
-/// processes can then read them with [`hash_file`] and [`remember`].
+/// Returns the files of a recipe whose hashes are not stored, so that a build would have to read
+/// them. Other processes can read them in advance with [`hash_file`] and [`remember`].
 ///
 /// # Errors
 /// The errors of [`Build::open`].
@@ -413,8 +417,8 @@ pub fn hash_file(recipe: &Path, file: &Path) -> Result<FileHash, BuildError> {
     hash(file, &RemoteFiles::temporary(remote_location(recipe)?))
 }
 
-/// Stores hashes of files for the next build. The next build reads a file again if its size or
-/// times differ there.
+/// Stores hashes of files for the next build. If the size or times of a file have changed by then,
+/// the next build reads the file again.
 ///
 /// # Errors
 /// If another build uses the folder, or it cannot be written.

@@ -1,5 +1,5 @@
-//! Makes the result of a job: a fit to recordings or signals, or the texture that a file of another
-//! format states.
+//! Makes the result of a job. A job fits recordings or signals, or imports the texture that a file
+//! of another format states.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -136,7 +136,7 @@ impl Job {
         }
     }
 
-    /// Returns what a file of another format does not state.
+    /// Returns the settings that state what a file of another format does not.
     fn physical(&self, recording: &JobRecording) -> Physical {
         Physical {
             full_scale: self.signal.full_scale,

@@ -26,17 +26,17 @@ pub struct Plan {
 /// A texture to be made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedTexture {
-    /// Its name, unique in the library.
+    /// Name of the texture, unique in the library.
     pub name: String,
-    /// Its recordings, sorted by file.
+    /// Recordings of the texture, sorted by file.
     pub recordings: Vec<PlannedRecording>,
     /// What kind of files the recordings are.
     pub kind: FileKind,
-    /// Its settings. Paths in them are relative to the recipe.
+    /// Settings of the texture. Paths in them are relative to the recipe.
     pub settings: Settings,
-    /// Its metadata, with templates filled.
+    /// Metadata of the texture, in which the templates are filled.
     pub metadata: Metadata,
-    /// The requirements that its asset must meet.
+    /// The requirements that the texture's asset must meet.
     pub gates: Gates,
 }
 
@@ -54,8 +54,8 @@ pub struct PlannedRecording {
 }
 
 impl PlannedTexture {
-    /// Returns the files that its job reads, relative to the recipe. Plugins of the whole library
-    /// are not included.
+    /// Returns the files that the texture's job reads, relative to the recipe. Plugins of the whole
+    /// library are not included.
     pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let recordings =
             self.recordings.iter().flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
@@ -65,7 +65,7 @@ impl PlannedTexture {
 }
 
 impl Plan {
-    /// Returns those names that no planned texture has.
+    /// Returns those of `names` that no planned texture has.
     pub(crate) fn removed(&self, names: &BTreeSet<String>) -> Vec<String> {
         let own: BTreeSet<&String> = self.textures.iter().map(|texture| &texture.name).collect();
         let removed = names.iter().filter(|name| !own.contains(name));
@@ -135,7 +135,7 @@ impl<'a> Overrides<'a> {
         own.fold(settings, |under, (_, own)| (*own).clone().over(under))
     }
 
-    /// Refuses an override that matches no texture, because its name is misspelt.
+    /// Refuses an override that matches no texture, because its name is probably misspelt.
     fn check_used(&self, textures: &BTreeMap<String, PlannedTexture>) -> Result<(), BuildError> {
         for (i, (set, _)) in self.0.iter().enumerate() {
             if !textures.keys().any(|name| set.is_match(name)) {
@@ -179,7 +179,7 @@ fn planned(
         force_n: condition("force_n", at.force_n)?,
     };
     let metadata = filled(settings.metadata.clone(), &fields, of)?;
-    // Gates must not change a fit, so that they can be changed without a new one. Only `strict`
+    // Gates must not change a fit, so that they can be changed without a new fit. Only `strict`
     // stops a fit.
     let gates = std::mem::take(&mut settings.gates);
     settings.gates.strict = gates.strict;

@@ -1,6 +1,7 @@
-//! Publishes results to a URI. A build writes them to a local folder, from which they are copied.
+//! Publishes results to a URI. A build writes them to a local folder, and this module copies them
+//! from there.
 //!
-//! They are copied only when all are complete, so that a half-built library is never visible.
+//! It copies them only when all are complete, so that a half-built library is never visible.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
@@ -24,7 +25,8 @@ const PUBLISHED: &str = "published.json";
 const MOST_BYTES: u64 = 1 << 30;
 /// Name of the file that tests the URI.
 const TRIED: &str = ".htex-build-tries";
-/// Files that are copied last, in this order, so that they only name files that already exist.
+/// Files that are copied last, in this order, because they name other files that must already
+/// exist.
 const LAST: [&str; 2] = ["build-report.json", "index.html"];
 /// Number of copies at the same time. Most of the time they wait for the network.
 const AT_ONCE: usize = 8;
@@ -96,7 +98,7 @@ impl Destination {
     }
 
     /// Tests whether files at the URI, if there is one, can be listed, written and removed. It
-    /// writes a file and removes it again. This finds errors before hours of fitting.
+    /// writes a file and removes it again. So errors are found before hours of fitting.
     ///
     /// # Errors
     /// If one of these operations fails.
@@ -110,12 +112,13 @@ impl Destination {
     }
 
     /// Copies the results to the URI, if there is one. Only files that differ from the files there
-    /// are copied: textures first, report and catalogue last. Files that an earlier build copied
-    /// and this build has not made are removed. Returns the number of copied files.
+    /// are copied: textures first, report and catalogue last. If an earlier build copied a file
+    /// that this build has not made, the file is removed at the URI. Returns the number of copied
+    /// files.
     ///
     /// # Errors
-    /// If a file cannot be read or written. The next call copies every file again that is not known
-    /// to be there.
+    /// If a file cannot be read or written. The next call then copies every file that is not known
+    /// to be at the URI.
     pub fn publish(&self) -> Result<usize, BuildError> {
         match &self.remote {
             Some(to) => Publishing::new(&self.folder, to)?.run(),

@@ -1,5 +1,5 @@
-//! Explains why a texture has to be fitted, by comparing what its fit depends on with the last
-//! finished build.
+//! Explains why a texture has to be fitted. To find the reason, it compares what the fit depends on
+//! with the last finished build.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -27,7 +27,7 @@ pub enum Why {
     Changed(Vec<&'static str>),
     /// The stored result is damaged, or belongs to another user.
     Unusable,
-    /// The stored result is gone.
+    /// The stored result has been removed.
     Gone,
 }
 

@@ -36,12 +36,12 @@ const MOST_BYTES: u64 = 1 << 20;
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
-    /// The library.
+    /// The library to build.
     pub library: LibraryPart,
     /// Settings for all textures.
     #[serde(default)]
     pub defaults: Settings,
-    /// Recordings, and settings of their textures.
+    /// Rules that find recordings, with the settings of their textures.
     #[schemars(length(min = 1))]
     pub textures: Vec<Textures>,
     /// Settings for individual textures. Later overrides take precedence over earlier ones.
@@ -49,7 +49,7 @@ pub struct Recipe {
     pub overrides: Vec<Override>,
 }
 
-/// The library that is built.
+/// The library to build.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LibraryPart {
@@ -62,18 +62,19 @@ pub struct LibraryPart {
     pub plugins: Vec<PathBuf>,
 }
 
-/// Recordings, and settings of their textures.
+/// A rule that finds recordings, with the settings of their textures.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Textures {
-    /// Files by glob, relative to the recipe: `rec/**/*.csv`. They can be recordings, or files that
-    /// `htex import` takes: models of HaTT (`.xml`), `.haptic`, `.ahap`, `.hjif`.
+    /// Globs that find the files, relative to the recipe: `rec/**/*.csv`. The files can be
+    /// recordings, or files that `htex import` takes: models of HaTT (`.xml`), `.haptic`, `.ahap`,
+    /// `.hjif`.
     #[serde(default, deserialize_with = "one_or_more")]
     #[schemars(with = "OneOrMore", extend("default" = []))]
     pub recordings: Vec<String>,
-    /// A CSV with a row for each recording. The column `recording` holds its file, relative to the
-    /// table. Other columns are fields for templates. The columns `name`, `speed_mm_s` and
-    /// `force_n` are used unless the recipe states these values itself.
+    /// A CSV with a row for each recording. The column `recording` contains the path of the file,
+    /// relative to the table. Other columns are fields for templates. If the recipe does not state
+    /// a name, speed or force, the columns `name`, `speed_mm_s` and `force_n` are used.
     #[serde(default)]
     pub table: Option<PathBuf>,
     /// A regular expression with named groups, which become fields for templates. It is matched
@@ -81,8 +82,8 @@ pub struct Textures {
     /// does not match is an error.
     #[serde(default)]
     pub pattern: Option<String>,
-    /// Name of the texture, a template; `{stem}` by default. Recordings with the same name become
-    /// one texture.
+    /// Name of the texture, as a template; `{stem}` by default. All recordings with the same name
+    /// become one texture.
     #[serde(default)]
     pub name: Option<String>,
     /// Settings of these textures.
@@ -94,24 +95,25 @@ pub struct Textures {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Override {
-    /// Names of textures, by glob.
+    /// Globs for the names of the textures to which the settings apply.
     #[serde(deserialize_with = "one_or_more")]
     #[schemars(with = "OneOrMore")]
     pub textures: Vec<String>,
-    /// Their settings.
+    /// Settings for these textures.
     #[serde(flatten)]
     pub settings: Settings,
 }
 
-/// Settings of textures. Texts in the metadata are templates.
+/// Settings of textures. Texts in the metadata are templates, such as `{stem} at 80 mm/s`.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(deny_unknown_fields)]
 pub struct Settings {
-    /// How recordings are read. Files are relative to the recipe. The tracker's file is a template.
+    /// How recordings are read. Paths of files are relative to the recipe. The tracker's path is a
+    /// template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
-    /// Facts that haptic signals of other formats do not state.
+    /// Facts that signals of other haptic formats do not state.
     #[serde(flatten)]
     pub signal: SignalSettings,
     /// How models are fitted.
@@ -120,7 +122,8 @@ pub struct Settings {
     /// Who made the texture, and from what.
     #[serde(flatten)]
     pub metadata: Metadata,
-    /// WASM modules that are used for the fit and embedded in the asset. Relative to the recipe.
+    /// WASM modules with models that are fitted and then embedded in the asset. Paths are relative
+    /// to the recipe.
     pub embed_plugins: Option<Vec<PathBuf>>,
     /// Speed and normal force of the recordings.
     pub at: At,
@@ -167,37 +170,39 @@ pub enum NumberOrTemplate {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Gates {
-    /// Largest nine-band RMS error of every representation at every condition, decibels. Can be
-    /// given by model.
+    /// Largest allowed nine-band RMS error of a representation, at any condition, decibels. One
+    /// number for all models, or a table with a number for each model.
     pub max_band_error_db: Option<ModelGate>,
-    /// Largest difference from the recording that is felt, of every representation at every
-    /// condition, decibels. It applies to each third-octave band and to all bands together above
-    /// the detection threshold. Can be given by model. The difference threshold is 1.584 dB.
+    /// Largest allowed felt difference between a representation and its recording, at any
+    /// condition, decibels. It is the difference of the levels above the detection threshold, in
+    /// each third-octave band and for all bands together. A difference below 1.584 dB (the
+    /// difference threshold) is too small to notice. One number for all models, or a table with a
+    /// number for each model.
     pub max_felt_error_db: Option<ModelGate>,
-    /// Largest repeatability value of a condition, decibels: the RMS over nine bands of the
-    /// difference between odd and even blocks of time, over √2.
+    /// Largest allowed repeatability value of a condition, decibels: the RMS over nine bands of the
+    /// difference between odd and even blocks of time, divided by √2.
     pub max_repeatability_db: Option<f64>,
-    /// Codes of findings that recordings may not have, such as `RECORDING_CLIPPED`.
+    /// Codes of findings that no recording may have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,
-    /// Smallest number of 0.2 s segments at every condition.
+    /// Smallest number of 0.2 s segments that every condition must have.
     pub min_segments: Option<usize>,
-    /// Whether findings of recordings that are errors or warnings are forbidden: a steady motion on
-    /// target, no clipping, …
+    /// Whether recordings with findings that are errors or warnings are forbidden. Such findings
+    /// are, for example, an unsteady motion or clipping.
     pub strict: Option<bool>,
-    /// Whether a licence must be stated. For files of other haptic formats, it is required unless
-    /// this is false.
+    /// Whether every texture must state a licence. The default is true for files of other haptic
+    /// formats, and false for recordings.
     pub license: Option<bool>,
-    /// Largest size of the asset, bytes.
+    /// Largest allowed size of the asset, bytes.
     pub max_bytes: Option<u64>,
 }
 
-/// A gate for the errors of models, decibels.
+/// The largest allowed error of models, decibels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ModelGate {
-    /// For all models.
+    /// One number for all models.
     All(f64),
-    /// For individual models, by short name or id.
+    /// A number for each model, by short name or id.
     ByModel(BTreeMap<String, f64>),
 }
 
@@ -205,8 +210,8 @@ impl Recipe {
     /// Parses the text of a recipe.
     ///
     /// # Errors
-    /// If it is not TOML, has other keys or values than a recipe, or has a gate for a code that no
-    /// finding has.
+    /// If the text is not TOML, has other keys or values than a recipe, or has a gate for a code
+    /// that does not exist.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         // Flattened settings cannot refuse unknown keys themselves.
         check_keys(text, &htex_base::files::toml::from_str(text)?)?;
@@ -241,8 +246,8 @@ impl Recipe {
 }
 
 impl Settings {
-    /// Returns these settings, completed by `under` where they are absent. Options and gates are
-    /// merged one by one.
+    /// Returns these settings, with missing ones taken from `under`. Options and gates are merged
+    /// one by one.
     pub(crate) fn over(self, under: Self) -> Self {
         Self {
             reading: self.reading.over(under.reading),
@@ -258,7 +263,8 @@ impl Settings {
         }
     }
 
-    /// Returns how recordings are read, without the tracker, whose file differs between recordings.
+    /// Returns how recordings are read. The tracker is left out, because each recording has its
+    /// own.
     pub(crate) fn reading(&self, recipe_folder: &Path) -> ReadingSettings {
         let response = self.reading.response.as_ref();
         ReadingSettings {

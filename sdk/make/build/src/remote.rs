@@ -1,8 +1,8 @@
 //! Remote files: paths in a recipe that are URIs of a web server or an object store. They are
 //! listed, hashed, and copied for the job that reads them.
 //!
-//! A list request reports the versions of the files. As with local files, the key uses the hash of
-//! the contents. The machine that runs the job reads the copy.
+//! A list request reports the versions of the files. As with local files, the key of a job contains
+//! the hash of the contents. The machine that runs the job reads a local copy.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -71,8 +71,8 @@ pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
     }
 }
 
-/// Returns the URI of a path in a remote folder. In it, `..` leads to the folder above, but not
-/// above the bucket or host.
+/// Returns the URI of a path in a remote folder. In the path, `..` leads to the folder above, but
+/// not above the bucket or host.
 fn below(folder: &str, path: &str) -> String {
     let mut folder = folder.trim_end_matches('/').to_owned();
     let mut path = path;
@@ -222,8 +222,8 @@ impl RemoteFiles {
     }
 
     /// Returns the storage for files that a recipe names. They are read under the rules for
-    /// untrusted files: no address of this machine or its network is allowed, except the address of
-    /// the recipe's own server.
+    /// untrusted files: addresses of this machine and its network are forbidden, except the address
+    /// of the recipe's own server.
     fn storage(&self) -> Result<&Storage, StorageError> {
         if let Some(storage) = self.storage.get() {
             return Ok(storage);

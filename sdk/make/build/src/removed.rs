@@ -1,7 +1,8 @@
 //! Textures that the library had before this build and lacks after it.
 //!
-//! A glob that matches fewer files than before is not an error, so moving a folder removes its
-//! textures. This is reported, and refused if the options forbid removals.
+//! A glob that matches fewer files than before is not an error. So if a folder is moved, its
+//! textures are removed from the library. The build reports this, or refuses it if the options
+//! forbid removals.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -16,9 +17,9 @@ use crate::report::{Report, Status};
 /// Largest number of names in a message.
 const NAMED: usize = 3;
 
-/// Returns the names of the textures in the library that the last build wrote, from its report and
-/// from the library's own index. A local folder without either may be a new one for remote results;
-/// then the remote report is read.
+/// Returns the names of the textures in the library that the last build wrote. It reads the report
+/// of that build and the library's own index. If the local folder has neither, it may be a new
+/// folder for remote results, and the function reads the remote report.
 pub(crate) fn textures_before(
     dist: &Dist,
     library: &str,
@@ -43,8 +44,8 @@ pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
     built.map(|texture| texture.name.clone())
 }
 
-/// Returns the names in a library's file; none if it is missing or damaged. Writing it again
-/// repairs it.
+/// Returns the names in a library's file. If the file is missing or damaged, there are none, and
+/// the build writes the file again.
 fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
     let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());
     let path = dist.path_of(file).ok().filter(|path| is_file(path));
@@ -60,7 +61,7 @@ fn report_at(location: &Location) -> Option<Report> {
     serde_json::from_slice(&bytes).ok()
 }
 
-/// Lists texture names briefly: names in the same folder are replaced by the folder, `hatt/…`.
+/// Lists texture names briefly. Names in the same folder are replaced by the folder: `hatt/…`.
 ///
 /// ```
 /// let names = ["hatt/cork", "hatt/felt", "oak"].map(str::to_owned);

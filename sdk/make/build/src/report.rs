@@ -22,59 +22,61 @@ pub const REPORT: &str = "htex-build-report/1";
 pub struct Report {
     /// `htex-build-report/1`.
     pub report: String,
-    /// Program and version that built.
+    /// Program and version that made the build.
     pub program: String,
     /// The error that ended the build, line by line. All other fields then describe what an earlier
     /// build left, if there was one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
-    /// The library.
+    /// The library that the build made.
     pub library: LibraryReport,
-    /// Names of textures that are in the library before this build but no longer in the recipe.
+    /// Names of textures that were in the library before this build but are no longer in the
+    /// recipe.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// By model id, how many textures of the library differ from their recordings by less than the
-    /// difference threshold at all their conditions, and how many by less than their recordings
-    /// vary.
+    /// For each model (by id), the number of textures in the library whose difference from the
+    /// recordings is below the difference threshold at all conditions. A second number counts the
+    /// textures whose difference is within the variation of their recordings.
     pub felt_shares: BTreeMap<String, FeltShare>,
-    /// By code of a finding of recordings: the textures with this finding.
+    /// For each code of a finding, the textures with this finding.
     pub findings: BTreeMap<String, FindingShare>,
     /// All textures of the recipe, by name.
     pub textures: Vec<TextureReport>,
 }
 
-/// The library of a build.
+/// The library that the build made.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LibraryReport {
-    /// Its name.
+    /// Name of the library.
     pub name: String,
-    /// Its file, relative to the folder of the report.
+    /// File of the library, relative to the folder of the report.
     pub file: String,
-    /// Its size, bytes.
+    /// Size of the library's file, bytes.
     pub bytes: u64,
-    /// BLAKE3 of its index, hexadecimal. The index contains the hashes of all textures.
+    /// BLAKE3 hash of the library's index, hexadecimal. The index contains the hashes of all
+    /// textures.
     pub blake3: String,
-    /// Number of textures in it.
+    /// Number of textures in the library.
     pub textures: usize,
-    /// Number of textures that were left out.
+    /// Number of textures that were left out of the library.
     pub left_out: usize,
 }
 
 /// A texture of a build.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TextureReport {
-    /// Its name.
+    /// Name of the texture.
     pub name: String,
-    /// Whether it is in the library.
+    /// Whether the texture is in the library.
     pub status: Status,
-    /// Hash of everything that its bytes depend on.
+    /// Hash of everything that the texture's bytes depend on.
     pub key: String,
-    /// Its recordings.
+    /// Recordings of the texture.
     pub recordings: Vec<RecordingReport>,
-    /// Why it was left out.
+    /// Why the texture was left out of the library.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missed: Vec<MissedGate>,
-    /// Its asset, even if it was left out because of a gate.
+    /// The texture's asset, even if a gate kept it out of the library.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub asset: Option<AssetReport>,
 }
@@ -83,9 +85,9 @@ pub struct TextureReport {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It is in the library.
+    /// The texture is in the library.
     Built,
-    /// It misses a gate, or could not be fitted.
+    /// The texture misses a gate, or could not be fitted.
     LeftOut,
 }
 
@@ -94,9 +96,9 @@ pub enum Status {
 pub struct RecordingReport {
     /// File name without its folder.
     pub file: String,
-    /// Its size, bytes.
+    /// Size of the file, bytes.
     pub bytes: u64,
-    /// BLAKE3 of its contents, hexadecimal.
+    /// BLAKE3 hash of the file's contents, hexadecimal.
     pub blake3: String,
 }
 
@@ -112,14 +114,14 @@ pub struct MissedGate {
 /// The asset of a texture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AssetReport {
-    /// Its size, bytes.
+    /// Size of the asset, bytes.
     pub bytes: u64,
-    /// BLAKE3 of the asset, hexadecimal.
+    /// BLAKE3 hash of the asset, hexadecimal.
     pub blake3: String,
     /// SPDX licence expression.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub license: Option<String>,
-    /// Who made it.
+    /// Who made the texture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub author: Option<String>,
     /// Search terms.
@@ -136,28 +138,29 @@ pub struct AssetReport {
     /// Smallest and largest normal force of the conditions, newtons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<[f64; 2]>,
-    /// Smallest number of segments of a condition; 0 for a texture that a file of another format
-    /// states.
+    /// Smallest number of segments of a condition; 0 if the texture comes unchanged from a file of
+    /// another format.
     pub segments: usize,
-    /// Largest repeatability value of a condition, to compare errors with, decibels: the RMS over
-    /// nine bands of the difference between odd and even blocks of time, over √2.
+    /// Largest repeatability value of a condition, decibels: the RMS over nine bands of the
+    /// difference between odd and even blocks of time, divided by √2. Errors near or below it are
+    /// within the recordings' own variation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
-    /// Largest nine-band RMS error of each model over its conditions, decibels, by model id.
+    /// Largest nine-band RMS error over all conditions, decibels, for each model (by id).
     pub band_error_rms_db: BTreeMap<String, f64>,
-    /// How much of the difference from the recordings is felt, for each model at its worst
-    /// condition, by model id.
+    /// How much of the difference from the recordings is felt at the worst condition, for each
+    /// model (by id).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
-    /// Findings of its recordings, by code.
+    /// Findings about the texture's recordings, grouped by code.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<FindingReport>,
     /// Warnings of the fit, including those from findings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// The recorded spectrum of the first condition, or, for a texture that a file states, the
-    /// spectrum of its default condition. It has 48 points evenly spaced in log frequency. 63 is
-    /// the largest magnitude, 0 is 40 dB below it or less.
+    /// The recorded spectrum of the first condition. If the texture comes unchanged from a file of
+    /// another format, the spectrum of its default condition. It has 48 points evenly spaced in log
+    /// frequency. The value 63 stands for the largest magnitude, and 0 for 40 dB below it or less.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,
 }
@@ -226,15 +229,15 @@ impl AssetReport {
 }
 
 impl AssetReport {
-    /// Returns whether it has a warning that does not come from a finding of a recording.
+    /// Returns whether the asset has a warning that does not come from a finding of a recording.
     pub fn has_other_warnings(&self) -> bool {
         let is_finding = |warning: &String| self.findings.iter().any(|f| warning.contains(&f.code));
         self.warnings.iter().any(|warning| !is_finding(warning))
     }
 }
 
-/// Counts, by model, the textures whose difference is below the difference threshold, and the
-/// textures whose difference is within the variation of their recordings.
+/// Counts the textures for each model: those whose difference is below the difference threshold,
+/// and those whose difference is within the variation of their recordings.
 pub(crate) fn felt_shares(textures: &[TextureReport]) -> BTreeMap<String, FeltShare> {
     let mut shares: BTreeMap<String, FeltShare> = BTreeMap::new();
     let built = textures.iter().filter(|t| t.status == Status::Built);

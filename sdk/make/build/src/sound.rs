@@ -6,18 +6,18 @@ use std::io::Cursor;
 use htex_host::Registry;
 use htex_play::{Texture, VoiceOptions};
 
-/// Sample rate of the sound, hertz: a little more than twice the band's upper edge, so that
-/// browsers play it and files are small.
+/// Sample rate of the sound, hertz. It exceeds twice the band's upper edge (1000 Hz), browsers play
+/// it, and files stay small.
 const RATE_HZ: u32 = 8_000;
-/// Its length, samples.
+/// Length of the sound, samples.
 const SAMPLES: usize = RATE_HZ as usize;
-/// RMS, relative to full scale.
+/// RMS of the sound, relative to full scale.
 const RMS: f32 = 0.1;
 /// Length of the fade at both ends, samples.
 const FADE: usize = 200;
 
-/// Renders a second of the asset's best representation at its default condition as a 16-bit WAV.
-/// All textures get the same loudness.
+/// Renders one second of the asset's best representation at its default condition, as a 16-bit WAV.
+/// All sounds have nearly the same RMS.
 pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, Box<dyn Error>> {
     let data = htex_format::Asset::from_bytes(asset)?;
     let asset = Texture::with_registry(data, registry.clone());

@@ -1,10 +1,10 @@
-//! What a build stores for the next one: the folder `.htex-build` in the folder of the results.
+//! What a build stores for the next build: the folder `.htex-build` in the folder of the results.
 //!
-//! The results may come from somebody else, with a `.htex-build` that makes claims about the fit of
-//! a recording, known files, or what was published. So each file in it begins with a keyed hash of
-//! its name and content, with a key of this user ([`htex_base::files::Key`]). Files that this user
-//! has not made are not used, and are made again. If there is no folder for a user's key, a
-//! temporary key is used that ends with the build.
+//! The results may come from somebody else. Their `.htex-build` could then make false claims about
+//! the fit of a recording, hashes of files, or what was published. So each file in it begins with a
+//! keyed hash of its name and content, with a key of this user ([`htex_base::files::Key`]). Files
+//! that this user has not made are not used, and are made again. If there is no folder for a user's
+//! key, a temporary key is used for this process.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// The values of placeholders, by name.
 pub(crate) type Fields = BTreeMap<String, String>;
 
-/// Longest filled text before its last placeholder, bytes.
+/// Largest length of a filled text up to its last placeholder, bytes.
 const MOST_BYTES: usize = 65_536;
 
 /// Fills the placeholders of a text. `{{` and `}}` stand for literal braces.

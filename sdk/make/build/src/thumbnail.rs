@@ -10,8 +10,8 @@ const RANGE_DB: f64 = 40.0;
 /// Number of steps in that range.
 const STEPS: f64 = 63.0;
 
-/// A spectrum with 48 points, evenly spaced in log frequency over its band. 63 is its largest
-/// magnitude, 0 is 40 dB below it or less.
+/// A spectrum with 48 points, evenly spaced in log frequency over its band. The value 63 stands for
+/// the largest magnitude, and 0 for 40 dB below it or less.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Thumbnail(pub Vec<u8>);
@@ -34,8 +34,8 @@ pub(crate) fn of_magnitudes(frequency_hz: &[f64], magnitude: &[f64]) -> Thumbnai
         edge = to;
         let within = frequency_hz.iter().zip(magnitude).filter(|(f, _)| (from..=to).contains(*f));
         let peak = within.map(|(_, m)| *m).fold(0.0, f64::max);
-        // Below 50 Hz the 5 Hz grid is coarser than the points, so some points contain no grid
-        // frequency.
+        // Below 50 Hz the 5 Hz grid is coarser than the points, so some points have no frequency of
+        // the grid.
         let peak = if peak > 0.0 { peak } else { nearest(frequency_hz, magnitude, from) };
         level(peak, largest)
     });

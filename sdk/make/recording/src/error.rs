@@ -20,7 +20,7 @@ pub struct ReadError {
     pub file: String,
     /// Where in the file, if the problem is at one place.
     pub place: Option<Place>,
-    /// What is wrong, and what to do.
+    /// What is wrong, and what the user can do about it.
     pub problem: ReadProblem,
 }
 
@@ -66,7 +66,7 @@ pub enum ReadProblem {
     /// It is not clear which roles the columns have.
     #[error("{problem}; the columns are: {columns}")]
     Columns {
-        /// What is missing or ambiguous, and what to give.
+        /// What is missing or ambiguous, and what the user should give.
         problem: String,
         /// The names of the columns.
         columns: String,
@@ -78,7 +78,7 @@ pub enum ReadProblem {
     /// The file is damaged or of an unsupported kind, or its numbers are invalid.
     #[error("{0}")]
     Invalid(String),
-    /// The reader of this format was not built.
+    /// This build lacks the reader of the file's format.
     #[error(
         "this build does not read {formats}; build with the feature {feature}, use the Python package, \
          or convert the file to CSV"

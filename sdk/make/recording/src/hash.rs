@@ -1,14 +1,15 @@
-//! The hash of a recording's file, by which provenance distinguishes recordings of the same name.
+//! The hash of a recording's file. An asset's provenance stores it, to distinguish recordings of
+//! the same name.
 
 use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The file that a recording was read from, as far as is needed to hash it.
+/// The file that a recording was read from: what is needed to compute its hash.
 ///
-/// A file is hashed only when provenance asks for it. Hashing on every read would read the file a
-/// second time, which takes a tenth longer.
+/// A file is hashed only when provenance asks for it. If every file were hashed, it would be read a
+/// second time, and reading a recording would take a tenth longer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedFile(FileIdentity);
 
@@ -48,7 +49,7 @@ impl RecordedFile {
     }
 }
 
-/// Size and time by which a change of the file is noticed.
+/// Size and time of modification, which show whether a file has changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Version {
     bytes: u64,

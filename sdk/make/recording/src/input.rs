@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Fault, ReadProblem};
 
-/// The largest file that is read, bytes. The numbers kept from it are limited by
-/// [`crate::MOST_VALUES`].
+/// The largest file that is read, bytes. [`crate::MOST_VALUES`] limits how many of its numbers are
+/// kept.
 const MAX_BYTES: u64 = 4 << 30;
 
 /// Number of bytes that are read to detect the kind of file. An HDF5 signature is at most this far
@@ -16,8 +16,8 @@ const FRONT: usize = 4096;
 
 /// A file, or bytes in memory.
 enum Input<'a> {
-    /// A file of which one byte more than the limit is read, so that its end is never taken for the
-    /// end of a longer one.
+    /// A file of which at most one byte more than the limit is read. The extra byte shows that the
+    /// file is too long, so that a truncated file is never taken for a whole one.
     File(Take<File>),
     Bytes(&'a [u8]),
 }

@@ -1,5 +1,5 @@
-//! Recordings of a finger sliding on a texture, and the readers of their files: CSV, and the other
-//! [`FORMATS`] if the crate's features for them are on.
+//! Recordings of a finger sliding on a texture, and the readers of their files. The crate always
+//! reads CSV. It reads the other [`FORMATS`] if it is built with their features.
 //!
 //! ```no_run
 //! # use std::path::Path;
@@ -13,9 +13,9 @@
 //! # Ok::<(), htex_recording::ReadError>(())
 //! ```
 //!
-//! A format is read by a library if that library validates its input. All readers read only the
-//! columns that are used, and never allocate memory for a size that a file states but does not
-//! hold.
+//! Where an existing library validates its input, that library reads the format. This crate has its
+//! own readers for the other formats. All readers read only the columns that are used. They never
+//! allocate memory for a size that a file states but does not hold.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
@@ -94,10 +94,11 @@ pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, R
     Ok(Recording { file, ..recording })
 }
 
-/// Reads a recording from bytes; `path` is only its name and is not opened.
+/// Reads a recording from bytes in memory. `path` supplies the file's name and extension, and is
+/// not opened.
 ///
 /// # Errors
-/// As [`read_recording`].
+/// The errors of [`read_recording`].
 pub fn recording_from_bytes(
     path: &Path,
     bytes: &[u8],

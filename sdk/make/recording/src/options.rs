@@ -8,23 +8,24 @@ use crate::recording::{MAX_RATE_HZ, check_rate};
 use crate::tracker::Tracker;
 use crate::value_limit::{MOST_VALUES, ValueLimit};
 
-/// Options for reading a recording, for facts that a file does not state.
+/// Options for reading a recording. They supply facts that the file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Sample rate, hertz. Required if the file has neither a rate nor times. It takes precedence
-    /// over both, but must equal the rate of a WAV or FLAC.
+    /// Sample rate, hertz. Required if the file states no rate and has no times. A given rate takes
+    /// precedence over the times and over the file's own rate. For a WAV or FLAC file it must equal
+    /// the file's rate.
     pub rate_hz: Option<f64>,
     /// Roles of columns. Columns that are not in the map are assigned by their names.
     pub map: Option<ColumnMap>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY without a map, in the quantity's
-    /// unit. If absent, it is 1, with a warning.
+    /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY files without a column map, in the
+    /// quantity's unit. Without a scale, the reader assumes 1 and warns.
     pub scale: Option<f64>,
-    /// Start of the part to read, seconds of the file.
+    /// Start of the part to read, in seconds after the file's first sample.
     pub from_s: Option<f64>,
-    /// End of the part to read, seconds of the file.
+    /// End of the part to read, in seconds after the file's first sample.
     pub to_s: Option<f64>,
     /// A second file with the finger's motion.
     pub tracker: Option<Tracker>,
@@ -61,14 +62,14 @@ impl ReadOptions {
         self
     }
 
-    /// Sets the start of the part to read, seconds of the file.
+    /// Sets the start of the part to read, in seconds after the file's first sample.
     #[must_use]
     pub fn with_from_s(mut self, from_s: impl Into<Option<f64>>) -> Self {
         self.from_s = from_s.into();
         self
     }
 
-    /// Sets the end of the part to read, seconds of the file.
+    /// Sets the end of the part to read, in seconds after the file's first sample.
     #[must_use]
     pub fn with_to_s(mut self, to_s: impl Into<Option<f64>>) -> Self {
         self.to_s = to_s.into();

@@ -1,5 +1,5 @@
-//! Preview of a file before it is read: what its columns are taken to be. For programs that show
-//! this and let the user correct it.
+//! Preview of a file: the roles that a reader would assign to its columns. Programs show the
+//! preview before they read the file, and let the user correct the roles.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use htex_format::Quantity;
 const ROWS: usize = 5;
 /// Number of columns of a text file whose numbers are shown.
 const MOST_READ: usize = 64;
-/// Number of bytes at the start of a text file in which the first rows are looked for.
+/// Number of bytes at the start of a text file in which the preview looks for the first rows.
 const FIRST_BYTES: usize = 64 << 10;
 
 /// The columns of a file, with the role of each.
@@ -25,8 +25,8 @@ const FIRST_BYTES: usize = 64 << 10;
 #[non_exhaustive]
 pub struct Preview {
     pub columns: Vec<PreviewColumn>,
-    /// The sample rate that the file states, hertz. A rate that follows from a time column is not
-    /// given here.
+    /// The sample rate that the file states, hertz. `None` if the rate has to be computed from a
+    /// time column.
     pub rate_hz: Option<f64>,
     /// The roles as a column map ([`crate::ColumnMap`]), which the user may correct. Empty if no
     /// column has a role.
@@ -39,9 +39,9 @@ pub struct Preview {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PreviewColumn {
-    /// The column's name, or `#` and its number if it has no name.
+    /// The column's name. A column without a name is called by its number, such as `#3`.
     pub name: String,
-    /// The role that the column is read as; `None` if it is not read.
+    /// The role in which the column is read; `None` if it is not read.
     pub role: Option<Role>,
     /// Factor to the unit of the role; 1 if the column is read only as part of an expression.
     pub scale: f64,
@@ -51,8 +51,8 @@ pub struct PreviewColumn {
     pub first: Vec<f64>,
 }
 
-/// Returns what the columns of a file are taken to be. `path` is only the file's name; `bytes` is
-/// its content.
+/// Returns the role that a reader would assign to each column of a file. `path` is only the file's
+/// name; `bytes` is its content.
 ///
 /// ```
 /// use htex_recording::{ReadOptions, Role, preview};
@@ -83,8 +83,8 @@ pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Previ
     previewed().map_err(|fault: Fault| fault.in_file(&file_name(path)))
 }
 
-/// Returns the first numbers of each column; none for a column of words. A sheet can be read only
-/// once, so it is opened anew for each reading.
+/// Returns the first numbers of each column, or no numbers for a column of words. A sheet can be
+/// read only once, so it is opened anew for each reading.
 fn first_numbers<'a>(
     sheet: &dyn Sheet,
     open: impl Fn() -> Result<Box<dyn Sheet + 'a>, Fault>,
@@ -104,7 +104,7 @@ fn first_numbers<'a>(
     }
 }
 
-/// The whole lines at the beginning of a text.
+/// Returns the whole lines at the beginning of a text.
 fn beginning(text: &[u8]) -> &[u8] {
     let Some(first) = text.get(..FIRST_BYTES) else {
         return text;
@@ -175,8 +175,8 @@ fn by_order(columns: &mut [PreviewColumn], options: &ReadOptions) -> Result<(), 
     Ok(())
 }
 
-/// Assigns the columns that a map or their names select. Values computed from several columns have
-/// their role at the first of these.
+/// Assigns the columns that a map or their names select. For values computed from several columns,
+/// the first of these columns gets the role.
 fn by_name(selection: &Selection, columns: &mut [PreviewColumn], quantity: Quantity) {
     for chosen in &selection.chosen {
         let scale = match chosen.values {

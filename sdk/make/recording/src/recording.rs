@@ -19,7 +19,7 @@ pub enum RecordingError {
     /// The rate is zero, negative, NaN, or above [`MAX_RATE_HZ`].
     #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most {MAX_RATE_HZ} Hz")]
     Rate { rate_hz: f64 },
-    /// There are no axes, or more than the quantity has.
+    /// There are no axes, or more axes than the quantity can have.
     #[error("a recording of a {} has 1 to {} axes, this one has {axes}", .quantity.words(), most_axes(*.quantity))]
     Axes { quantity: Quantity, axes: usize },
     /// There are fewer than two samples.
@@ -30,12 +30,12 @@ pub enum RecordingError {
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
     )]
     Between { from_s: f64, to_s: f64, begins_s: f64, ends_s: f64 },
-    /// A signal does not have the length of the first axis.
+    /// A signal and the first axis differ in length.
     #[error(
         "the {signal} has {got} samples, the first axis has {expected}; all signals must be equally long"
     )]
     Lengths { signal: &'static str, expected: usize, got: usize },
-    /// A sample exceeds the largest magnitude.
+    /// The magnitude of a sample exceeds 1e12.
     #[error(
         "the {signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
     )]
@@ -66,7 +66,7 @@ pub enum RecordingError {
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
     pub source: String,
-    /// The file it was read from, whose hash is stored in the provenance.
+    /// The file that the recording was read from. The provenance of an asset stores its hash.
     pub file: RecordedFile,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
@@ -79,7 +79,7 @@ pub struct Recording {
     pub normal_n: Option<Vec<f64>>,
     /// Sliding speed of each sample, mm/s.
     pub speed_mm_s: Option<Vec<f64>>,
-    /// True if the file states that it comes from a simulator instead of a finger.
+    /// True if the file states that a simulator made the recording instead of a finger.
     pub simulated: bool,
     /// Number of samples in the file before the first sample of this recording.
     pub first_sample: usize,
@@ -93,7 +93,7 @@ impl Recording {
     /// Creates a recording of a lateral force with one or two axes, in newtons.
     ///
     /// # Errors
-    /// As [`Self::from_axes`].
+    /// The errors of [`Self::from_axes`].
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -114,9 +114,9 @@ impl Recording {
     /// unit.
     ///
     /// # Errors
-    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], or there are no axes or more than
-    /// the quantity has. Also when the axes have fewer than two samples, differ in length, or
-    /// contain NaN or infinity.
+    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`]. When there are no axes, or more
+    /// axes than the quantity can have. When the axes have fewer than two samples, differ in
+    /// length, or contain NaN, infinity or a magnitude above 1e12.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -163,10 +163,11 @@ impl Recording {
     /// is positive whatever the sign of the sensor.
     ///
     /// # Errors
-    /// When it differs in length from the axes or is not finite.
+    /// When the signal differs in length from the axes, or a value is not finite or exceeds 1e12 in
+    /// magnitude.
     pub fn with_normal(mut self, mut normal_n: Vec<f64>) -> Result<Self, RecordingError> {
         check("normal force", &normal_n, self.samples())?;
-        // The sum decides and not the first sample, because noise may make single samples negative.
+        // The sum decides and not the first sample, because noise may make some samples negative.
         if normal_n.iter().sum::<f64>() < 0.0 {
             normal_n.iter_mut().for_each(|force| *force = -*force);
         }
@@ -177,18 +178,20 @@ impl Recording {
     /// Adds the sliding speed of each sample, mm/s.
     ///
     /// # Errors
-    /// When it differs in length from the axes or is not finite.
+    /// When the signal differs in length from the axes, or a value is not finite or exceeds 1e12 in
+    /// magnitude.
     pub fn with_speed(mut self, speed_mm_s: Vec<f64>) -> Result<Self, RecordingError> {
         check("speed", &speed_mm_s, self.samples())?;
         self.speed_mm_s = Some(speed_mm_s);
         Ok(self)
     }
 
-    /// Returns the part of the recording between two times of its file, seconds; `None` stands for
-    /// the start or the end. Findings about the time column are kept.
+    /// Returns the part of the recording between two times, in seconds after the file's first
+    /// sample. `None` stands for the start or the end of this recording. The part keeps all
+    /// findings about the time column.
     ///
     /// # Errors
-    /// When a time is not finite, or there are fewer than two samples between them.
+    /// When a time is not finite, or there are fewer than two samples between the times.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -234,13 +237,15 @@ impl Recording {
         self.first_sample += from;
     }
 
-    /// Returns the time of a sample in its file, seconds.
+    /// Returns the time of a sample in seconds after the file's first sample. `sample` is the index
+    /// in this recording, which may be only a part of the file.
     #[must_use]
     pub fn second(&self, sample: usize) -> f64 {
         (self.first_sample + sample) as f64 / self.rate_hz
     }
 
-    /// Returns the length of the signal vector at a sample.
+    /// Returns the magnitude of the signal at a sample: the length of the vector that its axes
+    /// form.
     #[must_use]
     pub fn magnitude_at(&self, sample: usize) -> f64 {
         let square = |axis: &Vec<f64>| axis[sample] * axis[sample];
@@ -250,7 +255,8 @@ impl Recording {
         }
     }
 
-    /// Returns the name of an axis, as used in pointers and messages: `lateral_x`, `signal`.
+    /// Returns the name of an axis in messages and in the pointers of findings: `lateral_x`,
+    /// `signal`.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {
@@ -277,8 +283,8 @@ impl Recording {
     }
 }
 
-/// Returns the largest number of axes of a quantity: two for a force along a surface, one across
-/// it, three for a motion.
+/// Returns the largest number of axes of a quantity: two for a lateral force, one for a normal
+/// force, three for an acceleration, velocity or displacement.
 pub(crate) const fn most_axes(quantity: Quantity) -> usize {
     match quantity {
         Quantity::LateralForce => 2,

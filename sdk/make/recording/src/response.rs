@@ -11,15 +11,14 @@ use crate::input::{InputFile, file_name};
 use crate::sheet::{Columns, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// Smallest magnitude above 0; also the limits for magnitude, frequency (hertz) and phase
-/// (radians).
+/// Limits for the numbers of a response: frequency (hertz), magnitude above 0, and phase (radians).
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
-/// Gain above which a warning is given, decibels. What it raises was attenuated to a third or less,
-/// and is mostly noise.
+/// Gain above which a warning is given, decibels. The setup attenuated such frequencies to a third
+/// or less, so that their signal is mostly noise.
 const RAISED_DB: f64 = 10.0;
 
-/// Frequency response of a recording setup, sampled at some frequencies.
+/// Frequency response of a recording setup, given at a list of frequencies.
 ///
 /// The three vectors have equal lengths of at least 2; the frequencies increase strictly.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,16 +92,16 @@ impl SetupResponse {
     }
 }
 
-/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, and by how
-/// much.
+/// Ranges of frequency in which a division by the setup's response raises a spectrum by more than
+/// 10 dB.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RaisedRanges {
-    /// For each stretch, its lowest and highest frequency in hertz, and its largest gain in
-    /// decibels.
+    /// For each range, its lowest and highest frequency in hertz, and its largest gain in decibels.
     pub stretches: Vec<(f64, f64, f64)>,
 }
 
-/// Returns the stretches of a grid in which gains exceed 10 dB; `None` if there are none.
+/// Returns the ranges of frequency in which gains exceed 10 dB; `None` if there are none. `gains`
+/// has the gain at each frequency of `frequency_hz`, as a factor.
 pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<RaisedRanges> {
     let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
     let mut goes_on = false;
@@ -133,17 +132,19 @@ impl fmt::Display for RaisedRanges {
 /// `phase_rad` (default zero).
 ///
 /// # Errors
-/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also, with the line number, a
-/// frequency that is negative or does not increase, or a negative magnitude.
+/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also when a frequency is
+/// negative or does not increase, a magnitude is negative, or a number is out of range: a frequency
+/// or phase above 1e9, or a magnitude that is neither 0 nor from 1e-9 to 1e9. The error names the
+/// line.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
     let read = InputFile::file(path).and_then(response);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a setup response from bytes; `file` is its name in messages.
+/// Reads a setup response from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read_response`].
+/// The errors of [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(response);
     read.map_err(|fault| fault.in_file(file))

@@ -41,7 +41,8 @@ impl Columns {
         self.names.len()
     }
 
-    /// Returns the column's whole name, or `#` and its number if it has none.
+    /// Returns the column's whole name. A column without a name is called by its number, such as
+    /// `#3`.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.names.get(column) {
             Some(name) if !name.is_empty() => htex_base::finding::plain(name).into_owned(),
@@ -68,8 +69,8 @@ impl Columns {
         let exact = |column: &usize| self.names[*column] == name;
         let alike = |column: &usize| self.names[*column].eq_ignore_ascii_case(name);
         let part = |column: &usize| self.last_part(*column) == name;
-        // In this order, so that a name that is given exactly never becomes ambiguous by others
-        // that are only similar.
+        // In this order, so that an exact name stays unambiguous even if other columns have similar
+        // names.
         let tests: [&dyn Fn(&usize) -> bool; 3] = [&exact, &alike, &part];
         let mut found = tests.map(|test| all.clone().filter(test).collect::<Vec<_>>()).into_iter();
         found.find(|columns| !columns.is_empty()).unwrap_or_default()

@@ -38,17 +38,17 @@ pub struct TraceColumns {
 /// `speed_mm_s`. Other names and units are recognised as in a recording (`time [ms]`, `fz_n`).
 ///
 /// # Errors
-/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also, with the line number, a
-/// time that does not increase by at least a nanosecond, or a number beyond 1e9.
+/// The errors of [`read_recording`](crate::read_recording) for a CSV. Also when a time does not
+/// increase by at least a nanosecond, or a number is beyond 1e9; the error names the line.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
     let read = InputFile::file(path).and_then(trace);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a trace from bytes; `file` is its name in messages.
+/// Reads a trace from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read_trace`].
+/// The errors of [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(trace);
     read.map_err(|fault| fault.in_file(file))
@@ -71,16 +71,16 @@ pub struct StrokeColumns {
 /// without a speed is read as a trace, and the speed is computed from its positions.
 ///
 /// # Errors
-/// As [`read_trace`].
+/// The errors of [`read_trace`].
 pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
     let read = InputFile::file(path).and_then(stroke);
     read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
-/// Reads a stroke from bytes; `file` is its name in messages.
+/// Reads a stroke from bytes in memory; `file` is its name in messages.
 ///
 /// # Errors
-/// As [`read_stroke`].
+/// The errors of [`read_stroke`].
 pub fn stroke_from_bytes(file: &str, bytes: &[u8]) -> Result<StrokeColumns, ReadError> {
     let read = InputFile::bytes(Path::new(file), bytes).and_then(stroke);
     read.map_err(|fault| fault.in_file(file))
@@ -112,7 +112,7 @@ fn stroke(opened: InputFile<'_>) -> Result<StrokeColumns, Fault> {
     Ok(StrokeColumns { t_s, speed_mm_s, force_n, warnings })
 }
 
-/// Computes the stroke along a trace.
+/// Computes the speed and force of a stroke from a trace.
 fn along(trace: TraceColumns) -> StrokeColumns {
     let of = |position: &[f64]| crate::velocity(&trace.t_s, position, trace.t_s.iter().copied());
     let speeds = of(&trace.x_mm).into_iter().zip(of(&trace.y_mm));

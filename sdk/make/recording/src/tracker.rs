@@ -1,4 +1,4 @@
-//! A tracker's file, which accompanies a recording.
+//! The file of a tracker, which records the finger's motion beside a recording.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,14 +7,14 @@ use crate::columns::map::ColumnMap;
 
 /// A file with the finger's position or speed over time, in any format that recordings may have.
 ///
-/// The times in both files must be from one clock. A recording without times begins at 0 s, and so
-/// does a tracker whose file has only a sample rate. The recording is cut to the time that the
-/// tracker covers.
+/// Both files must take their times from the same clock. A recording without times begins at 0 s,
+/// and so does a tracker file that states a sample rate but no times. The reader cuts the recording
+/// to the time that the tracker covers.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Tracker {
     pub path: PathBuf,
-    /// The bytes of the file, if it is not to be read from the path.
+    /// The bytes of the file. If absent, the file is read from the path.
     pub bytes: Option<Arc<[u8]>>,
     /// Roles of its columns: time, x, y, speed. Columns that are not in the map are assigned by
     /// their names.
@@ -22,7 +22,8 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// Names a tracker's file. Its columns are assigned by their names.
+    /// Creates a tracker from the path of its file. The names of the file's columns decide their
+    /// roles.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self { path: path.into(), bytes: None, map: None }

@@ -2,8 +2,9 @@
 
 use crate::error::ReadProblem;
 
-/// Default limit on the numbers kept from a file: 11 minutes of three columns at 20 kHz. With
-/// derived data each number takes 8 to 40 bytes, the most at low sample rates.
+/// Default limit on the numbers that are kept from a file: enough for 11 minutes of three columns
+/// at 20 kHz. Together with derived data, each number takes 8 to 40 bytes of memory, most at low
+/// sample rates.
 pub const MOST_VALUES: usize = 40_000_000;
 
 /// Limit on the numbers kept from one file.

@@ -1,18 +1,19 @@
 //! Velocity, computed from tracked positions.
 
 /// Half the width of the triangular window over which the velocity is averaged, seconds. Trackers
-/// are slow and quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the
-/// motion.
+/// are slow and quantised (60 Hz, 0.1 mm). A shorter window would show the steps of their positions
+/// instead of the motion.
 const REACH_S: f64 = 0.05;
 
 /// Returns the velocity at ascending times, from positions at the times `t_s`, which must ascend
 /// strictly from 0.
 ///
-/// The velocity is the second difference, over 50 ms, of the position's integral. This is the slope
-/// of the position (linear between rows), averaged with a triangular window of 100 ms. It is exact
-/// for a constant velocity at any spacing of the rows, and not disturbed by a 60 Hz tracker that
-/// repeats its last value. Within 50 ms of the ends, and beyond them, the velocity is constant. Its
-/// unit is the position's unit per second.
+/// The velocity is the slope of the position, averaged with a triangular window of 100 ms. Between
+/// rows, the position counts as linear. The result is exact for a constant velocity at any spacing
+/// of the rows, and a 60 Hz tracker that repeats its last value does not disturb it. Within 50 ms
+/// of the ends, and beyond them, the velocity is constant. Its unit is the position's unit per
+/// second. The function computes it as the second difference, over 50 ms, of the position's
+/// integral.
 ///
 /// ```
 /// # use htex_recording::velocity;
@@ -43,8 +44,8 @@ pub fn velocity(t_s: &[f64], position: &[f64], at_s: impl IntoIterator<Item = f6
     at_s.map(at).collect()
 }
 
-/// The integral of the position minus the first position, from the first row on, evaluated at
-/// ascending times.
+/// The integral over time of the position relative to the first position, from the first row on. It
+/// is evaluated at ascending times.
 #[derive(Clone)]
 struct Integral<'a> {
     t_s: &'a [f64],

@@ -14,7 +14,7 @@ use crate::{AuthorError, new_asset, representation, stored_fields};
 pub struct MixedAsset<'a> {
     /// The texture, with the models that play it.
     pub asset: &'a htex_play::Texture,
-    /// BLAKE3 of its file, hexadecimal.
+    /// BLAKE3 hash of the texture's file, hexadecimal.
     pub blake3: &'a str,
 }
 
@@ -28,11 +28,11 @@ impl MixedAsset<'_> {
 /// textures interpolates between their parameters, as it does between the conditions of one
 /// texture; levels are interpolated linearly.
 ///
-/// The result has the conditions of both textures. At a condition that only one of them has, the
-/// other contributes what a player would play there. The law comes from the texture with the larger
-/// weight, or from `a` if the weights are equal. That texture's stored triangles are kept if its
-/// representation has exactly the conditions of the result; otherwise they are left out with a
-/// warning.
+/// The result has the conditions of both textures. If only one texture has a condition, the other
+/// contributes the parameters that a player would interpolate there. The law comes from the texture
+/// with the larger weight, or from `a` if the weights are equal. That texture may also store
+/// triangles of conditions, in which a player interpolates. The result keeps these triangles if the
+/// texture has exactly the conditions of the result. Otherwise it leaves them out with a warning.
 ///
 /// # Errors
 /// When the weight is out of range, the textures have no model in common, their quantity or band
@@ -123,7 +123,8 @@ fn check(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The conditions of both textures, equal ones only once, without measurements of the recordings.
+/// Returns the conditions of both textures, without measurements of the recordings. Equal
+/// conditions occur only once.
 fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, String> {
     let mut all: Vec<Condition> = Vec::new();
     for condition in [a, b].iter().flat_map(|part| &part.asset.manifest().conditions) {
@@ -197,8 +198,8 @@ fn mixed(
         let (first, first_level) = a.asset.representation(model.id())?.parameters(Some(motion))?;
         let (second, second_level) =
             b.asset.representation(model.id())?.parameters(Some(motion))?;
-        // At the ends no model is asked: interpolation could change the last digit, or fail for a
-        // model that cannot interpolate.
+        // With a weight of 0 or 1 the model does not interpolate: this could change the last digit,
+        // or fail for a model that cannot interpolate.
         let flat = match weight {
             0.0 => first,
             1.0 => second,

@@ -19,11 +19,11 @@ const HIGHEST_HZ: f64 = 20_000.0;
 #[non_exhaustive]
 pub struct ByHand {
     pub name: String,
-    /// Values by field name; for a list, all of its values.
+    /// Values by field name. For a field that is a list, all values of the list.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit.
     pub level_rms: f64,
-    /// Speed and force at which the texture feels like this.
+    /// Speed and force to which the parameters apply.
     pub condition: Condition,
     pub quantity: Quantity,
     pub band: Band,
@@ -32,7 +32,8 @@ pub struct ByHand {
 }
 
 impl ByHand {
-    /// Starts a texture of lateral force in the tactile band, with unknown speed and force.
+    /// Starts the description of a texture: a lateral force in the tactile band, with unknown speed
+    /// and normal force.
     pub fn new(name: impl Into<String>, level_rms: f64, tool: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -45,7 +46,7 @@ impl ByHand {
         }
     }
 
-    /// Sets a parameter; for a list, all of its values.
+    /// Sets a parameter. For a parameter that is a list, sets all its values.
     #[must_use]
     pub fn with(mut self, name: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
         self.values.insert(name.into(), values.into());
@@ -66,8 +67,8 @@ impl ByHand {
     }
 }
 
-/// Makes an asset from parameters. The model computes its spectrum once, so that parameters it
-/// cannot play are reported here.
+/// Makes an asset from parameters. The model computes the spectrum of the parameters once, so that
+/// an error reports parameters that the model cannot play.
 ///
 /// ```
 /// use htex_author::by_hand::{ByHand, make};
@@ -122,19 +123,20 @@ pub struct ByHandModel {
 #[derive(Debug, Clone)]
 pub struct ByHandAt {
     pub condition: Condition,
-    /// Values by field name; for a list, all of its values.
+    /// Values by field name. For a field that is a list, all values of the list.
     pub values: BTreeMap<String, Vec<f64>>,
     /// RMS of the texture in the band, in the quantity's unit. Optional for a model whose
     /// parameters contain the level ([`htex_host::Descriptor::keeps_level`]).
     pub level_rms: Option<f64>,
 }
 
-/// Makes an asset from the parameters of several models and conditions, as [`make`] does for one.
-/// Conditions within 5 % of each other count as one ([`htex_format::SAME_CONDITION`]).
+/// Makes an asset from the parameters of several models, each at one or more conditions. [`make`]
+/// does the same for one model at one condition. Conditions within 5 % of each other count as one
+/// ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// As [`make`]. Also when there is no model or no condition, or when only some conditions have a
-/// speed or a force.
+/// The errors of [`make`]. Also when there is no model or no condition, or when only some
+/// conditions have a speed or a force.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {
@@ -158,7 +160,7 @@ pub fn make_all(texture: &ByHandModels) -> Result<Asset, AuthorError> {
     Ok(asset)
 }
 
-/// The conditions, with equal ones merged into one.
+/// Returns the conditions, with equal ones merged into one.
 fn distinct(all: impl Iterator<Item = Condition>) -> Result<Vec<Condition>, AuthorError> {
     let mut distinct: Vec<Condition> = Vec::new();
     for condition in all {

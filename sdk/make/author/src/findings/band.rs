@@ -1,12 +1,12 @@
-//! Detection of recordings without a texture in the band: what their spectra show there leaks from
-//! below the band, or is far weaker than what is above it.
+//! Detection of recordings without a texture in the band (20 to 1000 Hz). Either their power in the
+//! band leaks from lower frequencies, or it is far weaker than the power above the band.
 //!
 //! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, or a drift from noise. A
-//! window of one second whose side lobes are 92 dB down can (four-term Blackman-Harris; Harris
+//! window of one second can, if its side lobes are 92 dB down (four-term Blackman-Harris; Harris
 //! 1978). In 240 third-party recordings of fingers, tools and microphones, the segments show at
-//! most 4.3 dB more power in the band than the long windows do. Normal forces and positions of such
-//! fingers, when read as a texture, show 32 dB more or above. Noise of 1 to 15 Hz shows 11 dB more
-//! or above.
+//! most 4.3 dB more power in the band than the long windows do. If normal forces and positions of
+//! such fingers are read as a texture, the segments show at least 32 dB more. For noise of 1 to 15
+//! Hz they show at least 11 dB more.
 
 use std::f64::consts::TAU;
 
@@ -21,20 +21,20 @@ use crate::Recording;
 use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};
 use htex_recording::rules::{RECORDING_ABOVE_BAND, RECORDING_BELOW_BAND};
 
-/// Power in the band as segments show it, divided by the power that long windows show, from which
-/// there is a finding: 7 dB, so that four fifths of the power leak.
+/// A recording has a finding if its segments show at least this many times the power in the band
+/// that long windows show: 7 dB, so that four fifths of the power leak.
 const LEAKS: f64 = 5.0;
-/// Power above the band, divided by the power in it, from which there is a finding: 30 dB. White
-/// noise at 192 kHz has 20 dB; the microphones that were tried have up to 3.3 dB, and the current
-/// of a motor 5.1 dB.
+/// A recording has a finding if its power above the band is at least this many times its power in
+/// the band: 30 dB. White noise at 192 kHz has 20 dB. The microphones that were tried have up to
+/// 3.3 dB, and the current of a motor has 5.1 dB.
 const ABOVE: f64 = 1000.0;
 /// Segments in a long window: one second.
 const LONG: usize = SEGMENTS_PER_S as usize;
 /// Smallest power in the band that is judged, for a recording whose largest value is 1. A smaller
 /// power is only the rounding error of a constant signal.
 const LEAST: f64 = 1e-24;
-/// Longest long window, samples, which limits memory. Nothing is checked at rates at which a
-/// segment has more than half as many samples.
+/// Most samples in a long window, which limits memory. If two segments have more samples than this,
+/// the recording is not checked.
 const MOST: usize = 1 << 22;
 /// Four-term Blackman-Harris window.
 const COSINES: [f64; 4] = [0.35875, -0.48829, 0.14128, -0.01168];
@@ -86,7 +86,7 @@ struct Power {
     above: f64,
 }
 
-/// What the segments show in the band, and what long windows measure.
+/// The power that the segments show in the band, and the powers that long windows show.
 struct Powers {
     shown: f64,
     long: Power,
@@ -135,10 +135,10 @@ fn blackman_harris(len: usize) -> Vec<f64> {
 struct Reader<'a> {
     recording: &'a Recording,
     window: Vec<f64>,
-    /// Inverse of the magnitude of the recording's largest value. All values are multiplied by it,
-    /// so that no square overflows.
+    /// Inverse of the largest magnitude in the recording. All values are multiplied by it, so that
+    /// no square overflows.
     scale: f64,
-    /// Whether a straight line is removed; otherwise the mean is.
+    /// Whether a straight line is removed from each stretch; otherwise its mean is removed.
     is_level: bool,
 }
 
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
         Power { inside: scale * sum.inside, above: scale * sum.above }
     }
 
-    /// Writes a stretch without its mean or line, times the window.
+    /// Removes a stretch's mean or line, and multiplies it by the window.
     fn window(&self, stretch: &[f64], windowed: &mut [f64]) {
         let (count, scale) = (stretch.len() as f64, self.scale);
         let mean = lanes::sum(stretch, |_, x| x * scale) / count;

@@ -1,4 +1,4 @@
-//! Detection of friction coefficients that are read as forces.
+//! Detection of friction coefficients that were given as forces.
 
 use htex_base::finding::Findings;
 
@@ -10,13 +10,14 @@ use htex_recording::rules::RECORDING_FRICTION_COEFFICIENT;
 /// Fewest 0.2 s windows of sliding needed to judge how the lateral force depends on the normal
 /// force.
 const FEWEST: usize = 20;
-/// Smallest standard deviation of the logarithm of the normal force: 5 %. In recordings in which a
-/// finger keeps to one force it is 2 to 3 %.
+/// Smallest standard deviation of the logarithm of the normal force: 5 %. Where a finger tries to
+/// keep its force constant, the deviation is 2 to 3 %.
 const LEAST_SPREAD: f64 = 0.05;
-/// Largest exponent of the normal force, plus two standard errors, at which the lateral force
-/// counts as independent of it. For forces the exponent is 0.97 to 1.03 on simulated surfaces and
-/// in three free motions of a finger; for their coefficients it is -0.03 to 0.03. A finger whose
-/// friction follows its area of contact has 2/3.
+/// If the exponent of the normal force plus two standard errors is at most this, the lateral force
+/// counts as independent of the normal force. For forces on simulated surfaces and in three free
+/// motions of a finger, the exponent is 0.97 to 1.03. For the friction coefficients of the same
+/// recordings it is -0.03 to 0.03. For a finger whose friction follows its area of contact it is
+/// 2/3.
 const LARGEST_EXPONENT: f64 = 0.25;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.
@@ -35,7 +36,7 @@ pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {
         return;
     };
-    // With the error, so that a slope that is only uncertain is no finding.
+    // Includes the error, so that an uncertain slope is no finding.
     if line.slope.abs() + 2.0 * line.error > LARGEST_EXPONENT {
         return;
     }

@@ -7,17 +7,18 @@ use super::{axis_words, lanes};
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
 
-/// Fewest segments that a recording needs to be checked: 1 s. The friction of a finger may rise
-/// along a line for a shorter time.
+/// Fewest segments of a recording that is checked: 1 s. For a shorter time, the friction of a
+/// finger may rise along a line.
 const FEWEST_SEGMENTS: usize = 5;
-/// Fraction of the variance along a line from which a signal counts as a ramp. In 240 third-party
-/// recordings of fingers, tools and microphones, which last 0.8 to 19 s, it is at most 0.80, and
-/// for the normal force of a finger at most 0.84.
+/// A signal counts as a ramp from this fraction of its variance along a straight line. In 240
+/// third-party recordings of fingers, tools and microphones, which last 0.8 to 19 s, the fraction
+/// is at most 0.80. For the normal force of a finger it is at most 0.84.
 const ALONG_LINE: f64 = 0.99;
-/// Longest alternation that is detected, samples: four channels interleaved in one column.
+/// Longest period of alternating values that is detected, samples: four channels interleaved in one
+/// column.
 const LONGEST: usize = 4;
-/// Fraction of the variance explained by the sample's place within such a period, from which a
-/// signal counts as alternating. The third-party recordings have at most 0.0005.
+/// A signal counts as alternating if the place of a sample within such a period explains this
+/// fraction of the variance. In the third-party recordings the fraction is at most 0.0005.
 const BY_PLACE: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -29,7 +30,7 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Finds a ramp or an alternation; returns whether there is one.
+/// Adds a finding if the axis is a ramp or alternates, and returns whether it does.
 pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Findings) -> bool {
     let values = &recording.axes[axis];
     let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
@@ -59,16 +60,17 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     true
 }
 
-/// Samples after which places within all periods up to [`LONGEST`] repeat.
+/// Number of samples after which the places within all periods up to [`LONGEST`] repeat.
 const ROUND: usize = 12;
 
-/// Sums over an axis less its mean, relative to its largest value, so that no square overflows.
+/// Sums over the values of an axis, from which the mean is subtracted. The values are relative to
+/// the largest one, so that no square overflows.
 struct CentredSums {
     count: usize,
     squares: f64,
     /// Sum of the values, each times its sample index.
     moment: f64,
-    /// Sum of the values of each place within [`ROUND`] samples.
+    /// For each place within [`ROUND`] samples, the sum of the values there.
     places: [f64; ROUND],
 }
 
@@ -79,7 +81,7 @@ impl CentredSums {
         if largest == 0.0 || values.iter().all(|x| *x == values[0]) {
             return None;
         }
-        // Of a subnormal number there may be no inverse.
+        // A subnormal number may have no finite inverse.
         let scale = 1.0 / largest.max(f64::MIN_POSITIVE);
         let mean = lanes::sum(values, |_, x| x * scale) / values.len() as f64;
         let (mut places, mut squares, mut moments) = ([0.0; ROUND], [0.0; ROUND], [0.0; ROUND]);
@@ -101,13 +103,13 @@ impl CentredSums {
     fn along_line(&self) -> f64 {
         let count = self.count as f64;
         let both = self.moment - 0.5 * (count - 1.0) * self.places.iter().sum::<f64>();
-        // The sum of the squares of the sample numbers less their mean.
+        // The sum of the squares of the sample numbers, from which their mean is subtracted.
         let own = count * (count * count - 1.0) / 12.0;
         both * both / (own * self.squares)
     }
 
-    /// Fraction of the variance that the place within a period explains. The period divides
-    /// [`ROUND`].
+    /// Returns the fraction of the variance that the place within a period explains. The period
+    /// must divide [`ROUND`].
     fn by_place(&self, period: usize) -> f64 {
         let of_place = |place: usize| {
             let sum: f64 = self.places.iter().skip(place).step_by(period).sum();

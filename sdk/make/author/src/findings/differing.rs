@@ -1,4 +1,4 @@
-//! Detection of recordings whose level differs from others at the same condition.
+//! Detection of recordings whose level differs from the level of the others at the same condition.
 
 use htex_base::finding::Findings;
 
@@ -6,10 +6,10 @@ use super::quantile::median;
 use crate::SegmentSpectra;
 use htex_recording::rules::RECORDING_LEVELS_DIFFER;
 
-/// Ratio of a recording's level to the median of its condition from which the recording is
-/// reported: 8 dB. In ten slides over each of 20 materials by a robot, no slide is further than 5.0
-/// dB from its material's median; the two slides of a material that are furthest apart differ by
-/// 6.2 dB.
+/// A recording is reported if its level differs by more than this factor from the median of its
+/// condition: 8 dB. In ten slides over each of 20 materials by a robot, no slide differs by more
+/// than 5.0 dB from its material's median. The two slides of a material that are furthest apart
+/// differ by 6.2 dB.
 // Ten to the power of 8 / 20, written out because a constant cannot call libm.
 const DIFFERS: f64 = 2.511_886_431_509_58;
 
@@ -20,15 +20,15 @@ pub(super) fn definition() -> String {
         .to_owned()
 }
 
-/// Level of what is read of a recording: RMS over its segments, in its unit up to a constant
-/// factor.
+/// Returns the level of a recording: RMS over the segments that are read, in the recording's unit
+/// up to a constant factor.
 pub(crate) fn level_of(part: &SegmentSpectra) -> f64 {
     let bins = part.spectra.iter().flatten();
     let sum: f64 = bins.map(htex_dsp::spectrum::Complex::<f64>::norm_sqr).sum();
     (sum / part.spectra.len().max(1) as f64).sqrt()
 }
 
-/// Returns the findings for each recording of one condition, given the levels.
+/// Returns the findings for each recording of one condition, given the recordings' levels.
 pub(crate) fn differing(levels: &[f64]) -> Vec<Findings> {
     let usual = median(levels).unwrap_or(0.0);
     let judge = |level: &f64| {

@@ -1,9 +1,10 @@
-//! Sums and maxima of long signals, in eight parts, so that no operation waits for the one before
-//! it. The order of the additions changes only the last digits, which decide no finding.
+//! Sums and maxima of long signals. They are computed in eight parts, so that no operation waits
+//! for the one before it. The order of the additions changes only the last digits, which decide no
+//! finding.
 
 const LANES: usize = 8;
 
-/// Returns the sum of a term of each value and its index.
+/// Returns the sum of `term(index, value)` over all values.
 pub(super) fn sum(values: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     let (rounds, rest) = values.as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
@@ -18,7 +19,7 @@ pub(super) fn sum(values: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     sums.into_iter().chain(rest).sum()
 }
 
-/// Returns the largest of a term of each value; minus infinity if there are none.
+/// Returns the largest `term(value)` of all values; minus infinity if there are no values.
 pub(super) fn largest(values: &[f64], term: impl Fn(f64) -> f64) -> f64 {
     // `f64::max` also compares with NaN, which no term is.
     let larger = |most: f64, x: f64| if x > most { x } else { most };

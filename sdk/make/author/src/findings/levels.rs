@@ -11,8 +11,8 @@ use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 /// quantisation noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the
 /// spectrum itself.
 const FEWEST_LEVELS: usize = 16;
-/// Fraction of all samples at an extreme value from which a signal counts as clipped. Noise clipped
-/// at 2.3 times its RMS reaches this fraction, and its distortion is -24 dB; less clipping does not
+/// A signal counts as clipped from this fraction of all samples at an extreme value. Noise clipped
+/// at 2.3 times its RMS reaches this fraction, with a distortion of -24 dB. Less clipping does not
 /// justify another recording.
 const CLIPPED: f64 = 0.01;
 /// Smallest ratio of the number of samples at the extreme value to the number in the range next to
@@ -25,8 +25,8 @@ const BESIDE: f64 = 0.001;
 /// Fewest separate visits to the limit; a signal that reaches it only once or twice is stuck
 /// instead.
 const FEWEST_VISITS: usize = 3;
-/// Smallest distance of a limit from zero, relative to the mean magnitude; at values closer to zero
-/// the finger is at rest.
+/// Smallest distance of a limit from zero, relative to the mean magnitude. If a value is closer to
+/// zero, the finger is at rest.
 const REST: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -46,7 +46,8 @@ pub(super) fn definition() -> String {
 pub(super) enum Levels {
     /// There are too few different values for any other check.
     Coarse,
-    /// There are enough different values; the signal is clipped at these values, if any.
+    /// There are enough different values. The list contains the values at which the signal is
+    /// clipped, and is empty if the signal is not clipped.
     ClippedAt(Vec<f64>),
 }
 

@@ -29,8 +29,8 @@ pub use page::findings_page;
 pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;
 
-/// Checks a recording's signals for clipping, stuck sensors, spikes, ramps, alternating values,
-/// signals without a texture in the band, and forces and speeds that a finger cannot have. The
+/// Checks the signals of a recording: for clipping, stuck sensors, spikes, ramps and alternating
+/// values, for a band without a texture, and for forces and speeds that a finger cannot have. The
 /// result includes the findings of the time column.
 ///
 /// ```
@@ -46,7 +46,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     for axis in 0..recording.axes.len() {
         let levels = levels::judge(recording, axis, &mut findings);
         let has_course = course::judge_axis(recording, axis, &mut findings);
-        // A ramp or a coarse signal leaks too, and has its own finding, which says more.
+        // A ramp or a coarse signal also leaks into the band, but its own finding says more.
         is_texture &= !has_course && matches!(levels, Levels::ClippedAt(_));
         if let Levels::ClippedAt(clips) = levels {
             stuck::judge_axis(recording, axis, &clips, &mut findings);

@@ -9,15 +9,16 @@ use htex_recording::rules::{
 };
 
 /// Largest plausible ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at
-/// a light touch, where adhesion dominates; twice that allows for offsets of the sensors.
+/// a light touch, where adhesion dominates. The limit is twice as high, to allow for offsets of the
+/// sensors.
 const LARGEST_FRICTION: f64 = 10.0;
 /// Speed below which the finger counts as standing still, mm/s. The skin yields by a millimetre,
 /// and at this speed it takes a quarter of an hour to stretch that far.
 const STILL_MM_S: f64 = 1e-3;
-/// Range of exploration speeds, mm/s: the slowest tribometers for fingers run at 1; a fully
-/// swinging arm reaches 2 m/s.
+/// Range of exploration speeds, mm/s. The slowest tribometers for fingers run at 1 mm/s; the hand
+/// of a fully swinging arm reaches 2 m/s.
 const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
-/// Quantile of the speed that is checked; slower samples may belong to turns and pauses.
+/// The quantile of the speed that is checked. Slower samples may belong to turns and pauses.
 const SLIDING: f64 = 0.75;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.

@@ -9,7 +9,7 @@ use htex_recording::rules::{
 };
 
 /// A segment this many times louder than the median of all segments is reported: 12 dB. Changes of
-/// force and speed within 10 % cause about 1 dB, seams and knots of a material a few dB.
+/// force and speed within 10 % cause about 1 dB. Seams and knots of a material cause a few dB.
 const LOUD: f64 = 4.0;
 /// Loud segments are reported only if they are rare: at most one segment in this many.
 const EXCEPTION: usize = 4;
@@ -51,7 +51,7 @@ pub(crate) fn judge_segments(
     judge_levels(recording, part, findings);
 }
 
-/// Lists the stretches that are read, in seconds.
+/// Returns a list of the stretches that are read, in seconds.
 fn seconds_read(recording: &Recording, part: &SegmentSpectra) -> String {
     let stretches = part.segments.stretches();
     let second = |sample| recording.second(sample);

@@ -1,9 +1,11 @@
 //! Detection of outliers: a few large ones of any shape, or many that last one sample each.
 //!
-//! A texture has sharp corners of its own (stick and slip), so many corners say nothing. But a
-//! texture's corners last several samples, and repairing one sample does not remove them. In 240
-//! third-party recordings, at most four samples are removed by a repair at 12 times the usual
-//! corner, and no more than 0.1 % at five times (0.62 % in the current of a motor).
+//! A corner is the difference between a sample and the mean of its two neighbours. A texture has
+//! sharp corners of its own (stick and slip), so a large number of corners proves nothing. But a
+//! corner of a texture lasts several samples, and a repair of one sample does not remove it. In
+//! each of 240 third-party recordings, a repair removes at most four corners of 12 times the usual
+//! size, and corners of five times the usual size at no more than 0.1 % of the samples (0.62 % in
+//! the current of a motor).
 
 use std::ops::Range;
 
@@ -21,8 +23,8 @@ const BLOCK_S: f64 = 0.1;
 /// the usual energy, one sample raises the highest bands of a segment by about 1.5 dB at 20 kHz and
 /// by 7 dB at 1 kHz.
 const SPIKE: f64 = 10.0;
-/// Quantile over the blocks that counts as usual. It is high because three quarters of a recording
-/// may be rest.
+/// The quantile over the blocks that counts as usual. It is high because the finger may rest for
+/// three quarters of a recording.
 const USUAL: f64 = 0.75;
 /// Largest fraction of blocks with spikes; if there are more, they belong to the texture (stick and
 /// slip).
@@ -37,13 +39,16 @@ const NEIGHBOURS: usize = 2;
 /// A sample is a single-sample outlier if its corner is at least this many times the corners that
 /// remain after the sample is repaired.
 const REPAIRED: f64 = 2.0;
-/// Standard deviation of normal numbers over the median of their magnitudes.
+/// Ratio of the standard deviation of normally distributed numbers to the median of their
+/// magnitudes.
 const NORMAL: f64 = 1.4826;
-/// Small single-sample outliers: how many standard deviations their corners have, and the fraction
-/// of all samples from which there are too many. At six standard deviations of white noise, which
-/// make a corner of five, 0.75 % of samples raise its level by 1 dB.
+/// Small single-sample outliers: how many standard deviations their corners have, and from which
+/// fraction of all samples there are too many of them. An outlier of six standard deviations of
+/// white noise makes a corner of five. If 0.75 % of the samples are such outliers, they raise the
+/// noise's level by 1 dB.
 const SMALL: (f64, f64) = (5.0, 0.0075);
-/// Large single-sample outliers: as [`SMALL`], with a number of samples instead of a fraction.
+/// Large single-sample outliers: the same two limits as in [`SMALL`], but with a number of samples
+/// instead of a fraction.
 const LARGE: (f64, usize) = (12.0, 6);
 /// Largest number of places named in a message.
 const NAMED: usize = 5;
@@ -96,9 +101,9 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Returns the spikes: in each block, the sample with the largest second difference, if it exceeds
-/// both the usual one and a floor. If there are more single-sample outliers than such spikes,
-/// returns the outliers instead.
+/// Returns the spikes. A block's sample with the largest second difference is a spike if this
+/// difference exceeds ten times both the usual one and a floor. If there are more single-sample
+/// outliers than such spikes, the function returns the outliers instead.
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     // At low rates a block would have too few samples for its largest corner to mean anything.
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
@@ -131,7 +136,8 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
 /// The corners of a signal, block by block.
 struct Blocks {
     largest: Vec<Largest>,
-    /// Medians of whole blocks, each of which begins one sample later.
+    /// Medians of the corners in whole blocks. Each of these blocks begins one sample later than
+    /// the block in `largest`.
     medians: Vec<f64>,
 }
 

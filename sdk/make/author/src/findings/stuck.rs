@@ -12,16 +12,16 @@ use htex_recording::rules::{RECORDING_SILENT, RECORDING_STUCK};
 /// Shortest constant stretch that counts as a stuck sensor, seconds: longer than a turn of the hand
 /// (0.1 to 0.3 s), and two and a half segments.
 const STUCK_S: f64 = 0.5;
-/// Shortest constant stretch near zero that is reported, seconds: pauses between sweeps are
+/// Shortest constant stretch near zero that is reported, seconds. Pauses between sweeps are
 /// shorter.
 const SILENT_S: f64 = 1.0;
-/// A value further from zero than this fraction of the mean magnitude is friction; smaller values
-/// are rest.
+/// A value counts as friction if it is further from zero than this fraction of the mean magnitude.
+/// Smaller values are rest.
 const FRICTION: f64 = 0.5;
 /// The finger is at rest below this fraction of the mean speed.
 const RESTS: f64 = 0.1;
-/// Fraction of samples at which a normal force must change before its sensor is taken to resolve
-/// noise. Coarsely quantised forces and set points may stay constant.
+/// If the normal force changes at more than this fraction of the samples, its sensor resolves noise
+/// and should never be constant. Coarsely quantised forces and set points may stay constant.
 const LIVELY: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -54,7 +54,7 @@ pub(super) fn judge_axis(
     let (mut stuck, mut silent) = (Vec::new(), Vec::new());
     for run in runs {
         let value = values[run.start];
-        // A clipped signal stays at its limit too, and that has its own finding.
+        // A clipped signal also stays at its limit, but has its own finding.
         if clipped.contains(&value) {
             continue;
         }

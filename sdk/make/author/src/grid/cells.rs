@@ -4,15 +4,15 @@ use htex_dsp::order;
 
 use super::lines::{FEWEST, Lines};
 
-/// Number of windows from which a cell is not widened. In third octaves the power of this many
-/// windows of noise scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
+/// A cell with this many windows is not widened. In third octaves, the power of this many windows
+/// of noise scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
 const ENOUGH: usize = 32;
-/// Limits of widening a cell: the ratio of speeds up to which it is always allowed, and the factors
-/// by which it is allowed for speeds and forces.
+/// Limits for widening a cell. First: a cell may always reach speeds within this ratio of its
+/// crossing. Second: otherwise its widths in speed and force may grow by at most these factors.
 const WIDENED_RATIO: f64 = 1.19;
 const WIDENED: [f64; 2] = [2.0, 1.5];
-/// Distance up to which windows are used to judge how the texture changes around a crossing,
-/// relative to the widest cell.
+/// Windows within this distance of a crossing show how the texture changes around it. The unit is
+/// the half width of the widest cell.
 const SURROUNDINGS: f64 = 2.0;
 
 /// The windows around the crossing of two grid lines.
@@ -22,8 +22,8 @@ pub(super) struct Cell {
     pub(super) at: [f64; 2],
     /// Indices of the windows inside the cell, ascending.
     pub(super) own: Vec<usize>,
-    /// Indices of the nearest windows outside the cell, ascending; as many as are missing to
-    /// [`ENOUGH`].
+    /// Indices of the nearest windows outside the cell, ascending. They fill the cell up to
+    /// [`ENOUGH`] windows.
     pub(super) borrowed: Vec<usize>,
     /// Indices of the windows in a wider neighbourhood, including the cell's own.
     pub(super) around: Vec<usize>,
@@ -98,8 +98,8 @@ pub(super) fn are_full(cells: &[Cell]) -> bool {
     counts.get(counts.len() / 2).is_some_and(|count| 2 * count >= ENOUGH)
 }
 
-/// Returns how far a motion is from a crossing, in units of the cell's half width: the larger of
-/// the distances in speed and force. Below 1 it is inside the cell.
+/// Returns the distance of a motion from a crossing, in units of the cell's half width: the larger
+/// of the distances in speed and force. Below 1 the motion is inside the cell.
 fn distance(at: [f64; 2], halves: [[f64; 2]; 2], motion: [f64; 2]) -> f64 {
     let along = |axis: usize| {
         let difference = motion[axis] - at[axis];

@@ -1,10 +1,10 @@
 //! Cross-validation over time: each quarter of the recordings is left out in turn and predicted
 //! from the other three.
 //!
-//! Neighbouring cells share windows, and windows overlap. A condition predicted from its neighbours
-//! would therefore be predicted from samples that it is compared with. Blocks of time share no
-//! samples. They are long, because a finger and its motion drift: what was measured a second before
-//! and after a block says more about the block than a recording can say about what will be played.
+//! Neighbouring cells share windows, and windows overlap. A prediction of a condition from its
+//! neighbours would therefore use samples with which it is then compared. Blocks of time share no
+//! samples. They are long, because a finger and its motion drift: samples from a second before or
+//! after a block predict the block better than a recording can predict a later playback.
 
 use std::ops::Range;
 
@@ -23,8 +23,9 @@ pub(super) struct Fold {
     pub(super) held: Vec<usize>,
 }
 
-/// Leaves out each quarter of all recordings in turn. A window that crosses the edge of a block,
-/// counting the length that it may grow to ([`super::paths`]), belongs to neither side.
+/// Leaves out each quarter of all recordings in turn. A window may be lengthened
+/// ([`super::paths`]); if its longest form crosses the edge of a block, the window belongs to
+/// neither side.
 pub(super) fn folds(takes: &[Take], windows: &[Window]) -> [Fold; FOLDS] {
     std::array::from_fn(|block| {
         let of = |window: &Window| {

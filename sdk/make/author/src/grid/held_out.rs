@@ -1,5 +1,5 @@
-//! Prediction of left-out blocks of time: an error of the grid that can be measured without knowing
-//! the true texture.
+//! Prediction of left-out blocks of time. It gives an error of the grid that can be measured
+//! without knowing the true texture.
 
 use htex_dsp::Band;
 use htex_dsp::bands::rms;
@@ -36,10 +36,10 @@ pub(crate) struct HeldOutWindows {
 
 /// A grid fitted without one block of time, with the windows of that block.
 pub(crate) struct LeftOutBlock {
-    /// The conditions of the rest of the time.
+    /// The conditions that are averaged without the block.
     pub(crate) rest: Vec<ConditionSpectrum>,
     pub(crate) held_out: Vec<HeldOutWindows>,
-    /// The law of those conditions.
+    /// The law of the conditions in `rest`.
     pub(crate) law: Law,
 }
 
@@ -71,8 +71,8 @@ pub(super) fn held_out_windows(
     Ok(all)
 }
 
-/// Averages windows. Given the logarithm of a speed, each window is read over the path of 0.2 s at
-/// that speed; otherwise over its own 0.2 s.
+/// Averages windows. Given the logarithm of a speed, each window is read over the path that a
+/// finger at this speed covers in 0.2 s; otherwise over its own 0.2 s.
 pub(super) fn averaged(
     paths: &mut Paths<'_>,
     windows: &[Window],
@@ -91,7 +91,8 @@ pub(super) fn averaged(
     Ok(TextureSpectrum::from_segments(quantity, band, &spectra, &spans, averaging))
 }
 
-/// Returns, in third octaves, how far the played spectra are from the left-out blocks, decibels.
+/// Returns the differences between the played spectra and the spectra of left-out windows, in each
+/// third octave, decibels.
 pub(super) fn errors_db(played: &PlayedSpectra, held: &[HeldOutWindows]) -> Vec<f64> {
     let mut errors = Vec::new();
     for one in held {

@@ -1,5 +1,5 @@
-//! Held-out error of a model: each block of time is compared with what a player makes of the rest
-//! of the recording.
+//! Held-out error of a model: each block of time is compared with what a player plays from a fit to
+//! the rest of the recording.
 
 use htex_dsp::bands::rms;
 use htex_format::{LeftOut, Measure, Measures};
@@ -13,11 +13,10 @@ use crate::conditions::ConditionSpectrum;
 use crate::fit::ConditionFit;
 use crate::{AuthorError, agreement, read_spectrum};
 
-/// Returns the held-out error at each of `conditions` conditions. A block of time is left out, the
-/// model is fitted to the rest, and what a player makes near the condition is compared with the
-/// block; the error is the RMS over the blocks. `None` if no block has enough windows near the
-/// condition, or the rest does not reach it. `fit` fits the
-/// model at one condition.
+/// Returns the held-out error at each of `conditions` conditions. For each block of time, the model
+/// is fitted to the other blocks, and what a player would then play near the condition is compared
+/// with the block. The error is the RMS over the blocks. `None` if no block has enough windows near
+/// the condition, or if the other blocks do not reach it. `fit` fits the model at one condition.
 pub(crate) fn left_out(
     model: &LoadedModel,
     conditions: usize,
@@ -50,7 +49,8 @@ pub(crate) fn left_out(
     errors.iter().map(of_blocks).collect()
 }
 
-/// The conditions of a grid fitted without a block of time, as a player plays them.
+/// The conditions of a grid that was fitted without a block of time, interpolated as a player does
+/// it.
 struct HeldOutGrid<'a> {
     model: &'a LoadedModel,
     mesh: Mesh,
@@ -65,8 +65,8 @@ impl<'a> HeldOutGrid<'a> {
         Some(Self { model, mesh, conditions, fits })
     }
 
-    /// Compares what is played at the motion of left-out windows with the spectrum of those
-    /// windows.
+    /// Compares the spectrum that is played at the motion of left-out windows with the spectrum of
+    /// the windows themselves.
     fn error(&self, held: &HeldOutWindows) -> Option<Measures> {
         let reference = held.spectrum.as_ref();
         let magnitude = self.magnitude(held.motion, reference).ok()?;
@@ -75,8 +75,8 @@ impl<'a> HeldOutGrid<'a> {
         is_finite.then_some(error.measures)
     }
 
-    /// Returns the magnitudes at a motion, as a recording of the voice would read them. Where
-    /// frequencies are scaled, it returns the same magnitudes as
+    /// Returns the magnitudes that would be measured in a recording of the texture, when it is
+    /// played at the given motion. Where frequencies are scaled, it returns the same magnitudes as
     /// [`htex_play::Representation::magnitude`].
     fn magnitude(
         &self,

@@ -6,7 +6,7 @@ use crate::findings::quantile;
 
 /// Fewest windows of a condition, including those borrowed by widening its cell.
 pub(super) const FEWEST: usize = 8;
-/// Quantiles of the windows' speeds and forces between which a chosen grid lies.
+/// A chosen grid covers the windows' speeds and forces between these two quantiles.
 const COVERED: [f64; 2] = [0.01, 0.99];
 /// Largest ratio of neighbouring forces in a chosen grid. The level changes smoothly with the
 /// force, and players interpolate it linearly.
@@ -25,8 +25,9 @@ pub(super) struct Lines {
 
 impl Lines {
     /// Returns the given lines, and chooses lines for axes without any. Chosen lines are equally
-    /// spaced in the logarithm over the range of 98 % of the windows. There are as few as possible
-    /// with a ratio of at most `speed_ratio` between speeds and 4 between forces.
+    /// spaced in the logarithm, over the range that contains 98 % of the windows. Their number is
+    /// the smallest with a ratio of at most `speed_ratio` between neighbouring speeds and 4 between
+    /// neighbouring forces.
     pub(super) fn choose(
         grid: &Grid,
         motions: &[[f64; 2]],

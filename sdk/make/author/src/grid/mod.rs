@@ -1,15 +1,18 @@
 //! A grid of conditions, from recordings in which speed and force change freely.
 //!
 //! Recordings are cut into windows of 0.2 s. Windows with nearly constant speed and force
-//! (`steady`) are gathered in cells around the crossings of grid lines (`lines`, `cells`), and each
+//! (`steady`) are gathered in cells around the crossings of grid lines (`lines`, `cells`). Each
 //! cell with enough windows becomes a condition. Small differences between a window's motion and
-//! the crossing are corrected: windows are read over equal paths (`paths`), and their energies are
-//! corrected by the texture's own dependence on speed and force (`slopes`). The number of speed
-//! lines is the one that best predicts blocks of time that were left out (`folds`, `held_out`,
-//! `search`). A player interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic
-//! Texture Toolkit (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly
-//! constant motion and places the models in the plane of speed and force. `leave_out` measures the
-//! error of what a player makes of the conditions with a model, without knowing the true texture.
+//! the crossing are corrected: windows are read over equal paths (`paths`), and the texture's own
+//! dependence on speed and force corrects their energies (`slopes`). The grid has the number of
+//! speed lines that best predicts blocks of time that were left out (`folds`, `held_out`,
+//! `search`).
+//!
+//! A player interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic Texture
+//! Toolkit (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly constant motion
+//! and places the models in the plane of speed and force. For each model, `leave_out` compares what
+//! a player plays with the blocks that were left out. This error needs no knowledge of the true
+//! texture.
 
 mod cells;
 mod folds;
@@ -54,9 +57,9 @@ pub(crate) struct GridSpectra {
 }
 
 impl GridSpectra {
-    /// Computes the spectra of the recordings' steady windows and averages them cell by cell. Unlike
-    /// for plain conditions, the windows are read from the recordings over paths that depend on the
-    /// grid.
+    /// Computes the spectra of the recordings' steady windows and averages them cell by cell. Each
+    /// window is read over a path whose length depends on the grid, so the windows are read from
+    /// the recordings again and not taken from spectra of segments.
     pub(crate) fn new(
         takes: &[Take],
         grid: &Grid,
@@ -152,7 +155,7 @@ fn judge(
     recordings.add_findings(&name, findings);
 }
 
-/// Returns the condition of a cell, which has only its motion, to four digits.
+/// Returns a condition with the speed and force of a cell's crossing, rounded to four digits.
 fn condition(cell: &Cell) -> Condition {
     let [speed, force] = cell.at.map(|log| Some(four_digits(libm::exp(log))));
     Condition { speed_mm_s: speed, force_n: force, ..Condition::default() }

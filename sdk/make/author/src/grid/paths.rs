@@ -1,11 +1,11 @@
 //! Spectra of windows over equal lengths of path.
 //!
-//! Most of a texture's spectrum is its relief, read at the finger's speed. If the finger passes a
-//! window at another speed than the grid line's, the window is made as long as the finger needs for
-//! the path of 0.2 s at the line's speed. Its bins then lie at the frequencies that the relief has
-//! at the line (order tracking, as for rotating machines). This keeps the lines of a weave sharp
-//! although the speed scatters within a cell; components that do not follow the speed are blurred
-//! by the same amount instead.
+//! Most of a texture's spectrum is its relief, read at the finger's speed. The finger may have
+//! another speed in a window than the speed of the grid line. The window is then made as long as
+//! the finger needs for the path that it would cover in 0.2 s at the line's speed. Its bins then
+//! lie at the frequencies that the relief has at the line (order tracking, as for rotating
+//! machines). This keeps the lines of a weave sharp although the speed scatters within a cell;
+//! components that do not follow the speed are blurred by the same amount instead.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -17,7 +17,8 @@ use crate::blocks::Span;
 use crate::spectrum::{SegmentReader, Trend, inverse_at};
 use crate::{AuthorError, SetupResponse, Take};
 
-/// Largest ratio between a window's speed and the line's speed that is compensated.
+/// Largest ratio between a window's speed and the line's speed for which the length of the window
+/// is adapted.
 pub(super) const MOST: f64 = 1.5;
 /// Window lengths are multiples of 0.2 s divided by this. It keeps the number of lengths small,
 /// because each length needs its own tables.
@@ -50,8 +51,8 @@ impl<'a> Paths<'a> {
         Self { takes, response, band, readers: BTreeMap::new(), inverses: BTreeMap::new() }
     }
 
-    /// Returns the spectrum of a window, read over the path of 0.2 s at the given logarithm of a
-    /// speed, on the band's grid.
+    /// Returns the spectrum of a window on the band's grid. The window is read over the path that a
+    /// finger covers in 0.2 s at the speed with the given logarithm.
     pub(super) fn read(
         &mut self,
         window: &Window,
@@ -77,7 +78,8 @@ impl<'a> Paths<'a> {
         Ok(bins)
     }
 
-    /// Returns the samples of a window's path of 0.2 s at the given logarithm of a speed.
+    /// Returns the samples of the path that a finger covers in 0.2 s at the speed with the given
+    /// logarithm, around the middle of a window.
     pub(super) fn samples(&self, window: &Window, log_speed: f64) -> Range<usize> {
         let len = self.length(window, log_speed);
         let middle = window.start + window.len / 2;
@@ -93,9 +95,9 @@ impl<'a> Paths<'a> {
         Span { take: window.take, from: place(samples.start), to: place(samples.end) }
     }
 
-    /// Returns the number of samples in the path of 0.2 s at a speed. If the recording's sample
-    /// rate is then too low for the band, or the recording too short, returns the number of samples
-    /// in 0.2 s.
+    /// Returns the number of samples in the path of 0.2 s at a speed. If the spectrum of this path
+    /// would not reach the end of the band, or the recording is too short for it, returns the
+    /// number of samples in 0.2 s.
     fn length(&self, window: &Window, log_speed: f64) -> usize {
         let most = libm::log(MOST);
         let ratio = libm::exp((log_speed - window.motion[0]).clamp(-most, most));

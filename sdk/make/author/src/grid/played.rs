@@ -1,4 +1,5 @@
-//! Recorded spectra played at other motions, as by a player whose model loses nothing.
+//! Recorded spectra at other motions: what a player would play if a model reproduced the spectra
+//! without an error.
 
 use htex_format::{AtCondition, Condition, Contact, Law};
 use htex_play::exploration::CEILING;
@@ -70,7 +71,7 @@ pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) 
     third_octaves(spectrum.band).into_iter().map(energy).collect()
 }
 
-/// Returns the mesh and the motions by which a player interpolates between conditions with these
+/// Returns the mesh and the motions with which a player interpolates between conditions with these
 /// levels; `None` if there is no condition.
 pub(super) fn mesh_of(
     all: &[ConditionSpectrum],

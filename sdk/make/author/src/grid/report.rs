@@ -15,11 +15,11 @@ use crate::conditions::{ConditionSpectrum, four_digits};
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum CellStatus {
-    /// It has enough windows.
+    /// The cell has enough windows.
     Fitted,
-    /// It has enough windows when the nearest windows of its neighbours are included.
+    /// The cell has enough windows together with the nearest windows of its neighbours.
     Widened,
-    /// It has too few windows and did not become a condition.
+    /// The cell has too few windows and did not become a condition.
     Thin,
 }
 
@@ -31,7 +31,7 @@ pub struct GridCell {
     pub speed_mm_s: f64,
     /// Normal force of the crossing, newtons.
     pub force_n: f64,
-    /// Number of steady windows inside.
+    /// Number of steady windows inside the cell.
     pub segments: usize,
     /// Number of windows that were averaged, including those borrowed from neighbours; 0 for a thin
     /// cell.
@@ -40,11 +40,11 @@ pub struct GridCell {
     /// √2, decibels.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
-    /// Index in the asset of the condition made from it.
+    /// Index of the cell's condition in the asset; `None` for a thin cell.
     pub condition: Option<usize>,
 }
 
-/// A grid of conditions, as it was gathered from recordings.
+/// The grid of conditions that was made from recordings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct GridReport {
@@ -56,16 +56,16 @@ pub struct GridReport {
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
-    /// Held-out error: RMS error in third octaves, in decibels, when players interpolate the
-    /// recorded spectra of the rest to predict blocks of time that were left out. `None` if the
-    /// blocks have too few windows.
+    /// Held-out error, decibels. Blocks of time are left out, and a player predicts them by
+    /// interpolating between the recorded spectra of the other blocks. The error is the RMS
+    /// difference in third octaves. `None` if the blocks have too few windows.
     pub left_out_rms_db: Option<f64>,
-    /// The same error when one condition, the mean of all steady windows scaled by the law, serves
-    /// all motions. A grid must be better than this.
+    /// The same error for a single condition that serves all motions: the mean of all steady
+    /// windows, scaled by the law. A useful grid has a smaller error than this.
     pub one_condition_rms_db: Option<f64>,
     /// The cells, ordered by speed and then by force.
     pub cells: Vec<GridCell>,
-    /// Triangles of conditions (by index) in which players interpolate.
+    /// Triangles in which players interpolate, each with the indices of three conditions.
     pub triangles: Vec<[usize; 3]>,
     /// Mean speed in mm/s and force in newtons of each steady window.
     #[serde(skip)]

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use crate::AuthorError;
 
-/// Lines of a grid. For an axis without given lines, they are chosen from the recordings.
+/// Lines of a grid. The fit chooses the lines of an axis for which none are given.
 ///
 /// ```
 /// use htex_author::Grid;

@@ -21,9 +21,8 @@ use crate::{AuthorError, SetupResponse, Take, TextureSpectrum};
 /// Ratios of neighbouring speeds that are tried: from an octave down to a twelfth of it. A player
 /// treats speeds within 5 % as one.
 const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
-/// Ratio of the lines around which left-out windows are gathered, so that all grids are compared
-/// with the same windows. Denser lines than this are tried only if there are enough windows for
-/// them.
+/// Left-out windows are gathered around lines with this ratio, so that all grids are compared with
+/// the same windows. Denser lines are tried only if there are enough windows for them.
 const COMPARED_RATIO: f64 = 1.19;
 /// A denser grid is chosen only if its error is smaller by this many decibels.
 const WORTH_DB: f64 = 0.02;
@@ -40,7 +39,8 @@ pub(super) struct CellSpectra {
 /// The chosen lines and their error.
 pub(super) struct SearchResult {
     pub(super) gathered: CellSpectra,
-    /// RMS error of what is played for left-out blocks, in third octaves, decibels.
+    /// RMS difference in third octaves between left-out blocks and what is played for them,
+    /// decibels.
     pub(super) left_out_rms_db: Option<f64>,
     /// The same error when one condition serves all motions.
     pub(super) one_condition_rms_db: Option<f64>,
@@ -72,9 +72,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Gathers windows around the given lines. If no speeds are given, uses the speed lines that
-    /// best predict left-out blocks; if no block can be left out, lines a quarter of an octave
-    /// apart.
+    /// Gathers windows around the given lines. If no speeds are given, it chooses the speed lines
+    /// that best predict left-out blocks. If no block can be left out either, the speed lines are a
+    /// quarter of an octave apart.
     pub(super) fn best(mut self, grid: &Grid) -> Result<SearchResult, AuthorError> {
         let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
         let all: Vec<usize> = (0..self.windows.len()).collect();
@@ -151,8 +151,8 @@ impl<'a> Search<'a> {
         Some(TextureSpectrum::from_segments(quantity, band, &spectra, &spans, averaging))
     }
 
-    /// Returns the error of a grid: each block of time is compared with what the grid fitted
-    /// without it plays.
+    /// Returns the error of a grid: for each block of time, a grid is made without the block, and
+    /// the spectrum that is played from it is compared with the block.
     fn error_db(&self, gathered: &CellSpectra, compared: &[Vec<HeldOutWindows>]) -> Option<f64> {
         let mut errors = Vec::new();
         for (spectra, held) in gathered.without.iter().zip(compared) {

@@ -3,8 +3,8 @@
 //! The windows are read over equal paths ([`super::paths`]). In each third-octave band, the
 //! logarithm of the energy is fitted linearly against the logarithms of speed and force, over the
 //! windows around the crossing. Each window's spectrum is then scaled by the change that this fit
-//! predicts between its motion and the crossing. Thus all windows of a cell count equally;
-//! otherwise windows with a firm touch would dominate the mean.
+//! predicts between the window's motion and the crossing. Thus all windows of a cell count equally.
+//! Otherwise, windows with a firm touch would dominate the mean.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;
@@ -17,7 +17,7 @@ use crate::AuthorError;
 const FEWEST: usize = 12;
 /// Smallest standard deviation of an axis at which a slope is determined, in the logarithm.
 const LEAST_SPREAD: f64 = 0.02;
-/// Steepest slope of the energy: textures do not change faster than with this power of speed or
+/// Largest exponent that is used for the energy. No texture changes with a higher power of speed or
 /// force.
 const STEEPEST: f64 = 6.0;
 /// Energy added to each band, relative to the band's mean, so that a silent band has a logarithm.
@@ -63,7 +63,8 @@ pub(super) fn corrected(
         let mut spectrum = window.spectrum.clone();
         for (bins, slope) in octaves.iter().zip(&slopes) {
             let change = [0, 1].map(|axis| slope[axis] * (window.motion[axis] - cell.at[axis]));
-            // Half of it, because the slopes belong to energies and the bins are amplitudes.
+            // Half of the change, because the slopes belong to energies and the bins are
+            // amplitudes.
             let gain = libm::exp(-0.5 * (change[0] + change[1]));
             let bins = spectrum.get_mut(bins.clone());
             bins.into_iter().flatten().for_each(|bin| *bin *= gain);

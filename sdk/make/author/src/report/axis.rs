@@ -16,7 +16,8 @@ pub struct Axis {
     pub label: String,
     /// Whether the axis is linear or logarithmic.
     pub scale: Scale,
-    /// Lowest and highest value shown, in the label's unit. If absent, taken from the data.
+    /// Lowest and highest value shown, in the label's unit. If absent, the range follows from the
+    /// data.
     pub range: Option<(f64, f64)>,
 }
 

@@ -44,7 +44,7 @@ pub struct ChainStage {
 }
 
 impl Chain {
-    /// Draws the chain as an `<svg>` element, for use alone or in a page.
+    /// Draws the chain as an `<svg>` element, which can be a file of its own or part of a page.
     pub fn to_svg(&self) -> String {
         let rows = self.stages.len() + self.left_out.len();
         let pale_head = if self.left_out.is_empty() { 0.0 } else { 30.0 };

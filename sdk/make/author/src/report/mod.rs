@@ -1,6 +1,6 @@
 //! SVG plots, heat tables and self-contained HTML reports.
 //!
-//! This crate converts data to text. It reads no files and no clock and does no signal processing,
+//! This module converts data to text. It reads no files and no clock and does no signal processing,
 //! so equal data gives equal bytes. Pages contain their own style, use no scripts and load nothing.
 //!
 //! ```

@@ -60,7 +60,7 @@ pub(crate) fn ratio(whole: u64, part: u64) -> String {
     format!("{} : 1", thousands(&fixed(three_digits(value), decimals)))
 }
 
-/// Rounds `value` to three digits if it has more before the decimal point.
+/// Rounds `value` to three significant digits if it has more digits before the decimal point.
 fn three_digits(value: f64) -> f64 {
     let unit = 10f64.powi(value.max(100.0).log10().floor() as i32 - 2);
     if value < 100.0 { value } else { (value / unit).round() * unit }

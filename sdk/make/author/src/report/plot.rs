@@ -58,7 +58,7 @@ impl Plot {
         size(self.height, 300.0)
     }
 
-    /// Draws the plot as an `<svg>` element, for use alone or in a page.
+    /// Draws the plot as an `<svg>` element, which can be a file of its own or part of a page.
     pub fn to_svg(&self) -> String {
         self.to_svg_from(0.0)
     }

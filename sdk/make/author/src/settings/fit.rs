@@ -11,7 +11,7 @@ use super::{OneOrMore, ReadingSettings, one_or_more};
 use crate::{AssetRequest, AuthorError, Grid, Level, ModelRequest};
 
 settings! {
-    /// Settings of fitting models; a missing one has its default.
+    /// Settings for fitting models. A missing setting has its default.
     ///
     /// ```
     /// use htex_author::settings::{FitSettings, OptionSetting};
@@ -26,8 +26,8 @@ settings! {
     /// # Ok::<(), htex_author::AuthorError>(())
     /// ```
     pub struct FitSettings {
-        /// Models by short name or id, in the order of the representations. If missing, all that
-        /// are fitted by default.
+        /// Models to fit, by short name or id, in the order of the representations. If missing, the
+        /// models that are fitted by default.
         #[cfg_attr(feature = "clap", arg(
             long = "model",
             default_value = "all",
@@ -37,7 +37,7 @@ settings! {
         ))]
         pub models: Option<Vec<String>>,
 
-        /// Fit options by `MODEL.NAME`; may also be given as a table for each model.
+        /// Fit options, named `MODEL.NAME`. They can also be given as a table for each model.
         #[serde(deserialize_with = "options")]
         #[schemars(
             with = "BTreeMap<String, BTreeMap<String, OptionSetting>>",
@@ -47,7 +47,7 @@ settings! {
         #[cfg_attr(feature = "clap", arg(skip))]
         pub options: BTreeMap<String, OptionSetting>,
 
-        /// Level of the representations.
+        /// Where the level of the representations comes from.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
             default_value = "recording",
@@ -79,8 +79,8 @@ settings! {
         ))]
         pub grid: Option<Vec<String>> = "grid",
 
-        /// Whether to refuse recordings with findings that are errors or warnings. In a recipe this
-        /// is one of the gates; on the command line it is a flag of reading recordings.
+        /// Whether to refuse recordings with findings that are errors or warnings. A recipe sets
+        /// this among its gates. On the command line it is a flag for reading recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub strict: Option<bool>,
@@ -177,10 +177,10 @@ impl FitSettings {
         models.into_iter().map(request).collect()
     }
 
-    /// Returns why models could not be fitted, only for models that the user named. `skipped` lists
-    /// all models that were left out of an asset
-    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)). A model that was included only
-    /// because the user named none may be left out.
+    /// Returns the reasons why models could not be fitted, but only for models that the user named.
+    /// `skipped` lists all models that were left out of an asset
+    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)). A model that the user did not name
+    /// may be left out without a report.
     pub fn named_of(&self, skipped: &[(String, String)]) -> Vec<String> {
         let names = || self.models.iter().flatten();
         let is_named = |id: &str| {
@@ -195,7 +195,7 @@ impl FitSettings {
     /// read with `reading`.
     ///
     /// # Errors
-    /// As [`Self::models`], and when the setup's response or the grid cannot be read.
+    /// The errors of [`Self::models`]. Also when the setup's response or the grid cannot be read.
     pub fn request(
         &self,
         registry: &Registry,
@@ -227,9 +227,9 @@ impl FitSettings {
     }
 }
 
-/// Returns the models with these names, each once. `all`, or no name, stands for the models that a
-/// program fits by default ([`Registry::by_default`]); among these, models written in another
-/// language of the running program come last.
+/// Returns the models with these names, each once. `all`, or an empty list, stands for the models
+/// that a program fits by default ([`Registry::by_default`]). Of these, the models that the running
+/// program has registered itself, such as models written in Python, come last.
 ///
 /// # Errors
 /// When a model is unknown.

@@ -6,7 +6,7 @@ use htex_format::{Exponent, Law, MOST_EXPONENT};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Exponents given by the user; a missing one is measured or assumed.
+/// Exponents that the user gives. A missing exponent is measured or assumed.
 ///
 /// ```
 /// use htex_author::settings::GivenLaw;
@@ -18,28 +18,28 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields, try_from = "Exponents")]
 #[schemars(with = "Exponents")]
 pub struct GivenLaw {
-    /// Exponent of frequencies over the speed.
+    /// Exponent of the speed in the law of frequencies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency_speed: Option<f64>,
-    /// Exponent of the level over the speed.
+    /// Exponent of the speed in the law of the level.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level_speed: Option<f64>,
-    /// Exponent of the level over the normal force.
+    /// Exponent of the normal force in the law of the level.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level_force: Option<f64>,
 }
 
-/// Exponents as they are read, before they are checked.
+/// Exponents of the texture's law, from -4 to 4. A missing exponent is measured or assumed.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct Exponents {
-    /// Exponent of frequencies over the speed.
+    /// Exponent with which frequencies follow the speed.
     #[schemars(range(min = -4, max = 4))]
     frequency_speed: Option<f64>,
-    /// Exponent of the level over the speed.
+    /// Exponent with which the level follows the speed.
     #[schemars(range(min = -4, max = 4))]
     level_speed: Option<f64>,
-    /// Exponent of the level over the normal force.
+    /// Exponent with which the level follows the normal force.
     #[schemars(range(min = -4, max = 4))]
     level_force: Option<f64>,
 }

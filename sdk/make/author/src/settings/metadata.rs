@@ -16,7 +16,7 @@ settings! {
         #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
         pub name: Option<String>,
 
-        /// Who made it.
+        /// Who made the texture.
         #[cfg_attr(feature = "clap", arg(long, help = "Who made it"))]
         pub author: Option<String>,
 
@@ -28,7 +28,7 @@ settings! {
         ))]
         pub license: Option<String>,
 
-        /// What the surface is.
+        /// What the surface is, in words.
         #[cfg_attr(feature = "clap", arg(long, value_name = "TEXT", help = "What the surface is, in words"))]
         pub description: Option<String>,
 
@@ -57,7 +57,7 @@ settings! {
         ))]
         pub doi: Option<String>,
 
-        /// What measured the signal.
+        /// The sensor that measured the signal.
         #[cfg_attr(feature = "clap", arg(
             long,
             value_name = "TEXT",
@@ -65,7 +65,7 @@ settings! {
         ))]
         pub sensor: Option<String>,
 
-        /// What slid over the surface.
+        /// What slid over the surface, in words, such as `bare index finger`.
         #[cfg_attr(feature = "clap", arg(
             long,
             value_name = "TEXT",
@@ -73,8 +73,8 @@ settings! {
         ))]
         pub finger: Option<String>,
 
-        /// Whether a finger or a tool slid over the surface. It decides what is assumed about other
-        /// motions.
+        /// Whether a finger or a tool slid over the surface. This decides which law is assumed for
+        /// motions that were not recorded.
         #[cfg_attr(feature = "clap", arg(
             long,
             value_enum,
@@ -83,7 +83,8 @@ settings! {
         ))]
         pub contact: Option<Contact>,
 
-        /// Exponents of the law outside the recorded motions.
+        /// Exponents of the law, by which frequencies and level follow motions that were not
+        /// recorded.
         #[cfg_attr(feature = "clap", arg(
             long,
             value_name = "NAME=X,…",
@@ -149,8 +150,9 @@ impl Metadata {
         self.apply_law(manifest);
     }
 
-    /// Writes contact and law into a manifest. For another contact, assumed exponents are assumed
-    /// anew, and measured ones are combined with the new assumptions.
+    /// Writes contact and law into a manifest. If the contact changes, assumed exponents are
+    /// assumed again for the new contact, and measured exponents are combined with the new
+    /// assumptions.
     fn apply_law(&self, manifest: &mut Manifest) {
         let (law, contact) = (manifest.law(), self.contact.unwrap_or(manifest.contact));
         let of_contact = |law: Law| law.reassumed(manifest.quantity, contact);

@@ -1,8 +1,8 @@
-//! Settings by name, each defined once, for the command's flags, the Python package's keywords,
-//! recipes, and provenance.
+//! Settings by name. Each is defined once, for the flags of the command, the keywords of the Python
+//! package, recipes, and provenance.
 //!
-//! Every setting is optional, so that the settings of one texture can be laid over the settings of
-//! many ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
+//! Every setting is optional, so that the settings of one texture can override the settings of many
+//! ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
 
 #[cfg(feature = "clap")]
 mod choices;

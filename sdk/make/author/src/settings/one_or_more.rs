@@ -3,14 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
-/// One text, or several.
+/// One value, or several.
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "OneOrMore")]
 pub enum OneOrMore<T = String> {
-    /// One.
+    /// One value.
     One(T),
-    /// Several.
+    /// Several values.
     Several(Vec<T>),
 }
 

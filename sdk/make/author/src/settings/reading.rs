@@ -11,7 +11,7 @@ use htex_recording::read_response;
 use htex_recording::{ColumnMap, MAX_RATE_HZ, ReadOptions, Tracker};
 
 settings! {
-    /// Settings of reading recordings; a missing one has its default.
+    /// Settings for reading recordings. A missing setting has its default.
     ///
     /// ```
     /// use htex_author::settings::ReadingSettings;
@@ -29,7 +29,8 @@ settings! {
         ))]
         pub rate_hz: Option<f64> = "rate",
 
-        /// Names and scales of the recordings' columns, in the syntax of the command's `--map`.
+        /// The column map: roles and scales of the recordings' columns, in the syntax of the
+        /// command's `--map`.
         #[cfg_attr(feature = "clap", arg(
             value_name = "MAP",
             help = "Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g. \
@@ -52,8 +53,8 @@ settings! {
         ))]
         pub tracker: Option<Vec<PathBuf>> = "tracker",
 
-        /// Names and scales of the trackers' columns, in the syntax of the command's
-        /// `--tracker-map`.
+        /// The column map of the trackers: roles and scales of their columns, in the syntax of the
+        /// command's `--tracker-map`.
         #[cfg_attr(feature = "clap", arg(
             value_name = "MAP",
             requires = "tracker",
@@ -61,7 +62,7 @@ settings! {
         ))]
         pub tracker_map: Option<String> = "tracker-map",
 
-        /// Quantity of the texture's signal.
+        /// Physical quantity of the texture's signal, such as a lateral force.
         #[cfg_attr(feature = "clap", arg(
             value_enum,
             default_value = "lateral-force",
@@ -70,7 +71,8 @@ settings! {
         ))]
         pub quantity: Option<Quantity> = "quantity",
 
-        /// Value of a full-scale sample, in the quantity's unit; not 0.
+        /// Value of a full-scale sample in files of samples (WAV, FLAC, NPY), in the quantity's
+        /// unit; not 0.
         #[schemars(extend("not" = { "const": 0 }))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "UNITS",
@@ -86,11 +88,11 @@ settings! {
         ))]
         pub response: Option<PathBuf> = "frf",
 
-        /// Start of the part to read, seconds.
+        /// Start of the part to read, in seconds after the file's first sample.
         #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Reads the recording from this time on, s"))]
         pub from_s: Option<f64> = "from",
 
-        /// End of the part to read, seconds.
+        /// End of the part to read, in seconds after the file's first sample.
         #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Reads the recording up to this time, s"))]
         pub to_s: Option<f64> = "to",
 
@@ -152,7 +154,8 @@ impl ReadingSettings {
         }
     }
 
-    /// Returns whether a setting says which columns the recordings have.
+    /// Returns whether a setting says how to read the recordings' columns: their rate, scale, map,
+    /// tracker or quantity.
     #[must_use]
     pub fn says_columns(&self) -> bool {
         let scaled = self.rate_hz.or(self.scale).is_some();

@@ -11,7 +11,7 @@ use crate::{Averaging, Level, SegmentChoice};
 
 /// A setting, which may be missing.
 pub(super) trait Setting {
-    /// Returns this setting, or the one in `under` if this one is missing.
+    /// Returns this setting, or the setting `under` if this one is missing.
     fn over(self, under: Self) -> Self;
 
     fn is_absent(&self) -> bool;
@@ -39,7 +39,7 @@ impl<T: Recorded> Setting for Option<T> {
     }
 }
 
-/// Options of models are laid over each other one by one.
+/// Options of models override each other one by one.
 impl Setting for BTreeMap<String, OptionSetting> {
     fn over(self, mut under: Self) -> Self {
         under.extend(self);
@@ -61,7 +61,7 @@ impl Recorded for Vec<String> {
     }
 }
 
-/// A file is stored by its name only: folders differ from machine to machine.
+/// Only the name of a file is stored, because folders differ from machine to machine.
 impl Recorded for PathBuf {
     fn recorded(&self) -> Option<String> {
         Some(self.file_name()?.to_string_lossy().into_owned())

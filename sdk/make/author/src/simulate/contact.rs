@@ -19,8 +19,8 @@ const TURN_MM_S: f64 = 5.0;
 const STRIBECK: (f64, f64) = (0.15, 15.0);
 /// Low-pass of the skin: frequency in Hz and quality factor, second order.
 pub(super) const SKIN: (f64, f64) = (900.0, 0.6);
-/// The fraction of the texture that acts across the sweep, and how far along the sweep it is read
-/// away from the finger, mm.
+/// Across the sweep, the fraction of the texture that acts, and the distance ahead of the finger at
+/// which it is read, mm.
 pub(super) const ACROSS: (f64, f64) = (0.25, 7.3);
 /// Lateral mode of the rig: frequency in Hz, damping ratio, and the fraction of the force that
 /// passes through it. The gain is about 5 dB at the peak and 1 far below it.
@@ -51,16 +51,17 @@ pub(super) struct Contact {
 
 /// The material of the surface, which determines where the texture is read.
 pub(super) enum Material {
-    /// One piece of material, read at the finger's position. Where frequencies do not follow the
-    /// speed, it is read along a path of its own; the number is the length of that path, mm.
+    /// One piece of material, read at the finger's position. If frequencies do not follow the
+    /// speed, the texture is read along a path of its own instead. The number is the length of this
+    /// path, mm.
     Piece(Relief, f64),
     /// Material without end, read along the finger's path: one relief for each lateral axis.
     Endless(Box<[Track; 2]>),
 }
 
 impl Material {
-    /// Returns the texture across and along the sweep after the reading point moves on by a
-    /// distance in mm. `as_it_lies` is true if this is the finger's own distance.
+    /// Returns the texture across and along the sweep, after the reading point has moved on by
+    /// `distance` mm. `as_it_lies` is true if the texture is read at the finger's own position.
     fn read(&mut self, finger: &Finger, distance: f64, as_it_lies: bool) -> [f64; 2] {
         match self {
             Self::Piece(relief, path) => {

@@ -4,7 +4,8 @@
 //! friction has a level proportional to the normal force. Recorded textures depart from both: over
 //! three speeds on four materials, the level rose with the speed to the power of 0.69 to 0.82;
 //! exponents of the force were between -0.07 and 2.6; and accelerations of tools keep their
-//! frequencies. A method that is tested only on a rigid relief is tested on its own assumption.
+//! frequencies. If a method assumes a rigid relief, a test on only such reliefs would not show
+//! where it fails.
 
 use htex_dsp::normal::Normal;
 
@@ -12,7 +13,8 @@ use super::check_range;
 use super::hand::Finger;
 use crate::AuthorError;
 
-/// The motion at which nothing departs: the paper's recording condition.
+/// The motion at which departures have no effect: the paper's recording condition, in mm/s and
+/// newtons.
 const SPEED_MM_S: f64 = 80.0;
 const FORCE_N: f64 = 0.4;
 /// Speed below which exponents do not apply, mm/s. A turning finger slides more slowly than this.
@@ -21,8 +23,8 @@ const SLOWEST_MM_S: f64 = 1.0;
 const LIFTED_S: [f64; 2] = [0.05, 0.25];
 const TOUCHDOWN_S: f64 = 0.01;
 
-/// How a surface and a hand differ from a rigid relief under a steady hand; by default not at all.
-/// Exponents are relative to 80 mm/s and 0.4 N.
+/// How a surface and a hand differ from a rigid relief under a steady hand. By default they do not
+/// differ. Exponents are relative to 80 mm/s and 0.4 N.
 ///
 /// ```
 /// use htex_author::simulate::{Departures, SimulationOptions, Surface, simulate};
@@ -35,12 +37,13 @@ const TOUCHDOWN_S: f64 = 0.01;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Departures {
-    /// Exponent of frequencies over the speed, -0.5 to 2: 1 for a relief, 0 if frequencies stay the
-    /// same.
+    /// Exponent with which frequencies follow the speed, -0.5 to 2. It is 1 for a relief, and 0 if
+    /// frequencies do not depend on the speed.
     pub frequency_speed: f64,
-    /// Exponent of the texture's level over the speed, -2 to 2; 0 for a relief.
+    /// Exponent with which the texture's level follows the speed, -2 to 2. It is 0 for a relief.
     pub level_speed: f64,
-    /// Exponent of the texture's level over the normal force, -1 to 3; 1 for friction.
+    /// Exponent with which the texture's level follows the normal force, -1 to 3. It is 1 for
+    /// friction.
     pub level_force: f64,
     /// Drift of the texture's level during the recording, -60 to 60 dB per minute.
     pub drift_db_per_min: f64,
@@ -62,19 +65,19 @@ impl Default for Departures {
 }
 
 impl Departures {
-    /// Sets the exponent of frequencies over the speed.
+    /// Sets the exponent with which frequencies follow the speed.
     #[must_use]
     pub const fn with_frequency_speed(self, frequency_speed: f64) -> Self {
         Self { frequency_speed, ..self }
     }
 
-    /// Sets the exponent of the level over the speed.
+    /// Sets the exponent with which the level follows the speed.
     #[must_use]
     pub const fn with_level_speed(self, level_speed: f64) -> Self {
         Self { level_speed, ..self }
     }
 
-    /// Sets the exponent of the level over the normal force.
+    /// Sets the exponent with which the level follows the normal force.
     #[must_use]
     pub const fn with_level_force(self, level_force: f64) -> Self {
         Self { level_force, ..self }
@@ -140,7 +143,7 @@ impl Departures {
     }
 }
 
-/// A power; the common exponent 0 takes a short cut.
+/// Returns a power, with a short cut for the common exponent 0.
 fn power(base: f64, exponent: f64) -> f64 {
     if exponent == 0.0 {
         return 1.0;
@@ -177,8 +180,8 @@ impl Course {
         course
     }
 
-    /// Reduces the finger's force while it is off the surface, and returns the factor of the
-    /// texture.
+    /// Reduces the finger's force while the finger is off the surface. Returns the factor of the
+    /// texture: its level at this speed and force, times the drift.
     pub(super) fn tick(&mut self, finger: &mut Finger) -> f64 {
         self.time_s += self.step_s;
         self.since_s += self.step_s;

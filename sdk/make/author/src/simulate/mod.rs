@@ -1,13 +1,14 @@
 //! Simulated recordings of a finger sliding over one of five surfaces, in sweeps or free strokes.
 //!
-//! Use them for tests, examples and first steps without a recording rig. The surfaces' levels have
-//! the order, and their energy the frequencies, that the paper's Results describe for its five
-//! surfaces. They are not measured, and every file says so.
+//! Use them for tests, examples and first steps without a recording rig. For its five surfaces, the
+//! paper's Results describe the order of the levels and the frequencies at which their energy lies.
+//! The simulated surfaces agree with this description, but they are not measured, and every file
+//! says so.
 //!
-//! The hand's speed and force vary. The friction coefficient varies along the surface as a fixed
-//! relief read at the finger's position. So the spectrum's frequencies scale with the speed and its
-//! level scales with the force, unless [`Departures`] say otherwise. The force then passes through
-//! models of skin, rig and sensor.
+//! The hand's speed and force vary. The friction coefficient is a fixed relief along the surface,
+//! which is read at the finger's position. So the spectrum's frequencies scale with the speed and
+//! its level scales with the force, unless [`Departures`] say otherwise. The force then passes
+//! through models of skin, rig and sensor.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
@@ -118,14 +119,16 @@ pub struct SimulationOptions {
     pub speed_mm_s: f64,
     /// Normal force, 0.01 to 10 N.
     pub force_n: f64,
-    /// The kind of motion; a free motion has its own ranges of speed and force.
+    /// The kind of motion. A free motion has its own ranges of speed and force, which replace
+    /// `speed_mm_s` and `force_n`.
     pub motion: Motion,
     /// How surface and hand differ from a rigid relief under a steady hand.
     pub departures: Departures,
 }
 
 impl SimulationOptions {
-    /// Returns the paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; the seed is 1.
+    /// Returns options for the paper's recording condition: 10 s at 20 kHz, with 80 mm/s and 0.4 N.
+    /// The seed is 1.
     #[must_use]
     pub fn new(surface: Surface) -> Self {
         Self {
@@ -186,9 +189,9 @@ impl SimulationOptions {
     }
 
     /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz and, for
-    /// sample rates below 20 kHz, an anti-aliasing filter. It is given every 5 Hz from 0 to 1000
-    /// Hz, or to half the sample rate if that is less. Dividing the recording by it gives the force
-    /// at the finger.
+    /// sample rates below 20 kHz, an anti-aliasing filter. The response has a value every 5 Hz from
+    /// 0 to 1000 Hz, or to half the sample rate if that is less. A recording divided by it gives
+    /// the force at the finger.
     ///
     /// # Errors
     /// When an option is out of range.
@@ -346,8 +349,8 @@ impl Simulation {
         self.y_mm.push(rounded(finger.along_mm, POSITION_DECIMALS));
     }
 
-    /// Converts the simulation to the same recording as is read from its written CSV; `source` is
-    /// the file name.
+    /// Converts the simulation to a recording. It equals the recording that is read from the
+    /// written CSV. `source` is the file name.
     ///
     /// # Errors
     /// Never, as long as the options are within their ranges.
@@ -371,8 +374,8 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, AuthorError> 
     let parameters = options.surface.parameters();
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;
     let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
-    // Each part draws from its own stream, so an option that makes one draw more leaves the others
-    // alone.
+    // Each part draws from its own stream. So if an option makes one part draw more numbers, the
+    // other parts do not change.
     let stream = |part: u64| stream(options.seed, 16 * parameters.label + part);
     let mut hand = options.hand(stream(0));
     let material = options.material(stream);
@@ -383,8 +386,8 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, AuthorError> 
     let mut simulation = Simulation::new(options, samples);
     for step in 0..samples * inner_steps {
         let mut finger = hand.tick();
-        // After the hand and before the contact: a lift changes the force with which the contact is
-        // computed.
+        // Called after the hand and before the contact, because a lift changes the force from which
+        // the contact is computed.
         let level = course.tick(&mut finger);
         let force = rig.tick(contact.tick(&finger, level));
         // The rig's anti-aliasing filter ran at the inner rate, so samples between may be dropped.

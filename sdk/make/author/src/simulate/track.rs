@@ -15,7 +15,8 @@ pub(super) struct Track {
     grains: Vec<Noise>,
     random: Normal,
     kernel: Vec<f64>,
-    /// The latest values before smoothing by the contact, oldest first; as many as the kernel has.
+    /// The latest values before smoothing by the contact, oldest first: one for each value of the
+    /// kernel.
     raw: Vec<f64>,
     /// The latest smoothed values, oldest first.
     smooth: [f64; 4],

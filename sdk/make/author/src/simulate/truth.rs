@@ -2,8 +2,9 @@
 //!
 //! The relief is a stationary process along the path, with a known spectral density over spatial
 //! frequency. The speed converts spatial frequency to hertz, the force scales it, and skin and rig
-//! filter it. Seen through the periodic Hann window of 0.2 s, the expected power at a multiple of 5
-//! Hz is the integral of that density multiplied by the window's power transfer.
+//! filter it. A spectrum is computed with a periodic Hann window of 0.2 s. Its expected power at a
+//! multiple of 5 Hz is the integral of the filtered density multiplied by the window's power
+//! transfer.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -94,9 +95,9 @@ impl Truth {
         self.band.grid_hz()
     }
 
-    /// Returns the true magnitudes at the frequencies [`Self::frequency_hz`], newtons: the root of
-    /// the expected power in a segment of 0.2 s, with both lateral axes together, the rig's
-    /// response and the sensor's noise.
+    /// Returns the true magnitudes at the frequencies [`Self::frequency_hz`], newtons. A magnitude
+    /// is the root of the expected power in a segment of 0.2 s. It combines both lateral axes, and
+    /// includes the rig's response and the sensor's noise.
     ///
     /// # Errors
     /// When speed or force is out of the simulator's range.

@@ -1,4 +1,4 @@
-//! Accuracy of a spectrum, compared with a recording's.
+//! Accuracy of a spectrum, compared with the spectrum of a recording.
 
 use crate::{FeltError, TextureSpectrum, agreement};
 use htex_format::{Measure, Measures};

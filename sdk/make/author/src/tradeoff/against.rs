@@ -8,14 +8,14 @@ use crate::tradeoff::front::front;
 use crate::tradeoff::point::Point;
 use crate::tradeoff::setting::Keep;
 
-/// The cost against which the error is compared.
+/// The cost with which the error is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
-    /// Bytes of stored parameters. The error relative to the fitted spectrum is then the error of
-    /// the magnitudes.
+    /// Size of the stored parameters, bytes. For this cost, the error relative to the fitted
+    /// spectrum is measured on the model's magnitudes.
     Bytes,
-    /// Nanoseconds per sample. The error relative to the fitted spectrum is then the error of the
-    /// samples.
+    /// Computing time, nanoseconds per sample. For this cost, the error relative to the fitted
+    /// spectrum is measured on rendered samples.
     Time,
 }
 
@@ -72,8 +72,8 @@ impl Against {
         (cost, error)
     }
 
-    /// Returns which points are on the front. On the front of time, points whose times differ by no
-    /// more than their spreads count as one point: the one with the smallest error.
+    /// Returns which points are on the front. Times that differ by no more than their spreads count
+    /// as equal: of such points, only the one with the smallest error is on the front of time.
     pub(crate) fn on_front(self, points: &[&Point]) -> Vec<bool> {
         let places: Vec<(f64, f64)> = points.iter().map(|p| self.place(p)).collect();
         let mut on = front(&places);
@@ -95,8 +95,8 @@ impl Against {
     }
 }
 
-/// Cuts items, given in the order of their costs, into runs. All items of a run are tied with its
-/// first item.
+/// Cuts items into runs. The items are in the order of their costs, and all items of a run are tied
+/// with its first item.
 fn ties(mut along: &[usize], tied: impl Fn(usize, usize) -> bool) -> Vec<&[usize]> {
     let mut runs = Vec::new();
     while let Some(&first) = along.first() {

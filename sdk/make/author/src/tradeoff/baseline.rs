@@ -13,7 +13,8 @@ const FLOOR: f64 = 1e-6;
 const RANGE_BYTES: usize = 8;
 
 /// Quantises magnitudes to one byte each, on a logarithmic scale from the lowest to the highest.
-/// Each is rounded up or down. Returns the values read back, and the number of bytes.
+/// Each magnitude is rounded up or down. Returns the magnitudes as they are read back, and the
+/// number of bytes.
 pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     let top = magnitude.iter().copied().fold(0.0, f64::max);
     let bytes = magnitude.len() + RANGE_BYTES;

@@ -9,12 +9,13 @@ use serde::{Serialize, Serializer};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorAxis {
     /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
-    /// with the even blocks in third octaves. The unit is the error of the odd blocks themselves,
-    /// which is the error of a second recording.
+    /// with the even blocks in third octaves. The unit is the difference between the odd and the
+    /// even blocks themselves, so 1 is as good as a second recording.
     #[default]
     HeldOut,
-    /// Error relative to what the setting was fitted to, in decibels. Against bytes it is measured
-    /// on the model's magnitudes, against time on rendered samples.
+    /// Error relative to the spectrum to which the setting was fitted, in decibels. When errors are
+    /// plotted against bytes, it is measured on the model's magnitudes; against time, on rendered
+    /// samples.
     Fitted(ErrorMeasure),
 }
 

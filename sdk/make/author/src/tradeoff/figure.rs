@@ -70,8 +70,8 @@ pub(crate) fn figure(title: &str, points: &[&Point], models: &[String], against:
     plot
 }
 
-/// Line at the error of the recording against itself, across all costs. Below it, errors do not
-/// distinguish models.
+/// Returns a line at the difference between the recording's own halves, across all costs. Errors
+/// below this line do not distinguish models.
 fn floor(shown: &[&Point], against: Against) -> Option<Series> {
     let recording = shown.iter().find(|p| p.model == RECORDING)?;
     let error = against.place(recording).1;
@@ -84,7 +84,7 @@ fn floor(shown: &[&Point], against: Against) -> Option<Series> {
     Some(line)
 }
 
-/// Converts a front to steps: each error can be reached from its cost on.
+/// Converts a front to steps: from each point's cost on, its error can be reached.
 fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
     let mut steps = Vec::new();
     for point in front {

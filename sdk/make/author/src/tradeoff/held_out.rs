@@ -20,10 +20,10 @@ pub(crate) struct HeldOut {
 }
 
 impl HeldOut {
-    /// Cuts what is read of a recording into odd and even blocks.
+    /// Cuts the stretches of a recording that are read into odd and even blocks.
     ///
     /// # Errors
-    /// When nothing can be held out; the error is the reason.
+    /// When the recording has too few blocks to hold any out; the error is the reason.
     pub(crate) fn new(
         part: &SegmentSpectra,
         options: &SpectrumOptions,
@@ -31,7 +31,8 @@ impl HeldOut {
         let halves = odd_and_even(std::slice::from_ref(part), options.averaging)
             .ok_or("fewer than four blocks of 0.2 s are read of it")?;
         let mut repeats = accuracy(&halves.even, &halves.odd.magnitude);
-        // This difference is the repeatability itself, so it is within it by definition.
+        // This difference is the repeatability itself, so it is within the repeatability by
+        // definition.
         repeats.felt.within_repeatability = true;
         let found = agreement(halves.even.as_ref(), &halves.odd.magnitude).get(HELD_OUT_MEASURE);
         let floor_db = found.filter(|db| db.is_finite()).ok_or("half of its blocks are silent")?;
@@ -44,8 +45,8 @@ impl HeldOut {
 
 impl Contender {
     /// Fits the contender to the odd blocks, plays it, and returns the third-octave difference from
-    /// the even blocks in decibels; `None` if the recording has no blocks. For the recording as a
-    /// contender, it is the difference between the odd and the even blocks.
+    /// the even blocks in decibels. If the contender is the recording, returns the difference
+    /// between the odd and the even blocks. `None` if the recording has no blocks.
     pub(crate) fn held_out_error_db(
         &self,
         subject: &Subject,

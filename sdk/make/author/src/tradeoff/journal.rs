@@ -33,7 +33,8 @@ pub(crate) enum Entry {
     Timed { recording: usize, times: Vec<(String, Times)> },
 }
 
-/// A file of finished entries, one in each line. The first line has a key of the sweep's inputs.
+/// A file of finished steps, one in each line. The first line contains a key: a hash of the sweep's
+/// inputs.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -42,13 +43,13 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates a journal. Its file is read by the first sweep that uses it.
+    /// Creates a journal. The first sweep that uses it reads its file.
     pub fn new(path: &Path) -> Self {
         Self { path: path.to_owned(), file: None, entries: Vec::new() }
     }
 
-    /// Reads the entries of a file that has this key. A file with another key is overwritten.
-    /// Reading stops at a truncated line.
+    /// Reads the entries of a file with this key, up to a truncated line. A file with another key
+    /// is overwritten.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), AuthorError> {
         let key = &format!("{HEAD}{key}");
         self.entries = self.with_path(self.read(key))?;

@@ -23,7 +23,8 @@ pub struct Knee {
     /// Cost at the knee, in bytes or ns per sample.
     pub cost: f64,
     pub error: ErrorAxis,
-    /// Error at the knee, in decibels. A held-out error is in units of a second recording's error.
+    /// Error at the knee, in decibels. The unit of a held-out error is the error of a second
+    /// recording.
     pub error_value: f64,
     /// Model and setting of the next step up, which reduces the error by at least 0.05; `None` if
     /// there is none.

@@ -1,10 +1,11 @@
-//! The knobs of a sweep: options for storing and playing, and values for the fit options of a model
-//! whose descriptor lists none ([`FitOption::sweep`]).
+//! The knobs of a sweep: the settings that it varies. These are options for storing and playing,
+//! and the fit options of models. If a model's descriptor lists no values for an option
+//! ([`FitOption::sweep`]), this module chooses them.
 
 use htex_host::FitOption;
 
-/// Options for storing and playing. They are varied one at a time, with the fit at its defaults.
-/// Ways to load a model are added to these.
+/// Options for storing and playing. They are varied one at a time, with the fit options at their
+/// defaults. A sweep also varies the way in which a model is loaded.
 pub(crate) const PLAYING: &[(&str, &[&str])] = &[
     (
         "synthesis",
@@ -15,11 +16,11 @@ pub(crate) const PLAYING: &[(&str, &[&str])] = &[
     ("output_rate_hz", &["4000", "8000", "48000", "192000"]),
 ];
 
-/// Number of values, less one, for an option for which the model lists none.
+/// Number of values, minus one, for an option for which the model lists no values.
 const STEPS: i32 = 8;
 
 /// Returns an option's values for a sweep, from its descriptor: its choices, or numbers over its
-/// whole range. The numbers are in equal ratios if the range is above 0.
+/// whole range. If the range is above 0, the numbers form a geometric series.
 pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
     if !option.choices.is_empty() {
         return option.choices.clone();

@@ -31,8 +31,8 @@ pub(crate) struct Measurement {
 }
 
 impl Contender {
-    /// Fits, stores and measures the contender. `None` for a recording that has too few blocks to
-    /// be compared with itself.
+    /// Fits, stores and measures the contender. `None` if the contender is the recording and has
+    /// too few blocks to be compared with itself.
     pub(crate) fn measure(
         &self,
         subject: &Subject,
@@ -96,8 +96,8 @@ impl Contender {
         Ok(rendered)
     }
 
-    /// Returns the magnitudes as a recording of the voice would read them; for a baseline, its own
-    /// magnitudes.
+    /// Returns the magnitudes that would be measured in a recording of the played model. For a
+    /// baseline, returns its own magnitudes.
     fn magnitude(&self, subject: &Subject, stored: &StoredData) -> Result<Vec<f64>, AuthorError> {
         let spectrum = &subject.spectrum;
         match &self.kind {

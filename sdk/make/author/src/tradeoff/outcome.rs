@@ -55,12 +55,12 @@ impl Machine {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordingSummary {
     pub name: String,
-    /// Whether it was computed instead of recorded.
+    /// Whether the recording comes from a simulator.
     pub simulated: bool,
-    /// Its repeatability: nine-band RMS, dB.
+    /// Repeatability of the recording: nine-band RMS, dB.
     pub repeatability_rms_db: Option<f64>,
-    /// Number of blocks, odd and even, in what is read of the recording; the even blocks are held
-    /// out. `None` if there are too few.
+    /// Number of blocks, odd and even together, in the stretches of the recording that are read.
+    /// The even blocks are held out. `None` if there are too few.
     pub blocks: Option<usize>,
     /// Length of a block, seconds.
     pub block_s: Option<f64>,
@@ -77,7 +77,7 @@ pub struct Tradeoff {
     pub machine: Machine,
     /// The error used for fronts and knees.
     pub error: ErrorAxis,
-    /// Description of the numbers.
+    /// How the numbers were measured, as a text.
     pub method: &'static str,
     pub recordings: Vec<RecordingSummary>,
     /// Short names of the models, in their order.

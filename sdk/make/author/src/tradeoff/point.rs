@@ -44,11 +44,11 @@ pub struct Point {
     /// Size of the stored parameters, bytes. For the recording, size of its single-precision
     /// samples.
     pub bytes: usize,
-    /// Memory of a loop or a filter that is kept while playing, bytes.
+    /// Memory that a loop or a filter takes during playback, bytes.
     pub kept_bytes: usize,
-    /// Held-out error: the fit to the odd blocks is played and compared with the even blocks in
-    /// third octaves. The unit is the difference between the odd and the even blocks, so 1 is as
-    /// good as a second recording. `None` if there are too few blocks.
+    /// Held-out error: the model is fitted to the odd blocks of a recording, played, and compared
+    /// with the even blocks in third octaves. The unit is the difference between the odd and the
+    /// even blocks, so 1 is as good as a second recording. `None` if there are too few blocks.
     pub held_out_error: Option<f64>,
     /// The held-out error in decibels.
     pub held_out_error_db: Option<f64>,
@@ -61,24 +61,26 @@ pub struct Point {
     /// The measures of rendered samples.
     #[serde(flatten)]
     pub by_samples: RenderedAccuracy,
-    /// Whether the point is on the front of bytes and magnitude error, among settings that play at
-    /// their defaults.
+    /// Whether the point is on the Pareto front of bytes and error. Only settings that play like
+    /// the default setting are compared.
     pub on_front: bool,
-    /// Whether the point is on the front of time and sample error, among settings with the default
-    /// block size and output rate.
+    /// Whether the point is on the Pareto front of time and error. Only settings with the default
+    /// block size, output rate and storage are compared.
     pub on_time_front: bool,
 }
 
 /// Shares of the recordings whose difference from the model's magnitudes is small, from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
-    /// Share below the difference threshold, in every third octave and over all together.
+    /// Share whose difference is below the difference threshold in every third octave and over all
+    /// of them together.
     #[serde(rename = "share_below_threshold")]
     pub below_threshold: f64,
-    /// The same for a person with a sensitive finger and soft skin.
+    /// The same share for a person with a sensitive finger and soft skin.
     #[serde(rename = "share_below_threshold_if_sensitive")]
     pub below_threshold_if_sensitive: f64,
-    /// Share within the recording's own variation, which says nothing about what can be felt.
+    /// Share whose difference is within the recording's own variation. This says nothing about what
+    /// can be felt.
     #[serde(rename = "share_within_repeatability")]
     pub within_repeatability: f64,
 }
@@ -119,7 +121,7 @@ pub fn others() -> impl Iterator<Item = Measure> {
 pub struct RenderedAccuracy {
     /// The measures over several renderings together.
     pub measures: Measures,
-    /// Half the range of the nine-band error over the single renderings, dB.
+    /// Half the range of the nine-band errors of the individual renderings, dB.
     pub band_error_spread_db: f64,
 }
 

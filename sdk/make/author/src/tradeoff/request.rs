@@ -1,4 +1,4 @@
-//! What to sweep.
+//! Request for a sweep: models and options.
 
 use std::path::PathBuf;
 
@@ -22,11 +22,11 @@ pub struct Request {
     pub models: Vec<Model>,
     /// Whether to vary only one knob at a time, with three values each, and to time fewer runs.
     pub quick: bool,
-    /// The error for fronts and knees. By default it is the held-out error, or the third-octave
-    /// error of the fit if a recording is too short to hold anything out.
+    /// The error for fronts and knees. By default it is the held-out error. If a recording is too
+    /// short to hold anything out, it is the third-octave error of the fit.
     pub error: Option<ErrorAxis>,
-    /// The file of the running program or library. A journal from another build of it is not
-    /// continued.
+    /// The file of the running program or library. A journal that another build of the program
+    /// wrote is not continued.
     pub program: PathBuf,
 }
 

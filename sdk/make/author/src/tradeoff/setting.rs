@@ -9,7 +9,7 @@ use serde_json::Value;
 /// How parameters are stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Keep {
-    /// As the model's descriptor says.
+    /// As the model's descriptor states.
     Model,
     /// In single precision.
     F32,
@@ -48,14 +48,14 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// Whether it plays like [`Self::default`]; fit and storage may differ.
+    /// Whether the setting plays like [`Self::default`]. Fit and storage may differ.
     pub(crate) fn plays_as_default(&self) -> bool {
         let other = Self { options: self.options.clone(), store: self.store, ..Self::default() };
         *self == other
     }
 
-    /// Whether its times can be compared with those at the defaults, because block size and output
-    /// rate are the same.
+    /// Whether the times can be compared with the times of the default setting. They can if block
+    /// size and output rate are the same.
     pub(crate) fn times_compare(&self) -> bool {
         let default = Self::default();
         self.block_samples == default.block_samples && self.output_rate_hz == default.output_rate_hz
@@ -75,7 +75,7 @@ impl Setting {
         Ok(self)
     }
 
-    /// Returns the values that are not at their defaults as text; `default` if there are none.
+    /// Returns the values that differ from their defaults as text; `default` if there are none.
     pub fn words(&self) -> String {
         let default = Self::default();
         let mut words: Vec<String> = self.options.iter().map(|(n, v)| format!("{n}={v}")).collect();

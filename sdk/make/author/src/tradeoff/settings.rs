@@ -1,4 +1,4 @@
-//! The settings of a sweep, made from the knobs of models and of playing.
+//! The settings of a sweep, made from the knobs of models and the knobs of playing.
 
 use htex_host::{FitOption, LoadedModel};
 
@@ -36,8 +36,9 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     settings
 }
 
-/// Returns the knobs that are varied in all combinations, and the knobs that are varied one at a
-/// time: the whole range of each option, if the model lists no values.
+/// Returns two lists: the knobs that are varied in all combinations, and the knobs that are varied
+/// one at a time. If the model lists no values for an option, the option is varied over its whole
+/// range.
 fn knobs(model: &LoadedModel) -> (Vec<Knob>, Vec<Knob>) {
     let options = &model.descriptor().options;
     let listed = |values: fn(&FitOption) -> &[f64]| -> Vec<Knob> {

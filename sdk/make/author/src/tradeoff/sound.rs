@@ -36,7 +36,7 @@ impl Contender {
 }
 
 impl Sound {
-    /// Creates a sound whose rendering cannot fail.
+    /// Creates a sound from a function that cannot fail.
     fn sure(kept_bytes: usize, mut render: impl FnMut(&mut [f32]) + 'static) -> Self {
         let render = move |out: &mut [f32]| {
             render(out);

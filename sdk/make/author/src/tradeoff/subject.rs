@@ -10,7 +10,7 @@ use crate::tradeoff::held_out::HeldOut;
 pub struct Subject {
     /// Name of the file, or of the simulated surface.
     pub name: String,
-    /// Whether it was computed instead of recorded.
+    /// Whether the recording comes from a simulator.
     pub simulated: bool,
     /// The spectrum to which models are fitted.
     pub spectrum: TextureSpectrum,
@@ -52,7 +52,7 @@ impl Subject {
         })
     }
 
-    /// Returns an error if nothing can be held out of the recording.
+    /// Returns an error if no part of the recording can be held out.
     pub(crate) fn check_held_out(&self) -> Result<(), AuthorError> {
         match &self.held_out {
             Ok(_) => Ok(()),

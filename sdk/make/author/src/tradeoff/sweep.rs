@@ -40,7 +40,7 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 ///
 /// # Errors
 /// When the journal cannot be written, no model can be fitted to a recording, or the held-out error
-/// is requested and nothing can be held out of a recording.
+/// is requested and a recording is too short to hold a part of it out.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,

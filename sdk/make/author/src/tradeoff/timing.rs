@@ -25,7 +25,7 @@ struct Rounds {
 const FULL: Rounds = Rounds { fit: 7, start: 9, render: 41 };
 const QUICK: Rounds = Rounds { fit: 3, start: 3, render: 9 };
 
-/// A median, and half the interquartile range divided by it.
+/// A median, and the spread: half the interquartile range divided by the median.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Median {
     pub(crate) median: f64,

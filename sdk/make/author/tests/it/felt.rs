@@ -30,8 +30,8 @@ struct Expected {
     below: bool,
 }
 
-/// `tests/peers/felt.py` uses a complex impedance, a threshold in decibels over decades, and bands
-/// given by their edges. Both agree within 1e-6 dB.
+/// The independent program `tests/peers/felt.py` gives the same results within 1e-6 dB. It uses a
+/// complex impedance, a threshold in decibels over decades, and bands given by their edges.
 #[test]
 fn another_program_feels_the_same() {
     let text = include_str!("../../../../../tests/golden/felt.json");

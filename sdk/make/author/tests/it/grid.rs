@@ -26,7 +26,7 @@ fn take(options: &SimulationOptions) -> Take {
     }
 }
 
-/// Fits with the rig's response divided out, as a user does with `--frf`.
+/// Fits a recording that is divided by the rig's response, as with the option `--frf`.
 fn fit_at_finger(options: &SimulationOptions, models: &[&str]) -> FittedAsset {
     let spectrum = SpectrumOptions::default().with_response(options.setup_response().unwrap());
     fit_with(&[take(options)], models, Grid::default(), spectrum)

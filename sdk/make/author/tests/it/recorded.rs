@@ -20,8 +20,8 @@ fn spectrum(recording: &Recording, options: &SpectrumOptions) -> TextureSpectrum
 }
 
 /// Largest nine-band errors in dB. The first is for windows, which share their signal with their
-/// neighbours. The second is for the eight segments of four sweeps: every second one fades into
-/// another stretch, and windows that lie across both read the two together.
+/// neighbours. The second is for the eight segments of four sweeps. Every second segment fades into
+/// another stretch, and a window across the seam reads both stretches at once.
 const WITHIN_DB: [f64; 2] = [0.5, 0.6];
 
 /// Two turns of a loop have the spectrum and the level of its recording, whether it is cut into

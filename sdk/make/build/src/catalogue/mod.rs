@@ -10,8 +10,8 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// Returns the page. Textures are played by the browser package if it is next to the page, in
-/// `browser`; otherwise from `sounds`.
+/// Returns the page. If the browser package is next to the page, in `browser`, the package plays
+/// the textures. Otherwise the page plays the files in `sounds`.
 pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
     let textures: Vec<Value> = report.textures.iter().map(texture).collect();
     let data = json!({
@@ -31,7 +31,7 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
         .replace("@DATA@", &data)
 }
 
-/// Says how many textures were removed and which; empty if none.
+/// Returns a text about how many textures were removed and which; empty if there are none.
 fn removed(report: &Report) -> String {
     match report.removed.len() {
         0 => String::new(),

@@ -19,8 +19,8 @@ pub(crate) struct TimedRecording {
     pub(crate) time_s: Option<Vec<f64>>,
 }
 
-/// Reads the columns that the map and their names select. Channels without names and without a map
-/// are assigned by their order.
+/// Reads a recording from the columns that the map assigns or whose names are known. If the file's
+/// channels have no names and there is no map, the order of the channels decides their roles.
 pub(crate) fn assemble(
     file: &str,
     sheet: &mut dyn Sheet,
@@ -98,7 +98,7 @@ impl Signals {
         &self.wanted
     }
 
-    /// Takes the observations made while reading.
+    /// Takes the warnings that arose while reading.
     pub(crate) fn warnings(&mut self) -> Vec<Notice> {
         std::mem::take(&mut self.warnings)
     }

@@ -1,4 +1,4 @@
-//! Recordings whose channels have no names: roles by the order of the channels.
+//! Assigns roles to channels without names, by the order of the channels.
 
 use htex_base::finding::{Hint, Notice};
 use htex_format::Quantity;
@@ -50,7 +50,7 @@ pub(crate) fn by_order(
     Ok(recording)
 }
 
-/// Returns the warning about samples without a scale.
+/// Returns the warning for a file of samples for which no scale was given.
 fn assumption(are_integers: bool, quantity: Quantity) -> String {
     let unit = quantity.unit();
     if are_integers {

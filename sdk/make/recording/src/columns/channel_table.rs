@@ -13,7 +13,7 @@ use crate::input::{InputFile, file_name};
 use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
 
-/// The channels of a recording as its file has them, without roles and scales.
+/// The channels of a recording as they are in the file: without roles, and not scaled.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ChannelTable {
@@ -21,17 +21,18 @@ pub struct ChannelTable {
     pub rate_hz: f64,
     /// Times of the samples, seconds, ascending; only if the file has a time column.
     pub time_s: Option<Vec<f64>>,
-    /// Names of the channels. A channel without a name is called `#` and its number.
+    /// Names of the channels. A channel without a name is called by its number, such as `#3`.
     pub names: Vec<String>,
     /// The samples of each channel: at least two, finite, and equally many in every channel.
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Reads all channels of a file. The sample rate is the given one, the file's own, or the one that
-/// follows from its time column. The time column is not among the channels.
+/// Reads all channels of a file. A sample rate in the options takes precedence; otherwise the rate
+/// comes from the time column, or from the file if it has no time column. The time column is not
+/// among the channels.
 ///
 /// # Errors
-/// As [`read_recording`](crate::read_recording).
+/// The errors of [`read_recording`](crate::read_recording).
 pub fn read_channels(path: &Path, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
     let file = file_name(path);
     let read = || {

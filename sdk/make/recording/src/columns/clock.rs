@@ -10,22 +10,23 @@ use crate::sheet::Sheet;
 
 /// A step longer than this multiple of the median step is a gap, if the clock is otherwise even.
 const GAP: f64 = 1.5;
-/// The same for an uneven clock, in which short steps make up for a long one. In a Poisson process,
-/// one step in a thousand is longer than the median by more than this.
+/// A step longer than this multiple of the median step is a gap, if the clock is uneven. In such a
+/// clock, short steps make up for a long one. In a Poisson process, one step in a thousand is
+/// longer than the median by more than this factor.
 const GAP_UNEVEN: f64 = 10.0;
-/// Interquartile range of the steps relative to the median above which a clock counts as uneven.
-/// Normally distributed steps with this scatter put one step in 200,000 beyond [`GAP`].
+/// A clock counts as uneven if the interquartile range of its steps, divided by their median, is
+/// above this. Normally distributed steps with this scatter put one step in 200,000 beyond [`GAP`].
 const UNEVEN: f64 = 0.15;
-/// Jitter of the steps (rms divided by mean) above which a warning is given.
+/// The reader reports jitter of the steps (standard deviation divided by mean) above this.
 const JITTER: f64 = 0.01;
-/// Relative difference between the rate of the time column and the given rate above which a warning
-/// is given.
+/// The reader warns if the rate of the time column differs from the given rate by more than this
+/// fraction.
 const DISAGREE: f64 = 1e-3;
-/// A rate this close to an integer, relatively, is taken as that integer, because printed times are
-/// rounded.
+/// A rate that differs from an integer by at most this fraction is rounded to the integer, because
+/// printed times are rounded.
 const WHOLE: f64 = 1e-5;
 
-/// Defines the findings of the time column, for `spec/recording-findings.md`.
+/// Returns the definition of the findings about a time column, for `spec/recording-findings.md`.
 pub fn clock_definition() -> String {
     format!(
         "- `RECORDING_CLOCK_GAP`: a step of the time column exceeds {GAP} times the median of all steps, or {GAP_UNEVEN} times if the clock is uneven: if the distance \
@@ -62,8 +63,8 @@ pub(crate) fn given(
     given.or(own)
 }
 
-/// Returns the sample rate of a file in hertz; `given` takes precedence over the time column
-/// `time_s`.
+/// Returns the sample rate of a file in hertz: the rate `given`, or else the rate of the time
+/// column `time_s`.
 pub(crate) fn rate(
     file: &str,
     sheet: &dyn Sheet,
@@ -97,7 +98,8 @@ pub(crate) fn rate(
     }
 }
 
-/// Returns the number of steps divided by the time they take, without gaps.
+/// Returns the sample rate of the time column: the number of steps divided by their total duration.
+/// Gaps are left out of both.
 fn measure(
     sheet: &dyn Sheet,
     time_s: &[f64],
@@ -105,8 +107,8 @@ fn measure(
     noticed: &mut ReadNotices,
 ) -> Result<f64, Fault> {
     let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
-    // This must be known first: the median of steps that are not positive would make every step a
-    // gap.
+    // Checked before gaps are looked for: with a median step that is not positive, every step would
+    // count as a gap.
     if let Some(row) = steps().position(|step| step <= 0.0) {
         let (before, after) = (time_s[row], time_s[row + 1]);
         return Err(ReadProblem::Time { before, after }.at_place(sheet.place(row + 1)));

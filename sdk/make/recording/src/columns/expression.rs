@@ -58,7 +58,7 @@ impl fmt::Display for Expression {
 }
 
 impl Expression {
-    /// Returns the column if the expression is nothing but a column; `None` if it has to be
+    /// Returns the column if the expression consists of a single column; `None` if it has to be
     /// computed.
     #[must_use]
     pub fn column(&self) -> Option<&ColumnRef> {
@@ -74,7 +74,7 @@ impl Expression {
         &self.text
     }
 
-    /// Whether it contains a number, which may be a factor between units.
+    /// Whether the expression contains a number, which may be a factor between units.
     pub(crate) fn has_number(&self) -> bool {
         let is_number = |step: &Step| matches!(step, Step::Number(_));
         self.steps.iter().any(is_number)

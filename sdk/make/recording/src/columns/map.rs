@@ -22,11 +22,11 @@ pub enum Role {
     LateralY,
     /// Single axis of an acceleration, velocity or displacement, in the quantity's unit.
     Signal,
-    /// First axis of the quantity.
+    /// First axis of an acceleration, velocity or displacement, in the quantity's unit.
     SignalX,
-    /// Second axis of the quantity.
+    /// Second axis of an acceleration, velocity or displacement, in the quantity's unit.
     SignalY,
-    /// Third axis of the quantity.
+    /// Third axis of an acceleration, velocity or displacement, in the quantity's unit.
     SignalZ,
     /// Normal force, newtons.
     Normal,
@@ -86,12 +86,13 @@ impl fmt::Display for Role {
 /// One entry of a column map: `ROLE=EXPRESSION[:SCALE]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEntry {
-    /// The role that the values get.
+    /// The role for which the entry gives the values.
     pub role: Role,
     /// The column, or an expression over columns.
     pub values: Expression,
-    /// Factor to the role's unit (N, the quantity's unit, mm/s, s, mm). Without a factor, a column
-    /// has the unit in its name, and the values of an expression are in the role's unit.
+    /// Factor that converts the values to the role's unit (N, the quantity's unit, mm/s, s, mm).
+    /// Without a factor, the unit of a column is the unit in its name, and the values of an
+    /// expression must be in the role's unit.
     pub scale: Option<f64>,
 }
 

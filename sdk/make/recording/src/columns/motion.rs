@@ -2,15 +2,15 @@
 
 use crate::sums::Sums;
 
-/// Length of the moving average of the position, and of the difference that gives the speed,
-/// seconds. Trackers are slow (60 Hz is common): with a shorter window the speed would show their
-/// steps.
+/// Length of two windows, seconds: of the moving average of the position, and of the difference
+/// that gives the speed. Trackers are slow (60 Hz is common). With shorter windows, each new
+/// position of the tracker would show as a step in the speed.
 const WINDOW_S: f64 = 0.05;
 
 /// Returns the speed of each sample in mm/s, from one or two coordinates in mm of equal length.
 ///
-/// The position is averaged over 50 ms, and its difference is then taken over 50 ms around each
-/// sample. Both windows are shorter at the ends.
+/// The position is first averaged over 50 ms. The speed is then the change of this average over 50
+/// ms around each sample, divided by the time. Both windows are shorter at the ends.
 pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     let [first, others @ ..] = coordinates_mm else {
         return Vec::new();
@@ -25,8 +25,8 @@ pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     speed
 }
 
-/// Returns the difference of the averaged position over `2 half` samples around each sample; over
-/// fewer samples at the ends.
+/// Returns the velocity: the change of the averaged position over `2 half` samples around each
+/// sample, divided by the time. At the ends it covers fewer samples.
 fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item = f64> {
     let position = moving_average(position, half);
     let last = position.len().saturating_sub(1);

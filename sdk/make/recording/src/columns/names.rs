@@ -64,7 +64,8 @@ const NAMES: [(Role, &[&str]); 8] = [
     (Role::Y, &["y", "pos_y", "y_pos", "position_y", "y_position", "finger_y"]),
 ];
 
-/// Unit suffixes after an underscore. A suffix comes before any shorter one that it ends with.
+/// Unit suffixes after an underscore. Each suffix stands before all shorter suffixes with which it
+/// ends, so that the longest one is found first.
 const SUFFIXES: [&str; 23] = [
     "mm_s2", "cm_s2", "m_s2", "mm/s2", "cm/s2", "m/s2", "mm_s", "cm_s", "um_s", "m_s", "mm/s",
     "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us", "s", "mm",
@@ -75,7 +76,8 @@ const SHORT: [&str; 5] = ["cm", "um", "nm", "m", "g"];
 /// Standard gravity, m/s².
 const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Returns the role and the unit that a column's name stands for in a recording of a quantity.
+/// Returns the role and the unit that a column's name stands for, if the recording is of
+/// `quantity`.
 pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> {
     let name = normalise(name);
     let known = |name: &str| signal_role(name, quantity).or_else(|| known_role(name));

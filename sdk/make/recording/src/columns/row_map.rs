@@ -34,11 +34,12 @@ pub struct RowMap {
 }
 
 impl RowMap {
-    /// Selects from channels, each given as a name and a unit. The unit is empty if it is not
-    /// known; a unit in the name takes precedence.
+    /// Assigns roles to channels, each of which is given as a name and a unit. The unit is empty if
+    /// it is not known. A unit in the name takes precedence.
     ///
     /// # Errors
-    /// [`ReadProblem::Columns`] as for a file with these columns. Messages name it `source`.
+    /// [`ReadProblem::Columns`] in the same cases as for a file with these columns. Messages call
+    /// the origin of the channels `source`.
     pub fn new(
         source: &str,
         channels: &[(String, String)],
@@ -55,10 +56,11 @@ impl RowMap {
         Ok(row_map)
     }
 
-    /// Selects the finger's motion, as [`Tracker`](crate::Tracker) does: position or speed.
+    /// Assigns only the roles of the finger's motion (position or speed), as for the file of a
+    /// [`Tracker`](crate::Tracker).
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn of_motion(
         source: &str,
         channels: &[(String, String)],
@@ -86,7 +88,8 @@ impl RowMap {
         selected.map_err(|problem| problem.in_file(source))
     }
 
-    /// Applies the units of channels whose names state none and for which the map has no scale.
+    /// Applies the given unit of each channel whose name states no unit and for which the map has
+    /// no scale.
     fn take_units(
         &mut self,
         columns: &Columns,
@@ -120,7 +123,7 @@ impl RowMap {
         Ok(())
     }
 
-    /// Returns the roles, in the order of the values.
+    /// Returns the roles, in the order in which [`Self::values`] returns their values.
     #[must_use]
     pub fn roles(&self) -> Vec<Role> {
         self.selection.chosen.iter().map(|c| c.role).collect()
@@ -148,8 +151,8 @@ impl RowMap {
         &self.selection.warnings
     }
 
-    /// Returns the values of each role, from equally many samples of each channel. A division by
-    /// zero gives a value that is not finite.
+    /// Returns the values of each role. `channels` has one vector of samples for each channel, all
+    /// of equal length. A division by zero gives a value that is not finite.
     #[must_use]
     pub fn values(&self, channels: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let rows = channels.first().map_or(0, Vec::len);

@@ -185,8 +185,8 @@ impl Selection {
         Ok(Chosen::new(role, column, scale))
     }
 
-    /// The columns' numbers are used as they are in the file, not converted by the units in their
-    /// names, since the expression may contain a factor between units.
+    /// The columns' numbers are used as they are in the file. Units in the columns' names do not
+    /// convert them, because the expression may contain a factor between units.
     fn mapped_formula(
         &mut self,
         columns: &Columns,

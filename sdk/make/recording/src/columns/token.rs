@@ -195,8 +195,8 @@ fn name_length(text: &str) -> usize {
             (Some(end), _) if c == end => closing = None,
             (Some(_), _) => {}
             (None, '[') => closing = closes(&text[at..], ']'),
-            // A bracket that no other closes is the expression's own, as in `a*(b`, and ends the
-            // name.
+            // An opening bracket without a closing one belongs to the expression, as in `a*(b`, and
+            // ends the name.
             (None, '(') => match closes(&text[at..], ')') {
                 None => return at,
                 end => closing = end,

@@ -117,8 +117,8 @@ impl Sheet for Csv<'_> {
     }
 }
 
-/// A truncated row is reported as cut off only at the end of the file: if other rows follow the
-/// block, converts the fault.
+/// Converts the fault of a short row. The fault says that the file is cut off. If other rows follow
+/// the block, it becomes a fault of a row with a wrong number of cells.
 fn in_the_middle(fault: Fault, behind: &mut Blocks<'_>) -> Result<Fault, Fault> {
     match fault {
         Fault {

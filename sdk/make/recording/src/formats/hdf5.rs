@@ -29,9 +29,9 @@ const AT_ONCE: u64 = 64 << 10;
 /// Largest chunk and largest object header that are read, bytes.
 const MOST_CHUNK: usize = 256 << 20;
 const MOST_HEADER: usize = 4 << 20;
-/// Largest number of bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and
-/// MATLAB, reaches 1032. Parts of a data set that were never written take no bytes at all, so
-/// without a limit a small file could claim any size.
+/// Largest size of a data set's numbers, as a multiple of the file's length. Deflate, the filter of
+/// HDF5 and MATLAB, compresses by a factor of up to 1032. Parts of a data set that were never
+/// written take no bytes at all, so without a limit a small file could claim any size.
 const MOST_EXPANSION: u64 = 2048;
 
 /// An opened file.

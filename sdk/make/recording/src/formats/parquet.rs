@@ -1,6 +1,7 @@
 //! Reader of Parquet: numeric columns that are not lists.
 //!
-//! In three places the crate `parquet` panics on damaged files; these are checked here beforehand.
+//! The crate `parquet` panics on damaged files in three places. This module checks the files for
+//! such damage before the crate reads them.
 
 use std::io::{BufReader, Read};
 
@@ -49,7 +50,8 @@ impl Length for SharedFile {
 impl ChunkReader for SharedFile {
     type T = BufReader<From>;
 
-    /// The library reads a page's header from `start` on, or the end of the file.
+    /// Returns a reader of the file from `start` on. The library uses it to read a page's header,
+    /// or the end of the file.
     fn get_read(&self, start: u64) -> Result<Self::T> {
         let left = self.0.length().saturating_sub(start);
         if left != END {

@@ -1,8 +1,8 @@
 //! Reader of TDMS, LabVIEW's file format: channels in groups, with their sample rate.
 //!
 //! Layout: "TDMS File Format Internal Structure", National Instruments. A file consists of
-//! segments; each has the objects that it changes, and raw data in chunks. The directory of all
-//! segments is read first, then the channels that are used.
+//! segments. Each segment contains the objects that it changes, and raw data in chunks. The
+//! directory of all segments is read first, then the channels that are used.
 //!
 //! This reader is written for this project: the crate `tdms` unwraps values that a damaged file may
 //! lack, and it reads only from files.

@@ -9,7 +9,8 @@ pub struct TextureReport {
     pub measures: Vec<Measure>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
-    /// How many of the textures each model keeps below the difference threshold; may be empty.
+    /// For each model, the number of textures whose error is below the difference threshold; may be
+    /// empty.
     pub shares: Vec<Share>,
     /// Further pictures as SVG, shown before the spectra.
     pub pictures: Vec<String>,
@@ -17,8 +18,8 @@ pub struct TextureReport {
     pub command: String,
 }
 
-/// How many textures a model keeps below the difference threshold, and how many within the
-/// recording's own variation.
+/// For how many textures a model's error is below the difference threshold, and for how many it is
+/// within the recording's own variation.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Share {
     /// The model's short name.
@@ -26,7 +27,7 @@ pub struct Share {
     pub textures: usize,
     /// Textures whose difference is below the difference threshold in every third octave.
     pub below_difference_threshold: usize,
-    /// Textures for which that also holds for a person with a sensitive finger.
+    /// The same count for a person with a sensitive finger.
     pub below_if_sensitive: usize,
     /// Textures whose nine-band error is at or below the recording's repeatability.
     pub within_repeatability: usize,
@@ -48,14 +49,15 @@ pub struct Measure {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Texture {
     pub name: String,
-    /// Whether it was computed instead of recorded. The page says so wherever it names the texture.
+    /// Whether the texture comes from a simulated recording. The page says so wherever it names the
+    /// texture.
     pub simulated: bool,
     /// Unit of the magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
     pub unit: String,
     /// Speed and force as text: `"80 mm/s, 0.40 N"`.
     pub condition: String,
-    /// What slid over the texture, and how frequencies and level follow motions that were not
-    /// recorded. May be empty.
+    /// Whether a finger or a tool slid over the texture, and how frequencies and level follow
+    /// motions that were not recorded, as a text. May be empty.
     pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
@@ -78,7 +80,7 @@ pub struct Texture {
 pub struct ModelResult {
     /// The model's display name: `"sBeta"`.
     pub model: String,
-    /// The model's short name, which determines its column: `"sbeta"`.
+    /// The model's short name, which decides in which column it is: `"sbeta"`.
     pub short_name: String,
     /// A CSS colour: [`model_color`](crate::report::model_color).
     pub color: String,

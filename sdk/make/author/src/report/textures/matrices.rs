@@ -13,7 +13,7 @@ const WITHIN: &str = "\u{a0}*";
 const DARKEST_DB: f64 = 12.0;
 const CORRELATIONS: HeatScale = HeatScale::Sequential { low: 0.0, high: 1.0 };
 
-/// One table for each measure whose value is known for some model.
+/// Returns one table for each measure that is known for at least one model.
 pub(super) fn summary(report: &TextureReport) -> String {
     let measures = report.measures.iter().enumerate();
     let tables: String = measures
@@ -78,7 +78,7 @@ fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cel
     }
 }
 
-/// One table for each texture, with the nine band errors of each model.
+/// Returns one table for each texture, with the nine band errors of each model.
 pub(super) fn bands(report: &TextureReport) -> String {
     let note = paragraph(
         "Model relative to recording in dB: orange is too much vibration in a band, blue is too little. \

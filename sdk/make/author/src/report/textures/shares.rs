@@ -1,5 +1,5 @@
-//! Table of how many textures a model keeps below the difference threshold, and how many within the
-//! recording's own variation.
+//! Table of counts by model: for how many textures the error is below the difference threshold, and
+//! for how many it is within the recording's own variation.
 
 use super::data::{Share, TextureReport};
 use crate::report::page::paragraph;

@@ -1,5 +1,5 @@
-//! Spectra of each texture in a row: the recording alone, then the recording overlaid with each
-//! model.
+//! The spectra of each texture in a row: first the recording by itself, then the recording overlaid
+//! with each model.
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::report::axis::Axis;
@@ -63,7 +63,7 @@ fn row(texture: &Texture) -> Element {
         .child(&panels)
 }
 
-/// Paragraph on how the texture follows motions that were not recorded.
+/// Returns a paragraph about how the texture follows motions that were not recorded.
 fn law(texture: &Texture) -> Option<Element> {
     let said = (!texture.law.is_empty()).then_some(&texture.law)?;
     Some(Element::new("p").set("class", "law").text(said))

@@ -23,8 +23,8 @@ impl Case {
         format!("{}.csv", self.name)
     }
 
-    /// The code that the case is named after. If a code has several inputs, their names have a word
-    /// after it.
+    /// The code after which the case is named. If a code has several cases, their names have
+    /// another word after the code.
     pub fn code(&self) -> String {
         self.name.trim_end_matches("_many").to_uppercase()
     }
@@ -33,8 +33,8 @@ impl Case {
         format!("{}.report.json", self.name)
     }
 
-    /// Codes that may also be found: a knock is sharp, and a gap or the end of a stuck stretch is a
-    /// step.
+    /// Whether a finding with this code may also occur in the case. A knock is sharp, and a gap or
+    /// the end of a stuck stretch is a step in the signal.
     pub fn may_also_raise(&self, code: &str) -> bool {
         let also: &[&str] = match self.name {
             "recording_clock_gap" | "recording_stuck" | "recording_silent" => &["RECORDING_SPIKE"],

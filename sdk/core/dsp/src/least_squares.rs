@@ -115,7 +115,8 @@ impl Factors {
     }
 }
 
-/// Cosine and sine of the rotation that makes `a` and `b` orthogonal. `None` if they already are.
+/// Returns the cosine and sine of the rotation that makes `a` and `b` orthogonal, or `None` if they
+/// already are orthogonal.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     // Two roots, because the product of the squares could overflow or underflow.

@@ -1,5 +1,5 @@
-//! Sines, cosines and tangents of bounded angles, with the same bits as `libm`. They omit the
-//! reduction of large arguments, which takes 2 kB of a WASM module.
+//! Sines, cosines and tangents of angles up to [`LARGEST`], with the same bits as `libm`. They omit
+//! `libm`'s code for larger angles, which would add 2 kB to a WASM module.
 //!
 //! The series and the reduction come from FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
 //! Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
@@ -8,8 +8,8 @@
 
 use crate::wide::{Work, wide};
 
-/// Angles below this, radians, give the same bits as `libm`. Above it the error grows with the
-/// angle.
+/// Angle, radians, up to which the results have the same bits as the results of `libm`. Above this
+/// angle the error grows with the angle.
 pub const LARGEST: f64 = 1_647_099.0;
 
 /// Sine of an angle in radians; NaN if the angle is not finite.
@@ -61,8 +61,8 @@ pub fn tan(x: f64) -> f64 {
 }
 
 /// Writes the cosines of angles from 0 to π, each within 3e-16, into an array of the same length.
-/// The series has no branches, so several angles are computed at a time. The bits differ from those
-/// of [`cos`].
+/// The series has no branches, so compilers compute several angles at a time. The bits differ from
+/// the results of [`cos`].
 ///
 /// ```
 /// use htex_dsp::trig::{cos, half_turn_cosines};

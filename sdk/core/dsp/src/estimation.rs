@@ -34,8 +34,8 @@ pub fn yule_walker(segments: &[&[f64]], order: usize) -> LinearPrediction {
 }
 
 /// Burg's estimate: each reflection coefficient minimises the sum of forward and backward error
-/// power (Burg 1975). For short signals, its frequency resolution is better than that of
-/// Yule–Walker. The model is always stable.
+/// power (Burg 1975). For short signals, this estimate resolves frequencies better than the
+/// Yule–Walker estimate. The model is always stable.
 pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut errors: Vec<BurgErrors> = segments.iter().map(|s| BurgErrors::new(s)).collect();
     let mut stages = Stages::new(order, autocorrelation(segments, 0)[0]);

@@ -250,8 +250,8 @@ impl Stage {
         }
     }
 
-    /// Copies results from groups of [`WIDTH`], in which all `k` follow each other, to the places
-    /// of the points.
+    /// Copies results to the places of their points. In the source, the results of all `k` follow
+    /// each other in groups of [`WIDTH`].
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {

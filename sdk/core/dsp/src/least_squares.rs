@@ -1,4 +1,4 @@
-//! Small dense least squares by the pseudo-inverse.
+//! Solves small dense least-squares problems with the pseudo-inverse.
 //!
 //! Matrices are stored row by row.
 
@@ -12,8 +12,8 @@ const ORTHOGONAL: f64 = 1e-15;
 
 /// The Moore–Penrose inverse of a matrix, stored for repeated use.
 ///
-/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest one count as zero, so zero
-/// or dependent rows are allowed.
+/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest singular value count as
+/// zero, so zero or dependent rows are allowed.
 ///
 /// ```
 /// use htex_dsp::least_squares::PseudoInverse;

@@ -83,8 +83,8 @@ pub(crate) fn select_distinct(
     kept
 }
 
-/// A peak, ordered by magnitude. Of two equal magnitudes, the one with the lower frequency is
-/// greater.
+/// A peak, ordered by magnitude. Of two peaks with equal magnitudes, the peak with the lower
+/// frequency is greater.
 #[derive(PartialEq)]
 struct Candidate(Peak);
 

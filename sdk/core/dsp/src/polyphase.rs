@@ -13,7 +13,7 @@ const CHUNK: usize = 256;
 pub(crate) struct Polyphase {
     /// L.
     up: usize,
-    /// Integer and fractional part of M/L, the latter in units of 1/L.
+    /// Integer and fractional part of M/L. The unit of the fractional part is 1/L.
     step: (usize, usize),
     taps: usize,
     /// The kernel, one row per phase, and one row more if rows are interpolated. All converters

@@ -167,8 +167,9 @@ pub struct OwnRate {
 const OWN_PHASES: u64 = 4;
 
 impl OwnRate {
-    /// Makes it from the source's rate and highest frequency, hertz. Returns `None` if this
-    /// frequency is below the transition band, because the source then passes unchanged.
+    /// Computes the amplitude for a source with this sample rate and highest frequency, hertz.
+    /// Returns `None` if this frequency is below the transition band, because the source then
+    /// passes unchanged.
     pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
         let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
         Some(Self { rate_hz, kernel: spec.own_kernel(), taps: spec.taps() })

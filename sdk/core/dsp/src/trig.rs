@@ -132,7 +132,7 @@ fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     cosines
 }
 
-/// High words of π/4, and of 2⁻²⁷ √2. Below the latter, the sine equals the angle.
+/// High words of π/4, and of 2⁻²⁷ √2. Below 2⁻²⁷ √2, the sine equals the angle.
 const QUARTER_PI: u32 = 0x3fe9_21fb;
 const TINY: u32 = 0x3e46_a09e;
 /// High word of 2⁻²⁷. Below it, the tangent equals the angle.
@@ -148,7 +148,8 @@ fn high_word(x: f64) -> u32 {
     (x.to_bits() >> 32) as u32 & 0x7fff_ffff
 }
 
-/// Splits an angle above π/4 into quarter turns and a rest, which is returned in two parts.
+/// Splits an angle above π/4 into quarter turns and a remainder. Returns the remainder as the sum
+/// of two numbers.
 fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
     // If this is added and subtracted again, a number is rounded to a whole one.
     const ROUND: f64 = 1.5 / f64::EPSILON;

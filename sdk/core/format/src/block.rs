@@ -110,8 +110,8 @@ fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> 
 /// its values.
 ///
 /// # Errors
-/// [`WriteError::OutOfRange`] if a value is not finite or its field's store cannot hold it,
-/// [`WriteError::Layout`] if `flat` does not follow `fields`.
+/// [`WriteError::OutOfRange`] if a value is not finite or its field cannot store it,
+/// [`WriteError::Layout`] if `flat` does not match `fields`.
 ///
 /// ```
 /// use htex_format::{StoredField, Steps, StoredAs, round_parameters};
@@ -145,8 +145,8 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
 /// parameters rounds with this function.
 ///
 /// # Errors
-/// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the store has no value in
-/// the field's range.
+/// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the field cannot store any
+/// value in its range.
 pub fn round_within(
     fields: &[StoredField],
     model: &Descriptor,

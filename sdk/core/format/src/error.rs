@@ -26,7 +26,7 @@ pub enum ReadError {
     /// The file is not a valid asset.
     #[error("not a valid asset: {}", summary(.findings))]
     Invalid {
-        /// All findings, including those that are not errors.
+        /// All findings, including warnings and information.
         findings: Vec<Finding>,
     },
 }
@@ -46,7 +46,7 @@ pub enum WriteError {
     /// The asset breaks a rule of the format.
     #[error("the asset breaks the format's rules: {}", summary(.findings))]
     Invalid {
-        /// All findings, including those that are not errors.
+        /// All findings, including warnings and information.
         findings: Vec<Finding>,
     },
     /// A parameter is outside the range of values that its field can store.

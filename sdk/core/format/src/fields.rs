@@ -169,7 +169,7 @@ impl FieldOrder<'_> {
     /// Rearranges a flat array from the order of the stored fields to the model's order.
     ///
     /// # Errors
-    /// [`WriteError::Layout`] if the array does not follow the stored fields.
+    /// [`WriteError::Layout`] if the array does not match the stored fields.
     pub fn arrange(&self, flat: &[f64]) -> Result<Vec<f64>, WriteError> {
         let stored = split(self.stored, flat)?;
         let mut arranged = Vec::with_capacity(flat.len());

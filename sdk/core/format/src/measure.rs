@@ -54,8 +54,8 @@ pub struct MeasureRow {
     pub meaning: &'static str,
     /// Definition for rendered samples; `None` if the measure is not computed from them.
     pub of_samples: Option<&'static str>,
-    /// The case in which a comparison lacks this measure, as words that follow "`None` ". `None` if
-    /// every comparison has the measure.
+    /// Says when a comparison lacks this measure, in words that follow "`None` " in a text. `None`
+    /// if every comparison has the measure.
     pub lacking: Option<&'static str>,
     /// Name in running text.
     pub name: &'static str,

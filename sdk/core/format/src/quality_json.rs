@@ -45,7 +45,7 @@ pub(crate) enum Slot<'a> {
 pub(crate) trait Entries: Default {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
-    /// Returns all keys in file order, including those without a value.
+    /// Returns all keys in file order, including keys without a value.
     fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
 
     /// Looks up a key without copying it. Returns the place that stores its value when it is read,

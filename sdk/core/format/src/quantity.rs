@@ -100,8 +100,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the unit in the form in which names of columns and fields end with it: `n`, `m_s2`,
-    /// `m_s` or `m`.
+    /// Returns the unit as a suffix for the names of columns and fields: `n`, `m_s2`, `m_s` or `m`.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::LateralForce | Self::NormalForce => "n",

@@ -25,7 +25,7 @@ use serde_json::{Map, Value};
 
 use htex_base::finding::escape;
 
-/// Largest integer up to which every integer is exact in binary64.
+/// Largest integer of a document: binary64 represents all integers up to it exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Error for a value of the wrong type, with the JSON pointer to the value.

@@ -333,8 +333,8 @@ impl LoadedModel {
     }
 
     /// For checkers of models: renders two equal voices of `frames` samples, one after the other,
-    /// in a single instance of a WASM module. (Otherwise this host gives each voice its own
-    /// instance.) Returns `None` for a model that is not a WASM module.
+    /// in a single instance of a WASM module. In normal use this host gives each voice its own
+    /// instance. Returns `None` for a model that is not a WASM module.
     ///
     /// # Errors
     /// [`HostError::Call`] if the model returns an error.
@@ -380,7 +380,7 @@ impl LoadedModel {
         Err(self.call_error(call, returned, |out| self.raw.last_error(out)))
     }
 
-    /// Checks the answer of a call that returns nothing: 0 is success.
+    /// Checks the status that a call without a result returned: 0 is success.
     pub(crate) fn check_zero(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
         match answer {
             0 => Ok(()),

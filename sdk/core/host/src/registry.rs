@@ -77,8 +77,8 @@ impl Candidate {
     }
 }
 
-/// Sorts models with the same id, given in the order in which they were added, by the precedence
-/// that [`Registry`] describes.
+/// Sorts models with the same id by the precedence that [`Registry`] describes. The models must be
+/// in the order in which they were added.
 fn by_precedence(all: &mut [Candidate]) {
     let first_place = |major: Option<u64>| {
         let installed = all.iter().filter(|one| !one.rank.is_chosen());
@@ -159,7 +159,8 @@ impl Registry {
     }
 
     /// Adds a model of this program: a type that implements [`Model`]. It takes precedence over all
-    /// other models with its id, except those that were named or registered before.
+    /// other models with the same id, except models that the user named or the program added
+    /// before.
     ///
     /// ```
     /// use htex_host::Registry;
@@ -358,7 +359,8 @@ impl Registry {
         self.models.iter().filter(|model| !model.descriptor().only_named)
     }
 
-    /// Returns notes for the user: models that shadow others, and plugins that could not be loaded.
+    /// Returns notes for the user, e.g. about models that shadow other models, and about plugins
+    /// that could not be loaded.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }

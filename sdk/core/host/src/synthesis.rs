@@ -25,8 +25,8 @@ const TAPS_RANGE: (usize, usize) = (15, 4095);
 const MOST_SAMPLES: f64 = 6.7e7;
 /// Duration of a loop's cross-fade, seconds, but never more than a quarter of the loop.
 const FADE_S: f64 = 0.1;
-/// Duration of the output at the start of a voice and its resampler that a loop does not use,
-/// seconds.
+/// Duration of the first samples of a voice and its resampler, seconds. A loop leaves these samples
+/// out.
 const RUN_IN_S: f64 = 0.1;
 
 /// A method of synthesis. As text it is `streamed`, `loop:SECONDS` or `filter:TAPS`. The number is

@@ -4,8 +4,8 @@
 //! this check, a WASM compiler would have to canonicalise NaNs in every operation.
 //!
 //! A voice interpolates the parameters of conditions itself, in buffers that were allocated with
-//! the voice. The voice of a WASM module does so in its own instance. Therefore following a finger
-//! neither allocates nor locks.
+//! the voice. The voice of a WASM module interpolates them in its own instance. Therefore following
+//! a finger neither allocates nor locks.
 
 use htex_model::{Motion, Status};
 

@@ -27,7 +27,7 @@ const BLOCK: usize = 32;
 type GroupSamples = [f32; GROUP];
 
 /// A filter whose coefficients move gradually from one parameter set to the next. Every filter on
-/// the way is stable. All methods but [`new`](Self::new) run on the render thread and do not
+/// the way is stable. All methods except [`new`](Self::new) run on the render thread and must not
 /// allocate.
 pub trait MovingFilter: Sized + Send + 'static {
     /// Index of the parameter field that contains the filter's sample rate, hertz.
@@ -255,7 +255,8 @@ fn rounded_up(samples: f64) -> u32 {
     whole + u32::from(f64::from(whole) < samples)
 }
 
-/// Returns the gain of the noise that gives samples of unit RMS.
+/// Returns the gain by which the noise before the filter is multiplied, so that the samples have
+/// unit RMS.
 fn gain(rate_hz: f64, level: f64) -> f64 {
     // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
     htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level

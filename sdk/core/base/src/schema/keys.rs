@@ -36,7 +36,7 @@ fn place(path: &[String]) -> String {
     })
 }
 
-/// Refuses a document with keys that a `T` does not have.
+/// Refuses a document with keys that the schema of `T` does not contain.
 ///
 /// # Errors
 /// If the document has such keys. The text has one sentence for each.

@@ -267,8 +267,8 @@ impl Storage {
         }
     }
 
-    /// Checks whether a file at this location could be written, as far as this is known without a
-    /// request: from its scheme and the settings of its store.
+    /// Checks whether a file at this location could be written. Sends no request, so it checks only
+    /// the scheme of the URI and the settings of the store.
     ///
     /// # Errors
     /// If the file could not be written.

@@ -20,7 +20,7 @@ pub struct Usage {
     pub bytes: u64,
 }
 
-/// One version of a file. A program reads ranges of it. If the file is replaced, reads fail with
+/// An open file, for reading ranges of one version of it. If the file is replaced, reads fail with
 /// [`StorageProblem::Changed`] and never mix two versions.
 ///
 /// ```

@@ -15,7 +15,7 @@ use crate::library::rules as rule;
 /// libraries.
 pub const FIRST_READ: u64 = 16 << 10;
 
-/// A library that is being opened. The caller gives it bytes until it becomes an [`Index`].
+/// A library that is being opened. The caller passes bytes to it until it becomes an [`Index`].
 ///
 /// ```
 /// use htex_format::library::{Index, LibraryError, Limits, Opening, Progress};

@@ -120,7 +120,8 @@ struct Texts {
 }
 
 impl Texts {
-    /// Reads `count` texts. The first must be empty, and each must sort after the one before.
+    /// Reads `count` texts. The first text must be empty, and each text must sort after the text
+    /// before it.
     fn read(cursor: &mut Cursor<'_>, count: usize) -> Result<Self, Fault> {
         let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(count));
         let mut text = Vec::new();

@@ -214,7 +214,8 @@ impl Estimate {
     }
 }
 
-/// Returns how much longer an operator takes than a simple one, microseconds.
+/// Returns the time that an operator takes in addition to the time of a simple operator,
+/// microseconds.
 fn more_us(operator: &Operator<'_>) -> f64 {
     use Operator as O;
     match operator {

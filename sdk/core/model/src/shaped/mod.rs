@@ -92,10 +92,10 @@ pub trait ShapedModel: 'static {
     /// The descriptor; see [`Model::DESCRIPTOR`].
     const DESCRIPTOR: StaticDescriptor;
 
-    /// As [`Model::fit`].
+    /// Finds the parameters that describe a spectrum; see [`Model::fit`].
     ///
     /// # Errors
-    /// As [`Model::fit`].
+    /// Finds the parameters that describe a spectrum; see [`Model::fit`].
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
     /// Writes the magnitude of the shape; see [`Model::magnitude`]. The default writes the curve,

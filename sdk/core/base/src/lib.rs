@@ -1,10 +1,10 @@
-//! What the crates of htex share. It knows neither textures nor devices.
+//! Code that the crates of htex share. It contains nothing about textures or devices.
 //!
 //! - [`finding`]: results of validation, with rules, reports and hints.
-//! - [`files`]: files that are written whole, and guards for names and folders that somebody else
-//!   chose.
-//! - `storage`: files by URI. Needs the feature `storage`; web servers and object stores need
-//!   `cloud`.
+//! - [`files`]: files that are written completely or not at all, and safe access to files and
+//!   folders that come from somebody else.
+//! - `storage`: reads and writes files by URI. It needs the feature `storage`; web servers and
+//!   object stores need the feature `cloud`.
 //! - [`schema`]: JSON Schemas made from Rust types, and checks against them.
 //! - [`native`]: native libraries, loaded from files or by name.
 //! - [`setters!`]: methods that set the fields of options.
@@ -16,7 +16,8 @@ pub mod schema;
 #[cfg(feature = "storage")]
 pub mod storage;
 
-/// Writes methods that set a field and return the options, inside an `impl`.
+/// Defines methods inside an `impl` of an options type. Each method sets a field and returns the
+/// options.
 ///
 /// ```
 /// #[derive(Default)]

@@ -2,9 +2,9 @@
 //! while they change. The direct form is fast; the lattice stays stable.
 //!
 //! The direct form computes four samples at a time. Once the coefficients have been constant for as
-//! many samples as the lattice has stages, both forms are equal up to rounding. Coefficients
-//! between two filters are computed from line spectral frequencies, between which every filter is
-//! stable.
+//! many samples as the lattice has stages, both forms are equal up to rounding. The lattice moves
+//! from one filter to another by interpolating their line spectral frequencies, because every
+//! filter in between is then stable.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
@@ -15,19 +15,20 @@ use crate::quad::{Quad, VOICES};
 /// [`GROUP`] samples that are filtered together.
 pub type Group = [f64; GROUP];
 
-/// Limit for the use of the direct form. Its rounding error, relative to the output, is at most
-/// about 1e-16 times the sum of the absolute coefficients times the filter's gain for noise. If the
-/// product of the last two is below this limit, the error is below the resolution of
-/// single-precision samples.
+/// Limit for the use of the direct form: the largest product of the sum of the absolute
+/// coefficients and the filter's gain for noise. The rounding error of the direct form, relative to
+/// the output, is at most about 1e-16 times this product. Up to this limit, the error is below the
+/// resolution of single-precision samples.
 const MAX_DIRECT_ERROR: f64 = 1e7;
 
-/// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` with coefficients that can change while it runs (f64 state).
+/// The all-pole filter `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)`, whose coefficients can change while it runs
+/// (f64 state).
 ///
 /// While the coefficients are constant, the filter computes four samples at a time (transposed
 /// direct form II, the recursion unrolled for four samples). While they change it runs as a
-/// lattice, which is stable if each reflection coefficient is inside (-1, 1). The switch between
-/// the two is inaudible: after as many samples with constant coefficients as the lattice has
-/// stages, its state depends only on its last outputs.
+/// lattice, which is stable if each reflection coefficient is inside (-1, 1). The switch from the
+/// lattice to the direct form is inaudible: after as many samples with constant coefficients as the
+/// lattice has stages, its state depends only on its last outputs.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;
@@ -48,21 +49,21 @@ pub struct AllPole {
     direct: Option<Direct>,
 }
 
-/// Four filters with constant coefficients, computed side by side. Each output is bit-identical to
-/// the output of the filter on its own.
+/// Four all-pole filters with constant coefficients, computed side by side. Each output is
+/// bit-identical to the output of the same filter run alone.
 #[derive(Debug)]
 pub struct AllPoles<'a>([&'a mut AllPole; VOICES]);
 
 impl AllPole {
-    /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle. Its
-    /// order can be raised up to `max_order` without an allocation.
+    /// Returns a filter with zero state, or `None` if a pole lies on or outside the unit circle.
+    /// [`Self::raise_order`] can raise the order up to `max_order` without an allocation.
     pub fn with_max_order(coefficients: &[f64], max_order: usize) -> Option<Self> {
         let mut filter = Self::new(coefficients)?;
         filter.lattice.reserve(max_order);
         Some(filter)
     }
 
-    /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle.
+    /// Returns a filter with zero state, or `None` if a pole lies on or outside the unit circle.
     pub fn new(coefficients: &[f64]) -> Option<Self> {
         let mut reflection = coefficients.to_vec();
         if !step_down_in_place(&mut reflection) {
@@ -95,8 +96,8 @@ impl AllPole {
         self.lattice.order()
     }
 
-    /// The reflection coefficients. They may be changed between samples, and must stay inside (-1,
-    /// 1). Does not allocate.
+    /// Returns the reflection coefficients. The caller may change them between samples; they must
+    /// stay inside (-1, 1). Does not allocate.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         if self.direct.take().is_some() {
             self.lattice.set_past(&self.past);
@@ -105,7 +106,7 @@ impl AllPole {
         self.lattice.reflection_mut()
     }
 
-    /// Filters one sample as a lattice; for use while coefficients change.
+    /// Filters one sample as a lattice. Use this function while coefficients change.
     pub fn tick(&mut self, input: f64) -> f64 {
         if self.direct.is_some() {
             self.reflection_mut();
@@ -171,7 +172,7 @@ impl AllPole {
 }
 
 impl<'a> AllPoles<'a> {
-    /// Combines four filters. `None` if one of them still runs as a lattice because its
+    /// Combines four filters. Returns `None` if one of them still runs as a lattice because its
     /// coefficients changed.
     pub fn new(filters: [&'a mut AllPole; VOICES]) -> Option<Self> {
         let direct = filters.iter().all(|filter| filter.direct.is_some());

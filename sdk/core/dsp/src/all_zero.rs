@@ -26,7 +26,8 @@ pub struct AllZero {
 }
 
 impl AllZero {
-    /// Returns a filter with zero state. `None` if there are more than [`MAX_ORDER`] coefficients.
+    /// Returns a filter with zero state, or `None` if there are more than [`MAX_ORDER`]
+    /// coefficients.
     pub fn new(coefficients: &[f64]) -> Option<Self> {
         let mut filter = Self {
             coefficients: [0.0; MAX_ORDER],
@@ -44,13 +45,13 @@ impl AllZero {
         self.order = self.order.max(order.min(MAX_ORDER));
     }
 
-    /// The coefficients, to be changed between samples.
+    /// Returns the coefficients. The caller may change them between samples.
     pub fn coefficients_mut(&mut self) -> &mut [f64] {
         &mut self.coefficients[..self.order]
     }
 
-    /// Filters one sample; for use while coefficients change. Gives the same sums as
-    /// [`Self::process`].
+    /// Filters one sample. Use this function while coefficients change. The output has the same
+    /// bits as the output of [`Self::process`].
     pub fn tick(&mut self, input: f64) -> f64 {
         // One product after the other, in the order of `Sums`, so that both give the same bits.
         let own = self.coefficients[..self.order].iter();

@@ -1,8 +1,8 @@
 //! Steep filters at the edges of the band, for noise that is generated with a wider spectrum.
 //!
-//! A filter changes the RMS by up to 2 %: by its ripple, and because the Nyquist frequency cuts
-//! half a bin off. So a model that uses these filters measures its level after them, as a sum over
-//! a table of frequencies ([`PassedPower`]).
+//! A filter changes the RMS by up to 2 %, because of its ripple, and because half of the bin at the
+//! Nyquist frequency is missing. So a model that uses these filters computes its level after the
+//! filters, as a sum over a table of frequencies ([`PassedPower`]).
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -15,8 +15,8 @@ use crate::pipeline::Pipeline;
 use crate::shared::Shared;
 use crate::wide::{Work, very_wide, wide};
 
-/// Filter order: 80 dB per decade. At the edge it is as steep as a Butterworth filter of twice the
-/// order; half a bin outside the band almost no power passes.
+/// Filter order: 80 dB per decade. At the edge, the filter is as steep as a Butterworth filter of
+/// twice the order, so little power passes outside the band.
 const ORDER: usize = 4;
 const RIPPLE_DB: f64 = 0.2;
 /// Number of bins on either side of an edge in which the response changes within one bin.
@@ -28,14 +28,15 @@ const EDGE_POINTS: usize = 4;
 const BESIDE: f64 = 0.5;
 
 /// Returns the filters that limit noise to `band`, at the sample rate `rate_hz`. They are Chebyshev
-/// filters: within 0.2 dB from an eighth of the edge's frequency inside each edge, and 3 dB down
-/// half a grid bin outside it. An edge at or above the Nyquist frequency gets no filter. The output
-/// is delayed by some samples ([`Pipeline`]).
+/// filters. Inside the band, at a distance of an eighth of the edge's frequency or more from each
+/// edge, the magnitude is constant within 0.2 dB. Half a grid bin outside each edge, it is 3 dB
+/// down. An edge at or above the Nyquist frequency gets no filter. The output is delayed by some
+/// samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
 
-/// Returns the part of the power at a frequency, hertz, that [`band_limit`] passes.
+/// Returns a function of the frequency in hertz: the part of the power that [`band_limit`] passes.
 pub fn band_limit_power(band: Band, rate_hz: f64) -> impl Fn(f64) -> f64 {
     let sections = sections(band, rate_hz);
     move |hz| {
@@ -56,16 +57,18 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// A table of how much of a noise's power passes [`band_limit`] and is measured by the bins of the
-/// band: for each grid bin in the band, and for some bins outside. Near the edges the bins are
-/// subdivided. A bin that contains the Nyquist frequency counts only up to it.
+/// A table over frequency: the part of a noise's power that passes [`band_limit`] and that the bins
+/// of the band measure. It covers each grid bin in the band and some bins outside. Bins near the
+/// edges are subdivided. If a bin contains the Nyquist frequency, only its part below that
+/// frequency counts.
 ///
-/// The table corrects the level of filtered noise. Without it the noise would be too weak, by three
-/// losses: the filters' ripple, the part of the highest bin above the Nyquist frequency, and the
-/// power that the window misses at the band's edges.
+/// The table corrects the level of filtered noise. Without the correction, the noise would be too
+/// weak for three reasons: the filters' ripple, the part of the highest bin above the Nyquist
+/// frequency, and the power that the window does not measure at the band's edges.
 #[derive(Debug, Clone)]
 pub struct PassedPower {
-    /// Frequency in hertz, and the part of the power there that is measured, 0 to about 1.
+    /// Frequency in hertz, and the part of the power at this frequency that is measured, 0 to
+    /// about 1.
     points: Vec<(f64, f64)>,
     /// The same points in groups of [`TURNS`]: cosine and sine of the phase advance per sample, and
     /// the part of the power.
@@ -84,7 +87,7 @@ struct Turns {
 const TURNS: usize = 8;
 
 impl PassedPower {
-    /// As [`Self::new`]. All users of one band and rate share one table.
+    /// Returns the table of [`Self::new`]. All users of the same band and rate share one table.
     pub fn shared(band: Band, rate_hz: f64) -> Arc<Self> {
         static PASSED: Shared<[u64; 3], PassedPower> = Shared::new();
         let key = [band.low_hz, band.high_hz, rate_hz].map(f64::to_bits);
@@ -131,16 +134,17 @@ impl PassedPower {
         crate::root::sqrt(power / 3.0)
     }
 
-    /// As [`Self::level_rms`], for white noise of unit magnitude that passes the filter `1 / (1 - Σ
-    /// A_i z⁻ⁱ)` at this rate. Does not allocate.
+    /// Returns the RMS, as [`Self::level_rms`] does, of white noise that has a magnitude of 1 in
+    /// each bin and passes the filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate. Does not allocate.
     pub fn all_pole_level_rms(&self, coefficients: &[f64]) -> f64 {
         let mut power = 0.0;
         wide(AllPolePower { turns: &self.turns, coefficients, power: &mut power });
         crate::root::sqrt(power / 3.0)
     }
 
-    /// As [`Self::all_pole_level_rms`], for a filter with zeros and poles, given by the cosines of
-    /// the line spectral frequencies of both. Does not allocate.
+    /// Returns the same RMS as [`Self::all_pole_level_rms`], but for a filter with zeros and poles.
+    /// The arguments are the cosines of the line spectral frequencies of the zeros and of the
+    /// poles. Does not allocate.
     pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
         let mut power = 0.0;
         let work = RationalPower { turns: &self.turns, zeros, poles, power: &mut power };
@@ -227,9 +231,9 @@ impl Work for RationalPower<'_> {
 }
 
 /// Squared absolute values of a polynomial at a group of points, divided by 4 for each pair of
-/// lines. `cosines` are the cosines of its line spectral frequencies, which belong in turn to the
-/// symmetric and to the antisymmetric polynomial. On the unit circle these two are a quarter turn
-/// apart, so their squares add.
+/// lines. `cosines` are the cosines of its line spectral frequencies. These belong alternately to
+/// the symmetric and the antisymmetric polynomial. On the unit circle the phases of these two
+/// polynomials differ by a quarter turn, so their squares add.
 #[inline(always)]
 fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
     let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);

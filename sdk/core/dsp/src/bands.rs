@@ -1,4 +1,5 @@
-//! Comparison of two texture spectra: energies in overlapping log-spaced bands, and correlation.
+//! Compares two texture spectra: by their energies in overlapping log-spaced bands, and by their
+//! correlation.
 //!
 //! The project measures a model's fidelity in nine bands over 20 to 1000 Hz. An *energy* is the sum
 //! of weight times squared magnitude, in the squared unit of the magnitudes.
@@ -9,11 +10,11 @@ use crate::beta::log_unit;
 use crate::grid::Band;
 use crate::triangles::TriangleBank;
 
-/// Number of bands in the standard comparison.
+/// Number of bands by which the project compares spectra.
 pub const BAND_COUNT: usize = 9;
 
-/// Added to both energies before their ratio is taken, relative to the largest reference band. It
-/// keeps the error of an empty band large but finite.
+/// Floor that is added to both energies before they are divided, as a fraction of the largest
+/// reference energy. It keeps the error of an empty band large but finite.
 const RELATIVE_FLOOR: f64 = 1e-12;
 
 /// A bank of triangular, log-spaced, half-overlapping bands. Their flanks are linear in the
@@ -66,8 +67,9 @@ impl BandBank {
 }
 
 /// Error of each band in dB, from band *energies*: `10 log10((model + tiny) / (reference + tiny))`,
-/// where `tiny` is 1e-12 of the largest reference band. If all energies of both are zero, the
-/// errors are 0 dB. If only the reference is all zero, they are +∞ where the model has energy.
+/// where `tiny` is 1e-12 of the largest reference band. If all energies of the model and the
+/// reference are zero, the errors are 0 dB. If only the reference is zero everywhere, the errors
+/// are +∞ in the bands in which the model has energy.
 pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
     let tiny = RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max);
     reference
@@ -101,8 +103,8 @@ pub fn rms(values: &[f64]) -> f64 {
     crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
-/// Returns the Pearson correlation of two slices, a number from -1 to 1. A longer slice is cut to
-/// the length of the other.
+/// Returns the Pearson correlation of two slices, a number from -1 to 1. If one slice is longer,
+/// its excess values are ignored.
 ///
 /// The result is never NaN for finite input. If either slice is constant, the correlation is
 /// undefined and the result is 0, except that two equal slices give 1.
@@ -127,7 +129,7 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
     if correlation.is_nan() { 0.0 } else { correlation.clamp(-1.0, 1.0) }
 }
 
-/// Deviations from the mean, divided by the largest one; all zero if the values are constant.
+/// Deviations from the mean, divided by the largest deviation; all zero if the values are constant.
 fn deviations(values: &[f64]) -> Vec<f64> {
     // The values are compared with each other and not with the mean, because rounding can move the
     // mean of equal values away from them.

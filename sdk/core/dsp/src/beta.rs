@@ -26,7 +26,7 @@ impl LogAxis {
         Self { low_hz: band.low_hz, log_ratio: libm::log(band.high_hz / band.low_hz) }
     }
 
-    /// Position of `f_hz`, as [`log_unit`].
+    /// Returns the position of `f_hz` on the axis, as [`log_unit`] does.
     pub fn unit_at(&self, f_hz: f64) -> f64 {
         libm::log(f_hz / self.low_hz) / self.log_ratio
     }
@@ -91,7 +91,7 @@ impl BetaDensity {
     }
 }
 
-/// `factor * log`, but zero for a factor of zero, even if the logarithm is -∞.
+/// Returns `factor * log`, and 0 for a factor of 0, even if the logarithm is -∞.
 fn times_log(factor: f64, log: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { factor * log }
 }

@@ -5,23 +5,23 @@ use core::f64::consts::PI;
 
 use crate::spectrum::Complex;
 
-/// State smaller than this is set to zero, so that it does not become denormal: some processors
-/// handle denormal numbers a hundred times slower. The threshold is some 200 decades below any
-/// perceptible amplitude.
+/// Threshold below which the state is set to zero, so that it does not become denormal. Some
+/// processors handle denormal numbers a hundred times slower than other numbers. The threshold is
+/// some 200 decades below any perceptible amplitude.
 const SMALLEST_STATE: f64 = 1e-200;
 
-/// One section: `H(z) = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²)`.
+/// A second-order section: `H(z) = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Biquad {
-    /// Numerator, z⁰.
+    /// Coefficient of z⁰ in the numerator.
     pub b0: f64,
-    /// Numerator, z⁻¹.
+    /// Coefficient of z⁻¹ in the numerator.
     pub b1: f64,
-    /// Numerator, z⁻².
+    /// Coefficient of z⁻² in the numerator.
     pub b2: f64,
-    /// Denominator, z⁻¹.
+    /// Coefficient of z⁻¹ in the denominator.
     pub a1: f64,
-    /// Denominator, z⁻².
+    /// Coefficient of z⁻² in the denominator.
     pub a2: f64,
 }
 
@@ -112,9 +112,10 @@ pub(crate) fn without_denormals(state: f64) -> f64 {
     if state.abs() < SMALLEST_STATE { 0.0 } else { state }
 }
 
-/// Sections in series, with f64 state. Does not allocate after construction.
+/// A cascade: second-order sections in series, with f64 state. Does not allocate after
+/// construction.
 ///
-/// The output does not depend on how the input is cut into blocks.
+/// The output does not depend on the sizes of the blocks.
 ///
 /// ```
 /// use htex_dsp::{biquad::Cascade, butterworth};

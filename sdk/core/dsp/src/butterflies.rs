@@ -25,8 +25,8 @@ impl Number for f64 {
 }
 
 /// A transform of `R` numbers with positive exponents; real and imaginary parts are separate. It is
-/// a trait, because functions that are passed as arguments are not always compiled into the
-/// function that has the wide registers.
+/// a trait and not a function argument, because compilers do not always inline a function argument
+/// into the function that uses the wide registers.
 pub(crate) trait Butterfly<const R: usize> {
     fn turn<T: Number>(re: [T; R], im: [T; R]) -> ([T; R], [T; R]);
 }

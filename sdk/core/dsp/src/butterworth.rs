@@ -2,8 +2,8 @@
 //! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass, but does not
 //! say which family of filters.
 //!
-//! The digital design is the bilinear transform with the cut-off prewarped, as
-//! `scipy.signal.butter(..., output="sos")` does it: at the cut-off the magnitude is 1/√2 exactly.
+//! The digital design is the bilinear transform with a prewarped cut-off, as in
+//! `scipy.signal.butter(..., output="sos")`. At the cut-off the magnitude is exactly 1/√2.
 
 use core::f64::consts::PI;
 use core::ops::Deref;
@@ -39,13 +39,14 @@ pub(crate) enum PassKind {
 
 /// Returns low-pass sections with cut-off `fc_hz` at the sample rate `rate_hz`.
 ///
-/// `None` if the order is not 1 to [`MAX_ORDER`], or the cut-off is not strictly between 0 and
-/// the Nyquist frequency `rate_hz / 2`.
+/// Returns `None` if the order is not from 1 to [`MAX_ORDER`], or if the cut-off is not strictly
+/// between 0 and the Nyquist frequency `rate_hz / 2`.
 pub fn low_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::LowPass, order, fc_hz, rate_hz)
 }
 
-/// Returns high-pass sections; arguments and `None` as in [`low_pass`].
+/// Returns high-pass sections. The arguments are the same as for [`low_pass`], and so are the cases
+/// in which the result is `None`.
 pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(PassKind::HighPass, order, fc_hz, rate_hz)
 }
@@ -88,8 +89,8 @@ pub(crate) fn in_range(edge_hz: f64, rate_hz: f64) -> bool {
     edge_hz > 0.0 && edge_hz < rate_hz / 2.0 && rate_hz.is_finite()
 }
 
-/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with the sine and cosine of half
-/// the cut-off angle, which stay finite near Nyquist, where the usual tangent overflows.
+/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`. It uses the sine and cosine of half the
+/// cut-off angle, because the usual tangent overflows near the Nyquist frequency.
 fn first_order(kind: PassKind, omega: f64) -> Biquad {
     let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let scale = 1.0 / (sine + cosine);

@@ -1,6 +1,6 @@
 //! The orthonormal cosine transform, which turns log band energies into cepstral coefficients.
 //!
-//! It is computed as plain sums: for tens of bands, an FFT is not faster.
+//! This module computes it as plain sums, because an FFT is not faster for tens of bands.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -15,7 +15,7 @@ pub fn dct_ii(values: &[f64], out: &mut [f64]) {
     }
 }
 
-/// Inverse of [`dct_ii`], with a precomputed table for a fixed number of output values.
+/// The inverse of [`dct_ii`], with a precomputed table for a fixed number of values.
 ///
 /// ```
 /// use htex_dsp::dct::{InverseDct, dct_ii};
@@ -42,9 +42,9 @@ impl InverseDct {
         }
     }
 
-    /// Computes the values from the first coefficients. Missing coefficients count as zero;
-    /// coefficients beyond the number of values are ignored, and elements of `out` beyond it stay
-    /// unchanged. Does not allocate.
+    /// Computes the values from the first coefficients. Missing coefficients count as zero, and
+    /// coefficients beyond the number of values are ignored. Elements of `out` beyond the number of
+    /// values do not change. Does not allocate.
     pub fn run(&self, coefficients: &[f64], out: &mut [f64]) {
         let rows = self.cosines.chunks(self.scale.len().max(1));
         for (value, row) in out.iter_mut().zip(rows) {

@@ -10,9 +10,9 @@ pub const GROUP: usize = 4;
 /// Highest order for which the direct form keeps all state in registers.
 pub(crate) const MAX_ORDER: usize = 16;
 
-/// Transposed direct form II, unrolled for four samples. The tables contain the contribution of
-/// each of the four inputs, added to the state that it meets, to the outputs and to the next state.
-/// Entries beyond the order are zero.
+/// Transposed direct form II, unrolled for four samples. Each of the four inputs is first added to
+/// an element of the state. The tables contain the contributions of these sums to the four outputs
+/// and to the next state. Entries beyond the order are zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Direct {
     outputs: [[f64; GROUP]; GROUP],
@@ -21,7 +21,8 @@ pub(crate) struct Direct {
 }
 
 impl Direct {
-    /// Makes the form from coefficients and the last outputs, of which the newest is at the end.
+    /// Makes the direct form from the coefficients and the last outputs; the newest output is at
+    /// the end.
     pub(crate) fn new(a: &[f64; MAX_ORDER], past: &[f64; MAX_ORDER]) -> Self {
         let mut direct = Self {
             outputs: [[0.0; GROUP]; GROUP],
@@ -56,7 +57,8 @@ impl Direct {
         }
     }
 
-    /// As [`Self::process`], for four voices side by side.
+    /// Filters one block of each of four voices in place, side by side. Otherwise the same as
+    /// [`Self::process`].
     pub(crate) fn process_four(
         four: [&mut Self; VOICES],
         order: usize,
@@ -126,8 +128,8 @@ fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad
     }
 }
 
-/// Separate from the function that interleaves the voices: otherwise compilers shuffle lanes inside
-/// the loop.
+/// The filter loop for four voices. It is separate from the function that interleaves the voices,
+/// because compilers would otherwise shuffle lanes inside the loop.
 struct RunVoices<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
 
 impl<const N: usize> Work for RunVoices<'_, N> {
@@ -177,7 +179,8 @@ impl Lane for f64 {
 }
 
 impl Lane for Quad {
-    /// Contributions of the first input. The other inputs have the same ones, but shifted.
+    /// Contributions of the first input. The contributions of the other inputs are the same
+    /// numbers, shifted.
     type Outputs = [Quad; GROUP];
 
     /// The same sums without multiplications by 0 or 1.

@@ -1,15 +1,15 @@
 //! Measures a stream of samples: its level, its mean frequency, and its power in bands.
 //!
-//! The level is computed from the samples of a block, exactly and without delay. Mean frequency and
-//! bands are computed from periodic Hann windows of `N` samples, where `N` is the smallest power of
-//! two that lasts at least 40 ms (at 20 kHz: 1024 samples, 51.2 ms; at 48 kHz: 2048, 42.7 ms). One
+//! The level is the exact RMS of the samples of a block, and has no delay. Mean frequency and bands
+//! are computed from periodic Hann windows of `N` samples, where `N` is the smallest power of two
+//! that lasts at least 40 ms (at 20 kHz: 1024 samples, 51.2 ms; at 48 kHz: 2048, 42.7 ms). One
 //! window ends every `N / 4` samples. Samples before the first one are 0.
 //!
 //! Let `X[k]` be the transform of the windowed samples, and `W` the sum of the squared window. Bin
 //! `k`, at `k * rate / N`, has the power `|X[k]|² / (N * W)`; all bins but the first and the last
 //! count twice. The powers of all bins then add up to the mean square of the windowed samples,
 //! divided by the mean square of the window. The result for a block is the mean over the windows
-//! that end in it. If none does, it is the result of the block before.
+//! that end in the block. If no window ends in it, the result is the same as for the block before.
 
 use alloc::vec::Vec;
 
@@ -30,7 +30,8 @@ const OVERLAP: usize = 4;
 pub struct Measurement {
     /// RMS of the samples; 0 if there are none.
     pub level_rms: f64,
-    /// Mean frequency, weighted by power, hertz; 0 for silence.
+    /// Mean frequency, hertz: the mean of the frequencies, weighted by their power. It is 0 for
+    /// silence.
     pub centroid_hz: f64,
     /// Number of samples.
     pub frames: u64,
@@ -76,17 +77,18 @@ pub struct Analyser {
     /// The last samples; the oldest one is at index `at`.
     ring: Vec<f32>,
     at: usize,
-    /// Number of samples since the last one that was not 0.
+    /// Number of samples since the last nonzero sample.
     quiet: usize,
     sums: Sums,
-    /// Sums over the windows that ended since the last call. After a call, the values of the last
-    /// window.
+    /// Sums over the windows that ended since the last call of [`Self::read`]. After a call, it
+    /// contains the values of the last window.
     bands: Vec<f64>,
     centroid_hz: f64,
 }
 
 impl Analyser {
-    /// Makes an analyser with `count` bands (at least one), which divide `band` in equal ratios.
+    /// Makes an analyser with `count` bands (at least one). The bands divide `band` so that the
+    /// ratio of upper to lower edge is the same for all.
     pub fn new(count: usize, band: Band, rate_hz: f64) -> Self {
         let count = count.max(1);
         let len = libm::ceil(WINDOW_S * rate_hz) as usize;
@@ -126,8 +128,9 @@ impl Analyser {
         self.bands.len()
     }
 
-    /// Returns the edges of the bands, ascending, hertz: one more than there are bands. The first
-    /// band nevertheless reaches down to 0 Hz, and the last one up to half the rate.
+    /// Returns the edges of the bands, ascending, hertz; there is one more edge than bands.
+    /// Although the list starts and ends with the edges of `band`, the first band also contains all
+    /// lower frequencies, down to 0 Hz, and the last band all higher ones, up to half the rate.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
@@ -220,7 +223,7 @@ impl Analyser {
     }
 
     /// Returns the measurements since the last call, and writes the mean square of each band to
-    /// `bands`, as far as there is room.
+    /// `bands`. If `bands` is too short, the remaining bands are left out.
     pub fn read(&mut self, bands: &mut [f64]) -> Measurement {
         let sums = core::mem::take(&mut self.sums);
         if sums.windows > 0 {

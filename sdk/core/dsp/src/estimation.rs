@@ -1,7 +1,7 @@
 //! Linear prediction from signals: Yule–Walker, Burg and covariance method.
 //!
-//! Each method takes several segments of one process and adds up their sums, so no window is
-//! applied and no prediction crosses a boundary between segments. For a single signal, pass
+//! Each method takes several segments of one random process and adds up their sums. It applies no
+//! window, and no prediction crosses a boundary between segments. For a single signal, pass
 //! `&[signal]`. Segments that are not longer than the order contribute nothing.
 
 use alloc::vec::Vec;
@@ -11,8 +11,8 @@ use crate::linear_prediction::{
     LinearPrediction, Stages, coefficients_to_reflection, levinson_durbin, stabilize,
 };
 
-/// Biased autocorrelation for the lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, with the sums and
-/// N added up over all segments. All zero if there are no samples.
+/// Returns the biased autocorrelation for the lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, where
+/// both the sum and N run over all segments. Returns zeros if there are no samples.
 pub fn autocorrelation(segments: &[&[f64]], order: usize) -> Vec<f64> {
     let total: usize = segments.iter().map(|segment| segment.len()).sum();
     (0..=order)
@@ -34,7 +34,8 @@ pub fn yule_walker(segments: &[&[f64]], order: usize) -> LinearPrediction {
 }
 
 /// Burg's estimate: each reflection coefficient minimises the sum of forward and backward error
-/// power (Burg 1975). Resolves short signals better than Yule–Walker, and is always stable.
+/// power (Burg 1975). For short signals, this estimate resolves frequencies better than the
+/// Yule–Walker estimate. The model is always stable.
 pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut errors: Vec<BurgErrors> = segments.iter().map(|s| BurgErrors::new(s)).collect();
     let mut stages = Stages::new(order, autocorrelation(segments, 0)[0]);
@@ -99,9 +100,9 @@ impl BurgErrors {
 }
 
 /// Covariance estimate: least squares of the forward error, over the samples whose predecessors are
-/// all in the segment. It is exact for noiseless resonances, but may be unstable. In that case
-/// [`stabilize`] makes it stable and it is marked `adjusted`. `error` is the residual power per
-/// predicted sample before that.
+/// all in the segment. The estimate is exact for noiseless resonances, but may be unstable. In that
+/// case [`stabilize`] makes it stable, and the result has `adjusted` set. `error` is the residual
+/// power per predicted sample before this correction.
 pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let long: Vec<&[f64]> = segments.iter().copied().filter(|s| s.len() > order).collect();
     let count: usize = long.iter().map(|s| s.len() - order).sum();

@@ -4,8 +4,8 @@ use core::f64::consts::{LN_2, LOG2_E};
 
 use crate::wide::{Work, wide};
 
-/// If this is added to a number of magnitude below 2⁵¹, the low bits of the sum are the nearest
-/// integer.
+/// Number that rounds: if it is added to a number of magnitude below 2⁵¹, the low bits of the sum
+/// are the nearest integer.
 const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 /// Numbers that are computed side by side. Only WASM modules need this, because they are compiled
 /// without the vectorisation of loops (`xtask/src/wasm.rs`).
@@ -29,7 +29,7 @@ const fn taylor() -> [f64; 9] {
 }
 
 /// Replaces each number by its exponential, with a relative error below 1e-9. Inputs are clamped to
-/// ±700; NaN counts as -700. There are no branches, so compilers vectorise it. The results are
+/// ±700; NaN counts as -700. The code has no branches, so compilers vectorise it. The results are
 /// bit-identical on every machine.
 ///
 /// ```

@@ -1,9 +1,9 @@
 //! Real FFTs of any length in double precision, bit-identical on every machine.
 //!
-//! FFTs of libraries choose their instructions, and thereby their rounding, by the processor, and
-//! they take sines from the system's C library. These FFTs are plain arithmetic, with tables from
-//! `libm`. They use Stockham's algorithm (radices 2 to 5 and 7), and Bluestein's for lengths with
-//! other prime factors.
+//! Other FFT libraries choose instructions that depend on the processor, and so does their
+//! rounding. They also take sines from the system's C library. The FFTs of this module are plain
+//! arithmetic, with tables from `libm`. They use Stockham's algorithm (radices 2 to 5 and 7), and
+//! Bluestein's for lengths with other prime factors.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -14,7 +14,7 @@ use complex::{ComplexFft, Points};
 
 mod complex;
 
-/// FFT of real signals of one length, with its tables and working memory.
+/// FFT of real signals of one length. It contains its tables and working memory.
 ///
 /// ```
 /// use htex_dsp::fft::RealFft;
@@ -51,7 +51,7 @@ impl RealFft {
     }
 
     /// Writes `X_k = Σ x_n exp(-2πi k n / len)`. Samples beyond the length are ignored, and missing
-    /// ones are zero. Does not allocate.
+    /// samples count as zero. Does not allocate.
     pub fn forward(&mut self, samples: &[f64], bins: &mut [Complex<f64>]) {
         let samples = &samples[..samples.len().min(self.len)];
         if self.len.is_multiple_of(2) {
@@ -70,7 +70,7 @@ impl RealFft {
 
     /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`; the last bin of an even length is
     /// counted once instead of twice. The result is `len` times the signal that has this spectrum.
-    /// Missing bins are zero. Does not allocate.
+    /// Missing bins count as zero. Does not allocate.
     pub fn inverse(&mut self, bins: &[Complex<f64>], samples: &mut [f64]) {
         let len = self.len;
         let bin = |k: usize| bins.get(k).copied().unwrap_or_default();

@@ -1,12 +1,12 @@
 //! Distance of a model's magnitude spectrum from a reference: the error in third-octave bands, and
 //! the log-spectral distance bin by bin. No model of this project is fitted to either measure.
 //!
-//! Both take slices of equal length; a longer one is cut. They raise a model's magnitude to at
-//! least 1e-9 of the reference's largest magnitude, so that an empty band gives a large but finite
-//! error.
+//! Both functions take slices of equal length and ignore the excess of a longer slice. Both raise a
+//! model's magnitude to at least 1e-9 of the reference's largest magnitude, so that the error of an
+//! empty band is large but finite.
 //!
-//! The nine-band error is not such a measure, because it is computed from the energies that the
-//! model `bands` stores when it has nine bands.
+//! The nine-band error ([`crate::bands`]) favours one model: the model `bands` with nine bands
+//! stores exactly the energies from which that error is computed.
 
 use alloc::vec::Vec;
 
@@ -15,16 +15,17 @@ use crate::bands::rms;
 /// Number of third-octave bands: their edges are `20 · 2^(k/3)` Hz, with k from 0 to this number.
 pub const THIRD_OCTAVES: usize = 17;
 const LOWEST_HZ: f64 = 20.0;
-/// Relative tolerance within which a frequency below an edge counts as on the edge. Edges at 40,
-/// 80, ... Hz are bins of the grid, and a computed power of 2 may be rounded up.
+/// Relative tolerance: a frequency that is below an edge by no more than this counts as on the
+/// edge. Edges at 40, 80, ... Hz are bins of the grid, and rounding may make a computed edge
+/// slightly too high.
 const ON_EDGE: f64 = 1e-12;
 /// Smallest magnitude of a model, relative to the largest of the reference.
 const RELATIVE_FLOOR: f64 = 1e-9;
 
 /// Third-octave error: RMS over the bands of `10 log10(model energy / reference energy)`, decibels.
-/// The energy is the sum of squared magnitudes. No gain is removed, so differences in level count.
-/// Only bands that contain a bin and energy of the reference are used; `None` if there is no such
-/// band.
+/// The energy is the sum of squared magnitudes. Differences in level count, because the spectra are
+/// not matched by a gain. Only bands that contain a bin and energy of the reference count. Returns
+/// `None` if there is no such band.
 ///
 /// ```
 /// use htex_dsp::fidelity::third_octave_error_rms_db;
@@ -53,7 +54,7 @@ pub fn third_octave_error_rms_db(
 }
 
 /// Log-spectral distance: RMS of `20 log10(model / reference)`, decibels, over the bins in which
-/// the reference is above 0. `None` if there is no such bin.
+/// the reference is above 0. Returns `None` if there is no such bin.
 pub fn log_spectral_distance_db(reference: &[f64], model: &[f64]) -> Option<f64> {
     let least = floor(reference);
     let heard = reference.iter().zip(model).filter(|(r, _)| **r > 0.0);

@@ -18,7 +18,8 @@ pub struct Fir {
 impl Fir {
     /// Makes a filter whose magnitude approximates `magnitude(hertz)` from 0 to half of `rate_hz`.
     /// `taps` is rounded up to an odd number. The design is frequency sampling with a Hann window,
-    /// so the resolution is about `4 · rate_hz / taps` hertz. The delay is half the length.
+    /// so the resolution is about `4 · rate_hz / taps` hertz. The delay is half the length of the
+    /// filter.
     pub fn with_magnitude(taps: usize, rate_hz: f64, magnitude: impl Fn(f64) -> f64) -> Self {
         let taps = taps.max(1) | 1;
         let half = taps / 2;
@@ -47,7 +48,7 @@ impl Fir {
         Self::new(kernel)
     }
 
-    /// Makes a filter that changes nothing and has no delay.
+    /// Makes a filter that passes its input unchanged, without delay.
     pub fn through() -> Self {
         Self::new(alloc::vec![1.0])
     }

@@ -1,4 +1,4 @@
-//! A gain that changes linearly, to avoid clicks.
+//! A gain that changes linearly, so that changes make no clicks.
 
 /// A gain that moves to each new target along a straight line of fixed duration.
 ///
@@ -23,22 +23,23 @@ impl Glide {
         Self { value, target: value, step: 0.0, len: len.max(1), left: 0 }
     }
 
-    /// Sets the gain at once, without a ramp.
+    /// Sets the gain to `value` at once, without a ramp.
     pub fn restart(&mut self, value: f32) {
         (self.value, self.target, self.left) = (value, value, 0);
     }
 
-    /// Whether the gain is constant at `value`.
+    /// Returns whether the gain is `value` and is not changing.
     pub fn rests_at(&self, value: f32) -> bool {
         self.left == 0 && self.value == value
     }
 
-    /// Sets the gain to its target at once.
+    /// Ends a change at once: sets the gain to its target.
     pub fn finish(&mut self) {
         self.restart(self.target);
     }
 
-    /// Number of samples of [`Self::apply`] after which the gain stays 0. `None` if it does not.
+    /// Returns the number of samples after which the gain has reached 0, or `None` if its target is
+    /// not 0.
     pub fn until_zero(&self) -> Option<u32> {
         (self.target == 0.0 && (self.left > 0 || self.value == 0.0)).then_some(self.left)
     }
@@ -53,7 +54,7 @@ impl Glide {
         self.set_within(target, self.len);
     }
 
-    /// As [`Self::set`], but over `len` samples (at least one).
+    /// Starts a change to `target`, as [`Self::set`] does, that takes `len` samples (at least one).
     pub fn set_within(&mut self, target: f32, len: u32) {
         // A host may set the same target with every block. If each call restarted the ramp, it
         // would never end.

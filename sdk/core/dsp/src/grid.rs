@@ -1,9 +1,10 @@
 //! The band of a texture, and the grid of frequencies on which its spectrum is given.
 //!
-//! Unit RMS is the RMS of the bins in the band. The window spreads a component at 20 Hz partly into
-//! bins outside the band. If unit RMS were defined over all bins, each copy of a texture with much
-//! energy at 20 Hz would lose up to 0.1 dB. With this definition, 300 s of three copies stay within
-//! 0.1 dB.
+//! A spectrum has unit RMS if the RMS computed from the bins in the band is 1. Bins outside the
+//! band do not count, although the window spreads a component at 20 Hz partly into them. If they
+//! counted, recording and fitting a rendered texture with much energy at 20 Hz would lower its
+//! level by up to 0.1 dB each time. With this definition, three such copies in a row stay within
+//! 0.1 dB (300 s of samples).
 
 use alloc::vec::Vec;
 
@@ -55,18 +56,18 @@ impl Band {
         (self.first_bin()..=self.last_bin()).map(|bin| bin as f64 * GRID_HZ).collect()
     }
 
-    /// Whether `frequency_hz` lies in the band, edges included.
+    /// Returns whether `frequency_hz` lies in the band. The band includes its edges.
     pub fn contains(&self, frequency_hz: f64) -> bool {
         (self.low_hz..=self.high_hz).contains(&frequency_hz)
     }
 }
 
-/// Part of a component's power that the bins of a band measure through the periodic Hann window: 1
-/// well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin and the first bin
-/// outside, and 0 far outside.
+/// Returns the part of a component's power that the bins of a band measure through the periodic
+/// Hann window. It is 1 well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin
+/// and the first bin outside, and 0 far outside.
 ///
-/// All bins together would measure 1.5 times the power of a component, but bins outside the band do
-/// not contribute. Noise with a given level in the band is amplified to compensate.
+/// A component near an edge also has power in bins outside the band, which do not count. Generators
+/// of noise amplify it to compensate for this loss.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
     ReadPart::new(band).part_at(frequency_hz)
 }
@@ -123,14 +124,15 @@ impl From<(f64, f64)> for Band {
     }
 }
 
-/// RMS of a texture spectrum on the grid, in the unit of the magnitudes. Each bin is measured
-/// through the periodic Hann window, so its power is `magnitude² / (2 · 1.5)` (equivalent noise
-/// bandwidth 1.5 bins).
+/// Returns the RMS of a texture spectrum on the grid, in the unit of the magnitudes. A periodic
+/// Hann window measures the magnitudes, so the power of a bin is `magnitude² / (2 · 1.5)` (its
+/// equivalent noise bandwidth is 1.5 bins).
 pub fn level_rms(magnitude: &[f64]) -> f64 {
     crate::root::sqrt(magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0)
 }
 
-/// [`level_rms`] of a curve, evaluated on the band's grid without storing the values.
+/// Returns the [`level_rms`] of a curve on the band's grid, without storing the values of the
+/// curve.
 pub fn curve_level_rms(band: Band, curve: impl Fn(f64) -> f64) -> f64 {
     let power: f64 = (band.first_bin()..=band.last_bin())
         .map(|bin| curve(bin as f64 * GRID_HZ))

@@ -1,12 +1,13 @@
-//! Peaks of a spectrum between its bins. A peak is the frequency and amplitude of a sinusoid.
-//! Measured through the periodic Hann window, this sinusoid would give a local maximum and its
-//! larger neighbour exactly their heights.
+//! Finds the peaks of a spectrum between its bins. A peak is the frequency and amplitude of a
+//! sinusoid. If the periodic Hann window measured this sinusoid, a local maximum of the spectrum
+//! and its larger neighbour would have exactly their heights.
 //!
-//! For a sinusoid `d` bins from the maximum, the neighbour on its side is `(1 + d) / (2 - d)` times
-//! as high as the maximum. Magnitudes averaged over segments keep this ratio. This ratio of two
-//! bins was compared with a formula for three bins, `d = 2 (R - L) / (L + 2 C + R)`, and with a
-//! parabola through three logarithms. The table has the RMS error and the largest error, for
-//! averages of 10 segments in power, from 60 Hz to 900 Hz:
+//! If the sinusoid is `d` bins from the maximum, the neighbour on the sinusoid's side is `(1 + d) /
+//! (2 - d)` times as high as the maximum. Magnitudes averaged over segments keep this ratio. The
+//! table compares this formula for two bins with a formula for three bins, `d = 2 (R - L) / (L + 2
+//! C + R)`, and with a parabola through three logarithms. Each cell has the RMS error and the
+//! largest error, first of the frequency and then of the amplitude. The spectra are averages of the
+//! power of 10 segments, from 60 Hz to 900 Hz:
 //!
 //! | spectrum | two bins | three bins | parabola |
 //! |---|---|---|---|
@@ -22,15 +23,15 @@ use crate::grid::GRID_HZ;
 use crate::peaks::{Peak, local_maxima, select_distinct};
 use crate::window::hann_main_lobe;
 
-/// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency. Works
-/// as [`select_peaks`](crate::peaks::select_peaks), but with frequencies and magnitudes
-/// interpolated between the bins.
+/// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency. Does
+/// the same as [`select_peaks`](crate::peaks::select_peaks), but interpolates frequencies and
+/// magnitudes between the bins.
 ///
 /// An edge bin counts as a maximum if it is above its only neighbour; its peak is at the edge or
 /// inside. A spectrum of one value has no peak.
 ///
-/// `frequency_hz` is the 5 Hz grid of a band, in hertz, and as long as `magnitude`; a longer slice
-/// is cut.
+/// `frequency_hz` is the 5 Hz grid of a band, in hertz. It has the same length as `magnitude`; the
+/// excess of a longer slice is ignored.
 ///
 /// ```
 /// use htex_dsp::interpolated_peaks::select_interpolated_peaks;
@@ -79,9 +80,9 @@ fn peak_near(bin: usize, frequency_hz: &[f64], magnitude: &[f64]) -> Peak {
     }
 }
 
-/// Distance in bins from a maximum towards its neighbour at which the sinusoid is. `ratio` is the
-/// neighbour's height divided by the maximum's. The result is 0 for a ratio below one half, which a
-/// single sinusoid cannot have.
+/// Returns the distance in bins of the sinusoid from the maximum, towards the neighbour. `ratio` is
+/// the neighbour's height divided by the maximum's. The result is 0 for a ratio below one half,
+/// which a single sinusoid cannot have.
 fn line_distance_bins(ratio: f64) -> f64 {
     ((2.0 * ratio - 1.0) / (1.0 + ratio)).max(0.0)
 }

@@ -1,8 +1,8 @@
 //! Inverse FFT from a half spectrum to a real signal, bit-identical on every machine.
 //!
-//! FFTs of libraries choose their instructions, and thereby their rounding, by the processor, and
-//! they are slow in WASM. This FFT (Stockham, radices 2 to 5) is plain arithmetic on arrays, which
-//! compilers vectorise in native libraries and in WASM modules.
+//! Other FFT libraries choose instructions that depend on the processor, and so does their
+//! rounding. They are also slow in WASM. This FFT (Stockham, radices 2 to 5) is plain arithmetic on
+//! arrays, which compilers vectorise in native libraries and in WASM modules.
 //!
 //! The lengths of frames have no prime factor above 5, so these radices suffice.
 
@@ -58,7 +58,7 @@ type Twiddles = Vec<(f32, f32)>;
 
 const LARGEST_RADIX: usize = 5;
 
-/// Returns the smallest number from `least` on that has no prime factor above 5.
+/// Returns the smallest number that is at least `least` and has no prime factor above 5.
 pub(crate) fn smooth_length(least: usize) -> usize {
     let is_smooth = |n: &usize| factors(*n).is_some();
     // From 1 on, because `factors` would not end for 0.
@@ -66,8 +66,8 @@ pub(crate) fn smooth_length(least: usize) -> usize {
 }
 
 impl InverseRealFft {
-    /// Makes a transform to `2 * half` samples. If `half` has a prime factor above 5, the next
-    /// number without one is used.
+    /// Makes a transform to `2 * half` samples. If `half` has a prime factor above 5, the transform
+    /// uses the next larger number without such a factor.
     pub(crate) fn new(half: usize) -> Self {
         let half = smooth_length(half);
         let (mut length, mut stride) = (half, 1);
@@ -90,8 +90,9 @@ impl InverseRealFft {
 
     /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` for each sample `n`.
     ///
-    /// The bins `X_k` from `first` on, in 1 to `half - 1`, are directions (cosines and sines) times
-    /// amplitudes. All other bins are zero, and surplus values are ignored. Does not allocate.
+    /// The bins `X_k`, starting at `k = first` and up to `half - 1`, are the products of directions
+    /// (cosines and sines) and amplitudes. All other bins are zero, and surplus values are ignored.
+    /// Does not allocate.
     pub(crate) fn run(
         &self,
         workspace: &mut Workspace,
@@ -249,8 +250,8 @@ impl Stage {
         }
     }
 
-    /// Copies results from groups of [`WIDTH`], in which all `k` follow each other, to the places
-    /// of the points.
+    /// Copies results to the places of their points. In the source, the results of all `k` follow
+    /// each other in groups of [`WIDTH`].
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {
@@ -263,7 +264,7 @@ impl Stage {
         }
     }
 
-    /// As [`Self::spread`], copying `N` results at a time.
+    /// Does the same as [`Self::spread`], and copies `N` results at a time.
     #[inline(always)]
     fn spread_by<const N: usize>(&self, groups: &[f32], out: &mut [f32]) {
         let (groups, out) = (groups.as_chunks::<N>().0, out.as_chunks_mut::<N>().0);
@@ -283,7 +284,7 @@ impl Stage {
     }
 }
 
-/// As [`Stage::spread`], for a first stage, whose stride is 1. Copies whole groups.
+/// Does the same as [`Stage::spread`] for a first stage, whose stride is 1. Copies whole groups.
 #[cfg_attr(target_family = "wasm", inline(never))]
 #[cfg_attr(not(target_family = "wasm"), inline(always))]
 fn spread_first<const R: usize>(groups: &[f32], out: &mut [f32]) {

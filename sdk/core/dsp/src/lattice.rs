@@ -1,9 +1,10 @@
 //! All-pole lattice filter. Unlike a direct form, it stays stable while its coefficients change, as
 //! long as each reflection coefficient is inside (-1, 1).
 //!
-//! A WASM module checks its time limit at the start of every loop, and there the values that one
-//! iteration passes to the next go through memory. So the lattice has a few fixed lengths, with all
-//! state in registers. [`crate::biquad`] and [`crate::sine_bank`] are unrolled for the same reason.
+//! A WASM module checks its time limit at the start of every iteration of a loop. At this check,
+//! the values that one iteration passes to the next go through memory. So the lattice has a few
+//! fixed lengths without an inner loop, and keeps all state in registers. [`crate::biquad`] and
+//! [`crate::sine_bank`] are unrolled for the same reason.
 
 use alloc::vec::Vec;
 
@@ -20,7 +21,7 @@ use crate::biquad::without_denormals;
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllPoleLattice {
     reflection: Vec<f64>,
-    /// Backward errors of stage 0, 1, ..., one sample ago.
+    /// Backward errors of the stages 0, 1, ... at the previous sample.
     delayed: Vec<f64>,
 }
 
@@ -54,8 +55,8 @@ impl AllPoleLattice {
         &self.reflection
     }
 
-    /// The reflection coefficients, to be changed in place between samples. The state stays
-    /// unchanged.
+    /// Returns the reflection coefficients. The caller may change them between samples; the state
+    /// does not change.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         &mut self.reflection
     }
@@ -82,7 +83,7 @@ impl AllPoleLattice {
         }
     }
 
-    /// As [`Self::run_any`], for at most `N` stages.
+    /// Filters a block, as [`Self::run_any`] does, with at most `N` stages.
     fn run<const N: usize>(&mut self, block: &mut [f64]) {
         let order = self.order();
         let (mut k, mut delayed) = ([0.0; N], [0.0; N]);
@@ -109,8 +110,8 @@ impl AllPoleLattice {
         }
     }
 
-    /// Sets the state of a filter with constant coefficients from its last outputs, of which the
-    /// newest is at the end. `past` has at least as many elements as the order.
+    /// Sets the state from the last outputs of a filter with these coefficients. The newest output
+    /// is at the end. `past` has at least as many elements as the order.
     pub(crate) fn set_past(&mut self, past: &[f64]) {
         self.reset();
         for &y in past {

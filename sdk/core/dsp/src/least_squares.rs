@@ -1,4 +1,4 @@
-//! Small dense least squares by the pseudo-inverse.
+//! Solves small dense least-squares problems with the pseudo-inverse.
 //!
 //! Matrices are stored row by row.
 
@@ -12,8 +12,8 @@ const ORTHOGONAL: f64 = 1e-15;
 
 /// The Moore–Penrose inverse of a matrix, stored for repeated use.
 ///
-/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest one count as zero, so zero
-/// or dependent rows are allowed.
+/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest singular value count as
+/// zero, so zero or dependent rows are allowed.
 ///
 /// ```
 /// use htex_dsp::least_squares::PseudoInverse;
@@ -115,7 +115,8 @@ impl Factors {
     }
 }
 
-/// Cosine and sine of the rotation that makes `a` and `b` orthogonal. `None` if they already are.
+/// Returns the cosine and sine of the rotation that makes `a` and `b` orthogonal, or `None` if they
+/// already are orthogonal.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     // Two roots, because the product of the squares could overflow or underflow.

@@ -1,10 +1,10 @@
 //! Signal processing for texture models: windows, spectra, linear prediction, mel banks, peaks,
 //! beta density, Butterworth filters, noise, oscillators, spectral shaping and resampling.
 //!
-//! This crate does not know texture assets or files. Without the `std` feature it is `no_std +
-//! alloc`, and does not detect vector instructions at run time. Elementary functions come from
-//! `libm`, and FFTs are plain arithmetic. So the same inputs give the same bits on every processor,
-//! in native libraries and in WASM modules.
+//! This crate does not deal with assets or files. Without the `std` feature it is `no_std + alloc`,
+//! and does not detect vector instructions at run time. Elementary functions come from `libm`, and
+//! FFTs are plain arithmetic. So the same inputs give the same bits on every processor, in native
+//! libraries and in WASM modules.
 //!
 //! Frequencies and sample rates are in hertz, angles in radians, magnitudes in the unit of the
 //! signal, unless a name says otherwise.

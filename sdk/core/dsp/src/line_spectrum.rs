@@ -1,8 +1,10 @@
-//! Line spectral frequencies of a stable all-pole model: the angles of the zeros of its symmetric
-//! and its antisymmetric polynomial (Itakura 1975).
+//! Line spectral frequencies of a stable all-pole model: the angles of the zeros of two
+//! polynomials, one symmetric and one antisymmetric, whose mean is the model's denominator (Itakura
+//! 1975).
 //!
-//! The two kinds of angles alternate. So any weighted mean of two models' frequencies is again a
-//! stable model, which makes them safe to interpolate.
+//! The angles of the two polynomials alternate. So any weighted mean of the line spectral
+//! frequencies of two stable models belongs to a stable model. This makes line spectral frequencies
+//! safe to interpolate.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -12,16 +14,16 @@ use crate::linear_prediction::coefficients_to_reflection;
 /// Limit on the steps of a search. At least every third step halves the bracket, so these steps
 /// halve `[0, π]` 56 times, to below the f64 resolution there.
 const MOST_STEPS: usize = 3 * 56;
-/// Relative phase difference that is attributed to rounding.
+/// Relative phase difference up to which two phases count as equal.
 const NEAR: f64 = 4.0 * f64::EPSILON;
 
-/// Returns the p line spectral frequencies, radians, ascending inside (0, π); `None` if the model
-/// is unstable.
+/// Returns the p line spectral frequencies in radians, ascending inside (0, π), or `None` if the
+/// model is unstable.
 ///
-/// They are the angles at which the phase of the lattice's all-pass passes a multiple of π. This
-/// phase decreases monotonically, from 0 at ω = 0 to -(p + 1)π at ω = π. It is an unambiguous sum
-/// over the reflection coefficients, so Newton's method inside a bracket finds each angle, at any
-/// order.
+/// The lattice of the model contains an all-pass filter. The line spectral frequencies are the
+/// angles at which the phase of this filter is a multiple of π. The phase decreases monotonically,
+/// from 0 at ω = 0 to -(p + 1)π at ω = π, and a sum over the reflection coefficients gives it
+/// without ambiguity. So Newton's method inside a bracket finds each angle, at any order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -35,12 +37,14 @@ pub fn line_spectral_frequencies(coefficients: &[f64]) -> Option<Vec<f64>> {
     coefficients_to_reflection(coefficients).map(|k| line_spectral_frequencies_of_reflection(&k))
 }
 
-/// As [`line_spectral_frequencies`], but takes reflection coefficients, each inside (-1, 1).
+/// Does the same as [`line_spectral_frequencies`], but takes reflection coefficients, each inside
+/// (-1, 1).
 pub fn line_spectral_frequencies_of_reflection(reflection: &[f64]) -> Vec<f64> {
     lines_of_reflection(reflection).collect()
 }
 
-/// As [`line_spectral_frequencies_of_reflection`], but returns an iterator. Does not allocate.
+/// Does the same as [`line_spectral_frequencies_of_reflection`], but returns an iterator. Does not
+/// allocate.
 pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
     let mut from = 0.0;
     (1..=reflection.len()).map(move |i| {
@@ -87,25 +91,25 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     })
 }
 
-/// Returns prediction coefficients for line spectral frequencies in radians. `None` if there are
-/// more than [`MOST_LINES`], or if they are not strictly ascending inside (0, π), as a stable model
-/// requires.
+/// Converts line spectral frequencies, in radians, to prediction coefficients. Returns `None` if
+/// there are more than [`MOST_LINES`] of them, or if they are not strictly ascending inside (0, π),
+/// as a stable model requires.
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     let mut coefficients = alloc::vec![0.0; lsf.len()];
     coefficients_of_lines(lsf, &mut coefficients).then_some(coefficients)
 }
 
-/// As [`from_line_spectral_frequencies`], but writes to an array of the same length, and returns
-/// false instead of `None`. Does not allocate.
+/// Does the same as [`from_line_spectral_frequencies`], but writes to an array of the same length,
+/// and returns false instead of `None`. Does not allocate.
 pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
     let ascend = lsf.windows(2).all(|pair| pair[0] < pair[1]);
     inside && ascend && zeros_of_lines(lsf, coefficients)
 }
 
-/// As [`coefficients_of_lines`], but for a numerator, i.e. a polynomial whose zeros may lie on the
-/// unit circle: two lines may be equal, and a line may be 0 or π. Returns false if the lines
-/// descend, or if there are too many.
+/// Does the same as [`coefficients_of_lines`], but for a numerator, whose zeros may lie on the unit
+/// circle. So two lines may be equal, and a line may be 0 or π. Returns false if the lines descend,
+/// or if there are too many.
 pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let mut cosines = [0.0; MOST_LINES];
     let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -119,7 +123,7 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     true
 }
 
-/// As [`zeros_of_lines`], but takes the cosines of at most [`MOST_LINES`] lines.
+/// Does the same as [`zeros_of_lines`], but takes the cosines of at most [`MOST_LINES`] lines.
 ///
 /// The symmetric and the antisymmetric polynomial each consist of a fixed factor and the quadratics
 /// of every second line. The product of these quadratics is a palindrome, so only half of it is
@@ -138,9 +142,9 @@ pub const MOST_LINES: usize = 128;
 /// Largest number of quadratics in the symmetric polynomial.
 const MOST_FACTORS: usize = MOST_LINES / 2;
 
-/// The first halves of two palindromes: of the symmetric and of the antisymmetric polynomial. Each
-/// has degree `2 factors` and is the product `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line.
-/// The last coefficient stored is the middle one.
+/// The first halves of the symmetric and of the antisymmetric polynomial, both without their fixed
+/// factors. Each is a palindrome of degree `2 factors`: the product `Π (1 - 2 cos ω z⁻¹ + z⁻²)`
+/// over every second line. The last coefficient stored is the middle one.
 struct Halves<const N: usize> {
     coefficients: [[f64; 2]; N],
     factors: [usize; 2],

@@ -2,18 +2,19 @@
 //! Autoregressive model).
 //!
 //! A model of order p has p prediction coefficients, or, equivalently, p reflection coefficients.
-//! It is stable exactly if all reflection coefficients are inside (-1, 1). Their sign is the sign
-//! of the last prediction coefficient of each stage: `k_m = A_m` of the model of order m.
+//! It is stable exactly if all reflection coefficients are inside (-1, 1). The reflection
+//! coefficient of stage m equals the last prediction coefficient of the model of order m, including
+//! its sign: `k_m = A_m`.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// Largest absolute value of an estimated reflection coefficient. A stage that would exceed it has
-/// predicted the signal completely (a pure sinusoid, or rounding). The limit corresponds to a
-/// resonance of 10¹⁰ samples.
+/// Largest absolute value of an estimated reflection coefficient. A stage that would exceed this
+/// limit has predicted the signal completely (a pure sinusoid, or only rounding errors are left).
+/// The limit corresponds to a resonance that decays over 10¹⁰ samples.
 pub(crate) const MAX_REFLECTION: f64 = 1.0 - 1e-10;
 
-/// An all-pole model; always stable.
+/// A stable all-pole model, and how well it predicts a signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearPrediction {
     /// `A_1 ..= A_p`.
@@ -22,9 +23,9 @@ pub struct LinearPrediction {
     pub reflection: Vec<f64>,
     /// Power of the prediction error, in the squared unit of the signal.
     pub error: f64,
-    /// Number of stages that the data determine. It is below p if the signal is completely
-    /// predicted earlier. The last usable coefficient is then at most 1 - 1e-10 in magnitude,
-    /// and the later ones are zero.
+    /// Number of stages that the data determine. It is below p if fewer stages predict the signal
+    /// completely. The magnitude of the last usable reflection coefficient is then limited to 1 -
+    /// 1e-10, and the coefficients after it are zero.
     pub usable_stages: usize,
     /// Whether the estimate was changed to make it stable (see `usable_stages`, and [`stabilize`]
     /// for the covariance method).
@@ -103,8 +104,9 @@ impl Stages {
 
 /// Solves the Yule–Walker equations for autocorrelation lags `0..=order` (Levinson–Durbin).
 ///
-/// Missing lags count as zero. Every autocorrelation gives a stable model. Coefficients are zero if
-/// there is no power, and from the first lag on that is not finite.
+/// Missing lags count as zero. Every autocorrelation gives a stable model. All coefficients are
+/// zero if the signal has no power. If a lag is not finite, the reflection coefficients of its
+/// stage and of all later stages are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::levinson_durbin;
@@ -135,8 +137,8 @@ pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
     coefficients
 }
 
-/// Converts the prediction coefficients of a stable model to reflection coefficients. `None` if the
-/// model is unstable or not finite.
+/// Converts the prediction coefficients of a stable model to reflection coefficients. Returns
+/// `None` if the model is unstable or not finite.
 ///
 /// Each stage divides by `1 - k` and `1 + k`, so precision is lost if several poles are very close
 /// to the unit circle.
@@ -145,8 +147,8 @@ pub fn coefficients_to_reflection(coefficients: &[f64]) -> Option<Vec<f64>> {
     step_down_in_place(&mut a).then_some(a)
 }
 
-/// As [`coefficients_to_reflection`], in place and without allocating. `false` if the model is
-/// unstable or not finite; the contents of `a` are then unspecified.
+/// Does the same as [`coefficients_to_reflection`], in place and without allocating. Returns false
+/// if the model is unstable or not finite; the contents of `a` are then unspecified.
 pub fn step_down_in_place(a: &mut [f64]) -> bool {
     for m in (0..a.len()).rev() {
         let k = a[m];
@@ -164,9 +166,9 @@ pub fn is_stable(coefficients: &[f64]) -> bool {
     coefficients_to_reflection(coefficients).is_some()
 }
 
-/// Makes an unstable model stable by scaling its poles: `A_i g^i`, with the g that moves the
-/// outermost pole to its mirror image in the unit circle, where its magnitude peak is the same. A
-/// stable model is returned unchanged. A model that is not finite becomes zeros.
+/// Makes an unstable model stable by scaling its poles: the result is `A_i g^i`. The factor g moves
+/// the outermost pole to its mirror image in the unit circle, where its magnitude peak is the same.
+/// A stable model is returned unchanged. A model that is not finite becomes zeros.
 pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(coefficients) {
         return coefficients.to_vec();
@@ -186,9 +188,9 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
 }
 
 /// Limits the radius of every pole to `radius` (below 1). If a pole lies farther out, the result is
-/// `A_i g^i`, with the g that moves the outermost pole to that radius. This also corrects poles
-/// that have moved outside the unit circle because their coefficients were rounded. A model that is
-/// not finite becomes zeros.
+/// `A_i g^i`, where the factor g moves the outermost pole to `radius`. This also corrects poles
+/// that lie outside the unit circle because the coefficients were rounded. A model that is not
+/// finite becomes zeros.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::within_radius;
@@ -206,8 +208,9 @@ pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
     scale_poles(coefficients, largest * radius)
 }
 
-/// Largest factor up to `unstable` by which the poles can be scaled so that the result is stable: 1
-/// divided by the outermost radius. Found by bisection, since factor 0 is always stable.
+/// Returns the largest factor, up to `unstable`, by which the poles can be scaled so that the
+/// result is stable. It is 1 divided by the radius of the outermost pole. Found by bisection, since
+/// factor 0 is always stable.
 fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     let mut stable = 0.0;
     // 60 halvings reach the resolution of f64.
@@ -235,7 +238,8 @@ pub fn scale_poles(coefficients: &[f64], factor: f64) -> Vec<f64> {
 }
 
 /// Magnitude `|H|` of a model at `f_hz`, at the sample rate `rate_hz`, both in hertz: the magnitude
-/// of the output for white noise of unit magnitude. Without bound near a pole on the unit circle.
+/// of the output for white noise of unit magnitude. It grows without bound near a pole on the unit
+/// circle.
 pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     let omega = 2.0 * PI * f_hz / rate_hz;
     let (mut re, mut im) = (1.0, 0.0);

@@ -54,7 +54,8 @@ impl MelBank {
         &self.bank
     }
 
-    /// Energy in each band of a power spectrum at the bank's frequencies, in the power's unit.
+    /// Returns the energy of a power spectrum in each band, in the unit of the power. `power` is
+    /// given at the bank's frequencies.
     pub fn energies(&self, power: &[f64]) -> Vec<f64> {
         let mut energies = alloc::vec![0.0; self.bank.rows()];
         self.bank.apply(power, &mut energies);
@@ -64,12 +65,12 @@ impl MelBank {
     /// Interpolates a power spectrum from band energies.
     ///
     /// At the apex of each filter, the power is the filter's energy divided by the sum of its
-    /// weights. Between the apexes it is linear in hertz; beyond the first and the last one it is
-    /// constant. Empty filters are skipped. `power` has as many elements as the bank has
+    /// weights. Between the apexes the power is linear in hertz; below the first and above the last
+    /// apex it is constant. Empty filters are skipped. `power` has as many elements as the bank has
     /// frequencies.
     ///
-    /// The result is smoother than the pseudo-inverse and never negative, but its own `energies`
-    /// differ slightly from the given ones.
+    /// The result is smoother than the result of the pseudo-inverse, and never negative. But
+    /// [`Self::energies`] of the result differ slightly from the given energies.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self
             .bank
@@ -100,8 +101,8 @@ fn mel_edges(bands: usize, band: Band) -> Vec<f64> {
         .collect()
 }
 
-/// Value at `x` of the line through `points` (ascending). It is constant beyond the ends, and 0 if
-/// there are no points.
+/// Returns the value at `x` of the polyline through `points` (ascending). The value is constant
+/// beyond the ends, and 0 if there are no points.
 fn interpolate_linearly(points: &[(f64, f64)], x: f64) -> f64 {
     let above = points.partition_point(|point| point.0 <= x);
     match (above.checked_sub(1).and_then(|i| points.get(i)), points.get(above)) {

@@ -2,15 +2,16 @@
 //! MATLAB's `fminsearch` (Lagarias et al. 1998).
 //!
 //! The project has its own implementation, because the maintained Rust library reads a clock, and a
-//! sandboxed model must not import one.
+//! model in a sandbox has no clock.
 
 /// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Stop when no vertex is farther than this from the best one along any axis, and `f_tolerance`
-    /// is also met.
+    /// Tolerance of the position. The search stops when no vertex is farther than this from the
+    /// best vertex along any axis, and `f_tolerance` is also met.
     pub x_tolerance: f64,
-    /// Stop when no vertex exceeds the best value by more than this, and `x_tolerance` is also met.
+    /// Tolerance of the function value. The search stops when the value of no vertex exceeds the
+    /// best value by more than this, and `x_tolerance` is also met.
     pub f_tolerance: f64,
     /// Maximum number of function calls.
     pub max_evaluations: usize,
@@ -46,10 +47,12 @@ pub struct Minimum<const N: usize> {
     pub converged: bool,
 }
 
-/// Minimises `f` from `start`. NaN counts as +∞, so `f` may return either to exclude a region.
+/// Minimises `f`, starting at `start`. NaN counts as +∞, so `f` may return either of them to
+/// exclude a region.
 ///
-/// Deterministic: the same function, start and options evaluate the same points. Reaching
-/// `max_evaluations` is not an error: the best point so far is returned.
+/// The search is deterministic: with the same function, start and options it evaluates the same
+/// points. Reaching `max_evaluations` is not an error; the function then returns the best point so
+/// far.
 ///
 /// ```
 /// use htex_dsp::nelder_mead::{Options, minimize};

@@ -1,9 +1,9 @@
 //! Seeded Gaussian noise.
 //!
-//! It uses the Box–Muller transform, eight pairs at a time, with its own series for the logarithm,
-//! sine and cosine. The series have no branches, so compilers use all lanes, and the results are
-//! bit-identical on every machine. On processors with registers of 512 bits, two streams share a
-//! register.
+//! The generator uses the Box–Muller transform for eight pairs of numbers at a time. It has its own
+//! series for the logarithm, sine and cosine. The series have no branches, so compilers vectorise
+//! them, and the results are bit-identical on every machine. On processors with registers of 512
+//! bits, two streams share a register.
 
 use crate::root::sqrt_f32;
 
@@ -14,8 +14,8 @@ use crate::wide::{Work, very_wide, wide};
 /// Number of noise samples that are generated together. Rendering is fastest in whole groups.
 pub const GROUP: usize = 2 * LANES;
 
-/// White Gaussian noise with zero mean and unit variance, by the Box–Muller transform in single
-/// precision. No absolute value exceeds 6.6.
+/// A stream of white Gaussian noise with zero mean and unit variance (Box–Muller transform, single
+/// precision). No absolute value exceeds 6.6.
 ///
 /// ```
 /// use htex_dsp::noise::GaussianNoise;
@@ -27,7 +27,7 @@ pub const GROUP: usize = 2 * LANES;
 #[derive(Debug, Clone)]
 pub struct GaussianNoise {
     random: RandomLanes,
-    /// Unused samples of the last group.
+    /// The last group of samples. Some of them may not have been returned yet.
     ready: [f32; GROUP],
     taken: usize,
 }
@@ -45,7 +45,7 @@ impl GaussianNoise {
     }
 
     /// Fills one block for each of two streams. The samples are the same as with [`Self::fill`],
-    /// but this may be faster. Does not allocate.
+    /// but this function may be faster. Does not allocate.
     pub fn fill_both([a, b]: [&mut Self; 2], [x, y]: [&mut [f32]; 2]) {
         // First up to the end of one of the two current groups, whichever is nearer.
         let head = (GROUP - a.taken.max(b.taken)).min(x.len()).min(y.len());
@@ -75,8 +75,8 @@ impl GaussianNoise {
     }
 }
 
-/// Fills whole groups of two streams, if both are at the start of a group and registers are wide
-/// enough for both. Returns the number of samples filled in each.
+/// Fills whole groups of two streams, if both streams are at the start of a group and the registers
+/// are wide enough for both. Returns the number of samples that it wrote to each block.
 fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
     // A stream that is within a group has samples that must come first.
     if a.taken < GROUP || b.taken < GROUP {

@@ -1,21 +1,22 @@
 //! Finds non-negative power spectra that have given energies in triangular filters.
 //!
 //! With fewer bands than bins, least squares has many solutions. A ridge term of 10^-6 makes the
-//! solution unique. Newton's method finds it in a few steps with a tridiagonal matrix; any other
-//! solver of non-negative least squares would find the same one.
+//! solution unique. Newton's method finds this solution in a few steps with a tridiagonal matrix.
+//! Any other solver of non-negative least squares would find the same solution.
 
 use alloc::vec::Vec;
 
 use crate::triangles::TriangleBank;
 
-/// Weight of the squared norm of the power, the ridge term. It makes the solution unique, and
-/// changes energies that can be reached by about a millionth.
+/// Weight of the squared norm of the power, the ridge term. It makes the solution unique. If a
+/// spectrum with the wanted energies exists, the solution's energies differ from them by about a
+/// millionth.
 pub(crate) const RIDGE: f64 = 1e-6;
 /// Maximum number of Newton steps; energies of recordings need three to eight.
 const STEPS: usize = 100;
 /// Maximum number of halvings of a step.
 const HALVINGS: usize = 40;
-/// Slope along a step, relative to the slope at its start, that is attributed to rounding.
+/// Relative slope that counts as zero: slope along a step, divided by the slope at its start.
 const FLAT: f64 = 1e-9;
 
 /// Finds the powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular
@@ -85,9 +86,9 @@ impl NonNegative {
         Self { columns: (0..bank.columns()).map(column).collect(), rows }
     }
 
-    /// Writes the power for these `energies`, which must not be negative. `scratch` must have been
-    /// made for the same number of filters. The energy of a filter without weights is ignored. Does
-    /// not allocate.
+    /// Writes the power spectrum for these `energies`, which must not be negative. `scratch` must
+    /// be made for the same number of filters. The energy of a filter without weights is ignored.
+    /// Does not allocate.
     pub fn solve(&self, energies: &[f64], power: &mut [f64], scratch: &mut Scratch) {
         let largest = energies.iter().copied().fold(0.0, f64::max);
         self.start(energies, largest, scratch);

@@ -40,7 +40,7 @@ impl Normal {
         }
     }
 
-    /// The next uniform number in `[0, 1)` of the same stream, with 53 random bits.
+    /// Returns the next uniform number in `[0, 1)` from the same generator, with 53 random bits.
     pub fn next_unit(&mut self) -> f64 {
         self.uniform.next_unit()
     }

@@ -1,12 +1,12 @@
-//! Sorting of all types with one instance of the standard library's sort. Each further instance,
-//! for another type or comparison, would add some 6 kB to a program.
+//! Sorts values of all types with a single instance of the standard library's sort. Every further
+//! instance, for another type or comparison, would add some 6 kB to a program.
 
 use core::cmp::Ordering;
 
 use alloc::vec::Vec;
 
-/// Returns the indices below `len`, sorted by the items that they stand for. Equal items keep their
-/// order.
+/// Returns the indices below `len`, sorted by a comparison of the items with these indices. Equal
+/// items keep their order.
 ///
 /// ```
 /// let names = ["cork", "ash", "birch"];

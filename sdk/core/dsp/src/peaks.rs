@@ -1,4 +1,4 @@
-//! Peaks of a spectrum, and the selection of those whose frequencies differ perceptibly (paper,
+//! Finds the peaks of a spectrum, and selects peaks whose frequencies differ perceptibly (paper,
 //! Spectral peaks).
 
 use alloc::collections::BinaryHeap;
@@ -16,9 +16,10 @@ pub struct Peak {
     pub magnitude: f64,
 }
 
-/// Returns the indices of the local maxima, ascending. A plateau counts once, at its middle (the
-/// lower of two), and only if the values fall on both sides. The first and the last value are never
-/// maxima. Matches `scipy.signal.find_peaks`.
+/// Returns the indices of the local maxima, ascending. A plateau counts once, and only if the
+/// values fall on both sides. Its index is the middle of the plateau; if there are two middle
+/// values, it is the lower index. The first and the last value are never maxima. Matches
+/// `scipy.signal.find_peaks`.
 ///
 /// ```
 /// use htex_dsp::peaks::local_maxima;
@@ -45,10 +46,11 @@ pub fn local_maxima(values: &[f64]) -> Vec<usize> {
 
 /// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency.
 ///
-/// Candidates are taken in order of strength; of equally strong ones, the lower frequency comes
-/// first. A peak at f is kept if `|f - g| / min(f, g) >= jnd` for every g that was kept before it.
-/// The selection ends at `max_count` peaks. `frequency_hz` is ascending, in hertz, and as long as
-/// `magnitude`; a longer slice is cut. A spectrum without local maxima gives an empty list.
+/// The function considers the maxima in order of strength; of two equally strong maxima, the lower
+/// frequency comes first. It selects a peak at the frequency f if `|f - g| / min(f, g) >= jnd` for
+/// the frequency g of every peak selected before. It ends at `max_count` peaks. `frequency_hz` is
+/// ascending, in hertz, and has the same length as `magnitude`; the excess of a longer slice is
+/// ignored. A spectrum without local maxima gives an empty list.
 pub fn select_peaks(
     frequency_hz: &[f64],
     magnitude: &[f64],
@@ -81,8 +83,8 @@ pub(crate) fn select_distinct(
     kept
 }
 
-/// A peak, ordered by magnitude. Of two equal magnitudes, the one with the lower frequency is
-/// greater.
+/// A peak, ordered by magnitude. Of two peaks with equal magnitudes, the peak with the lower
+/// frequency is greater.
 #[derive(PartialEq)]
 struct Candidate(Peak);
 

@@ -12,10 +12,10 @@ const FEW: usize = 2;
 /// Number of samples per step.
 const PAIR: usize = 2;
 
-/// Filter sections in series, as [`crate::biquad::Cascade`], but pipelined: in each step, a section
-/// processes the two samples that the section before it finished in the last step. So all sections
-/// compute at the same time, and the output is delayed by six samples for every four sections. Use
-/// it for streams in which a delay of a few samples does not matter.
+/// Filter sections in series, like a [`crate::biquad::Cascade`], but pipelined: in each step, a
+/// section processes the two samples that the section before it finished in the last step. So all
+/// sections compute at the same time. The output is delayed by six samples for every four sections.
+/// Use a pipeline for streams in which a delay of a few samples does not matter.
 ///
 /// ```
 /// use htex_dsp::{biquad::Biquad, pipeline::Pipeline};
@@ -30,8 +30,8 @@ pub struct Pipeline {
     last: Option<Row<f64, FEW>>,
 }
 
-/// Four pipelines with the same number of sections, computed side by side. Each output is
-/// bit-identical to the output of the pipeline on its own.
+/// Four pipelines with the same number of rows of sections, computed side by side. Each output is
+/// bit-identical to the output of the same pipeline run alone.
 #[derive(Debug)]
 pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 
@@ -44,8 +44,8 @@ struct Row<T, const N: usize> {
     /// Contributions of the first and the second input to the two state variables.
     first: [[T; N]; 2],
     second: [[T; N]; 2],
-    /// Contributions of the first and the second state variable to both. The second has its sign
-    /// reversed.
+    /// Contributions of the first and the second state variable to both new state variables. The
+    /// sign of the second contribution is reversed.
     kept: [[T; N]; 2],
     crossed: [[T; N]; 2],
     state: State<T, N>,
@@ -59,8 +59,8 @@ struct State<T, const N: usize> {
 }
 
 impl Pipeline {
-    /// Makes a pipeline of `sections` with zero state. Every `b0` must be nonzero. Incomplete rows
-    /// are filled with sections that pass their input.
+    /// Makes a pipeline of `sections` with zero state. Every `b0` must be nonzero. Sections that
+    /// pass their input unchanged fill up incomplete rows.
     pub fn new(sections: &[Biquad]) -> Self {
         let (rows, last) = match sections.len() % LANES {
             few @ 1..=FEW => sections.split_at(sections.len() - few),
@@ -84,7 +84,7 @@ impl Pipeline {
 }
 
 impl<'a> Pipelines<'a> {
-    /// Combines four pipelines. `None` if their numbers of rows differ.
+    /// Combines four pipelines. Returns `None` if their numbers of rows differ.
     pub fn new(pipelines: [&'a mut Pipeline; VOICES]) -> Option<Self> {
         let shape = |pipeline: &Pipeline| (pipeline.rows.len(), pipeline.last.is_some());
         let [first, others @ ..] = &pipelines;
@@ -140,8 +140,8 @@ impl<const N: usize> Work for InterleaveRows<'_, N> {
     }
 }
 
-/// Separate from the function that interleaves the rows: otherwise compilers shuffle lanes inside
-/// the loop.
+/// The filter loop for four pipelines. It is separate from the function that interleaves the rows,
+/// because compilers would otherwise shuffle lanes inside the loop.
 struct RunRows<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
 
 impl<const N: usize> Work for RunRows<'_, N> {

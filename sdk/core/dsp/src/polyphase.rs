@@ -13,7 +13,7 @@ const CHUNK: usize = 256;
 pub(crate) struct Polyphase {
     /// L.
     up: usize,
-    /// Integer and fractional part of M/L, the latter in units of 1/L.
+    /// Integer and fractional part of M/L. The unit of the fractional part is 1/L.
     step: (usize, usize),
     taps: usize,
     /// The kernel, one row per phase, and one row more if rows are interpolated. All converters
@@ -46,8 +46,8 @@ impl Polyphase {
         }
     }
 
-    /// Makes a filter between equal rates whose outputs are `phase / phases` of a sample behind the
-    /// source samples.
+    /// Makes a filter between equal rates. Each output lies `phase / phases` of a sample after a
+    /// source sample.
     pub(crate) fn with_phase(phase: usize, phases: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
         Self { phase, ..Self::new(phases, (1, 0), taps, kernel) }
     }
@@ -115,8 +115,8 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     sum(&lanes)
 }
 
-/// Not inlined: its additions across lanes would keep compilers from vectorising the loop of
-/// [`dot`], which would then take half as long again.
+/// Sums the eight lanes. It is not inlined, because its additions across lanes would keep compilers
+/// from vectorising the loop of [`dot`], which would then take half as long again.
 #[inline(never)]
 fn sum(lanes: &[f32; 8]) -> f32 {
     (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))

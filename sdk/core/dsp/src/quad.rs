@@ -1,5 +1,6 @@
-//! Numbers of four voices side by side. In a recursive filter each sample depends on the one
-//! before, so the lanes of a vector register are filled with voices instead of samples.
+//! Numbers of four voices side by side. In a recursive filter each sample depends on the sample
+//! before it. So the lanes of a vector register contain samples of different voices instead of
+//! successive samples.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -13,7 +14,8 @@ pub const VOICES: usize = 4;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quad(pub [f64; VOICES]);
 
-/// Number type of a filter: one voice or four, with the same operations in the same order.
+/// Number type of a filter: the number of one voice, or the numbers of four voices. Both types do
+/// the same operations in the same order.
 pub(crate) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
@@ -31,8 +33,8 @@ impl Real for f64 {
 }
 
 impl Quad {
-    /// Interleaves one single-precision row per voice, and multiplies it by the voice's gain. The
-    /// shortest slice determines the length.
+    /// Interleaves four rows in single precision, one for each voice, and multiplies each row by
+    /// the voice's gain. The shortest slice determines the length.
     pub fn gather(rows: [&[f32]; VOICES], gains: Self, to: &mut [Self]) {
         wide(Gather(rows, gains, to));
     }

@@ -1,21 +1,21 @@
-//! Level and mean frequency in the form that motors and parametric haptic interfaces take:
-//! strengths, frequencies and points, with values from 0 to 1.
+//! Converts levels and mean frequencies to the input of motors and parametric haptic interfaces:
+//! strengths and places in a range of frequencies, from 0 to 1, and points of both.
 //!
-//! An interface that takes points interpolates linearly between them. Each block of samples gives
-//! one point at its end, with the level of the block. So the level of a block is reached when the
-//! block ends, on average half a block later than with steps.
+//! Such an interface interpolates linearly between points. Each block of samples gives one point,
+//! at the end of the block, with the block's level. So the interface reaches the level of a block
+//! when the block ends, on average half a block later than if levels were steps.
 
 use crate::envelope::Measurement;
 
-/// Mean frequency up to which the large motor of a gamepad gets the whole strength, hertz.
+/// Highest mean frequency at which the large motor of a gamepad gets the whole strength, hertz.
 const LARGE_MOTOR_HZ: f64 = 60.0;
-/// Mean frequency from which on the small motor gets the whole strength, hertz.
+/// Lowest mean frequency at which the small motor gets the whole strength, hertz.
 const SMALL_MOTOR_HZ: f64 = 420.0;
 
-/// Conversion from a level to a strength, and from a mean frequency to a place in a range.
+/// Converts a level to a strength, and a mean frequency to a place in a range of frequencies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Strength for a level of 1. Strengths above 1 are cut to 1.
+    /// Strength for a level of 1. Strengths above 1 are limited to 1.
     pub gain: f64,
     /// Frequency at place 0, hertz.
     pub low_hz: f64,
@@ -44,9 +44,9 @@ fn unit(x: f64) -> f64 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
-/// Divides a strength between the large and the small motor of a gamepad, by mean frequency. Up to
-/// 60 Hz the large motor gets all of it, from 420 Hz on the small motor; in between both get a part
-/// that is linear in the frequency.
+/// Divides a strength between the large and the small motor of a gamepad, depending on the mean
+/// frequency. Up to 60 Hz the large motor gets the whole strength, and from 420 Hz the small motor
+/// gets it. Between these frequencies the two parts change linearly with the frequency.
 ///
 /// ```
 /// use htex_dsp::reduced::two_motors;
@@ -57,7 +57,7 @@ pub fn two_motors(strength: f64, centroid_hz: f64) -> [f64; 2] {
     [strength * (1.0 - small), strength * small]
 }
 
-/// A point of the stream that goes to an interface.
+/// A point of the stream for a haptic interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Time since the start of the stream, nanoseconds.

@@ -2,8 +2,8 @@
 //!
 //! A texture voice renders at its own, low rate, and the converter brings it to the rate of the
 //! device. The converter pulls exactly the samples that it needs from its source, never allocates
-//! while it runs, and gives the same samples for any block size. Resamplers of libraries work in
-//! chunks of their own size, so this one is the project's own.
+//! while it runs, and gives the same samples for any block size. The project has its own converter
+//! because the resamplers of other libraries work in chunks of a fixed size.
 //!
 //! Textures end at 1 kHz, so noise is generated at 2 to 4 kHz. This needs five to eight times fewer
 //! samples, and the converter's filter is also the steep filter at the top of the band.
@@ -17,10 +17,10 @@ use crate::upsample::Upsampler;
 
 /// Number of phases up to which the kernel table is exact. Above it, the kernel is interpolated.
 const MAX_EXACT_PHASES: u64 = 1024;
-/// Half the width of the transition band around the source's Nyquist frequency, as a part of that
-/// frequency.
+/// Half the width of the transition band around the source's Nyquist frequency, as a fraction of
+/// the Nyquist frequency.
 const TRANSITION: f64 = 0.02;
-/// Longest kernel; rates that need a longer one are refused, to bound the memory.
+/// Length of the longest kernel. Rates that need a longer kernel are refused, to limit the memory.
 const MAX_TAPS: usize = 16_384;
 /// Largest ratio of the two rates.
 const MAX_RATIO: u64 = 10_000;
@@ -63,8 +63,8 @@ pub struct Resampler {
 
 impl Resampler {
     /// Makes a converter from `from_hz` to `to_hz`, for a source without content above `top_hz`,
-    /// all in hertz. `None` if the rates are equal to a millihertz, so that no conversion is
-    /// needed.
+    /// all in hertz. Returns `None` if the rates are equal to within a millihertz, so that no
+    /// conversion is needed.
     ///
     /// # Errors
     /// If a rate is outside 1 mHz to 10 MHz, or the rates differ by more than a factor of 10,000.
@@ -72,14 +72,16 @@ impl Resampler {
         Self::with_specs(specs(from_hz, to_hz, top_hz)?)
     }
 
-    /// As [`Self::new`], for a source whose rate is fixed at `from_hz`, whatever rate is wanted,
-    /// such as a filter. Its level is the same at all rates that can hold its content: near half
-    /// its own rate the source loses up to half its power in a conversion to high rates, and this
-    /// converter makes it lose the same power if the rates are equal ([`OwnRate`]) or the wanted
-    /// rate is lower.
+    /// Makes a converter for a source whose rate is fixed at `from_hz`, such as a filter. Otherwise
+    /// the same as [`Self::new`].
+    ///
+    /// A conversion to a high rate removes up to half of the source's power near half of its own
+    /// rate. This converter removes the same power if the rates are equal ([`OwnRate`]) or if
+    /// `to_hz` is lower. So the level is the same at all rates that can represent the source's
+    /// frequencies.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn of_own_rate(
         from_hz: f64,
         to_hz: f64,
@@ -93,11 +95,11 @@ impl Resampler {
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
-    /// Returns the work of a converter for these rates; `None` if no conversion is needed.
-    /// `own_rate`: whether the converter is made by [`Self::of_own_rate`].
+    /// Returns the work of a converter for these rates, or `None` if no conversion is needed.
+    /// `own_rate` says whether [`Self::of_own_rate`] makes the converter.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn work(
         from_hz: f64,
         to_hz: f64,
@@ -125,8 +127,8 @@ impl Resampler {
         Ok((!specs.is_empty()).then_some(work))
     }
 
-    /// Fills `out` with the next samples. Calls `source` for the samples it needs; `source` must
-    /// fill the whole slice that it gets. Does not allocate.
+    /// Fills `out` with the next samples. Calls `source` for the samples that it needs; `source`
+    /// must fill the whole slice. Does not allocate.
     pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         run(&mut self.stages, out, source);
     }
@@ -135,9 +137,9 @@ impl Resampler {
 /// Average work of a converter for each sample of its output.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
-    /// Stages that raise the rate by an integer factor.
+    /// Work of the stages that raise the rate by an integer factor.
     pub whole: Part,
-    /// All other stages.
+    /// Work of all other stages.
     pub rational: Part,
 }
 
@@ -150,9 +152,10 @@ pub struct Part {
     pub macs: f64,
 }
 
-/// What a conversion to high rates passes of a source with its own, fixed rate, whose content
-/// extends into the transition band around half that rate. In the middle of the transition band
-/// half the amplitude passes, and an image of the same amplitude appears.
+/// The amplitude that a conversion to a high rate passes at each frequency, for a source with a
+/// fixed rate of its own whose frequencies extend into the transition band around half that rate.
+/// In the middle of the transition band, half the amplitude passes, and an image with the same
+/// amplitude appears.
 #[derive(Debug, Clone)]
 pub struct OwnRate {
     rate_hz: f64,
@@ -164,8 +167,9 @@ pub struct OwnRate {
 const OWN_PHASES: u64 = 4;
 
 impl OwnRate {
-    /// Takes the rate and the highest frequency of the source, hertz. `None` if the content ends
-    /// below the transition band, since it then passes unchanged.
+    /// Computes the amplitude for a source with this sample rate and highest frequency, hertz.
+    /// Returns `None` if this frequency is below the transition band, because the source then
+    /// passes unchanged.
     pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
         let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
         Some(Self { rate_hz, kernel: spec.own_kernel(), taps: spec.taps() })
@@ -207,7 +211,7 @@ struct Spec {
     stop_hz: f64,
 }
 
-/// As [`specs`], for [`Resampler::of_own_rate`].
+/// Returns the stages of [`Resampler::of_own_rate`]; empty if no conversion is needed.
 fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRates> {
     let all = specs(from_hz, to_hz, top_hz)?;
     if all.is_empty() {
@@ -269,8 +273,8 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
 }
 
 impl Spec {
-    /// The filter of a source at its own rate. `None` if the content ends below the transition
-    /// band.
+    /// Returns the filter for a source at its own rate, or `None` if the source's frequencies end
+    /// below the transition band.
     fn of_own_rate(rate_hz: f64, rate: u64, top_hz: f64) -> Option<Self> {
         let nyquist = 0.5 * rate_hz;
         let pass_hz = nyquist * (1.0 - TRANSITION);

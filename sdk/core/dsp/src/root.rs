@@ -1,5 +1,5 @@
-//! Square roots by the machine's instruction, which rounds correctly and therefore gives the same
-//! bits everywhere.
+//! Square roots. They use the processor's instruction, which rounds correctly and therefore gives
+//! the same bits on every machine.
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 #[inline]

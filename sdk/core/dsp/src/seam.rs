@@ -1,11 +1,12 @@
 //! Seamless loops of samples.
 //!
-//! A loop is closed at constant power: the gains of the cross-fade depend on the correlation of the
-//! two pieces. So noise and tones both keep their power.
+//! A cross-fade joins the end of the loop to its start. Its gains depend on the correlation of the
+//! two pieces, so that noise and tones both keep their power.
 
 use alloc::vec::Vec;
 
-/// Correlation below which two pieces cannot be cross-faded, as the gain would be unbounded.
+/// Smallest correlation for the gains of a cross-fade. At lower correlations the gain would grow
+/// without bound.
 const LEAST_CORRELATION: f32 = -0.9;
 
 /// An endless loop of samples, joined by a cross-fade that preserves their power.
@@ -24,8 +25,8 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Makes a loop of `samples`. The last `fade` samples (at most half) are cross-faded over the
-    /// first ones, so the loop is shorter than `samples` by `fade`.
+    /// Makes a loop of `samples`. A cross-fade of `fade` samples (at most half of all) mixes the
+    /// end of `samples` into the start, so the loop is shorter than `samples` by `fade`.
     ///
     /// The gains of the cross-fade are a sine and a cosine, divided by the square root of the power
     /// that the sum would have, given the correlation of the two pieces. Noise keeps its power, and

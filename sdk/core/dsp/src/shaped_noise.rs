@@ -3,12 +3,12 @@
 //! Each frame is an inverse FFT with uniformly random phases. Neighbouring frames overlap by an
 //! eighth: one fades out while the next fades in. Frames are independent and the squares of the two
 //! fade weights add up to 1, so the power is the same at every sample. A frame is one period of its
-//! components, so nothing repeats (numeric definitions: random phase).
+//! components, so nothing repeats (numeric definitions of the specification: random phase).
 //!
-//! A retune computes the current frame again, with the same phases and the new spectrum, and
-//! cross-fades to it over 10 ms. If parameters arrive during a cross-fade, they wait for its end,
-//! and only the last of them are converted to a spectrum. In this way a retune computes one frame
-//! and not two. Frames have single precision, as the output does.
+//! A change of the spectrum (a retune) computes the current frame again, with the same phases and
+//! the new spectrum, and cross-fades to the new frame over 10 ms. Parameters that arrive during a
+//! cross-fade wait for its end, and only the last of them are converted to a spectrum. In this way
+//! a retune computes one frame instead of two. Frames have single precision, like the output.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -20,19 +20,20 @@ use crate::uniform::Uniform;
 
 /// Minimum length of half a frame, seconds: components are at most 2.5 Hz apart.
 const HALF_S: f64 = 0.2;
-/// Frames overlap by one part in this many.
+/// Length of a frame's overlap, as a divisor of its length: neighbouring frames overlap by an
+/// eighth.
 const OVERLAP: usize = 8;
 /// Duration of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
-/// Below this rate the noise ends at the same frequencies as at 2 kHz, hertz.
+/// Sample rate below which the noise ends at the same frequencies as at 2 kHz, hertz.
 const LOW_RATE_HZ: f64 = 2_400.0;
 
 /// An endless stream of noise whose spectrum follows a magnitude curve.
 ///
-/// It has unit RMS as the bins of the band measure it. These bins miss some of the power at the
-/// edges of the band (1/6 of the power of an edge bin), so all components are amplified to
-/// compensate for it.
+/// The noise has unit RMS, as measured in the bins of the band. These bins do not measure some of
+/// the power at the edges of the band (1/6 of the power of an edge bin). So all components are
+/// amplified to compensate for this.
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component, because the inverse FFT doubles it.
@@ -47,18 +48,18 @@ pub struct ShapedNoise {
     next: Uniform,
     /// State of the generator after the phases of the next frame, if `faded` contains the next hop.
     prepared: Option<Uniform>,
-    /// Position in the hop at which the next hop is computed. It depends on the seed. Otherwise
-    /// streams that start together would all compute a frame in the same block.
+    /// Position in the hop at which the next hop is computed. The position depends on the seed.
+    /// Otherwise all streams that start at the same time would compute a frame in the same block.
     prepare_at: usize,
-    /// Whether the spectrum has changed in this hop. It may then change again, which would make a
-    /// prepared hop useless, so none is prepared.
+    /// Whether the spectrum has changed in this hop. If so, the stream does not prepare the next
+    /// hop, because the spectrum may change again, which would make the prepared hop useless.
     changes: bool,
     /// Cosines and sines of the phases that were drawn last.
     cos: Vec<f32>,
     sin: Vec<f32>,
     workspace: Workspace,
-    /// The current hop: the frame that began last, with the end of the frame before it. Followed by
-    /// the part of the frame that overlaps the next one.
+    /// The current hop: the frame that began last, with the end of the frame before it. The part of
+    /// the frame that overlaps the next frame follows it.
     now: Vec<f32>,
     /// During a cross-fade, the current hop with the new amplitudes. Otherwise possibly the next
     /// hop (see `prepared`).
@@ -71,7 +72,7 @@ pub struct ShapedNoise {
 /// Identifies a sample rate and a band, by the bits of the rate and of the band's edges.
 pub type ComponentsKey = [u64; 3];
 
-/// Data that streams with the same rate and band share.
+/// Data that all streams with the same rate and band share.
 struct Frames {
     key: ComponentsKey,
     inverse: InverseRealFft,
@@ -102,8 +103,8 @@ enum Pending {
 }
 
 /// Returns the rate in hertz at which a voice of [`ShapedNoise`] should render if the host wants
-/// `wanted_hz`. It is the lowest integer fraction of `wanted_hz` that contains the band and leaves
-/// a wide transition band for the interpolation to `wanted_hz`.
+/// `wanted_hz`. It is the lowest integer fraction of `wanted_hz` at which the band lies below half
+/// the rate and leaves a wide transition band for the interpolation to `wanted_hz`.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     // The first image then begins at 2.7 times the upper edge, so a single short filter separates
     // it (see `specs` in `resample.rs`).
@@ -111,8 +112,9 @@ pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     wanted_hz / parts
 }
 
-/// Part of a component's power that the band's bins measure. Components are not lines, because
-/// frames are finite: their spread is approximated by the spread of a rectangle as long as the hop.
+/// Returns the part of a component's power that the band's bins measure. A component is not a line
+/// but spreads over neighbouring frequencies, because frames are finite. This function approximates
+/// the spread by the spread of a rectangle as long as the hop.
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     // If the part is 1 at both ends, it is 1 in between, and the sum below would give exactly 1 as
     // well. Most components take this shortcut.
@@ -253,7 +255,7 @@ impl ShapedNoise {
         &self.frames.component_hz
     }
 
-    /// Key for tables over the components. Streams with equal keys have the same
+    /// Returns a key for tables over the components. Streams with equal keys have the same
     /// [`Self::component_hz`].
     pub fn components_key(&self) -> ComponentsKey {
         self.frames.key
@@ -276,12 +278,13 @@ impl ShapedNoise {
         self.pending = Pending::Made;
     }
 
-    /// Cross-fades to a spectrum that is computed only when it is needed.
+    /// Cross-fades to another spectrum, which is computed only when it is needed.
     ///
-    /// If no change is in progress, the spectrum is computed at once. Otherwise it is computed at
-    /// the end of that change, in [`Self::render_with`], and only the last of several requests
-    /// counts. `make` receives [`Self::component_hz`] and writes a magnitude for each, in any
-    /// scale; negative and non-finite values count as zero. Does not allocate.
+    /// If no change is in progress, the spectrum is computed at once. Otherwise
+    /// [`Self::render_with`] computes it at the end of the change in progress; of several requests,
+    /// only the last counts. `make` receives [`Self::component_hz`] and writes the magnitude at
+    /// each frequency, in any scale. Negative and non-finite values count as zero. Does not
+    /// allocate.
     ///
     /// Returns false if the spectrum was computed at once and all magnitudes are zero. The stream
     /// then continues unchanged.
@@ -308,8 +311,8 @@ impl ShapedNoise {
         self.normalise()
     }
 
-    /// Scales the magnitudes to amplitudes that together measure as unit RMS. Returns false if
-    /// there is no power.
+    /// Scales the magnitudes to amplitudes so that the noise measures as unit RMS. Returns false if
+    /// all magnitudes are zero.
     fn normalise(&mut self) -> bool {
         let [first, last] = self.frames.edges;
         self.pending_amplitude.first_mut().into_iter().for_each(|a| *a *= first);
@@ -339,7 +342,8 @@ impl ShapedNoise {
         self.render_with(out, &mut |_, magnitude| magnitude.fill(0.0));
     }
 
-    /// As [`Self::render`]. `make` computes a spectrum that [`Self::retune_with`] has postponed.
+    /// Fills `out` with the next samples, as [`Self::render`] does. `make` computes a spectrum that
+    /// [`Self::retune_with`] has postponed.
     pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&[f64], &mut [f64])) {
         let mut rest = out;
         while !rest.is_empty() {

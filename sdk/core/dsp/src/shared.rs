@@ -1,14 +1,15 @@
-//! A cache of tables that depend only on a few parameters. A table is computed once and shared
-//! while it is in use; the last few tables stay cached.
+//! A cache of tables that depend only on a few parameters. All users of a table share it. The cache
+//! also keeps the last few tables when they are not in use.
 
 use alloc::sync::Arc;
 
-/// Number of tables of one kind, the last ones requested, that stay in memory even if no one uses
-/// them. An app that opens one texture after another then computes them only once.
+/// Number of tables of one kind that stay in memory even if they are not in use: the tables that
+/// were requested last. So an app that opens one texture after another computes them only once.
 #[cfg(feature = "std")]
 const KEPT: usize = 4;
 
-/// A cache of tables by key. Without `std` nothing is shared, and each user has its own table.
+/// A cache of tables by key. Without the feature `std` it shares nothing, and each user has its own
+/// table.
 #[cfg(feature = "std")]
 pub struct Shared<K, V: ?Sized>(std::sync::Mutex<Tables<K, V>>);
 

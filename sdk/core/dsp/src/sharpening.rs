@@ -1,16 +1,16 @@
-//! Sharpens a power spectrum against the blur of the Hann window, so that noise with the sharpened
-//! spectrum measures as intended.
+//! Sharpens a power spectrum to compensate for the blur of the Hann window. A measurement of noise
+//! with the sharpened spectrum then gives the original spectrum.
 
 /// Number of sharpening steps.
 const SHARPENINGS: usize = 2;
 
-/// Writes a power spectrum on the band's grid that measures approximately as `power` through the
-/// Hann window.
+/// Writes the sharpened power spectrum on the band's grid. If noise has this spectrum, its spectrum
+/// measured through the Hann window is approximately `power`.
 ///
 /// The window distributes the power of noise over bins: two thirds stay in a bin, and a sixth goes
-/// to each neighbour. Two Richardson–Lucy steps invert this. Next to flanks that are steeper than
-/// the window's, some blur remains. All slices have the length of `power`, which may be 0; `before`
-/// is working memory. Does not allocate.
+/// to each neighbour. Two Richardson–Lucy steps approximately invert this. Next to flanks that are
+/// steeper than the window's flanks, some blur remains. All slices have the length of `power`,
+/// which may be 0; `before` is working memory. Does not allocate.
 ///
 /// ```
 /// let (mut before, mut sharp) = ([0.0; 3], [0.0; 3]);

@@ -3,15 +3,15 @@
 //! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so the phase after a
 //! day of samples is as accurate as at the start: a day drifts by less than a millionth of a cycle.
 //!
-//! Recurrences generate the samples, and restart from the counted phase at regular anchors. While
-//! nothing changes, an oscillator generates eight samples at a time from the previous sixteen:
-//! `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are independent, which suits vector
-//! instructions. While amplitudes or frequencies change, each sample is computed from the one
-//! before, by rotating the oscillator's point by its angle per sample.
+//! Recurrences generate the samples. At regular intervals (anchors) they restart from the counted
+//! phase. While nothing changes, an oscillator generates eight samples at a time from the previous
+//! sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`. The eight lanes are independent, which suits
+//! vector instructions. While amplitudes or frequencies change, the oscillator computes each sample
+//! from the sample before it, by rotating a point by the oscillator's angle per sample.
 
 use alloc::vec::Vec;
 
-/// Samples between two anchors. In this time the recurrences drift by less than 1e-10 of an
+/// Samples between two anchors. Between two anchors the recurrences drift by less than 1e-10 of an
 /// amplitude.
 const ANCHOR_INTERVAL: u32 = 4096;
 /// Number of samples that an oscillator generates at a time.
@@ -49,7 +49,7 @@ struct Oscillators {
     amplitude: Vec<f64>,
     step: Vec<f64>,
     target: Vec<f64>,
-    /// The last samples and the next ones; used while nothing changes.
+    /// The last eight samples and the next eight samples. Used while nothing changes.
     wave: Vec<[[f64; LANES]; 2]>,
     /// `2 cos(LANES w)`.
     recur: Vec<f64>,
@@ -71,15 +71,15 @@ pub struct SineBank {
     ramp_len: u32,
     ramp_left: u32,
     since_anchor: u32,
-    /// Index from which all oscillators are silent.
+    /// Number of oscillators that may be audible: all oscillators from this index on are silent.
     heard: usize,
     chunk: [f32; CHUNK],
     osc: Oscillators,
 }
 
 impl SineBank {
-    /// Makes a bank of up to `capacity` oscillators at the sample rate `rate_hz`, which plays
-    /// `sines`. Sines at or above the Nyquist frequency are silent.
+    /// Makes a bank of up to `capacity` oscillators that plays `sines` at the sample rate
+    /// `rate_hz`. Sines at or above the Nyquist frequency are silent.
     pub fn new(rate_hz: f64, capacity: usize, sines: &[Sine]) -> Self {
         let zeros = || alloc::vec![0.0; capacity];
         let mut bank = Self {

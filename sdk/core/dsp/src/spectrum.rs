@@ -27,7 +27,8 @@ impl core::fmt::Display for WrongLength {
 
 impl core::error::Error for WrongLength {}
 
-/// Real FFT of segments of one length, with or without mean removal and the periodic Hann window.
+/// Computes the spectra of segments of one length with a real FFT, with or without mean removal and
+/// the periodic Hann window.
 ///
 /// ```
 /// use htex_dsp::spectrum::SegmentAnalyzer;
@@ -57,7 +58,8 @@ impl SegmentAnalyzer {
     }
 
     /// Factor from the magnitude of a windowed bin to the amplitude of a sinusoid: `2 / Σw`, which
-    /// is `4 / len`. The 2 adds the half of the amplitude that is at the negative frequency.
+    /// is `4 / len`. The factor 2 accounts for the half of the amplitude that is at the negative
+    /// frequency.
     pub fn amplitude_scale(&self) -> f64 {
         2.0 / self.window.iter().sum::<f64>()
     }
@@ -83,7 +85,7 @@ impl SegmentAnalyzer {
         Ok(())
     }
 
-    /// Transforms the segment without removing the mean and without a window. Otherwise as
+    /// Transforms the segment without removing the mean and without a window. Otherwise the same as
     /// [`Self::analyze`].
     ///
     /// # Errors
@@ -105,8 +107,8 @@ impl SegmentAnalyzer {
 }
 
 /// Combines the spectra of several axes into one: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X +
-/// Y + …` (DFT321, Landin et al. 2010). Where the sum is zero the phase is 0. A single axis is
-/// returned unchanged. The shortest axis determines the length.
+/// Y + …` (DFT321, Landin et al. 2010). Where the sum is zero, the phase is 0. If there is only one
+/// axis, its spectrum is returned unchanged. The shortest axis determines the length.
 pub fn dft321(axes: &[Vec<Complex<f64>>]) -> Vec<Complex<f64>> {
     let bins = axes.iter().map(Vec::len).min().unwrap_or(0);
     match axes {

@@ -20,7 +20,7 @@ pub struct TriangleBank {
 
 impl TriangleBank {
     /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and
-    /// have the same unit; flanks are linear in this unit. A filter that falls between two
+    /// have the same unit; flanks are linear in this unit. A filter that lies between two
     /// neighbouring positions is empty.
     pub fn new(edges: &[f64], axis: &[f64]) -> Self {
         let triangles =

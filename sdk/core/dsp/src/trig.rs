@@ -1,5 +1,5 @@
-//! Sines, cosines and tangents of bounded angles, with the same bits as `libm`. They omit the
-//! reduction of large arguments, which takes 2 kB of a WASM module.
+//! Sines, cosines and tangents of angles up to [`LARGEST`], with the same bits as `libm`. They omit
+//! `libm`'s code for larger angles, which would add 2 kB to a WASM module.
 //!
 //! The series and the reduction come from FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
 //! Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
@@ -8,8 +8,8 @@
 
 use crate::wide::{Work, wide};
 
-/// Angles below this, radians, give the same bits as `libm`. Above it the error grows with the
-/// angle.
+/// Angle, radians, up to which the results have the same bits as the results of `libm`. Above this
+/// angle the error grows with the angle.
 pub const LARGEST: f64 = 1_647_099.0;
 
 /// Sine of an angle in radians; NaN if the angle is not finite.
@@ -61,8 +61,8 @@ pub fn tan(x: f64) -> f64 {
 }
 
 /// Writes the cosines of angles from 0 to π, each within 3e-16, into an array of the same length.
-/// The series has no branches, so several angles are computed at a time. The bits differ from those
-/// of [`cos`].
+/// The series has no branches, so compilers compute several angles at a time. The bits differ from
+/// the results of [`cos`].
 ///
 /// ```
 /// use htex_dsp::trig::{cos, half_turn_cosines};
@@ -132,7 +132,7 @@ fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     cosines
 }
 
-/// High words of π/4, and of 2⁻²⁷ √2. Below the latter, the sine equals the angle.
+/// High words of π/4, and of 2⁻²⁷ √2. Below 2⁻²⁷ √2, the sine equals the angle.
 const QUARTER_PI: u32 = 0x3fe9_21fb;
 const TINY: u32 = 0x3e46_a09e;
 /// High word of 2⁻²⁷. Below it, the tangent equals the angle.
@@ -148,7 +148,8 @@ fn high_word(x: f64) -> u32 {
     (x.to_bits() >> 32) as u32 & 0x7fff_ffff
 }
 
-/// Splits an angle above π/4 into quarter turns and a rest, which is returned in two parts.
+/// Splits an angle above π/4 into quarter turns and a remainder. Returns the remainder as the sum
+/// of two numbers.
 fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
     // If this is added and subtracted again, a number is rounded to a whole one.
     const ROUND: f64 = 1.5 / f64::EPSILON;

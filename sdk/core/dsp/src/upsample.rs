@@ -1,8 +1,8 @@
 //! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
-//! A few source samples are converted to all their outputs at a time. The outputs of one phase are
-//! side by side in vector registers. So no sum runs across the lanes of a register, and the output
-//! does not depend on the block sizes.
+//! Each step converts a few source samples to all their outputs. The outputs of one phase are side
+//! by side in a vector register. So no sum runs across the lanes of a register, and the output does
+//! not depend on the block sizes.
 //!
 //! Samples are pulled in multiples of eight, so that chains with different stages retune at the
 //! same samples.
@@ -12,8 +12,8 @@ use alloc::vec::Vec;
 
 use crate::wide::{Work, wide};
 
-/// Number of source samples pulled at a time. It is small, because pulled samples delay a change of
-/// parameters. It is doubled if the samples take half as long.
+/// Number of source samples pulled at a time. It is small, because samples that have already been
+/// pulled delay a change of parameters. At high sample rates it is doubled ([`MANY`]).
 const FEW: usize = 8;
 const MANY: usize = 16;
 const MANY_HZ: f64 = 3_500.0;

@@ -1,18 +1,18 @@
-//! What a fingertip feels of a vibration: the detection threshold of displacements, and the
+//! Perception of vibration by a fingertip: the smallest displacement that people detect, and the
 //! impedance of the skin, which converts a force to a displacement.
 //!
 //! The threshold applies to a vibrating contact of 2.9 cm² on the hand's glabrous skin. It is
 //! constant up to 40 Hz, and then falls by 12 dB per octave to its smallest value at 250 Hz, where
 //! the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35, 1962–1966, as
-//! summarised by Gescheider & Verrillo 1979). Above, it rises by 9 dB per octave (Verrillo 1966,
-//! *Psychonomic Science* 4, 135–136). Its smallest value is −20 dB re 1 µm, 0.1 µm peak
-//! (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). People
-//! differ by some 10 dB. A smaller contact raises the Pacinian part by 3 dB for each halving of its
-//! area.
+//! summarised by Gescheider & Verrillo 1979). Above 250 Hz, it rises by 9 dB per octave (Verrillo
+//! 1966, *Psychonomic Science* 4, 135–136). Its smallest value is −20 dB re 1 µm, 0.1 µm peak
+//! (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694). The
+//! thresholds of different people differ by some 10 dB. A smaller contact raises the Pacinian part
+//! by 3 dB for each halving of its area.
 //!
-//! Of the two papers on slopes, only the abstracts were read. The smallest threshold and the values
-//! of [`Skin`] are the values that are commonly quoted from these papers, to one or two digits. A
-//! laboratory that has measured its participants should use its own [`Listener`].
+//! The authors of htex read only the abstracts of the two papers on slopes (Verrillo 1963, 1966).
+//! The smallest threshold and the values of [`Skin`] are commonly quoted from the papers, to one or
+//! two digits. A laboratory that has measured its participants should use its own [`Listener`].
 
 /// Frequency up to which the threshold is constant, hertz.
 const FLAT_HZ: f64 = 40.0;
@@ -52,7 +52,8 @@ pub struct Skin {
 impl Default for Skin {
     /// A fingertip that is pressed with about 0.5 N: elastic up to about 100 Hz, and viscous above
     /// (Wiertlewski & Hayward 2012, *J. Biomech.* 45, 1869–1874, seven people, 20 to 500 Hz). The
-    /// values are rounded. Between people and forces they differ by a factor of about two, 6 dB.
+    /// values are rounded. They differ between people and between forces by a factor of about two
+    /// (6 dB).
     fn default() -> Self {
         Self { stiffness_n_m: 1_000.0, damping_n_s_m: 1.5, mass_kg: 1.5e-4 }
     }

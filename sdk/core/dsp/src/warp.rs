@@ -1,11 +1,11 @@
-//! Playback of a stream at a variable rate: reads it faster or slower, by a ratio that may change
-//! at any sample.
+//! Plays a stream at a variable rate: reads it faster or slower, at a ratio that may change at any
+//! sample.
 //!
-//! A texture is read faster or slower when the motion differs from the motion of the voice. The
-//! ratio at which the voice was created is part of its resampler. As long as the motion stays
-//! there, samples pass through this reader bit by bit and at no cost ([`Warp::when_needed`]). The
-//! source is pulled, so reading ahead causes no delay. The reader has 8 to 32 taps, as many as it
-//! needs to separate the source's highest frequency from its image.
+//! A player reads a texture faster or slower when the motion differs from the motion for which the
+//! voice was created. As long as the motion does not differ, the ratio is 1, and samples pass
+//! through this reader unchanged and at no cost ([`Warp::when_needed`]). The reader pulls samples
+//! from its source, so reading ahead causes no delay. It has 8 to 32 taps, as many as it needs to
+//! separate the source's highest frequency from its image.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 use crate::kernels::{self, kaiser_length};
 use crate::wide::{Work, wide};
 
-/// Maximum number of source samples per output. The stop-band attenuation is about 60 dB from the
-/// source's Nyquist frequency on.
+/// Maximum number of source samples from which an output is computed. Above the source's Nyquist
+/// frequency, the attenuation is about 60 dB.
 const MOST_TAPS: usize = 32;
 /// The number of taps is a multiple of this.
 const LANES: usize = 8;
@@ -23,13 +23,14 @@ const LANES: usize = 8;
 const PHASE_BITS: u32 = 8;
 /// Maximum number of outputs read at a time.
 const CHUNK: usize = 64;
-/// As [`PHASE_BITS`], for a reader that starts on demand. Its table takes an eighth of the time to
-/// compute. The interpolation error between its rows is -60 dB at 0.4 of the source's rate, and -98
-/// dB at 0.05.
+/// The same as [`PHASE_BITS`], for a reader that interpolates only when it is needed. Its table
+/// takes an eighth of the time to compute. The interpolation error between its rows is -60 dB at
+/// 0.4 of the source's rate, and -98 dB at 0.05.
 const FEW_PHASE_BITS: u32 = 5;
 
-/// Reads its source at a variable ratio, by windowed-sinc interpolation. It pulls from the source,
-/// as [`crate::resample::Resampler`] does, and gives the same samples for any block size.
+/// Reads its source at a variable ratio, by windowed-sinc interpolation. Like
+/// [`crate::resample::Resampler`], it pulls samples from the source and gives the same samples for
+/// any block size.
 ///
 /// ```
 /// use htex_dsp::warp::Warp;
@@ -50,7 +51,7 @@ pub struct Warp {
     history: Vec<f32>,
     start: usize,
     filled: usize,
-    /// Whether it interpolates. Otherwise the source passes through.
+    /// Whether the reader interpolates. If false, the source passes through unchanged.
     reads: bool,
 }
 
@@ -61,14 +62,15 @@ impl Warp {
         Self::with_taps(taps(top), PHASE_BITS)
     }
 
-    /// Makes a reader for a ratio of 1 only. The source passes through without delay.
+    /// Makes a reader that supports only the ratio 1. The source passes through without delay.
     pub fn through() -> Self {
         Self::with_taps(1, 0)
     }
 
     /// Makes a reader that starts to interpolate only when it is needed. While the ratio is 1, the
-    /// source passes through bit-identical and without delay. From the first other ratio on, the
-    /// reader interpolates as [`Self::new`] does, starting at the current position.
+    /// source passes through bit-identical and without delay. When another ratio occurs for the
+    /// first time, the reader starts to interpolate at the current position, and interpolates from
+    /// then on.
     pub fn when_needed(top: f64) -> Self {
         let mut warp = Self::with_taps(taps(top), FEW_PHASE_BITS);
         // The samples before the first one count as zeros.
@@ -95,9 +97,9 @@ impl Warp {
         self.taps / 2 - 1
     }
 
-    /// Fills `out`. Each sample is `ratio` source samples (0 to 1,000) after the one before. With a
-    /// `ratio` above 1, source content above the output's Nyquist frequency is aliased. Pulls no
-    /// more samples than `out` needs. Does not allocate.
+    /// Fills `out`. Each output lies `ratio` source samples (0 to 1,000) after the output before
+    /// it. With a `ratio` above 1, source frequencies above the output's Nyquist frequency are
+    /// aliased. Pulls no more samples than `out` needs. Does not allocate.
     pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         if !self.reads {
             if ratio == 1.0 {

@@ -1,17 +1,17 @@
 //! Selects AVX2 and AVX-512 code on x86-64 at run time.
 //!
-//! Inner loops are compiled for 128 and 256 bits, and noise also for 512 bits. The operations and
-//! their order are the same, so the results are bit-identical. The calls of these versions are the
-//! only unsafe code of this crate.
+//! Inner loops are compiled for registers of 128 and 256 bits, and the loops of noise also for 512
+//! bits. The operations and their order are the same, so the results are bit-identical. The calls
+//! of these versions are the only unsafe code of this crate.
 
 /// A computation that is compiled for several register widths; `run` is always inlined.
 pub(crate) trait Work {
     fn run(self);
 }
 
-/// Runs `work` as compiled for AVX2 (256-bit registers) if the processor has it, otherwise as
-/// compiled for the target. The result is bit-identical, because the operations and their order are
-/// the same.
+/// Runs the version of `work` that was compiled for AVX2 (256-bit registers) if the processor has
+/// AVX2, otherwise the version for the target. The result is bit-identical, because the operations
+/// and their order are the same.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]
@@ -36,8 +36,8 @@ pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Runs `work` as compiled for AVX-512 (512-bit registers) if the processor has it. Otherwise
-/// returns `work`, because two halves are then faster than work of this width.
+/// Runs the version of `work` that was compiled for AVX-512 (512-bit registers) if the processor
+/// has AVX-512. Otherwise returns `work`: the caller then does it in two halves, which is faster.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]

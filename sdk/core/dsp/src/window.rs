@@ -16,8 +16,8 @@ pub fn hann_periodic(n: usize) -> Vec<f64> {
 }
 
 /// Height of the window's transform at a distance of `bins` from a sinusoid: `sin(πd) / (πd (1 -
-/// d²))`, which is 1 at the centre. Only the main lobe is returned; beyond two bins on either side
-/// the result is 0.
+/// d²))`, which is 1 at the centre. The function covers only the main lobe: the result is 0 beyond
+/// two bins on either side.
 ///
 /// ```
 /// use htex_dsp::window::hann_main_lobe;

@@ -1,5 +1,5 @@
-//! Packs many small textures and measures seconds, memory, and the reads and bytes needed for one
-//! texture.
+//! Packs many small textures. Measures the time, the memory, and the reads and bytes that opening
+//! one texture needs.
 //!
 //! `cargo run --release -p htex-format --example many` packs 1,000, 100,000 and 1,000,000
 //! textures; other numbers may be given. Each number runs in its own process, so that its peak
@@ -17,10 +17,10 @@ use htex_format::library::{Library, LibrarySource, LocalFile, Writer};
 use htex_format::{Asset, Manifest};
 
 const COUNTS: [u64; 3] = [1_000, 100_000, 1_000_000];
-/// Number of textures that are opened, spread over the library. Each is opened from a freshly
-/// opened library.
+/// Number of textures to open, spread over the library. The measurement opens the library anew for
+/// each texture.
 const OPENED: u64 = 200;
-/// Argument that marks the process that packs.
+/// Argument that tells a process to pack textures and print the result.
 const PACKS: &str = "--packs";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -190,7 +190,7 @@ fn make(texture: &mut Asset, i: u64) -> Result<(String, Vec<u8>), Box<dyn Error>
     Ok((format!("{kind}/{feel}/{mixed:011x}-{i}"), texture.to_bytes()?))
 }
 
-/// Returns the peak memory (RSS) of this process, MiB; `None` if the system does not report it.
+/// Returns the peak memory (RSS) of this process, MiB, or `None` if the system does not report it.
 fn peak_mib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

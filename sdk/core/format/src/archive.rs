@@ -1,8 +1,9 @@
 //! Strict ZIP reader: checks all records first, then unpacks every entry.
 //!
-//! The ZIP format allows files in which two programs see different archives. To rule that out, an
-//! asset's archive has its entries without gaps from byte 0, then the directory in the same order,
-//! then the end record, and the local headers state the same names and sizes as the directory.
+//! The ZIP format allows files in which two programs see different archives. The rules for assets
+//! exclude such files. The entries start at byte 0 and have no gaps between them. The directory
+//! follows, in the same order, and then the end record. The local headers state the same names and
+//! sizes as the directory.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -16,7 +17,7 @@ use htex_base::finding::Findings;
 
 /// Name of the entry that identifies an asset.
 pub(crate) const MIMETYPE: &str = "mimetype";
-/// Contents of that entry.
+/// Contents of the entry `mimetype`.
 pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
 pub(crate) const MANIFEST: &str = "manifest.json";
 
@@ -47,7 +48,8 @@ pub(crate) struct Archive<'a> {
 }
 
 impl<'a> Archive<'a> {
-    /// Checks the records and unpacks all entries. Returns `None` if a finding is an error.
+    /// Checks the records and unpacks all entries. Returns `None` if this adds an error to the
+    /// findings.
     pub(crate) fn open(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
         if bytes.len() as u64 > limits.file_bytes {
             findings.add(rule::FILE_TOO_LARGE, "", too_large(bytes.len() as u64, limits));
@@ -179,8 +181,8 @@ fn directory<'a>(
     Some(entries)
 }
 
-/// Checks that the entries end where the directory starts, and the directory where the end record
-/// starts.
+/// Checks that the entries end where the directory starts, and that the directory ends where the
+/// end record starts.
 fn check_ends(end: &End, directory_end: usize, entries_end: usize, findings: &mut Findings) {
     if directory_end != end.at {
         let message = "the directory is longer or shorter than the end record says".to_owned();

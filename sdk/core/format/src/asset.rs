@@ -39,15 +39,15 @@ use htex_base::finding::Finding;
 pub struct Asset {
     /// The contents of `manifest.json`.
     pub manifest: Manifest,
-    /// Parameters by representation and then by condition, in the order of
-    /// [`crate::Representation::at`]. Each is a flat array in field order; a list is preceded by
-    /// its length.
+    /// The parameter sets of each representation: one for each condition, in the order of
+    /// [`crate::Representation::at`]. A parameter set is a flat array of the fields in their order;
+    /// the length of a list precedes its values.
     pub parameters: Vec<Vec<Vec<f64>>>,
-    /// Recorded spectra by condition: magnitudes on the band's 5 Hz grid, in the
-    /// asset's unit.
+    /// The recorded spectrum of each condition: magnitudes on the band's 5 Hz grid, in the asset's
+    /// unit.
     pub reference: Option<Vec<Vec<f32>>>,
     /// WASM modules, in the order of [`crate::Manifest::plugins`].
     pub plugins: Vec<Vec<u8>>,
-    /// Findings from reading that are not errors, such as a newer minor version.
+    /// Findings of the reader that are not errors, e.g. that the file has a newer minor version.
     pub notes: Vec<Finding>,
 }

@@ -1,8 +1,9 @@
 //! Encoder and decoder of parameter blocks.
 //!
-//! For each condition, a block holds the stored values of each field in fixed width, little endian.
-//! A list is preceded by its length as bincode's variable-length integer. The manifest's fields
-//! alone determine the layout. This is the only module that uses bincode.
+//! For each condition, a block contains the stored values of each field, in little-endian order
+//! and, except for packed lists, with a fixed width. The length of a list precedes its values, as a
+//! variable-length integer of bincode. Only the manifest's fields determine the layout. This is the
+//! only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
@@ -56,8 +57,8 @@ pub(crate) fn encode(
     Ok(out)
 }
 
-/// Decodes a block into flat arrays. `values` is the budget of values that may still be read; each
-/// value read is subtracted from it.
+/// Decodes a block into flat arrays. `values` is the number of values that the reader may still
+/// read; this function subtracts the number that it reads.
 pub(crate) fn decode(
     fields: &[StoredField],
     conditions: usize,
@@ -103,13 +104,14 @@ fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> 
     values.iter().enumerate().map(step).collect()
 }
 
-/// Rounds a flat array to the values that an asset stores, i.e. those a reader gets back.
+/// Rounds a flat array to the values that an asset stores. A reader gets exactly these values.
 ///
-/// `flat` holds the fields in order: a scalar's value, or a list's length and then its values.
+/// `flat` contains the fields in order: the value of a scalar, or the length of a list followed by
+/// its values.
 ///
 /// # Errors
-/// [`WriteError::OutOfRange`] if a value is not finite or its field's store cannot hold it,
-/// [`WriteError::Layout`] if `flat` does not follow `fields`.
+/// [`WriteError::OutOfRange`] if a value is not finite or its field cannot store it,
+/// [`WriteError::Layout`] if `flat` does not match `fields`.
 ///
 /// ```
 /// use htex_format::{StoredField, Steps, StoredAs, round_parameters};
@@ -137,13 +139,14 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
 /// Rounds a model's parameters like [`round_parameters`], and keeps a value that is in its field's
 /// range inside that range.
 ///
-/// If the nearest stored value is outside the range, the next one inside is used. For example, a
-/// field's maximum of 0.2 is 0.200000003 in 32 bits, which the model refuses; it is stored as
-/// 0.199999988. Every writer of a model's parameters rounds with this function.
+/// If the nearest value that can be stored is outside the range, the function uses the next value
+/// inside. For example, the 32-bit float nearest to a field's maximum of 0.2 is 0.200000003, which
+/// the model refuses. The function returns 0.199999988 instead. Every writer of a model's
+/// parameters rounds with this function.
 ///
 /// # Errors
-/// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the store has no value in
-/// the field's range.
+/// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the field cannot store any
+/// value in its range.
 pub fn round_within(
     fields: &[StoredField],
     model: &Descriptor,
@@ -177,8 +180,8 @@ pub fn round_within(
     Ok(rounded)
 }
 
-/// Returns the number's value if it is in the range, else the value of the next number towards the
-/// range; `None` if both are outside.
+/// Returns the value of `nearest` if it is in the range, otherwise the value of the next number
+/// towards the range. Returns `None` if both are outside.
 fn inside(nearest: Number, store: StoredAs, min: f64, max: f64) -> Option<f64> {
     let value = value_of(nearest, store);
     let next = match value {
@@ -233,7 +236,8 @@ enum Number {
 }
 
 impl Number {
-    /// Returns the next number above (1) or below (-1); `None` at the end of the range.
+    /// Returns the next number above (`direction` 1) or below (`direction` -1), or `None` at the
+    /// end of the range.
     fn next(self, direction: i8) -> Option<Self> {
         let up = direction > 0;
         Some(match self {
@@ -271,8 +275,8 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
     }
 }
 
-/// Returns the nearest step, with halves rounded away from zero; `None` if it is below 0 or above
-/// `last`.
+/// Returns the nearest step; halves are rounded away from zero. Returns `None` if the step is below
+/// 0 or above `last`.
 fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
     let x = if steps.log { libm::log(value) } else { value };
     // The logarithm is libm's: the standard library's differs in the last digit between systems,
@@ -300,8 +304,8 @@ fn value_of(number: Number, store: StoredAs) -> f64 {
     }
 }
 
-/// Writes a number. Integers are written as raw bytes, because bincode takes three for a `u16`
-/// above 250.
+/// Writes a number. Integers are written as raw bytes, because bincode needs three bytes for a
+/// `u16` above 250.
 fn put_number(out: &mut Vec<u8>, number: Number) -> Result<(), WriteError> {
     match number {
         Number::F64(x) => put(out, x),
@@ -373,7 +377,7 @@ impl Reader<'_> {
         Ok(steps)
     }
 
-    /// Reads a list's length, which is limited to what the remaining bytes can hold.
+    /// Reads a list's length. Refuses a length for which the remaining bytes are too few.
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
         let length = self.decode::<u64>().ok_or_else(|| truncated(field, condition))?;
@@ -422,7 +426,7 @@ impl StoredAs {
     }
 }
 
-/// Returns the bytes of bincode's shortest variable-length integer.
+/// Returns the length in bytes of bincode's shortest variable-length integer for this number.
 fn shortest(length: u64) -> usize {
     match length {
         0..=250 => 1,

@@ -17,8 +17,8 @@ use htex_base::finding::escape;
 /// Highest allowed upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
 
-/// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None`
-/// for an invalid band.
+/// Counts the multiples of 5 Hz from the band's lower edge to its upper edge, both included: 197
+/// for 20 to 1000 Hz. Returns `None` for an invalid band.
 pub(crate) fn grid_points(band: Band) -> Option<usize> {
     // Only valid bands are counted, because a band up to 1e300 Hz has more points than `usize`
     // holds.

@@ -13,8 +13,8 @@ use crate::rules as rule;
 use crate::triangles::{TrianglesError, check_corners, check_triangles};
 use htex_base::finding::Findings;
 
-/// Smallest allowed ratio of a step to the largest magnitude it is added to. Below it, rounding can
-/// change the step.
+/// Smallest allowed ratio of a step to the largest magnitude to which it is added. At a smaller
+/// ratio, rounding can change the step.
 // An epsilon is 2^-52, so this is the 2^-50 of the specification.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
@@ -44,8 +44,8 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
     }
 }
 
-/// Checks the triangles of a representation. If its conditions break a rule, only the corners are
-/// checked.
+/// Checks the triangles of a representation. If the conditions of the representation break a rule,
+/// this function checks only the corners.
 fn check_triangles_of(
     representation: &Representation,
     conditions: &[Condition],
@@ -120,7 +120,7 @@ fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &m
 }
 
 impl Steps {
-    /// Returns whether the value of every step is quantised back to that same step.
+    /// Returns whether quantising the value of any step gives the same step again.
     pub(crate) fn are_valid(&self, last: u16) -> bool {
         let positive = self.scale > 0.0 && self.scale.is_finite() && self.offset.is_finite();
         let far_end = self.offset + self.scale * f64::from(last);

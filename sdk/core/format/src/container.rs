@@ -15,7 +15,7 @@ impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].
     ///
     /// # Errors
-    /// [`ReadError::Invalid`] if a finding is an error; it holds all findings.
+    /// [`ReadError::Invalid`] if one of the findings is an error. It contains all findings.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
         Self::from_bytes_with(bytes, &Limits::default())
     }
@@ -38,7 +38,8 @@ impl Asset {
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
     }
 
-    /// Returns the size in bytes of a representation's stored parameter block; 0 if there is none.
+    /// Returns the size of a representation's parameter block as stored, bytes. Returns 0 if there
+    /// is no such block.
     pub fn payload_bytes(&self, representation: usize) -> usize {
         let stored = self.manifest.representations.get(representation);
         let block = stored.zip(self.parameters.get(representation));

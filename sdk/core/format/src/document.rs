@@ -1,4 +1,4 @@
-//! Versioned JSON documents, parsed so that every problem is reported with a JSON pointer.
+//! Parser of versioned JSON documents that reports every problem with a JSON pointer.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -8,16 +8,16 @@ use crate::typed::typed;
 use htex_base::finding::Findings;
 use htex_base::finding::Rule;
 
-/// A kind of document: what messages call it, its version and the rules it must follow.
+/// A kind of document: its name in messages, its version and its rules.
 #[derive(Debug, Clone, Copy)]
 pub struct Document {
-    /// What messages call the text, such as `manifest`.
+    /// Name of the text in messages, such as `manifest`.
     pub text: &'static str,
-    /// What messages call the file, such as `manifest.json`.
+    /// Name of the file in messages, such as `manifest.json`.
     pub file: &'static str,
-    /// What messages call the thing that has the version, such as `asset`.
+    /// Name, in messages, of the thing that has the version, such as `asset`.
     pub thing: &'static str,
-    /// The key that holds the version.
+    /// The key whose value is the version.
     pub version_key: &'static str,
     /// The supported major version.
     pub major: u64,
@@ -27,7 +27,7 @@ pub struct Document {
     pub rules: DocumentRules,
 }
 
-/// The rules that apply to every document, with the codes that one kind of document uses for them.
+/// The rules that apply to every kind of document. Each kind has its own codes for them.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
     /// The nesting exceeds the limit.
@@ -42,7 +42,7 @@ pub struct DocumentRules {
     pub version_invalid: &'static Rule,
     /// The major version is not supported.
     pub version_unsupported: &'static Rule,
-    /// The minor version is newer than the supported one.
+    /// The minor version is newer than the supported minor version.
     pub version_newer: &'static Rule,
 }
 
@@ -51,13 +51,13 @@ pub struct DocumentRules {
 pub struct VersionedJson {
     /// The parsed JSON.
     pub value: Value,
-    /// Whether its minor version is newer than the supported one.
+    /// Whether the document's minor version is newer than the supported minor version.
     pub newer: bool,
 }
 
 impl Document {
-    /// Parses a text that nests at most `max_depth` deep. If that fails, adds a finding that says
-    /// why and returns `None`.
+    /// Parses a JSON text whose nesting depth is at most `max_depth`. If the text is not valid,
+    /// adds a finding that says why, and returns `None`.
     pub fn open(
         &self,
         bytes: &[u8],
@@ -129,8 +129,8 @@ impl Document {
         Some(minor)
     }
 
-    /// Converts the document to a `T` and returns it with the pointers to all unknown keys. If that
-    /// fails, adds a finding that says why and returns `None`.
+    /// Converts the document to a `T` and returns it with the pointers to all unknown keys. If the
+    /// types do not match, adds a finding that says why, and returns `None`.
     pub fn typed<T: DeserializeOwned>(
         &self,
         opened: &VersionedJson,
@@ -147,7 +147,7 @@ impl Document {
     }
 }
 
-/// Returns the nesting depth: the greatest number of arrays and objects open at once.
+/// Returns the nesting depth: the largest number of arrays and objects that contain each other.
 fn depth(mut bytes: &[u8]) -> usize {
     let (mut open, mut deepest) = (0usize, 0);
     while let Some((&byte, rest)) = bytes.split_first() {

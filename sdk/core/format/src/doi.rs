@@ -1,4 +1,5 @@
-//! Syntax of digital object identifiers (ISO 26324): `10.`, the registrant, a slash, a name.
+//! Syntax of digital object identifiers (ISO 26324): `10.`, the number of the registrant, a slash
+//! and a name.
 
 /// The error for a text that is not a DOI.
 #[allow(missing_docs)] // The message says what a field is.

@@ -1,5 +1,5 @@
-//! Byte ranges of an archive's entries, for programs that store equal entries of several assets
-//! once.
+//! Byte ranges of an archive's entries. Programs use them to store an entry that several assets
+//! share only once.
 
 use std::ops::Range;
 
@@ -18,12 +18,12 @@ use crate::zip_records;
 pub struct EntryRange {
     /// Name of the entry.
     pub name: String,
-    /// Bytes of its data in the file.
+    /// Byte range of the entry's data in the file.
     pub data: Range<usize>,
 }
 
-/// Returns the entries of a valid asset in file order. For other bytes, returns the entries that
-/// can be found.
+/// Returns the entries of a valid asset in file order. If the bytes are not a valid asset, returns
+/// the entries that it can find.
 pub fn entry_ranges(bytes: &[u8]) -> Vec<EntryRange> {
     let Some(end) = zip_records::find_end(bytes) else {
         return Vec::new();

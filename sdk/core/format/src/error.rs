@@ -26,7 +26,7 @@ pub enum ReadError {
     /// The file is not a valid asset.
     #[error("not a valid asset: {}", summary(.findings))]
     Invalid {
-        /// All findings, including those that are not errors.
+        /// All findings, including warnings and information.
         findings: Vec<Finding>,
     },
 }
@@ -36,7 +36,7 @@ pub enum ReadError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The file could not be written; an existing file is unchanged.
+    /// The file could not be written. If the file existed before, it is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Io {
         path: PathBuf,
@@ -46,10 +46,10 @@ pub enum WriteError {
     /// The asset breaks a rule of the format.
     #[error("the asset breaks the format's rules: {}", summary(.findings))]
     Invalid {
-        /// All findings, including those that are not errors.
+        /// All findings, including warnings and information.
         findings: Vec<Finding>,
     },
-    /// A parameter is out of the range that its field's store can hold.
+    /// A parameter is outside the range of values that its field can store.
     #[error(
         "parameter {field}[{index}] is {value} and its store holds {low} to {high}; \
          bring the value into that range or choose another store"
@@ -59,9 +59,9 @@ pub enum WriteError {
         /// Index in the field; 0 for a scalar.
         index: usize,
         value: f64,
-        /// Smallest value that the store holds.
+        /// Smallest value that the field can store.
         low: f64,
-        /// Largest value that the store holds.
+        /// Largest value that the field can store.
         high: f64,
     },
     /// A flat array does not match its fields.
@@ -73,7 +73,7 @@ pub enum WriteError {
         /// The field and what is wrong with it.
         problem: String,
     },
-    /// An array has another length than the manifest states.
+    /// The length of an array differs from the length that the manifest states.
     #[error("{what}: {got} given and the manifest has {expected}; make them agree")]
     Count {
         what: String,

@@ -1,7 +1,7 @@
 //! Matches an asset's stored fields to a model's fields, by name.
 //!
-//! Playing, scenes, `info` and `validate` all match fields here. An asset may store fields in any
-//! order; the model gets them in its own order.
+//! The player, scenes, `htex info` and `htex validate` all use this module. An asset may store
+//! fields in any order; the model receives them in its own order.
 
 use htex_model::{Descriptor, Kind};
 use semver::Version;
@@ -19,26 +19,27 @@ pub enum FieldMismatch {
     /// The model has no field of this name.
     #[error("the model has no field {name:?}; its fields are {there}")]
     Unknown {
-        /// Index among the stored fields.
+        /// Index of the field among the stored fields.
         index: usize,
         name: String,
         there: String,
     },
-    /// A list is stored where the model has a scalar, or a scalar where it has a list.
+    /// The asset stores a list where the model has a scalar, or a scalar where the model has a
+    /// list.
     #[error("{name:?} is stored as {stored} and the model expects {wanted}")]
     Kind {
-        /// Index among the stored fields.
+        /// Index of the field among the stored fields.
         index: usize,
         name: String,
-        /// What is stored.
+        /// The kind of field that the asset stores: a list or one number.
         stored: &'static str,
-        /// What the model expects.
+        /// The kind of field that the model expects: a list or one number.
         wanted: &'static str,
     },
     /// The stored unit differs from the model's unit.
     #[error("{name:?} is stored {} and the model expects it {}", words(.stored), words(.wanted))]
     Unit {
-        /// Index among the stored fields.
+        /// Index of the field among the stored fields.
         index: usize,
         name: String,
         /// The stored unit; empty for a pure number.
@@ -46,7 +47,7 @@ pub enum FieldMismatch {
         /// The model's unit; empty for a pure number.
         wanted: String,
     },
-    /// A field that the model has, without a default, is not stored.
+    /// The asset does not store a field of the model, and the field has no default.
     #[error("the model's field {name:?} is not stored")]
     Missing { name: String },
 }
@@ -84,8 +85,8 @@ impl FieldMismatch {
     }
 }
 
-/// The order in which a model takes its fields from an asset's parameters. [`match_fields`] returns
-/// it.
+/// The mapping from an asset's stored fields to the fields of a model, in the model's order.
+/// [`match_fields`] returns it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
     stored: &'a [StoredField],
@@ -94,16 +95,17 @@ pub struct FieldOrder<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Part {
-    /// Index among the stored fields.
+    /// Index of the field among the stored fields.
     Stored(usize),
-    /// The model's default, for an asset that is older than the field.
+    /// The model's default value, for an asset that was written before the model had the field.
     Default(f64),
 }
 
 /// Matches stored fields to a model's fields by name, in any order.
 ///
 /// # Errors
-/// Every mismatch. The mismatches of stored fields come first, in their order.
+/// If any fields do not match. The list contains all mismatches; the mismatches of stored fields
+/// come first, in the order of the fields.
 pub fn match_fields<'a>(
     stored: &'a [StoredField],
     model: &Descriptor,
@@ -167,7 +169,7 @@ impl FieldOrder<'_> {
     /// Rearranges a flat array from the order of the stored fields to the model's order.
     ///
     /// # Errors
-    /// [`WriteError::Layout`] if the array does not follow the stored fields.
+    /// [`WriteError::Layout`] if the array does not match the stored fields.
     pub fn arrange(&self, flat: &[f64]) -> Result<Vec<f64>, WriteError> {
         let stored = split(self.stored, flat)?;
         let mut arranged = Vec::with_capacity(flat.len());
@@ -187,8 +189,8 @@ impl FieldOrder<'_> {
     }
 }
 
-/// Looks up the descriptor of the model that plays a representation; `None` if the reader does not
-/// have that model.
+/// A function that looks up the descriptor of the model that plays a representation. It returns
+/// `None` if the reader does not have that model.
 pub type KnownModel<'a> = &'a dyn Fn(&Representation) -> Option<&'a Descriptor>;
 
 /// Adds a finding for each stored field that does not match its model's field. Representations of

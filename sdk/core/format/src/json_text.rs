@@ -9,11 +9,11 @@ use serde_json::{Map, Number, Value};
 
 use htex_base::finding::Place;
 
-/// Parses a JSON text that nests at most 128 deep, the parser's own limit. It refuses duplicate
-/// keys, because programs differ in which of the two they use.
+/// Parses a JSON text and refuses duplicate keys, because some programs use the first value of such
+/// a key and others the last. The parser itself limits the nesting depth to 128.
 ///
 /// # Errors
-/// If the text is not JSON, or a key appears twice in an object.
+/// If the text is not JSON, nests too deep, or has a key twice in an object.
 ///
 /// ```
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "b": 1 }"#).is_ok());
@@ -31,7 +31,7 @@ pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
     })
 }
 
-/// Why a JSON text was refused.
+/// The reason why a JSON text was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JsonError {
@@ -43,7 +43,8 @@ pub enum JsonError {
     Twice(String),
 }
 
-/// Deserializes the value at a place. A duplicate key is recorded before the parser stops.
+/// Deserializes the value at one place of the text. It records the pointer of a duplicate key
+/// before the parser stops.
 #[derive(Clone, Copy)]
 struct Strict<'p> {
     place: &'p Place<'p>,

@@ -1,10 +1,10 @@
 //! The motion law of a texture: how its frequencies and level change at a speed or force that was
 //! not recorded.
 //!
-//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by
-//! `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. An exponent that is neither measured nor
-//! given is assumed from what slid over the surface and from the quantity of the samples
-//! ([`Law::assumed`]).
+//! To play a motion (v, F) from the nearest recorded motion (v0, F0), a player multiplies
+//! frequencies by `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. If an exponent was neither
+//! measured nor given by the user, [`Law::assumed`] provides it. The assumption depends on what
+//! slid over the surface and on the quantity of the samples.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Quantity, UnknownName};
 
-/// What slid over the surface.
+/// The kind of contact: what slid over the surface.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
@@ -29,7 +29,7 @@ pub enum Contact {
     Unknown,
 }
 
-/// Reads the name used in a manifest.
+/// Parses the name used in a manifest.
 ///
 /// ```
 /// assert_eq!("tool".parse(), Ok(htex_format::Contact::Tool));
@@ -72,7 +72,8 @@ impl clap::ValueEnum for Contact {
     }
 }
 
-/// How frequencies and level change at a motion outside the recorded ones.
+/// The motion law: how frequencies and level change at speeds and forces outside the recorded
+/// range.
 ///
 /// ```
 /// use htex_format::{Contact, Law, Quantity};
@@ -89,25 +90,24 @@ pub struct Law {
     pub level_force: Exponent,
 }
 
-/// An exponent of a law, and where it comes from.
+/// An exponent of a motion law, and its source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Exponent {
-    /// The exponent that is played, -4 to 4.
+    /// The exponent that a player uses, -4 to 4.
     #[schemars(range(min = -4, max = 4))]
     pub exponent: f64,
-    /// Where it comes from.
+    /// Source of the exponent.
     pub source: ExponentSource,
-    /// The measured value, before it was pulled towards the assumed exponent according to its
-    /// error.
+    /// The measured value. `exponent` is a weighted mean of this value and the assumed exponent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<f64>,
-    /// Standard error of the measurement, not negative.
+    /// Standard error of `estimate`, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub standard_error: Option<f64>,
 }
 
-/// Where an exponent of a law comes from.
+/// Source of an exponent of a motion law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ExponentSource {
@@ -130,26 +130,28 @@ impl ExponentSource {
     }
 }
 
-/// Smallest weight that a measured exponent may have relative to the assumed one.
+/// Smallest weight of a measured exponent in its mean with the assumed exponent. A measurement with
+/// a smaller weight is not used.
 const LEAST_WEIGHT: f64 = 0.1;
-/// How much the exponents differ between surfaces, as standard deviations: frequency over speed,
-/// level over speed, level over force.
+/// Standard deviation between surfaces of each exponent: frequency over speed, level over speed,
+/// level over force.
 const SPREAD: [f64; 3] = [0.5, 0.15, 0.3];
-/// Largest allowed magnitude of an exponent.
+/// Largest allowed absolute value of an exponent.
 pub const MOST_EXPONENT: f64 = 4.0;
 
 impl Exponent {
-    /// Creates an exponent that is assumed.
+    /// Creates an exponent with the source [`ExponentSource::Assumed`].
     pub const fn assumed(exponent: f64) -> Self {
         Self::new(exponent, ExponentSource::Assumed)
     }
 
-    /// Creates an exponent from a measurement and its standard error, pulled towards the assumed
-    /// exponent.
+    /// Creates an exponent from a measurement, its standard error and the assumed exponent.
     ///
-    /// The result is the weighted mean of both, limited to `bounds`. The weights are the inverse
-    /// squares of the standard error and of `spread`, the standard deviation between surfaces. A
-    /// measurement that would get less than a tenth of the weight is not used.
+    /// The result is the weighted mean of the measurement and the assumed exponent, limited to
+    /// `bounds`. The weight of the measurement is the inverse square of its standard error; the
+    /// weight of the assumed exponent is the inverse square of `spread`, the standard deviation
+    /// between surfaces. If the measurement has less than a tenth of the total weight, the result
+    /// is the assumed exponent.
     ///
     /// ```
     /// use htex_format::{Exponent, ExponentSource};
@@ -181,7 +183,7 @@ impl Exponent {
         }
     }
 
-    /// Creates an exponent that the user enters.
+    /// Creates an exponent from a value that the user entered.
     pub const fn given(exponent: f64) -> Self {
         Self::new(exponent, ExponentSource::Given)
     }
@@ -190,7 +192,7 @@ impl Exponent {
         Self { exponent, source, estimate: None, standard_error: None }
     }
 
-    /// Returns whether all its numbers are in range.
+    /// Returns whether all numbers of the exponent are in range.
     pub(crate) fn is_valid(&self) -> bool {
         let finite = self.estimate.is_none_or(f64::is_finite);
         let error = self.standard_error.is_none_or(|e| e.is_finite() && e >= 0.0);
@@ -201,18 +203,19 @@ impl Exponent {
 impl Law {
     /// Returns the usual law for a quantity and a contact.
     ///
-    /// - Tool: frequencies do not change with the speed, as in 81 materials of the Penn Haptic
-    ///   Texture Toolkit (H. Culbertson, J. J. Lopez Delgado, K. J. Kuchenbecker 2014). Their
-    ///   levels rise with `v^0.43 F^0.07` (medians).
+    /// - Tool: frequencies do not change with the speed, and levels rise with `v^0.43 F^0.07`.
+    ///   These are the medians of 81 materials of the Penn Haptic Texture Toolkit (H. Culbertson,
+    ///   J. J. Lopez Delgado, K. J. Kuchenbecker 2014).
     /// - Bare finger: vibrations scale in time with the speed (C. M. Greenspon, K. R. McLellan, J.
     ///   D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre, J.-L. Thonnard 2012).
-    ///   So velocity rises with the speed, acceleration with its square, and the friction force
-    ///   with the normal force.
-    /// - Unknown: medians of recorded strokes of two materials, `v^0.75`, and half a power of the
-    ///   force.
+    ///   So velocity rises with the speed, acceleration rises with the square of the speed, and the
+    ///   friction force rises with the normal force.
+    /// - Unknown: frequencies do not change with the speed, and levels rise with `v^0.75 F^0.5`.
+    ///   The exponent 0.75 is the median of recorded strokes on two materials.
     ///
-    /// If the exponent of frequencies is measured or given and differs from these, the levels lie
-    /// between the levels of a relief and the levels of a surface whose frequencies stay.
+    /// The assumed exponents of the level depend on the exponent of frequencies. If that exponent
+    /// was measured or given, they lie between the values for a relief (exponent 1) and for a
+    /// surface whose frequencies do not change (exponent 0).
     pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
         let a = match contact {
             Contact::Finger => 1.0,
@@ -226,12 +229,14 @@ impl Law {
         }
     }
 
-    /// Returns this law for another quantity or contact. Assumed exponents are assumed anew,
-    /// measured ones are pulled towards the new assumption, and given ones stay.
+    /// Returns this law for another quantity or contact. Assumed exponents are replaced by the new
+    /// assumption, measured exponents are averaged with the new assumption, and given exponents do
+    /// not change.
     ///
-    /// The assumed levels follow the frequency exponent that the law has. If the measured
-    /// frequencies of a surface scale as on a relief, it gets a relief's levels, whatever slid over
-    /// it. If its frequencies do not change, it does not.
+    /// The assumed exponents of the level depend on the law's frequency exponent. If the measured
+    /// frequencies of a surface scale with the speed, as on a relief, the level gets a relief's
+    /// exponents, whatever slid over the surface. If the frequencies do not change, the level does
+    /// not get them.
     #[must_use]
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);
@@ -259,7 +264,8 @@ impl Law {
         }
     }
 
-    /// Returns the law with the exponents that are played and their sources only.
+    /// Returns the law without the measurements: only the exponents that a player uses, and their
+    /// sources.
     #[must_use]
     pub const fn without_measurements(&self) -> Self {
         const fn plain(exponent: Exponent) -> Exponent {
@@ -282,12 +288,14 @@ impl Law {
         ]
     }
 
-    /// Returns the factor for all frequencies at a speed relative to the recorded speed.
+    /// Returns the factor by which all frequencies change. `speed_ratio` is the speed divided by
+    /// the recorded speed.
     pub fn frequency_factor(&self, speed_ratio: f64) -> f64 {
         power(speed_ratio, self.frequency_speed.exponent)
     }
 
-    /// Returns the factor for the level at a speed and a force relative to the recorded ones.
+    /// Returns the factor by which the level changes. The ratios are the speed divided by the
+    /// recorded speed, and the force divided by the recorded force.
     pub fn level_factor(&self, speed_ratio: f64, force_ratio: f64) -> f64 {
         power(speed_ratio, self.level_speed.exponent)
             * power(force_ratio, self.level_force.exponent)
@@ -311,8 +319,9 @@ impl fmt::Display for Law {
     }
 }
 
-/// Returns the assumed exponents of the level over speed and over force. They are mixed between a
-/// surface whose frequencies stay (frequency exponent 0) and a relief (1).
+/// Returns the assumed exponents of the level over speed and over force. They are interpolated
+/// between a surface whose frequencies do not change (frequency exponent 0) and a relief (frequency
+/// exponent 1).
 const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Contact) -> [f64; 2] {
     let stays = match contact {
         Contact::Tool => [0.43, 0.07],

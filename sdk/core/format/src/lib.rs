@@ -2,7 +2,7 @@
 //!
 //! `spec/htex-1.md` is the normative specification of the format. This crate does no signal
 //! processing and never loads a model. To check the parameters in a file, it compares their fields
-//! with the descriptor of the model, which the caller provides.
+//! with the model's descriptor. The caller provides the descriptor.
 //!
 //! ```
 //! use htex_format::{Limits, validate};

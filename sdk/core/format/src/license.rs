@@ -10,18 +10,19 @@ use htex_base::finding::Rule;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LicenseError {
-    /// The id of a licence is not in the list, which grows over time.
+    /// The id of a licence is not in the SPDX list. It may be newer than this program's copy of the
+    /// list.
     #[error(
         "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
     )]
     Unlisted { id: String },
-    /// The grammar is wrong.
+    /// The text breaks the grammar of SPDX expressions.
     #[error("{license:?} is not an SPDX expression ({reason}); write one like CC-BY-4.0")]
     Syntax { license: String, reason: String },
 }
 
 impl LicenseError {
-    /// Returns the broken rule: an error for wrong grammar, a warning for an unlisted id.
+    /// Returns the broken rule. Wrong grammar is an error; an unlisted id is a warning.
     #[must_use]
     pub fn rule(&self) -> &'static Rule {
         match self {
@@ -34,7 +35,7 @@ impl LicenseError {
 /// Checks a text against the grammar of SPDX licence expressions and the list of licences.
 ///
 /// # Errors
-/// The grammar is wrong, or an id is not in the list.
+/// If the text breaks the grammar, or an id is not in the list.
 ///
 /// ```
 /// use htex_format::check_license;

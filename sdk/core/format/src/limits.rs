@@ -1,6 +1,7 @@
 //! Limits for reading untrusted files.
 
-/// Limits for reading. Each is checked before the bytes that it limits are read or unpacked.
+/// Limits for reading, with their default values. The reader checks each limit before it reads or
+/// unpacks the bytes that the limit concerns.
 ///
 /// ```
 /// let limits = htex_format::Limits { file_bytes: 1 << 20, ..Default::default() };
@@ -18,10 +19,10 @@ pub struct Limits {
     pub total_bytes: u64,
     /// Ratio of an entry's unpacked size to its packed size: 200.
     pub ratio: u64,
-    /// Nesting depth of the manifest's arrays and objects: 32. The JSON parser itself refuses
-    /// more than 100.
+    /// Nesting depth of the manifest's arrays and objects: 32. The JSON parser itself refuses a
+    /// depth of more than 100.
     pub json_depth: usize,
-    /// Numbers in all parameter blocks and the reference together: 1,048,576.
+    /// Number of values in all parameter blocks and reference spectra together: 1,048,576.
     pub values: usize,
 }
 

@@ -1,7 +1,7 @@
 //! `manifest.json`: the metadata of an asset.
 //!
-//! Absent and empty keys are left out when the manifest is written. Keys that this version does not
-//! know are preserved and written back ([`Manifest::other`]).
+//! The writer leaves out keys that are absent or empty. Keys that this version does not know are
+//! preserved and written back ([`Manifest::other`]).
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use crate::triangles::Triangle;
 /// The version of the format that this crate reads and writes.
 pub const VERSION: &str = "1.0";
 
-/// The manifest of an asset: one surface.
+/// The manifest of an asset: the metadata of one surface and its models.
 ///
 /// ```no_run
 /// let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
@@ -62,15 +62,17 @@ pub struct Manifest {
     /// Kind and model of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor: Option<String>,
-    /// What slid over the surface: a bare finger, an artificial fingertip, a tool.
+    /// What slid over the surface during the recording: a bare finger, an artificial fingertip or a
+    /// tool.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finger: Option<String>,
-    /// Kind of contact between what slid and the surface. It decides which motion law is assumed.
+    /// Kind of the sliding contact: a finger or a tool. If the manifest states no motion law, the
+    /// contact decides which law a player assumes.
     #[serde(default, skip_serializing_if = "Contact::is_unknown")]
     pub contact: Contact,
-    /// Physical quantity of the samples.
+    /// Physical quantity of the samples, e.g. the lateral force.
     pub quantity: Quantity,
-    /// Unit of the samples: [`Quantity::unit`].
+    /// Unit of the samples. It must be the unit of `quantity`.
     pub unit: String,
     /// Frequency band of the spectra.
     #[serde(with = "BandText")]
@@ -82,41 +84,42 @@ pub struct Manifest {
     /// The conditions (speed and force) at which the texture was recorded.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub conditions: Vec<Condition>,
-    /// How frequencies and level change at a motion outside the conditions. Without it, the usual
-    /// law for `contact` and `quantity` applies.
+    /// The motion law: how frequencies and level change at speeds and forces outside the recorded
+    /// conditions. Without this key, the usual law for `contact` and `quantity` applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<Law>,
-    /// The texture's spectrum, once per model.
+    /// The representations of the texture: each contains the parameters of one model.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub representations: Vec<Representation>,
-    /// The recorded spectra.
+    /// The archive entry with the recorded spectra.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
     /// Embedded models, for players that do not have them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("uniqueItems" = true))]
     pub plugins: Vec<Plugin>,
-    /// Extensions by name (`com.vendor.NAME/REV`).
+    /// Data of extensions, by the extension's name (`com.vendor.NAME/REV`).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub extensions: BTreeMap<String, Value>,
-    /// Extensions without which the asset cannot be used.
+    /// Names of the extensions that a player must support to use the asset.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub extensions_required: Vec<String>,
-    /// Keys of a newer minor version.
+    /// Keys that this version of the format does not know, e.g. from a newer minor version.
     #[serde(flatten)]
     #[schemars(skip)]
     pub other: BTreeMap<String, Value>,
 }
 
 impl Manifest {
-    /// Returns the stated law, or else the assumed law for the quantity and the contact.
+    /// Returns the law that the manifest states. If it states none, returns the assumed law for the
+    /// quantity and the contact.
     pub fn law(&self) -> Law {
         let assumed = || Law::assumed(self.quantity, self.contact);
         self.law.unwrap_or_else(assumed)
     }
 }
 
-/// A frequency band, edges included.
+/// A frequency band. The band includes both edges.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Band")]
 #[schemars(rename = "Band")]
@@ -124,7 +127,7 @@ struct BandText {
     /// Lower edge, hertz, above 0.
     #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
     low_hz: f64,
-    /// Upper edge, hertz, above the lower.
+    /// Upper edge, hertz, above the lower edge.
     #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
     high_hz: f64,
 }
@@ -132,19 +135,19 @@ struct BandText {
 /// How an asset was made.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
-    /// Program and version that wrote it.
+    /// Name and version of the program that wrote the asset.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub tool: String,
-    /// True when a recording comes from a simulator instead of a finger.
+    /// Whether at least one recording comes from a simulator instead of a finger.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
-    /// The recordings that the asset was fitted to.
+    /// The recordings to which the models were fitted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<Source>,
     /// How the asset was made if it was not fitted to recordings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made: Option<Made>,
-    /// Options that differ from their defaults.
+    /// Options of the fit that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub options: BTreeMap<String, String>,
     /// Warnings that were shown to the author.
@@ -168,7 +171,7 @@ pub struct Made {
     pub from: Vec<Ingredient>,
 }
 
-/// A way of making an asset without recordings.
+/// A method of making an asset without recordings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum How {
@@ -178,12 +181,12 @@ pub enum How {
     Mixed,
 }
 
-/// An asset that was mixed with others.
+/// An asset from which another asset was mixed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ingredient {
     /// Name of the asset's texture.
     pub name: String,
-    /// Its share of the mixture, from 0 to 1.
+    /// The asset's share of the mixture, from 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub weight: f64,
     /// BLAKE3 of the asset's file, 64 hexadecimal digits.
@@ -201,14 +204,14 @@ pub struct Source {
     pub rate_hz: f64,
     /// Number of segments that were averaged.
     pub segments: u64,
-    /// BLAKE3 of the recording's file, 64 hexadecimal digits. It tells apart recordings of the same
-    /// name.
+    /// BLAKE3 of the recording's file, 64 hexadecimal digits. The hash distinguishes recordings
+    /// with the same file name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
     pub blake3: Option<String>,
 }
 
-/// A recorded motion (speed and force); an absent value is unknown.
+/// A condition: the speed and normal force of a recording. An absent value is unknown.
 ///
 /// ```
 /// let condition = htex_format::Condition { speed_mm_s: Some(80.0), ..Default::default() };
@@ -216,7 +219,7 @@ pub struct Source {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Condition {
-    /// Scanning speed, mm/s, not negative.
+    /// Speed of the finger along the surface, mm/s, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub speed_mm_s: Option<f64>,
@@ -224,30 +227,31 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
-    /// Repeatability, decibels: by how much two recordings like this one differ. It is the RMS over
-    /// nine bands of the difference between odd and even blocks of time, over √2.
+    /// Repeatability, decibels: an estimate of how much a second recording of the same surface
+    /// would differ. It compares the odd and the even blocks of the recording: the RMS of their
+    /// level differences in nine bands, divided by √2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// Number of segments that were averaged at this condition; 0 if the condition was computed
-    /// between recorded ones.
+    /// Number of recorded segments that were averaged at this condition. It is 0 if the condition
+    /// was interpolated between recorded conditions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<u64>,
 }
 
 /// Largest relative difference at which two speeds, or two forces, count as the same. A person who
-/// is asked to hold a speed or a force is no more accurate than this.
+/// is asked to keep a speed or a force constant is about as accurate as this.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
-    /// Returns whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Neither
-    /// may be negative.
+    /// Returns whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both
+    /// numbers must not be negative.
     pub fn is_same(a: f64, b: f64) -> bool {
         (a - b).abs() <= SAME_CONDITION * a.max(b)
     }
 }
 
-/// The texture as one model describes it.
+/// A representation of the texture: the parameters of one model.
 ///
 /// ```no_run
 /// # let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
@@ -261,21 +265,21 @@ pub struct Representation {
     /// Reverse-DNS id of the model.
     #[schemars(regex(pattern = MODEL_ID))]
     pub model: String,
-    /// Semantic version of the model that fitted it.
+    /// Semantic version of the model that fitted the parameters.
     #[schemars(regex(pattern = SEMANTIC_VERSION))]
     pub model_version: String,
     /// Parameter fields, in the order of the flat array.
     #[schemars(extend("uniqueItems" = true))]
     pub fields: Vec<StoredField>,
-    /// The conditions at which the model is fitted, in the order of the parameter block.
+    /// The conditions for which the parameter block contains parameters, in the order of the block.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
-    /// The triangles between conditions in which a player interpolates, as indices into `at`.
-    /// Without any, the specification's rules determine the triangles. [`crate::check_triangles`]
-    /// says which are valid.
+    /// The triangles between conditions in which a player interpolates. Their corners are indices
+    /// into `at`. If this list is empty, the rules of the specification determine the triangles.
+    /// Invalid triangles are an error.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<Triangle>,
-    /// Archive entry that holds the parameter block.
+    /// Name of the archive entry that contains the parameter block.
     #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub parameters: String,
 }
@@ -287,7 +291,7 @@ pub struct StoredField {
     /// Name, as in the model's descriptor.
     #[schemars(length(min = 1))]
     pub name: String,
-    /// Unit symbol; a pure number has none.
+    /// Unit symbol; empty for a pure number.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// Whether the field is a list of numbers instead of a single number.
@@ -298,8 +302,8 @@ pub struct StoredField {
     pub store: StoredAs,
 }
 
-/// Storage of a number. The integer kinds store `q`, which stands for the value `offset + scale·q`,
-/// or with `log` for `exp(offset + scale·q)`.
+/// Storage of a number. The integer kinds store a whole number `q` for the value `offset +
+/// scale·q`, or for `exp(offset + scale·q)` if `log` is set.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Store")]
 #[serde(rename_all = "lowercase")]
@@ -310,24 +314,25 @@ pub enum StoredAs {
     F64,
     /// IEEE 754 binary32.
     F32,
-    /// 16-bit steps.
+    /// Unsigned 16-bit integer `q`.
     U16(Steps),
-    /// 8-bit steps.
+    /// Unsigned 8-bit integer `q`.
     U8(Steps),
-    /// 8-bit steps of a list, stored as differences: fewer bits where neighbours are similar.
+    /// List of unsigned 8-bit integers `q`, stored as the differences between neighbours. Small
+    /// differences take fewer bits.
     Packed(Steps),
 }
 
-/// Step size and offset of an integer store.
+/// Step size and offset of an integer storage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Steps {
-    /// Size of a step, above 0.
+    /// Size of a step: the factor of `q`, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
-    /// Value at `q = 0`.
+    /// Value for `q = 0`. If `log` is set, it is the natural logarithm of that value.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: f64,
-    /// Whether the steps are taken in the natural logarithm of the value.
+    /// Whether `scale` and `offset` refer to the natural logarithm of the value.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub log: bool,
 }
@@ -343,11 +348,11 @@ fn is_zero(x: &f64) -> bool {
 }
 
 impl Representation {
-    /// Returns the error, decibels, that a program uses to choose among an asset's representations.
+    /// Returns the error in decibels by which a program chooses among an asset's representations.
     ///
-    /// It is the error at the first condition, where a voice starts. If that condition was not
-    /// measured, for example because it was computed between recorded ones, it is
-    /// [`Self::largest_error_db`]. `None` if no condition was measured.
+    /// This is the error at the first condition, where a voice starts. If that condition has no
+    /// measured error, for example because it was interpolated between recorded conditions, this is
+    /// [`Self::largest_error_db`]. Returns `None` if no condition has a measured error.
     ///
     /// ```no_run
     /// # use htex_format::ErrorMeasure;
@@ -362,8 +367,8 @@ impl Representation {
         first.or_else(|| self.largest_error_db(measure))
     }
 
-    /// Returns the largest error of all measured conditions by a measure, decibels; `None` if no
-    /// condition was measured.
+    /// Returns the largest error of all conditions by this measure, decibels. Returns `None` if no
+    /// condition has a measured error.
     pub fn largest_error_db(&self, measure: ErrorMeasure) -> Option<f64> {
         let measured = self.at.iter().filter_map(|at| at.error_db(measure));
         measured.max_by(f64::total_cmp)
@@ -376,7 +381,7 @@ impl AtCondition {
     }
 }
 
-/// A representation at one condition.
+/// One condition of a representation: the level and the accuracy of the fit.
 ///
 /// ```no_run
 /// # let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
@@ -388,16 +393,17 @@ impl AtCondition {
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AtCondition {
-    /// Index into the asset's conditions.
+    /// Index of the condition in the manifest's `conditions`.
     pub condition: usize,
-    /// RMS of the fitted spectrum in the band, in the asset's unit. The parameters describe a shape
-    /// with an RMS of 1.
+    /// Level: the RMS of the fitted spectrum in the band, in the asset's unit. The parameters
+    /// describe only the shape of the spectrum, which has an RMS of 1.
     #[schemars(range(min = 0))]
     pub level_rms: f64,
-    /// Agreement with the recording.
+    /// How well the model agrees with the recorded spectrum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Left-out error: how far blocks of time near this condition are from a fit without them.
+    /// Left-out error: the error on recorded blocks near this condition, of a fit that did not use
+    /// these blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }
@@ -405,22 +411,22 @@ pub struct AtCondition {
 /// The archive entry with the recorded spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
-    /// Archive entry: one array of 32-bit floats per condition, on the band's 5 Hz grid, in
-    /// the asset's unit.
+    /// Name of the archive entry. For each condition it contains the magnitudes on the band's 5 Hz
+    /// grid, as 32-bit floats, in the asset's unit.
     #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub file: String,
 }
 
-/// An embedded WASM module of a model.
+/// A model that is embedded in the asset, as a WASM module.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plugin {
     /// Reverse-DNS id of the model.
     #[schemars(regex(pattern = MODEL_ID))]
     pub model: String,
-    /// Semantic version of the module's model.
+    /// Semantic version of the model in the module.
     #[schemars(regex(pattern = SEMANTIC_VERSION))]
     pub version: String,
-    /// Archive entry that holds the module: `plugins/ID.wasm`.
+    /// Name of the archive entry that contains the module: `plugins/ID.wasm`.
     #[schemars(regex(pattern = r"^plugins/[a-z0-9._-]+\.wasm$"))]
     pub file: String,
     /// BLAKE3 of the module, 64 lower-case hexadecimal digits.

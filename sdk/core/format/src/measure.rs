@@ -1,8 +1,9 @@
-//! Measures of how well a spectrum agrees with a recorded one, one row for each measure.
+//! Measures of how well a spectrum agrees with a recorded spectrum: a table with one row for each
+//! measure.
 //!
-//! These rows generate the keys of `quality` with their checks, schema and rounding, the columns of
-//! tables and reports, and the tables in the documents. `htex-author` has the function that
-//! computes each measure.
+//! From these rows the project generates the keys of `quality` (with their checks, schema and
+//! rounding), the columns of tables and reports, and the tables in the documents. `htex-author` has
+//! the function that computes each measure.
 
 use std::fmt;
 
@@ -11,14 +12,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::Quality;
 
-/// What the values of a measure mean.
+/// The kind of a measure: the range of its values, and its best value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasureKind {
-    /// From -1 to 1, where 1 is best.
+    /// A correlation from -1 to 1; 1 is best.
     Correlation,
-    /// Not negative, where 0 is best.
+    /// An error that is not negative; 0 is best.
     Error,
-    /// Positive or negative, where 0 is best.
+    /// A difference, positive or negative; 0 is best.
     Difference,
 }
 
@@ -36,7 +37,7 @@ impl MeasureKind {
 /// What a measure is computed from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The model's magnitudes, as they would be measured in a recording of its voice.
+    /// The model's magnitudes, as a measurement of its voice's output would show them.
     Magnitude,
     /// The spectrum of rendered samples.
     Samples,
@@ -53,8 +54,8 @@ pub struct MeasureRow {
     pub meaning: &'static str,
     /// Definition for rendered samples; `None` if the measure is not computed from them.
     pub of_samples: Option<&'static str>,
-    /// When a comparison does not have this measure, as words that follow "`None` ". `None` if
-    /// every comparison has it.
+    /// Says when a comparison lacks this measure, in words that follow "`None` " in a text. `None`
+    /// if every comparison has the measure.
     pub lacking: Option<&'static str>,
     /// Name in running text.
     pub name: &'static str,
@@ -64,19 +65,19 @@ pub struct MeasureRow {
     pub unit: &'static str,
     /// Decimals in tables.
     pub decimals: usize,
-    /// What its values mean.
+    /// The kind of the measure: its range and its best value.
     pub judged: MeasureKind,
-    /// Whether assets store it in `quality`.
+    /// Whether assets store the measure in `quality`.
     pub stored: bool,
-    /// Whether it is required in every `quality` and `left_out` that may have it.
+    /// Whether `quality`, and `left_out` if it stores the measure, must contain it.
     pub required: bool,
-    /// Whether assets also store it in `left_out`.
+    /// Whether assets also store the measure in `left_out`.
     pub left_out: bool,
-    /// Heading of its column in printed tables.
+    /// Heading of the measure's column in printed tables.
     pub column: Option<&'static str>,
-    /// Heading of its column in printed tables, for rendered samples.
+    /// Heading of the measure's column in printed tables, if it is computed from rendered samples.
     pub played: Option<&'static str>,
-    /// Caption of its table in reports, with `{}` where the measured thing is named.
+    /// Caption of the measure's table in reports. `{}` stands for the name of what was measured.
     pub caption: Option<&'static str>,
 }
 
@@ -102,7 +103,7 @@ const STORED_ERROR: MeasureRow = MeasureRow {
 
 macro_rules! measures {
     ($(#[doc = $meaning:literal] $name:ident { key: $key:literal, $($field:ident: $value:expr,)* })*) => {
-        /// A measure of the agreement of a spectrum with a recorded one.
+        /// A measure of how well a spectrum agrees with a recorded spectrum.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Measure {
             $(#[doc = $meaning] $name,)*
@@ -239,10 +240,10 @@ impl Measure {
 )]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorMeasure {
-    /// RMS of the energy errors of nine overlapping bands.
+    /// RMS of the energy errors in nine overlapping bands.
     #[default]
     NineBand,
-    /// RMS of the energy errors of third-octave bands.
+    /// RMS of the energy errors in third-octave bands.
     ThirdOctave,
     /// RMS over the bins of the difference of the magnitudes in decibels.
     LogSpectral,
@@ -261,8 +262,8 @@ impl ErrorMeasure {
         }
     }
 
-    /// Returns the error by this measure, computed from the model's magnitudes; `None` if it was
-    /// not measured.
+    /// Returns the error by this measure, computed from the model's magnitudes. Returns `None` if
+    /// the error was not measured.
     pub fn error_in(self, quality: &Quality) -> Option<f64> {
         quality.get(self.measure())
     }

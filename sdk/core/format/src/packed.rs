@@ -1,8 +1,9 @@
 //! Packed lists of steps: the first step, then the differences in a Rice code.
 //!
-//! Steps with small differences take two to five bits each. Each list has exactly one valid code,
-//! so that a block which is read and written again has the same bytes. To make the code unique, the
-//! Rice parameter is the one that takes the fewest bits, and a reader refuses any other.
+//! A step takes two to five bits if it differs little from the step before. Each list has exactly
+//! one valid code, so that reading and writing a block again gives the same bytes. To make the code
+//! unique, a writer uses the Rice parameter that takes the fewest bits, and a reader refuses any
+//! other.
 
 /// Bits of the Rice parameter `k`.
 const PARAMETER_BITS: u32 = 3;
@@ -11,7 +12,8 @@ const FIRST_BITS: u32 = 8;
 /// Largest folded difference between two steps.
 const MOST: u32 = 2 * u8::MAX as u32;
 
-/// Returns how many steps the given bytes can hold at most. A difference takes at least one bit.
+/// Returns the largest number of steps that this number of bytes can contain. A difference takes at
+/// least one bit.
 pub(crate) fn most_steps(bytes: usize) -> usize {
     bytes.saturating_mul(8)
 }
@@ -66,7 +68,8 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
     (parameter(&steps) == k && reader.rest_is_zero()).then_some((steps, used))
 }
 
-/// Returns the Rice parameter that takes the fewest bits; of several, the smallest.
+/// Returns the Rice parameter that takes the fewest bits. If several take equally few, returns the
+/// smallest of them.
 fn parameter(steps: &[u8]) -> u32 {
     let all = 0..1 << PARAMETER_BITS;
     // Of equal keys, `min_by_key` returns the first, which makes the smallest parameter win as

@@ -4,13 +4,15 @@ use ed25519_dalek::{Signature as Ed25519, Signer, SigningKey, VerifyingKey};
 
 use crate::{Plugin, Signature};
 
-/// Prefix of every signed text. It makes a signature invalid for anything but a plugin.
+/// Prefix of every signed text. With it, a signature of a plugin is not valid for any other kind of
+/// text.
 const DOMAIN: &[u8] = b"htex plugin 1\0";
 /// First bytes of every WASM module.
 pub(crate) const WASM_MAGIC: &[u8] = b"\0asm";
 
 impl Plugin {
-    /// Creates the unsigned entry of a model's module. `version` is the model's version.
+    /// Creates the manifest entry of a model's WASM module, without a signature. `version` is the
+    /// model's version.
     pub fn new(model: &str, version: &str, module: &[u8]) -> Self {
         Self {
             model: model.to_owned(),
@@ -21,7 +23,7 @@ impl Plugin {
         }
     }
 
-    /// Returns the name of the archive entry that holds a model's module.
+    /// Returns the name of the archive entry that contains a model's module.
     pub(crate) fn file_of(model: &str) -> String {
         format!("plugins/{model}.wasm")
     }
@@ -37,8 +39,8 @@ impl Plugin {
         self
     }
 
-    /// Returns whether the signature is valid for its public key and this plugin. True if there is
-    /// no signature.
+    /// Returns whether the signature is valid for its public key and this plugin. Returns true if
+    /// the entry has no signature.
     pub fn is_signature_valid(&self) -> bool {
         let Some(signature) = &self.signature else {
             return true;

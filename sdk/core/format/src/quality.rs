@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::measure::{By, Measure};
 
-/// The value of each measure that is known.
+/// The values of the measures of agreement. A measure that was not computed has no value.
 ///
 /// ```
 /// use htex_format::{Measure, Measures};
@@ -24,7 +24,7 @@ impl Measures {
         Self(Measure::ALL.map(value))
     }
 
-    /// Returns a measure's value; `None` if it is not known.
+    /// Returns a measure's value, or `None` if the measure was not computed.
     pub fn get(&self, measure: Measure) -> Option<f64> {
         self.0[measure as usize]
     }
@@ -43,7 +43,7 @@ impl Measures {
         only
     }
 
-    /// Returns the values of the given measures by key. An unknown value is `null` in JSON.
+    /// Returns the keys and values of the given measures. A missing value is `null` in JSON.
     pub fn keyed(&self, by: By, measures: impl IntoIterator<Item = Measure>) -> KeyedMeasures {
         let entry = |measure: Measure| (measure.key(by), self.get(measure));
         KeyedMeasures(measures.into_iter().map(entry).collect())
@@ -64,12 +64,12 @@ impl<const N: usize> From<[(Measure, f64); N]> for Measures {
     }
 }
 
-/// Values by key, in order; an object in JSON.
+/// Pairs of a key and a value, in their order. In JSON they are one object.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct KeyedMeasures(pub Vec<(&'static str, Option<f64>)>);
 
 impl Serialize for Measures {
-    /// Writes only the values that are known.
+    /// Writes only the measures that have a value.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let known = Measure::ALL.into_iter().filter(|m| self.get(*m).is_some());
         self.keyed(By::Magnitude, known).serialize(serializer)
@@ -102,31 +102,31 @@ impl Serialize for KeyedMeasures {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Quality {
-    /// Measured from the model's magnitudes.
+    /// The measures computed from the model's magnitudes.
     pub by_magnitude: Measures,
-    /// Measured from rendered samples.
+    /// The measures computed from rendered samples.
     pub by_samples: Measures,
-    /// Energy relative to the recording's in nine bands, decibels.
+    /// The model's energy in each of nine bands, relative to the recording's energy, decibels.
     pub band_error_db: Vec<f64>,
-    /// Error from storing the parameters, decibels: the nine-band RMS difference between the
-    /// spectra of the fitted and the stored parameters.
+    /// Error that rounding for storage causes, decibels: the nine-band RMS difference between the
+    /// spectra of the fitted parameters and of the stored parameters.
     pub rounding_error_db: Option<f64>,
 }
 
 impl Quality {
-    /// Returns a measure computed from the model's magnitudes; `None` if it is not stored.
+    /// Returns a measure computed from the model's magnitudes, or `None` if it is not stored.
     pub fn get(&self, measure: Measure) -> Option<f64> {
         self.by_magnitude.get(measure)
     }
 
-    /// Returns a measure computed from rendered samples; `None` if it is not stored.
+    /// Returns a measure computed from rendered samples, or `None` if it is not stored.
     pub fn samples(&self, measure: Measure) -> Option<f64> {
         self.by_samples.get(measure)
     }
 }
 
-/// Left-out error near a condition, by the measures whose row has `left_out`. It compares blocks of
-/// time with what a player plays from a fit without these blocks.
+/// Left-out error near a condition. It compares recorded blocks with the output of a player whose
+/// fit did not use these blocks. It has the measures whose [`crate::MeasureRow::left_out`] is set.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 

@@ -1,5 +1,5 @@
-//! JSON of `quality` and `left_out`. The table of measures gives the keys, which are used to read,
-//! write, check and describe both objects.
+//! JSON of `quality` and `left_out`. The table of measures defines the keys. This module reads,
+//! writes, checks and describes both objects with these keys.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -35,7 +35,7 @@ pub(crate) enum Content<'a> {
     Bands(&'a [f64]),
 }
 
-/// Where a key's value is stored when it is read.
+/// The place that stores the value of a key when the key is read.
 pub(crate) enum Slot<'a> {
     Number(&'a mut Option<f64>),
     Bands(&'a mut Vec<f64>),
@@ -45,11 +45,11 @@ pub(crate) enum Slot<'a> {
 pub(crate) trait Entries: Default {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
-    /// Returns all keys in file order, including those without a value.
+    /// Returns all keys in file order, including keys without a value.
     fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
 
-    /// Looks up a key without copying it, and returns where its value is stored when it is read.
-    /// `None` if the key is not known.
+    /// Looks up a key without copying it. Returns the place that stores its value when it is read,
+    /// or `None` if the key is unknown.
     fn slot(&mut self, key: &str) -> Option<(&'static str, Slot<'_>)>;
 }
 

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A physical quantity, with the unit in which it is stored and played.
+/// A physical quantity of samples. Each quantity has one unit, in which it is stored and played.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -31,13 +31,13 @@ pub enum Quantity {
     Displacement,
 }
 
-/// An error for a text that names none of the known values.
+/// The error for a name that is not one of the known names.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no {what} is called {name:?}; there are {}", known.join(", "))]
 pub struct UnknownName {
-    /// What was looked for, such as `quantity`.
+    /// The kind of value that the name should denote, such as `quantity`.
     pub what: &'static str,
-    /// The text.
+    /// The unknown name.
     pub name: String,
     /// The names that exist.
     pub known: Vec<&'static str>,
@@ -60,7 +60,7 @@ impl UnknownName {
     }
 }
 
-/// Reads the name used in a manifest.
+/// Parses the name used in a manifest.
 impl FromStr for Quantity {
     type Err = UnknownName;
 
@@ -100,7 +100,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the unit as a suffix of a name: `n`, `m_s2`, `m_s`, `m`.
+    /// Returns the unit as a suffix for the names of columns and fields: `n`, `m_s2`, `m_s` or `m`.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::LateralForce | Self::NormalForce => "n",
@@ -144,9 +144,9 @@ impl Quantity {
     }
 
     /// Returns the largest allowed level (RMS) of an asset, in the quantity's unit. The limit keeps
-    /// samples within 32-bit floats in any scene. For velocity and displacement it is the level of
-    /// a vibration with the largest acceleration at 20 Hz (8.0e3 m/s and 63 m), rounded up to a
-    /// power of ten.
+    /// samples within the range of 32-bit floats in any scene. For velocity and displacement, the
+    /// limit is the level of a 20 Hz vibration with the largest allowed acceleration (8.0e3 m/s and
+    /// 63 m), rounded up to a power of ten.
     pub const fn largest_level(self) -> f64 {
         match self {
             Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,
@@ -162,7 +162,8 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// On the command line, words are joined by hyphens. The names used in manifests are also accepted.
+/// On the command line, hyphens join the words of a name. The command line also accepts the names
+/// used in manifests.
 #[cfg(feature = "clap")]
 impl clap::ValueEnum for Quantity {
     fn value_variants<'a>() -> &'a [Self] {

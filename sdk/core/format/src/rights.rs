@@ -1,8 +1,8 @@
 //! Licence and author of a texture as text, for files that are made from the texture.
 //!
-//! The text has two lines in the form of REUSE (<https://reuse.software>), which can be read out of
-//! any comment or description. Every export of an asset takes its text from here, so that all files
-//! carry the same words.
+//! The text has two lines in the form of REUSE (<https://reuse.software>). Programs can find these
+//! lines in any comment or description. Every export of an asset uses this module, so that all
+//! files contain the same words.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -16,7 +16,7 @@ use crate::{Manifest, replace_file};
 const LICENSE: &str = "SPDX-License-Identifier: ";
 /// The tag before the author.
 const AUTHOR: &str = "SPDX-FileCopyrightText: ";
-/// What ends a comment or a string that may contain the text.
+/// Characters that would end a comment or a string that contains the text.
 const ENDS: [&str; 3] = ["*/", "-->", "\""];
 /// Largest size of a `.license` file that is read, bytes.
 const MOST_FILE_BYTES: u64 = 1 << 16;
@@ -36,7 +36,7 @@ const MOST_BYTES: usize = 1000;
 pub struct Rights {
     /// SPDX licence expression.
     pub license: Option<String>,
-    /// Who made the texture.
+    /// The person or group that made the texture.
     pub author: Option<String>,
 }
 
@@ -53,8 +53,8 @@ impl Rights {
         Self::new(manifest.license.as_deref(), manifest.author.as_deref())
     }
 
-    /// Combines the rights of several assets that are played together: all licences apply, and all
-    /// authors are named.
+    /// Combines the rights of several assets that are played together. The result joins all
+    /// licences with AND and names all authors.
     ///
     /// ```
     /// use htex_format::Rights;
@@ -77,14 +77,14 @@ impl Rights {
         Self::new(Some(&licenses.join(" AND ")), Some(&authors.join(", ")))
     }
 
-    /// Returns whether neither a licence nor an author is stated.
+    /// Returns whether both the licence and the author are missing.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.license.is_none() && self.author.is_none()
     }
 
-    /// Returns the lines for the author and then the licence, each with a line end. Empty if
-    /// nothing is stated.
+    /// Returns the line for the author and then the line for the licence, each with a line end. The
+    /// text is empty if both are missing.
     #[must_use]
     pub fn to_text(&self) -> String {
         let author = self.author.iter().map(|own| format!("{AUTHOR}{own}\n"));
@@ -92,7 +92,7 @@ impl Rights {
         author.chain(license).collect()
     }
 
-    /// Returns a description, followed by the lines.
+    /// Returns the description, followed by the lines of [`Self::to_text`].
     #[must_use]
     pub fn described(&self, description: &str) -> String {
         let text = self.to_text();
@@ -103,7 +103,8 @@ impl Rights {
         }
     }
 
-    /// Returns the lines as comments of a programming language, each after `before`.
+    /// Returns the lines of [`Self::to_text`] as comments of a programming language. Each line
+    /// starts with `before`.
     #[must_use]
     pub fn commented(&self, before: &str) -> String {
         let text = self.to_text();
@@ -116,14 +117,15 @@ impl Rights {
         Self::new(after(LICENSE, text), after(AUTHOR, text))
     }
 
-    /// Returns these rights, with missing parts taken from `other`.
+    /// Returns these rights. If the licence or the author is missing, it comes from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self { license: self.license.or(other.license), author: self.author.or(other.author) }
     }
 
-    /// Returns the rights as a chunk of a WAV file: `LIST` of `INFO`, with the licence as copyright
-    /// (`ICOP`) and the author as artist (`IART`). Empty if nothing is stated.
+    /// Returns the rights as a chunk of a WAV file: a `LIST` chunk of type `INFO`, with the licence
+    /// as copyright (`ICOP`) and the author as artist (`IART`). The result is empty if both are
+    /// missing.
     #[must_use]
     pub fn riff(&self) -> Vec<u8> {
         let mut list = b"INFO".to_vec();
@@ -135,8 +137,8 @@ impl Rights {
         if self.is_empty() { Vec::new() } else { chunk(b"LIST", &list) }
     }
 
-    /// Adds the chunk to the end of a WAV file. The samples do not change. A file that would grow
-    /// beyond 4 GiB is left as it is.
+    /// Appends the chunk of [`Self::riff`] to a WAV file. The samples do not change. If the file
+    /// would grow beyond 4 GiB, it does not change at all.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -158,9 +160,9 @@ impl Rights {
         wav.seek(SeekFrom::End(0)).map(drop)
     }
 
-    /// Adds the rights to a file that was written. A WAV file gets the chunk; for any other file,
-    /// [`license_file`] is written next to it. Either file is replaced only once it is complete.
-    /// Nothing is added for a device or a pipe.
+    /// Adds the rights to a finished file. It appends a chunk to a WAV file; for any other file, it
+    /// writes a [`license_file`] next to it. It replaces a file only when the new file is complete.
+    /// For a device or a pipe, it does nothing.
     ///
     /// # Errors
     /// If a file cannot be read or written.
@@ -181,14 +183,15 @@ impl Rights {
         })
     }
 
-    /// Returns the file that [`Self::add_to_file`] writes next to `path`; `None` if it writes none.
+    /// Returns the path of the file that [`Self::add_to_file`] writes next to `path`, or `None` if
+    /// it writes no such file.
     #[must_use]
     pub fn beside(&self, path: &Path) -> Option<PathBuf> {
         (!self.is_empty() && !is_wav(path)).then(|| license_file(path))
     }
 }
 
-/// Returns the path of the licence file for a file that cannot hold its rights: its name followed
+/// Returns the path of the licence file of a file that cannot contain its rights: `path` followed
 /// by `.license`.
 #[must_use]
 pub fn license_file(path: &Path) -> PathBuf {
@@ -197,10 +200,10 @@ pub fn license_file(path: &Path) -> PathBuf {
     name.into()
 }
 
-/// Reads `FILE.license`, the rights next to a file; `None` if it is missing.
+/// Reads the licence file next to `path`. Returns `None` if there is none.
 ///
 /// # Errors
-/// If it cannot be read, is not a regular file or is too long.
+/// If the licence file cannot be read, is not a regular file or is too long.
 pub fn read_license_file(path: &Path) -> io::Result<Option<String>> {
     match read_regular(&license_file(path), MOST_FILE_BYTES) {
         Ok(bytes) => Ok(Some(String::from_utf8_lossy(&bytes).into_owned())),
@@ -214,7 +217,7 @@ fn is_wav(path: &Path) -> bool {
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("wav"))
 }
 
-/// Whether an SPDX expression has the operator OR, which may also be in lower case.
+/// Returns whether an SPDX expression contains the operator OR, in upper or lower case.
 fn has_or(license: &str) -> bool {
     let mut words = license.split(|c: char| !(c.is_ascii_alphanumeric() || "-.:".contains(c)));
     words.any(|word| word == "OR" || word == "or")
@@ -228,8 +231,8 @@ fn after<'a>(tag: &str, text: &'a str) -> Option<&'a str> {
     rest.get(..end.unwrap_or(rest.len()))
 }
 
-/// Turns words into a single line without control characters and without anything that would end a
-/// comment; `None` if nothing is left.
+/// Turns words into a single line without control characters and without [`ENDS`]. Returns `None`
+/// if the result would be empty.
 fn line(words: &str) -> Option<String> {
     let mut plain: String = words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     for end in ENDS {

@@ -4,9 +4,9 @@ use crate::manifest::AtCondition;
 use crate::{Manifest, Quality};
 
 impl Manifest {
-    /// Returns the manifest with rounded numbers, as a reader gets it back: agreement and
-    /// repeatability to four decimals, levels to nine significant digits. Rounding twice changes
-    /// nothing.
+    /// Returns the manifest with the numbers rounded as a writer stores them: measures of agreement
+    /// and repeatability to four decimals, levels to nine significant digits. Rounding a rounded
+    /// manifest changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         for condition in &mut rounded.conditions {

@@ -32,7 +32,7 @@ pub(crate) fn own_entries() -> Value {
     json!({ "enum": [MIMETYPE, MANIFEST] })
 }
 
-/// Allows more keys next to a variant's key, because a later minor version may add some.
+/// Allows other keys next to a variant's key, because a later minor version may add keys.
 pub(crate) fn open_variants(schema: &mut Schema) {
     let variants = schema.get_mut("oneOf").and_then(Value::as_array_mut);
     for variant in variants.into_iter().flatten().filter_map(Value::as_object_mut) {

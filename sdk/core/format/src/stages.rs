@@ -1,4 +1,5 @@
-//! The stages of reading an asset: the order in which findings are made, and where reading stops.
+//! The stages of reading an asset. They determine the order of the findings, and where reading
+//! stops after an error.
 
 pub(crate) use htex_base::finding::COUNT;
 use htex_base::finding::{Rule, Stage};

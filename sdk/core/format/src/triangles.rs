@@ -1,20 +1,20 @@
 //! Checks whether a player can interpolate in the triangles that a representation stores.
 //!
-//! A mix is continuous in the motion if the triangles cover the convex hull of the conditions
-//! exactly once. Then no motion has two mixes, and every motion outside has exactly one nearest
-//! point.
+//! The interpolated parameters change continuously with the motion if the triangles cover the
+//! convex hull of the conditions exactly once. Then no motion lies in two triangles, and every
+//! motion outside the hull has exactly one nearest point of the hull.
 //!
 //! Testing all pairs of triangles would take time proportional to the square of their number. The
-//! tests here take little more time than sorting the triangles. All triangles are turned
-//! counterclockwise, and then:
+//! tests here take little more time than sorting the triangles. They put the corners of each
+//! triangle in counterclockwise order, and check three things:
 //!
 //! - Each directed edge belongs to only one triangle.
-//! - The edges without a neighbour form one outline.
+//! - The edges that only one triangle has form one outline.
 //! - The outline turns left at each corner and goes around once.
 //!
-//! This suffices because the number of triangles at a point equals the outline's number of turns
-//! around it: the edges between two triangles cancel. So there is one triangle at each point inside
-//! and none outside.
+//! These tests are sufficient because the number of triangles that cover a point equals the number
+//! of times that the outline goes around the point: the edges between two triangles cancel. So one
+//! triangle covers each point inside the outline, and no triangle covers a point outside.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -22,12 +22,12 @@ use std::f64::consts::TAU;
 /// Three conditions, as indices into [`crate::Representation::at`].
 pub type Triangle = [usize; 3];
 
-/// Why a player cannot interpolate in the stored triangles.
+/// The reason why a player cannot interpolate in the stored triangles.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrianglesError {
-    /// A corner is not an element of `at`.
+    /// The index of a corner is not an index of `at`.
     #[error("corner {corner} does not exist; `at` has {conditions} elements, counted from 0")]
     Corner { triangle: usize, corner: usize, conditions: usize },
     /// A triangle has the same corner twice.
@@ -60,8 +60,8 @@ pub enum TrianglesError {
 }
 
 impl TrianglesError {
-    /// Returns the index of the triangle that breaks a rule; `None` if the rule is about all
-    /// triangles.
+    /// Returns the index of the triangle that breaks a rule, or `None` if the rule concerns all
+    /// triangles together.
     pub fn triangle(&self) -> Option<usize> {
         match self {
             Self::Corner { triangle, .. }
@@ -73,12 +73,13 @@ impl TrianglesError {
     }
 }
 
-/// Flatness limit: the ratio of twice a triangle's area to the square of its longest side, up to
-/// which its corners count as being on a line.
+/// Flatness limit: a triangle's corners count as lying on a line if twice its area, divided by the
+/// square of its longest side, is at most this.
 const FLAT: f64 = 1e-9;
 
-/// Checks triangles between conditions. Each condition is a speed, mm/s, and a force, newtons, both
-/// finite and not negative. An empty list of triangles is valid: it means that none are stored.
+/// Checks triangles between conditions. Each condition is a speed (mm/s) and a force (newtons),
+/// both finite and not negative. An empty list of triangles is valid: it means that the asset
+/// stores no triangles.
 ///
 /// ```
 /// use htex_format::check_triangles;
@@ -90,7 +91,8 @@ const FLAT: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// The first broken rule of section 2 of the specification, in the order of that text.
+/// If the triangles break a rule of section 2 of the specification. The error is the first broken
+/// rule, in the order of that section.
 pub fn check_triangles(
     conditions: &[[f64; 2]],
     triangles: &[Triangle],
@@ -112,7 +114,8 @@ pub fn check_triangles(
     }
 }
 
-/// Checks that each triangle has three different corners, all below the number of conditions.
+/// Checks that each triangle has three different corners, and that each corner is an index below
+/// the number of conditions.
 pub(crate) fn check_corners(
     conditions: usize,
     triangles: &[Triangle],
@@ -189,7 +192,8 @@ fn distance2(a: [f64; 2], b: [f64; 2]) -> f64 {
     x * x + y * y
 }
 
-/// Returns the edges that have no neighbour, by the corner at which each begins.
+/// Returns the edges that only one triangle has. The key of an edge is the corner at which it
+/// begins.
 fn outline(upright: &[Triangle]) -> Result<BTreeMap<usize, usize>, TrianglesError> {
     let mut owners = BTreeMap::new();
     for (triangle, [a, b, c]) in upright.iter().enumerate() {
@@ -210,7 +214,7 @@ fn outline(upright: &[Triangle]) -> Result<BTreeMap<usize, usize>, TrianglesErro
     Ok(outline)
 }
 
-/// Checks that the edges form a single outline, and that it is a convex polygon.
+/// Checks that the edges form a single outline, and that the outline is a convex polygon.
 fn check_outline(
     places: &[[f64; 2]],
     outline: &BTreeMap<usize, usize>,

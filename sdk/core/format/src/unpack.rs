@@ -32,7 +32,7 @@ pub(crate) const DEFLATED: u16 = 8;
 /// Unpacks an entry's data. The caller has already checked the sizes against the limits.
 ///
 /// # Errors
-/// How the data is damaged.
+/// If the data is damaged. The error says how.
 pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]>, Damage> {
     let bytes = match common.method {
         DEFLATED => Cow::Owned(inflate(data, common.size as usize)?),
@@ -47,8 +47,8 @@ pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]
     Err(Damage::Checksum { found: crc, stated: common.crc })
 }
 
-/// Computes the CRC-32 of ZIP with the inflater's implementation, whose tables are already in every
-/// program that reads an asset.
+/// Computes the CRC-32 of ZIP with the inflater's code. Every program that reads assets already
+/// contains the tables of this code.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = Crc::new();
     crc.update(bytes);

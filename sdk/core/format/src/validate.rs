@@ -20,20 +20,21 @@ use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_base::finding::{Finding, Findings, Report, Severity};
 
-/// Validates the bytes of a `.htex` file. Reports every broken rule that can be detected
-/// independently of earlier ones. Never panics, and reads no more than `limits` allow.
+/// Validates the bytes of a `.htex` file. Reports every broken rule that it can detect
+/// independently of the rules reported before. Never panics, and reads no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }
 
-/// Validates like [`validate`], and also compares the fields with the fields of the known models.
+/// Validates as [`validate`] does, and also compares each representation's fields with the fields
+/// of its model. `known` returns the descriptor of a model that the caller knows.
 pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Report {
     let (asset, findings) = inspect(bytes, limits, known);
     Report { valid: asset.is_some(), findings }
 }
 
-/// Returns an asset's manifest as JSON, whether or not it is valid; `None` if it cannot be unpacked
-/// or is not JSON.
+/// Returns an asset's manifest as JSON, even if the manifest is not valid. Returns `None` if it
+/// cannot be unpacked or is not JSON.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;
@@ -41,7 +42,8 @@ pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     parse_json(&entry.bytes).ok()
 }
 
-/// Reads an asset and returns it with all findings. The asset is `None` if a finding is an error.
+/// Reads an asset and returns it with all findings. The asset is `None` if one of the findings is
+/// an error.
 pub(crate) fn inspect(
     bytes: &[u8],
     limits: &Limits,

@@ -14,13 +14,13 @@ use htex_base::finding::Findings;
 impl Asset {
     /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.
     ///
-    /// Levels are rounded to nine significant digits and agreement to four decimals
-    /// ([`crate::Manifest::rounded`]). Parameters are rounded to what their store can hold
-    /// ([`crate::round_parameters`]).
+    /// Levels are rounded to nine significant digits, and the measures of agreement to four
+    /// decimals ([`crate::Manifest::rounded`]). Parameters are rounded to values that their fields
+    /// can store ([`crate::round_parameters`]).
     ///
     /// # Errors
     /// If the asset breaks a rule of the format, exceeds the default [`Limits`], or has parameters
-    /// that its fields cannot hold.
+    /// that its fields cannot store.
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
         let manifest = self.manifest.rounded();
         let mut findings = Findings::default();

@@ -22,7 +22,7 @@ pub(crate) struct End {
     pub directory_bytes: u32,
     pub directory_at: u32,
     pub comment_bytes: u16,
-    /// Whether a ZIP64 locator stands before it.
+    /// Whether a ZIP64 locator precedes the record.
     pub zip64: bool,
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct Local<'a> {
     pub data: Range<usize>,
 }
 
-/// Returns the last end record. In an asset, it is the last 22 bytes of the file.
+/// Returns the last end record of the file. In an asset, this record is the last 22 bytes.
 pub(crate) fn find_end(bytes: &[u8]) -> Option<End> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     // A comment follows the record and has at most 65,535 bytes, so the record cannot begin

@@ -1,5 +1,5 @@
-//! Writes the archive in the only form of ZIP that `archive` accepts, with the same bytes on every
-//! machine.
+//! Writes the archive in the strict form of ZIP that the module `archive` requires. The same
+//! entries give the same bytes on every machine.
 
 use std::io::{self, Write};
 
@@ -18,7 +18,7 @@ const NO_TIME: u32 = 33 << 16;
 
 /// ZIP version needed to unpack a stored entry and a deflated entry: 1.0 and 2.0.
 const VERSIONS: [u16; 2] = [10, 20];
-/// Says that the attributes are Unix attributes.
+/// Code of the system that wrote the archive: Unix, so that the attributes are Unix attributes.
 const UNIX: u16 = 3 << 8;
 /// Unix attributes of a regular file that everyone may read and only its owner may write.
 const ATTRIBUTES: u32 = 0o100_644 << 16;

@@ -1,4 +1,4 @@
-//! Models linked into this program, called through their tables.
+//! Models linked into this program. The host calls them through their tables of C functions.
 
 use std::sync::{Arc, LazyLock};
 
@@ -8,7 +8,7 @@ use htex_model::motion_1::MotionTable;
 use crate::table::TableModel;
 use crate::{LoadedModel, Origin};
 
-/// Returns the built-in models in their display order. They are loaded once.
+/// Returns the built-in models in their display order. The first call loads them.
 pub(crate) fn models() -> &'static [LoadedModel] {
     static MODELS: LazyLock<Vec<LoadedModel>> = LazyLock::new(|| {
         let load = |table| LoadedModel::new(Origin::Builtin, Arc::new(table));
@@ -18,8 +18,8 @@ pub(crate) fn models() -> &'static [LoadedModel] {
     &MODELS
 }
 
-/// The functions that render several voices of a model in one call, for large scenes. Web pages
-/// have few voices and should not download these functions.
+/// The functions that render several voices of a model in one call, for large scenes. A program for
+/// web pages leaves them out, because a page plays few voices and should not download them.
 #[cfg(not(target_family = "wasm"))]
 macro_rules! voices {
     ($model:ident) => {
@@ -33,8 +33,9 @@ macro_rules! voices {
     };
 }
 
-/// The tables of a model's crate. The fit is included only in programs that fit. In other programs
-/// nothing refers to it, so the linker drops it with everything it uses.
+/// The tables of a model's crate. Only programs that fit models include the function that fits. In
+/// other programs nothing refers to this function, so the linker drops it with everything that it
+/// uses.
 macro_rules! model {
     ($model:ident) => {{
         #[cfg(feature = "fit")]
@@ -52,8 +53,9 @@ macro_rules! model {
     }};
 }
 
-/// Lists the built-in models. A model that is added here is in every program that links this crate.
-/// Its descriptor says everything else, as for a plugin.
+/// Lists the built-in models. To add a built-in model, add it here: every program that links this
+/// crate then contains it. As for a plugin, the model's descriptor contains everything else that
+/// programs need.
 fn tables() -> Vec<TableModel> {
     vec![
         model!(htex_ar),

@@ -3,8 +3,8 @@
 #[cfg(not(target_family = "wasm"))]
 pub use std::time::Instant;
 
-/// A time of the browser, which the standard library cannot read. Elsewhere the standard library's
-/// type is used.
+/// A time of the browser's clock. The standard library cannot read this clock; on other systems
+/// this module uses the standard library's type.
 #[cfg(target_family = "wasm")]
 #[derive(Debug, Clone, Copy)]
 pub struct Instant {
@@ -30,13 +30,13 @@ impl Instant {
         Self { ms: imported::now_ms() }
     }
 
-    /// Returns the time elapsed since then.
+    /// Returns the time elapsed since this instant.
     #[must_use]
     pub fn elapsed(self) -> std::time::Duration {
         Self::now().saturating_duration_since(self)
     }
 
-    /// Returns the time elapsed since an earlier time; zero if that time is later.
+    /// Returns the time from `earlier` to this instant, or zero if `earlier` is later.
     #[must_use]
     pub fn saturating_duration_since(self, earlier: Self) -> std::time::Duration {
         std::time::Duration::try_from_secs_f64((self.ms - earlier.ms) / 1e3).unwrap_or_default()

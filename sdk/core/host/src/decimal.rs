@@ -1,8 +1,8 @@
 //! Reads decimal numbers from text.
 //!
-//! It uses the JSON reader, which is in every program that opens an asset anyway. The standard
-//! library's reader has its own table, which takes 13 kB of the compressed library of the npm
-//! package.
+//! This module uses the JSON parser, which every program that opens assets already contains. The
+//! parser of the standard library has a table of its own, which would add 13 kB to the compressed
+//! npm package.
 
 /// Reads a number such as `1.5`, `.5` or `2e-3`.
 ///

@@ -5,7 +5,8 @@ use htex_model::{Descriptor, Field, FitOption, Kind, is_model_id};
 
 use crate::error::plain;
 
-/// An invalid descriptor. Control characters are escaped in texts quoted from the descriptor.
+/// The reason why a descriptor is invalid. The message escapes control characters in text that it
+/// quotes from the descriptor.
 ///
 /// ```
 /// use htex_host::{DescriptorError, read_descriptor};
@@ -45,7 +46,8 @@ pub enum DescriptorError {
     /// The sweep of the fit options has too many combinations.
     #[error("a sweep of the fit options has {count} combinations; {MAX_SWEEP} are allowed")]
     Sweep {
-        /// Product of the numbers of values, at most `usize::MAX`.
+        /// Number of combinations: the product of the numbers of values of all options, at most
+        /// `usize::MAX`.
         count: usize,
     },
     /// Two fields have the same name.
@@ -53,14 +55,14 @@ pub enum DescriptorError {
     SameName { name: String },
 }
 
-/// Largest number of combinations of the options' sweeps, and of values in each list, so that a
-/// descriptor does not decide how much memory a sweep takes.
+/// Largest number of combinations of the options' sweep values, and largest number of values in
+/// each list. The limit keeps a descriptor from making a sweep take any amount of memory.
 const MAX_SWEEP: usize = 1_000;
 
 /// Reads and checks a descriptor in JSON, as every loader does.
 ///
 /// # Errors
-/// [`DescriptorError`] when the text is not the descriptor of a model that can be called.
+/// [`DescriptorError`] if the text is not a valid descriptor.
 pub fn read_descriptor(json: &str) -> Result<Descriptor, DescriptorError> {
     let descriptor: Descriptor = serde_json::from_str(json)
         .map_err(|error| DescriptorError::Json { what: plain(&error.to_string()) })?;
@@ -118,7 +120,7 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), DescriptorError> {
     }
 }
 
-/// Returns whether a field has no default, or a scalar one in its range.
+/// Returns whether a field has no default, or is a scalar whose default is in its range.
 fn default_holds(field: &Field) -> bool {
     let inside =
         |value: f64| field.kind == Kind::Scalar && (field.min..=field.max).contains(&value);

@@ -8,8 +8,8 @@ use htex_model::Status;
 /// Maximum number of bytes of a model's text in a message.
 const LONGEST_SHOWN: usize = 4096;
 
-/// Prepares a model's text for a message. Control characters are escaped, so that the text cannot
-/// control a terminal. A long text is cut.
+/// Prepares a model's text for a message: escapes control characters, so that the text cannot
+/// control a terminal, and shortens a long text.
 pub(crate) fn plain(text: &str) -> String {
     let plain = htex_base::finding::plain(text);
     match plain.char_indices().find(|(at, _)| *at >= LONGEST_SHOWN) {
@@ -18,7 +18,7 @@ pub(crate) fn plain(text: &str) -> String {
     }
 }
 
-/// An error of one call, or of finding or loading a model.
+/// Error of finding, loading or calling a model.
 ///
 /// ```
 /// use htex_host::{HostError, Registry};
@@ -31,12 +31,12 @@ pub enum HostError {
     /// The registry has no model of this name.
     #[error("no model `{wanted}`; there are {known}")]
     UnknownModel {
-        /// The requested name, or id and version.
+        /// The requested name, or the requested id and version.
         wanted: String,
         /// The names in the registry.
         known: String,
     },
-    /// A module contains a different model from the declared one.
+    /// A module contains another model than the declared model.
     #[error("{path} is declared as {declared} but contains {found}; get it again from its author")]
     OtherModel {
         /// The file, or the entry of an asset.
@@ -67,45 +67,45 @@ pub enum HostError {
     Call {
         model: String,
         call: &'static str,
-        /// The status it returned.
+        /// The status that the model returned.
         status: Status,
-        /// Its last-error text.
+        /// The model's last-error text.
         message: String,
     },
     /// The model returned a value that the ABI does not allow.
     #[error("model {model}: {call} broke the model ABI: {what}; report this to the model's author")]
     Broken {
-        /// The model's id, or its origin while the id is unknown.
+        /// The model's id, or its origin if the id is not known yet.
         model: String,
         call: &'static str,
         what: String,
     },
-    /// An unknown fit option, or an invalid value of one.
+    /// A fit option is unknown, or its value is invalid.
     #[error("model {model}: option {error}")]
     Option {
         model: String,
-        /// The option, and its allowed values.
+        /// The option and its allowed values.
         error: Box<OptionError>,
     },
-    /// An unknown synthesis, or one with a number out of range.
+    /// The method of synthesis is unknown, or its number is out of range.
     #[error(
         "synthesis `{text}`: it takes streamed, loop:SECONDS (0.1 to 60, at most 67 million samples) \
          or filter:TAPS (15 to 4095)"
     )]
     Synthesis { text: String },
-    /// The model's rate cannot be converted to the requested rate.
+    /// The resampler cannot convert the model's sample rate to the requested rate.
     #[error(transparent)]
     Rates(#[from] UnusableRates),
 }
 
 impl HostError {
-    /// Adds the file, or the entry of an asset, to an error of loading a model.
+    /// Turns an error of loading a model into one that names the file, or the entry of an asset.
     pub(crate) fn loading<E: Display>(origin: impl Display) -> impl FnOnce(E) -> Self {
         move |error| Self::Load { path: origin.to_string(), what: error.to_string() }
     }
 }
 
-/// An unknown fit option, or an invalid value of one.
+/// A fit option is unknown, or its value is invalid.
 ///
 /// ```
 /// use htex_host::{HostError, OptionError, Registry};

@@ -1,10 +1,10 @@
-//! Finds and calls texture models. There is one registry, and one way to call a model, wherever the
-//! model comes from.
+//! Finds and calls texture models. A program finds all models in one registry and calls them all in
+//! the same way, wherever they come from.
 //!
 //! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]). [`Search`]
 //! lists the places in which this crate looks for models. It calls every model, including the
-//! built-in ones, through the plain C functions of the model ABI, and checks the results of each
-//! call. If a result is invalid, only this call returns an error.
+//! built-in models, through the C functions of the model ABI, and checks the results of each call.
+//! If a result is invalid, only that call returns an error; the model can be called again.
 //!
 //! ```
 //! use htex_host::{Band, Registry};

@@ -1,8 +1,8 @@
 //! Limits of WASM models.
 //!
-//! They limit memory, tables, stack, voices, time, the cost of compilation, the total of all
-//! modules, and optionally the number of instructions. For each limit, a test in
-//! `sdk/core/host/tests/it/limits.rs` exceeds it.
+//! They limit each module's memory, tables, stack, voices, time and cost of compilation, the totals
+//! of all modules, and optionally the number of instructions. The tests in
+//! `sdk/core/host/tests/it/limits.rs` exceed each limit once.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -27,45 +27,49 @@ pub struct WasmLimits {
     pub memory_bytes: usize,
     /// Maximum number of elements of one table. Default 10,000.
     pub table_elements: usize,
-    /// Stack of WASM code, bytes. It is part of the calling thread's stack. Default 256 KiB.
+    /// Largest stack of WASM code, bytes. This stack is part of the calling thread's stack. Default
+    /// 256 KiB.
     pub stack_bytes: usize,
     /// Maximum number of voices of one model at a time. Each has a separate instance. Default 256.
     pub voices: usize,
-    /// Longest time of the module's start, and of one call that does not render. Default 5 s.
+    /// Longest time of the module's start function, and of one call that does not render. Default 5
+    /// s.
     pub call: Duration,
-    /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s: much longer than
-    /// any device waits, and short enough to end an endless loop.
+    /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s. No device waits
+    /// that long for samples, and an endless loop still ends soon.
     pub render: Duration,
-    /// Maximum number of WASM instructions of one call, or `None` for no limit. Unlike time, it is
-    /// the same on every machine. Default `None`: the time limits suffice, and counting takes up to
-    /// a tenth more time.
+    /// Maximum number of WASM instructions of one call, or `None` for no limit. Unlike a time
+    /// limit, this limit stops the same calls on every machine. Default `None`: the time limits
+    /// suffice, and counting makes calls up to a tenth slower.
     pub fuel: Option<u64>,
-    /// Longest time of compiling the module. Default 5 s. The time is estimated before compilation.
-    /// A module that might exceed the limit is compiled without optimisation. If even that might
-    /// exceed the limit, the module is refused.
+    /// Longest time of compiling the module. Default 5 s. The host estimates the time before
+    /// compilation. If the time might exceed the limit, the host compiles the module without
+    /// optimisation. If even this might exceed the limit, the host refuses the module.
     pub compile: Duration,
-    /// Maximum memory for compiling a module, bytes, if [`WasmCompiler::Program`] compiles. Default
-    /// 512 MiB. Modules within the estimated `compile` time need less.
+    /// Maximum memory for compiling a module, bytes. It applies only to [`WasmCompiler::Program`].
+    /// Default 512 MiB. A module whose estimated time is within `compile` needs less memory than
+    /// this.
     pub compile_bytes: usize,
     /// The compiler of modules. Default [`WasmCompiler::Here`].
     pub compiler: WasmCompiler,
-    /// Total of all modules of one asset. Default 10 s, 512 MiB, 512 instances.
+    /// Limits that all modules of one asset share. Default 10 s, 512 MiB, 512 instances.
     pub asset: WasmTotal,
-    /// Total of all modules of one registry and its clones, including the modules of assets.
-    /// Default 30 s, 1 GiB, 2,048 instances.
+    /// Limits that all modules of one registry and its clones share, including the modules of
+    /// assets. Default 30 s, 1 GiB, 2,048 instances.
     pub all: WasmTotal,
     /// Cache of compiled modules. Default [`WasmCache::User`].
     pub cache: WasmCache,
     /// The engine that runs modules. Default [`WasmEngine::Signals`].
     pub engine: WasmEngine,
-    /// For checkers of models: makes a call fail that writes beyond its arrays within the module's
-    /// own memory. Default no, because such a call harms only the module.
+    /// For checkers of models: whether a call fails if it writes beyond its arrays within the
+    /// module's own memory. Default false, because such a call harms only the module itself.
     pub guards: bool,
 }
 
 /// The engine that runs modules. The variants differ in the process resources that the engine uses.
-/// While a module is loaded, every engine except `Off` has one thread that stops calls at their
-/// time limit. Browsers have their own engine, which can only be on or off.
+/// While a module is loaded, every engine except `Off` has one thread, which stops calls at their
+/// time limit. A browser runs modules with its own engine; `Off` turns that engine off, and the
+/// other variants turn it on.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
@@ -79,11 +83,12 @@ pub struct WasmLimits {
 pub enum WasmEngine {
     /// Loading a module is an error. No thread, file or handler is created.
     Off,
-    /// Modules run without signal handlers: each memory access is compared with its bound. The
-    /// measures against speculative execution that rely on such handlers are off.
+    /// Modules run without signal handlers. Instead, the engine compares each memory access with
+    /// the memory's bound. It turns off the measures against speculative execution that need signal
+    /// handlers.
     Checked,
-    /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. The handlers
-    /// pass signals that no module caused to the previous handlers.
+    /// Modules run with process-wide handlers for SIGSEGV, SIGILL, SIGFPE and SIGBUS. If no module
+    /// caused a signal, these handlers pass it to the handlers that the process had before.
     Signals,
 }
 
@@ -98,18 +103,18 @@ pub enum WasmEngine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmTotal {
-    /// Time of compilation and of all calls except calls of voices. A tenth of the elapsed time is
-    /// added to it. A voice has a separate time: one second, and ten times the duration of its
-    /// samples.
+    /// Time for compilation and for all calls except the calls of voices. The time left grows by a
+    /// tenth of the elapsed time, up to this total. Each voice has a separate allowance: one
+    /// second, and ten times the duration of its samples.
     pub time: Duration,
     /// Memory of all live instances, bytes.
     pub memory_bytes: usize,
-    /// Live instances: one per model, and one per voice.
+    /// Number of live instances: one for each model, and one for each voice.
     pub instances: usize,
 }
 
 impl WasmTotal {
-    /// Limits of time, memory in bytes, and instances.
+    /// Creates limits of time, memory (bytes) and live instances.
     pub const fn new(time: Duration, memory_bytes: usize, instances: usize) -> Self {
         Self { time, memory_bytes, instances }
     }
@@ -136,11 +141,12 @@ impl WasmTotal {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmCompiler {
-    /// This process. The limits `compile` and `compile_bytes` then apply only to an estimate.
+    /// This process compiles. It checks an estimate of the time against the limit `compile`, and
+    /// does not check `compile_bytes`.
     #[default]
     Here,
-    /// Another process, which is stopped if it exceeds the limits of time or memory. The program
-    /// must call `htex_host::serve_compiler` when it is started with these arguments.
+    /// Another process compiles. The host stops it if it exceeds the limits of time or memory. The
+    /// program must call `htex_host::serve_compiler` when it is started with these arguments.
     Program(PathBuf, Vec<String>),
 }
 
@@ -175,7 +181,7 @@ impl WasmLimits {
         with_memory_bytes(memory_bytes: usize);
         /// Sets the maximum number of elements of one table.
         with_table_elements(table_elements: usize);
-        /// Sets the stack of WASM code, bytes.
+        /// Sets the largest stack of WASM code, bytes.
         with_stack_bytes(stack_bytes: usize);
         /// Sets the maximum number of voices of one model at a time.
         with_voices(voices: usize);
@@ -198,9 +204,9 @@ impl WasmLimits {
         /// Sets the maximum memory for compiling a module, bytes.
         with_compile_bytes(compile_bytes: usize);
         with_compiler(compiler: WasmCompiler);
-        /// Sets the total of all modules of one asset.
+        /// Sets the limits that all modules of one asset share.
         with_asset(asset: WasmTotal);
-        /// Sets the total of all modules of one registry and its clones.
+        /// Sets the limits that all modules of one registry and its clones share.
         with_all(all: WasmTotal);
         with_cache(cache: WasmCache);
         /// Sets whether a call that writes beyond its arrays fails.
@@ -212,11 +218,11 @@ impl WasmLimits {
 
 /// Cache of compiled modules on disk.
 ///
-/// A cached file is machine code that this program runs, so three measures protect it. The folder
-/// is created with permissions for this user only (mode 0700). A folder that belongs to another
-/// user, or that others may write to, is not used. Each file is authenticated with a key that only
-/// this user can read (`wasm.key` in the user's configuration folder). A file that is damaged, or
-/// was written by another version, is compiled again.
+/// A cached file is machine code that this program runs, so three measures protect the cache. The
+/// program creates the folder with permissions for this user only (mode 0700). It does not use a
+/// folder that belongs to another user or to which other users may write. It authenticates each
+/// file with a key that only this user can read (`wasm.key` in the user's configuration folder). If
+/// a file is damaged, or another version wrote it, the program compiles the module again.
 ///
 /// ```
 /// use htex_host::{Search, WasmCache, WasmLimits};
@@ -227,10 +233,11 @@ impl WasmLimits {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WasmCache {
-    /// `$HTEX_CACHE_DIR/wasm`, else `htex/wasm` in the user's cache folder.
+    /// The folder `$HTEX_CACHE_DIR/wasm`. If the variable is not set, `htex/wasm` in the user's
+    /// cache folder.
     User,
-    /// A folder that only this user may write to.
+    /// This folder. Only this user may have permission to write to it.
     Dir(PathBuf),
-    /// Compiled modules are not stored.
+    /// The program does not store compiled modules.
     Off,
 }

@@ -1,4 +1,4 @@
-//! A loaded model: safe calls of its functions, checked results.
+//! A loaded model: calls its functions safely and checks their results.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,12 +15,12 @@ use crate::raw::{RawModel, check_marker};
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
-/// Usual rate of a sound card, hertz.
+/// Usual sample rate of a sound card, hertz.
 pub(crate) const HIGH_RATE_HZ: f64 = 48_000.0;
 
-/// The extension of models that follow the motion.
+/// Id of the extension of models that follow the motion of the finger.
 pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
-/// Length of the parameter buffer in the first call.
+/// Length of the parameter buffer in the first call of a function that returns parameters.
 const USUAL_PARAMETERS: usize = 256;
 
 /// A model that can be called. A clone shares the model.
@@ -72,7 +72,7 @@ impl LoadedModel {
     /// limits. A native library runs with all the rights of this program.
     ///
     /// # Errors
-    /// When the file is neither, or its model violates the ABI.
+    /// If the file is neither a WASM module nor a native library, or if its model violates the ABI.
     pub fn from_file(path: &Path) -> Result<Self, HostError> {
         Self::from_file_within(path, &WasmLimits::default())
     }
@@ -95,8 +95,8 @@ impl LoadedModel {
     }
 
     /// Loads a model from a file that the user did not name. The file must be a WASM module,
-    /// whatever its name. This is the only place that decides what may be loaded because a file
-    /// asks for it.
+    /// whatever its name. Only this function decides which files the host loads when another file,
+    /// such as a recipe, names them.
     pub(crate) fn from_module_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if !is_module(path).map_err(HostError::loading(path.display()))? {
             return Err(HostError::NotModule { path: path.display().to_string() });
@@ -117,8 +117,8 @@ impl LoadedModel {
         Err(no_wasm(&path.display().to_string()))
     }
 
-    /// Loads a model from the bytes of a WASM module. `name` is the asset or file that contains it,
-    /// for messages.
+    /// Loads a model from the bytes of a WASM module. `name` is the name, in messages, of the asset
+    /// or file that contains the module.
     ///
     /// # Errors
     /// When the bytes are not a module, its model violates the ABI, or this program was built
@@ -174,9 +174,9 @@ impl LoadedModel {
         id.rsplit('.').next().unwrap_or(id)
     }
 
-    /// Fits the model to a spectrum. `options` of the input has one value for each option of the
-    /// descriptor, as [`Self::options`] returns them. Only models that follow the motion
-    /// ([`Self::follows_motion`]) receive its condition. Needs the feature `fit`.
+    /// Fits the model to a spectrum. `input.options` has one value for each option of the
+    /// descriptor; [`Self::options`] returns such values. Only models that follow the motion
+    /// ([`Self::follows_motion`]) receive `input.condition`. Needs the feature `fit`.
     ///
     /// ```
     /// use htex_host::{Band, FitCondition, FitInput, Registry};
@@ -198,8 +198,8 @@ impl LoadedModel {
     /// ```
     ///
     /// # Errors
-    /// [`HostError::Call`] with the model's reason. For a model that follows the motion, also when
-    /// a speed or force is negative or not finite.
+    /// [`HostError::Call`] if the model cannot describe the spectrum. For a model that follows the
+    /// motion, also if a speed or force is negative or not finite.
     #[cfg(feature = "fit")]
     pub fn fit(&self, input: &FitInput<'_>) -> Result<Fit, HostError> {
         let call = "fit";
@@ -220,12 +220,12 @@ impl LoadedModel {
         Ok(Fit { parameters, level_rms })
     }
 
-    /// Returns the shape's magnitude at each `frequency_hz`. The magnitude has unit RMS on the 5 Hz
-    /// grid in the band.
+    /// Returns the magnitude of the shape at each frequency in `frequency_hz`. The shape has unit
+    /// RMS on the 5 Hz grid in the band.
     ///
     /// # Errors
-    /// [`HostError::Call`] with the model's reason; [`HostError::Broken`] if a magnitude is not
-    /// finite or negative.
+    /// [`HostError::Call`] if the model refuses the arguments, [`HostError::Broken`] if a magnitude
+    /// is negative or not finite.
     pub fn magnitude(
         &self,
         parameters: &[f64],
@@ -275,7 +275,8 @@ impl LoadedModel {
         most.sum::<usize>().min(MAX_PARAMETERS)
     }
 
-    /// Returns the rate at which a voice renders for a requested rate of `wanted_hz`, hertz.
+    /// Returns the sample rate of a voice, hertz. `wanted_hz` is the rate that the caller needs;
+    /// the model may return another rate, from which the caller resamples.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
@@ -295,8 +296,8 @@ impl LoadedModel {
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
     }
 
-    /// Returns whether `rate_hz` is the model's own rate, which does not depend on the requested
-    /// rate: the model would also return it for a high rate.
+    /// Returns whether `rate_hz` is the model's own rate, i.e. a rate that the model returns
+    /// whatever rate is requested. To find out, this function requests a high rate.
     ///
     /// # Errors
     /// The errors of [`Self::voice_rate_hz`].
@@ -331,11 +332,12 @@ impl LoadedModel {
         }
     }
 
-    /// For checkers: renders two equal voices of `frames` samples, one after the other, in one
-    /// instance of a WASM module, where this host gives each voice its own. `None` for other models.
+    /// For checkers of models: renders two equal voices of `frames` samples, one after the other,
+    /// in a single instance of a WASM module. In normal use this host gives each voice its own
+    /// instance. Returns `None` for a model that is not a WASM module.
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// [`HostError::Call`] if the model returns an error.
     pub fn two_voices(
         &self,
         parameters: &[f64],
@@ -364,13 +366,13 @@ impl LoadedModel {
     }
 
     /// Returns whether the model has the extension `htex.motion/1`. If so, its voices receive the
-    /// motion ([`ModelVoice::set_motion`]) and follow it themselves, and its fits receive the
-    /// recording's motion.
+    /// motion of the finger ([`ModelVoice::set_motion`]) and follow it themselves, and its fits
+    /// receive the speed and force of the recording.
     pub fn follows_motion(&self) -> bool {
         self.raw.follows_motion()
     }
 
-    /// Converts a returned number to a length, or a negative one to an error.
+    /// Converts a returned number to a length. A negative number becomes an error.
     pub(crate) fn check(&self, call: &'static str, returned: i64) -> Result<usize, HostError> {
         if returned >= 0 {
             return Ok(returned as usize);
@@ -378,7 +380,7 @@ impl LoadedModel {
         Err(self.call_error(call, returned, |out| self.raw.last_error(out)))
     }
 
-    /// Checks the answer of a call that returns nothing: 0 is success.
+    /// Checks the status that a call without a result returned: 0 is success.
     pub(crate) fn check_zero(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
         match answer {
             0 => Ok(()),
@@ -400,8 +402,9 @@ impl LoadedModel {
         self.error(call, Status::from_code(status), reason(last_error))
     }
 
-    /// Calls with a buffer of the usual size, and again if that is too small. The result must be
-    /// one parameter set that matches the descriptor.
+    /// Makes a call that returns parameters. The first call has a buffer of the usual size; if that
+    /// is too small, a second call has a larger one. The result must be one parameter set that
+    /// matches the descriptor.
     fn numbers(
         &self,
         call: &'static str,
@@ -486,7 +489,7 @@ fn no_wasm(origin: &str) -> HostError {
     }
 }
 
-/// Whether a regular file begins with the bytes of a WASM module.
+/// Returns whether the path is a regular file that begins with the bytes of a WASM module.
 fn is_module(path: &Path) -> std::io::Result<bool> {
     use std::io::Read;
     // Opening a named pipe would block.

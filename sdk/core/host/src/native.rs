@@ -1,7 +1,8 @@
 //! Models in native libraries (`.so`, `.dylib`, `.dll`).
 //!
-//! A native library runs with all the rights of this program, so only libraries that the user chose
-//! are loaded. They are loaded once and never unloaded, because voices and tables point into them.
+//! A native library runs with all the rights of this program, so the host loads only libraries that
+//! the user chose. It loads a library once and never unloads it, because voices and tables point
+//! into it.
 
 use std::path::Path;
 
@@ -17,7 +18,7 @@ use crate::table::TableModel;
 /// Loads a library and fills a table from its symbols.
 ///
 /// # Errors
-/// When the file is not a library for this machine, or lacks a symbol of the model ABI.
+/// If the file is not a library for this machine, or lacks a symbol of the model ABI.
 pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     let origin = path.display().to_string();
     let error = |what: String| HostError::Load { path: origin.clone(), what };

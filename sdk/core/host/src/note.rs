@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use crate::{HostError, Origin};
 
-/// A note for the user about something found during a search. The search continued.
+/// A note for the user about a problem during a search for models. Unlike an error, it did not end
+/// the search.
 ///
 /// ```
 /// use htex_host::{Note, Registry, Search};
@@ -20,26 +21,28 @@ use crate::{HostError, Origin};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Two models have the same id; [`Registry`](crate::Registry) says which one is used.
+    /// Two models have the same id. The rules of [`Registry`](crate::Registry) decide which one is
+    /// used.
     Shadowed {
         id: String,
         /// Version and origin of the model that is used.
         used: (String, Origin),
-        /// Version and origin of the model that is used only for requests of its version.
+        /// Version and origin of the other model. It is used only if its version is requested.
         shadowed: (String, Origin),
     },
-    /// Two models with different ids have the same short name, which refers to the one found first.
+    /// Two models with different ids have the same short name. The name refers to the model that
+    /// was found first.
     SameName {
         /// The short name.
         name: String,
-        /// The id that the short name refers to.
+        /// The id of the model to which the short name refers.
         means: String,
-        /// The id of the other model, which has to be written in full.
+        /// The id of the other model. The user has to write this id in full.
         other: String,
     },
     /// A file in a plugin folder could not be loaded.
     Broken { path: PathBuf, error: HostError },
-    /// A folder of `HTEX_PLUGIN_PATH`, or the user's, could not be read.
+    /// A folder of `HTEX_PLUGIN_PATH`, or the user's plugin folder, could not be read.
     Folder { path: PathBuf, what: String },
 }
 

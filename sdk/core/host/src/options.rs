@@ -5,11 +5,12 @@ use htex_model::FitOption;
 use crate::{HostError, LoadedModel, OptionError};
 
 impl LoadedModel {
-    /// Returns one value for each of the model's options: the value given as `(name, text)`, or
-    /// else the default. A choice is given by its name.
+    /// Returns one value for each of the model's options. `given` contains pairs of an option's
+    /// name and its value as text; the text of a choice is its name. An option that is not in
+    /// `given` has its default.
     ///
     /// # Errors
-    /// [`HostError::Option`] with the allowed values.
+    /// [`HostError::Option`] if an option is unknown or its value is not allowed.
     pub fn options(&self, given: &[(&str, &str)]) -> Result<Vec<f64>, HostError> {
         let in_model =
             |error| HostError::Option { model: self.id().to_owned(), error: Box::new(error) };

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Where a model's code comes from.
+/// Origin of a model's code.
 ///
 /// ```
 /// use htex_host::{Origin, Registry};
@@ -15,10 +15,10 @@ use std::path::PathBuf;
 pub enum Origin {
     /// Linked into this program.
     Builtin,
-    /// A type that this program registered.
+    /// A Rust type that this program registered.
     Own,
-    /// An object that the program registered at run time. The text names the language it is written
-    /// in.
+    /// An object that the program registered at run time. The text names the programming language
+    /// of the object.
     Runtime(String),
     /// A native library, which runs with all the rights of this program.
     Native(PathBuf),

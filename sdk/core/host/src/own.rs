@@ -17,7 +17,7 @@ struct TypeModel<M: Model> {
     set_motion: Option<SetMotion<M::Voice>>,
 }
 
-/// The voice of such a type, as an object.
+/// The voice of a type that implements [`Model`], as an object.
 struct TypeVoice<V> {
     voice: V,
     set_motion: Option<SetMotion<V>>,

@@ -1,7 +1,7 @@
-//! For checkers of models: calls with the caller's own arrays, and with arrays that a host never
-//! passes. Apps do not need them.
+//! For checkers of models: calls with arrays of the caller, and with invalid arrays that a host
+//! never passes. Apps do not need these functions.
 //!
-//! Results are checked as little as possible: only a negative answer is an error.
+//! These functions hardly check results: only a negative answer is an error.
 
 use htex_dsp::grid::Band;
 #[cfg(feature = "fit")]
@@ -15,12 +15,13 @@ const LEN: usize = 4;
 /// A handle that belongs to no voice.
 const NO_HANDLE: i64 = i64::MAX - 1;
 
-/// Valid arguments. [`LoadedModel::unusable_arrays`] replaces one of their arrays at a time.
+/// Valid arguments of the model's functions. [`LoadedModel::unusable_arrays`] replaces one array at
+/// a time by an invalid one.
 #[derive(Debug, Clone, Copy)]
 pub struct ProbeArguments<'a> {
     pub parameters: &'a [f64],
     pub band: Band,
-    /// A rate that the model returned for the parameters, hertz.
+    /// A sample rate that the model returned for the parameters, hertz.
     pub rate_hz: f64,
     pub frequency_hz: &'a [f64],
     pub magnitude: &'a [f64],
@@ -30,20 +31,20 @@ pub struct ProbeArguments<'a> {
 /// The answer to a call with an unusable array.
 #[derive(Debug, Clone)]
 pub struct Unusable {
-    /// The call and the array, e.g. "`magnitude` with null `parameters`".
+    /// Names of the function and the array, e.g. "`magnitude` with null `parameters`".
     pub what: String,
-    /// The answer of the call. A rate is truncated to a whole number.
+    /// The number that the call returned. A rate is truncated to a whole number.
     pub answer: i64,
-    /// The answer that the ABI requires.
+    /// The number that the ABI requires.
     pub wanted: i64,
 }
 
 impl LoadedModel {
-    /// Fits the model. Writes the fit to `parameters`, which may be too short, and its level.
-    /// Returns the length of the fit.
+    /// Fits the model. Writes the parameters to `parameters`, which may be too short, and writes
+    /// the level. Returns the number of parameters of the fit.
     ///
     /// # Errors
-    /// When the model refuses it.
+    /// If the model returns an error.
     #[cfg(feature = "fit")]
     pub fn fit_into(
         &self,
@@ -57,7 +58,7 @@ impl LoadedModel {
     /// Writes the shape's magnitude at each frequency to `magnitude`.
     ///
     /// # Errors
-    /// When the model refuses it.
+    /// If the model returns an error.
     pub fn magnitude_into(
         &self,
         parameters: &[f64],
@@ -73,7 +74,7 @@ impl LoadedModel {
     /// too short.
     ///
     /// # Errors
-    /// When the model refuses it.
+    /// If the model returns an error.
     pub fn interpolate_into(
         &self,
         sets: &[f64],
@@ -87,13 +88,13 @@ impl LoadedModel {
     /// Writes the descriptor to `out`, which may be too short. Returns the descriptor's length.
     ///
     /// # Errors
-    /// When the model refuses it.
+    /// If the model returns an error.
     pub fn descriptor_into(&self, out: &mut [u8]) -> Result<usize, HostError> {
         self.check("descriptor", self.raw().descriptor(out))
     }
 
-    /// Calls each function with null and misaligned arrays. `None` for a module, whose pointers are
-    /// indices.
+    /// Calls each function with null and misaligned arrays. Returns `None` for a WASM module, whose
+    /// pointers are only indices into its memory.
     pub fn unusable_arrays(&self, arguments: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         self.raw().unusable_arrays(arguments)
     }
@@ -103,14 +104,14 @@ impl ModelVoice {
     /// Renders without checking the samples.
     ///
     /// # Errors
-    /// When the model refuses it.
+    /// If the model returns an error.
     pub fn render_into(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let answer = self.raw_mut().render(out);
         self.done("voice_render", answer)
     }
 
-    /// Calls `htex_voices_1_render` with the voices at these indices, which may be repeated or not
-    /// exist. `None` without the extension.
+    /// Calls `htex_voices_1_render` with the voices at these indices. An index may occur twice, or
+    /// belong to no voice. Returns `None` if the model does not have the extension.
     pub fn render_any_together(
         voices: &mut [Self],
         numbers: &[usize],
@@ -152,8 +153,8 @@ impl Answers {
     }
 }
 
-/// Calls the functions of a table with unusable arrays. A misaligned array has a live array behind
-/// it, so that a model that uses it reads and writes nothing else.
+/// Calls the functions of a table with unusable arrays. A misaligned pointer points into a live
+/// array, so that a model that wrongly uses it damages nothing else.
 impl TableModel {
     pub(crate) fn probe(&self, a: &ProbeArguments<'_>) -> Vec<Unusable> {
         let mut answers = Answers(Vec::new());

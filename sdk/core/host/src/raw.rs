@@ -1,8 +1,8 @@
-//! The plain calls of the model ABI with slices. Each loader implements them.
+//! The calls of the model ABI, with slices instead of pointers. Each loader implements them.
 //!
 //! Every model, including the built-in ones, is called through one table of C functions, so the
-//! code above does not depend on the loader. [`crate::table`] serves built-in models and native
-//! libraries, and `wasm` serves modules.
+//! code that uses models does not depend on the loader. [`crate::table`] serves built-in models and
+//! native libraries, and `wasm` serves modules.
 
 use htex_model::abi::{ABI_MAJOR, ABI_MARKER, ModelTable};
 use htex_model::voices_1::VoicesRenderFn;
@@ -16,7 +16,7 @@ pub(crate) trait RawModel: Send + Sync {
     fn abi_version(&self) -> u32;
     fn descriptor(&self, out: &mut [u8]) -> i64;
     fn last_error(&self, out: &mut [u8]) -> i64;
-    /// Only a model that follows the motion uses the condition.
+    /// Fits the model. Only a model that follows the motion uses `input.condition`.
     #[cfg_attr(not(feature = "fit"), allow(dead_code))]
     fn fit(&self, input: &FitInput<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64;
     fn magnitude(
@@ -46,7 +46,7 @@ pub(crate) trait RawModel: Send + Sync {
         None
     }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
-    /// Creates a voice. An error is a status.
+    /// Creates a voice. The error is a status code.
     fn voice_new(
         &self,
         parameters: &[f64],
@@ -62,17 +62,18 @@ pub(crate) trait RawVoice: Send {
     fn retune(&mut self, parameters: &[f64]) -> i64;
     /// Sets the motion at the next sample; does nothing for a model without `htex.motion/1`.
     fn set_motion(&mut self, motion: Motion) -> i64;
-    /// Calls the model's `interpolate` in this voice's thread, without a lock.
+    /// Calls the model's `interpolate` in the thread that uses this voice, without a lock.
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
     /// Frees the voice in the model but keeps the handle. Later calls reach the model, which
     /// returns `BadHandle`. Dropping does not free the voice again.
     fn free(&mut self) -> i64;
-    /// Returns the data needed to render this voice in one call with others, if its model has
-    /// `htex.voices/1`.
+    /// Returns the data for rendering this voice and others in one call, or `None` if the model
+    /// does not have `htex.voices/1`.
     fn together(&self) -> Option<Together> {
         None
     }
-    /// Returns the bytes of the voice's separate memory; `None` outside a sandbox.
+    /// Returns the size of the voice's separate memory, bytes, or `None` if the voice runs in no
+    /// sandbox.
     fn memory_bytes(&self) -> Option<usize> {
         None
     }

@@ -1,4 +1,5 @@
-//! The magnitude that a recording of a voice would measure, if it differs from the model's own.
+//! The magnitude that one would measure in a recording of a voice. It can differ from the model's
+//! magnitude.
 
 use htex_dsp::grid::{GRID_HZ, level_rms};
 use htex_dsp::resample::OwnRate;
@@ -10,29 +11,29 @@ use crate::{Band, HostError, LoadedModel};
 
 /// Number of points per bin at which a magnitude is sampled.
 const IN_BIN: i32 = 8;
-/// How far a voice plays beyond the edges of its band, in bins: half of the edge bin.
+/// Distance to which a voice plays beyond the edges of its band, in bins: half of the edge bin.
 const BESIDE_EDGE_BINS: f64 = 0.5;
-/// Fraction of a source's own rate up to which its content passes unchanged.
+/// Fraction of a source's own rate up to which the resampler passes frequencies unchanged.
 const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
-    /// Returns whether the model's magnitudes describe lines as a window measures them, instead of
-    /// a density. This holds for sinusoids, and for models that follow the motion, because a finger
-    /// crosses their surface repeatedly.
+    /// Returns whether the model's magnitudes describe spectral lines, as a window measures them,
+    /// instead of a density. This is true for sinusoids. It is also true for models that follow the
+    /// motion, because a finger crosses their surface repeatedly.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
 
     /// Returns the magnitude that a recording of the voice would measure with a Hann window of 0.2
-    /// s, on the band's grid and with unit RMS. Bins next to steep flanks measure part of the
-    /// flank. Bins at the band's edges measure what is played up to half a bin beyond the edge. A
-    /// model with its own rate is measured as it is played at high rates; its RMS is then
-    /// [`Self::played_part`].
+    /// s, on the band's grid and with unit RMS. A bin next to a steep flank measures part of the
+    /// flank. A bin at an edge of the band measures frequencies up to half a bin beyond the edge.
+    /// If the model has its own sample rate, the result includes the effect of resampling to a high
+    /// rate; its RMS is then [`Self::played_part`].
     ///
     /// A voice plays its model's magnitude as a density. If the model keeps energies
     /// ([`keeps_level`](htex_model::Descriptor::keeps_level)), the voice plays the magnitude
-    /// [sharpened](sharpen). For sinusoids, the magnitude already is what a window measures, as far
-    /// as the window's main lobe reaches.
+    /// [sharpened](sharpen). For sinusoids, the model's magnitude already is the magnitude that a
+    /// window measures within its main lobe.
     ///
     /// # Errors
     /// The errors of [`Self::magnitude`].
@@ -63,9 +64,10 @@ impl LoadedModel {
         Ok(read)
     }
 
-    /// Returns the fraction of its level at which a voice is played, as the bins of the band
-    /// measure it. It is below 1 if the model has its own rate and the conversion to the player's
-    /// rate removes power near half of that rate (about 0.7 if all of the power lies there).
+    /// Returns the level at which a player plays a voice, as a fraction of the voice's level,
+    /// measured in the bins of the band. The fraction is below 1 if the model has its own rate and
+    /// resampling to the player's rate removes power near half of the model's rate (about 0.7 if
+    /// all of the power lies there).
     ///
     /// # Errors
     /// The errors of [`Self::magnitude`].
@@ -84,9 +86,9 @@ impl LoadedModel {
         Ok(OwnRate::new(rate_hz, band.high_hz))
     }
 
-    /// Measures a voice's density through the window at each bin. `amplitude` gives the amplitude
-    /// at a frequency in hertz. Above `half_hz`, half of the voice's own rate, the image of the
-    /// lower frequencies appears.
+    /// Measures a voice's density through the window at each bin. `amplitude` returns the amplitude
+    /// at a frequency in hertz. `half_hz` is half of the voice's own rate; above it, the mirror
+    /// image of the lower frequencies appears.
     fn read(
         &self,
         parameters: &[f64],
@@ -120,8 +122,8 @@ impl LoadedModel {
     }
 }
 
-/// Returns the frequency in the band whose magnitude is played at `hz`. Up to half a bin beyond an
-/// edge, that is the edge.
+/// Returns the frequency in the band whose magnitude a voice plays at `hz`. If `hz` is up to half a
+/// bin beyond an edge, this is the edge.
 fn played_at(band: Band, hz: f64) -> f64 {
     let edge_hz = hz.clamp(band.low_hz, band.high_hz);
     if (hz - edge_hz).abs() <= BESIDE_EDGE_BINS * GRID_HZ { edge_hz } else { hz.max(0.0) }

@@ -13,12 +13,12 @@ use crate::{builtin, own};
 
 /// Models by id. If several models have the same id, these rules decide which one is used:
 ///
-/// - A model that the user named by its file, or that the program added, takes precedence. Several
-///   of these are used in the order in which they were added.
-/// - Among installed models and the built-in one, the newest of each major version is used,
+/// - A model whose file the user named, or that the program added, takes precedence. Among several
+///   such models, the one that was added first takes precedence.
+/// - Among installed models and the built-in model, the newest of each major version is used,
 ///   wherever it was found. Among equal versions, the first one in the order of [`Search`] is used.
-///   Major versions are ordered by the first place that has them (the plugin folders, the user's
-///   folder, this program), and within one place the newest comes first.
+///   Major versions are ordered by the first place that contains them (the plugin folders, the
+///   user's folder, this program). Within one place, the newest major version comes first.
 ///
 /// The other models are returned only if their version is requested.
 ///
@@ -31,9 +31,9 @@ use crate::{builtin, own};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Registry {
-    /// In display order.
+    /// The models that are used, in display order.
     models: Vec<LoadedModel>,
-    /// The rank of each model in `models`, ascending.
+    /// The rank of each model in `models`. The ranks are sorted in ascending order.
     ranks: Vec<Rank>,
     /// Models with the same id as one of `models`. Models with the same id are in order of
     /// precedence.
@@ -42,7 +42,7 @@ pub struct Registry {
     sandbox: Sandbox,
 }
 
-/// A model and where it comes from.
+/// A model and the rank of its origin.
 #[derive(Debug, Clone)]
 struct Candidate {
     rank: Rank,
@@ -60,7 +60,7 @@ pub(crate) enum Rank {
 }
 
 impl Rank {
-    /// Returns whether the user or a program named this model itself, not only a folder that
+    /// Returns whether the user or a program named this model itself, instead of a folder that
     /// contains it.
     fn is_chosen(self) -> bool {
         matches!(self, Self::File | Self::Embedded)
@@ -77,8 +77,8 @@ impl Candidate {
     }
 }
 
-/// Sorts models with the same id, given in the order in which they were added, by the precedence
-/// that [`Registry`] describes.
+/// Sorts models with the same id by the precedence that [`Registry`] describes. The models must be
+/// in the order in which they were added.
 fn by_precedence(all: &mut [Candidate]) {
     let first_place = |major: Option<u64>| {
         let installed = all.iter().filter(|one| !one.rank.is_chosen());
@@ -114,8 +114,8 @@ impl Registry {
         models.map(LoadedModel::short_name).collect()
     }
 
-    /// Returns the short names of the built-in models whose sound does not depend on the position:
-    /// all except models that follow the motion.
+    /// Returns the short names of the built-in models whose sound does not depend on the finger's
+    /// position: all except models that follow the motion.
     pub fn placeless_names() -> Vec<&'static str> {
         let models = builtin::models().iter();
         let placeless = models.filter(|model| !model.follows_motion());
@@ -125,7 +125,8 @@ impl Registry {
     /// Returns the models that a search finds.
     ///
     /// # Errors
-    /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
+    /// If one of the search's `files` or `modules` cannot be loaded, or one of its `dirs` cannot be
+    /// read.
     pub fn search(search: &Search) -> Result<Self, HostError> {
         search.run()
     }
@@ -158,7 +159,8 @@ impl Registry {
     }
 
     /// Adds a model of this program: a type that implements [`Model`]. It takes precedence over all
-    /// other models with its id, except those that were named or registered before.
+    /// other models with the same id, except models that the user named or the program added
+    /// before.
     ///
     /// ```
     /// use htex_host::Registry;
@@ -207,8 +209,8 @@ impl Registry {
         self.add_described(Origin::Own, own::model::<M>()?)
     }
 
-    /// Adds a model as [`Self::add_model`] does, but one that follows the motion itself (the
-    /// extension `htex.motion/1`).
+    /// Adds a model that follows the motion itself (the extension `htex.motion/1`). Otherwise the
+    /// same as [`Self::add_model`].
     ///
     /// # Errors
     /// The errors of [`Self::add_model`].
@@ -240,8 +242,9 @@ impl Registry {
         self.add_described(origin, RuntimeModelAdapter::new(descriptor, model)?)
     }
 
-    /// Adds the WASM model of a container called `name`, such as an asset. It comes after plugins
-    /// named by their files and before all others. A native library cannot be added in this way.
+    /// Adds the WASM model of a container, such as an asset; `name` is the container's name. In the
+    /// order of precedence, it follows plugins that the user named by their files, and precedes all
+    /// other models. A native library cannot be added in this way.
     ///
     /// # Errors
     /// When the bytes are not a module, or its model violates the ABI.
@@ -276,7 +279,7 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model, and a note if it shadows another model or is shadowed.
+    /// Adds a model. If it shadows another model, or another model shadows it, also adds a note.
     pub(crate) fn add(&mut self, rank: Rank, model: LoadedModel) {
         let id = model.id().to_owned();
         let new = Candidate { rank, model };
@@ -300,7 +303,7 @@ impl Registry {
         self.insert(self.place_of(first.rank), first);
     }
 
-    /// Returns the index after the models of a rank.
+    /// Returns the index in `models` after the last model of a rank.
     fn place_of(&self, rank: Rank) -> usize {
         self.ranks.partition_point(|other| *other <= rank)
     }
@@ -310,7 +313,8 @@ impl Registry {
         self.ranks.insert(at, new.rank);
     }
 
-    /// Returns all models with one id: the one that is used and the ones that it shadows.
+    /// Returns all models with one id: first the model that is used, then the models that it
+    /// shadows.
     pub fn all<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a LoadedModel> + Clone {
         self.every().filter(move |model| model.id() == id)
     }
@@ -349,13 +353,14 @@ impl Registry {
         &self.models
     }
 
-    /// Returns the models that a program fits if the user names none: all except those whose
+    /// Returns the models that a program fits if the user names no model: all except models whose
     /// descriptor says [`only_named`](Descriptor::only_named).
     pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
         self.models.iter().filter(|model| !model.descriptor().only_named)
     }
 
-    /// Returns notes for the user: models that shadow others, and plugins that could not be loaded.
+    /// Returns notes for the user, e.g. about models that shadow other models, and about plugins
+    /// that could not be loaded.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }

@@ -1,5 +1,5 @@
-//! Models that are described at run time by objects instead of types, e.g. models written in a
-//! scripting language.
+//! Models that are objects at run time instead of Rust types, e.g. models written in a scripting
+//! language.
 
 use std::sync::Arc;
 
@@ -56,8 +56,8 @@ use crate::{HostError, MOTION_EXTENSION};
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
 pub trait RuntimeModel: Send + Sync + 'static {
-    /// Fits the model, as [`htex_model::Model::fit`] does. The condition is known only if the model
-    /// follows the motion.
+    /// Fits the model, as [`htex_model::Model::fit`] does. `input.condition` is known only if the
+    /// model follows the motion.
     ///
     /// # Errors
     /// When the model cannot describe the spectrum.
@@ -75,8 +75,8 @@ pub trait RuntimeModel: Send + Sync + 'static {
         magnitude: &mut [f64],
     ) -> Result<(), Error>;
 
-    /// Interpolates parameter sets, as [`htex_model::Model::interpolate`] does. The default is
-    /// linear.
+    /// Interpolates parameter sets, as [`htex_model::Model::interpolate`] does. The default
+    /// interpolates every number linearly.
     ///
     /// # Errors
     /// When the sets cannot be interpolated.
@@ -89,7 +89,7 @@ pub trait RuntimeModel: Send + Sync + 'static {
         mix::linear(sets, weights, out)
     }
 
-    /// Returns the rate of a voice, as [`htex_model::Model::voice_rate_hz`] does.
+    /// Returns the sample rate of a voice, as [`htex_model::Model::voice_rate_hz`] does.
     fn voice_rate_hz(&self, _parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz
     }
@@ -106,7 +106,8 @@ pub trait RuntimeModel: Send + Sync + 'static {
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error>;
 
-    /// Whether the model follows the motion itself, as with the extension `htex.motion/1`.
+    /// Returns whether the model follows the motion itself, like a model with the extension
+    /// `htex.motion/1`.
     fn follows_motion(&self) -> bool {
         false
     }
@@ -126,12 +127,12 @@ pub trait RuntimeVoice: Send {
     /// When the voice cannot change to these parameters.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 
-    /// Sets the motion, as [`htex_model::MotionVoice::set_motion`] does. Called only for models
-    /// that follow the motion.
+    /// Sets the motion, as [`htex_model::MotionVoice::set_motion`] does. The host calls it only for
+    /// models that follow the motion.
     fn set_motion(&mut self, _motion: Motion) {}
 }
 
-/// A model with its descriptor.
+/// A [`RuntimeModel`] with its descriptor, as the host calls it.
 pub(crate) struct RuntimeModelAdapter {
     shared: Arc<Shared>,
 }

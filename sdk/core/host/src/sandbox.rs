@@ -12,7 +12,7 @@ use std::time::Duration;
 use crate::clock::Instant;
 use crate::{WasmLimits, WasmTotal};
 
-/// Fraction of the elapsed time that is added to a budget.
+/// Fraction of the elapsed time by which the time left in a budget grows.
 const REFILL: f64 = 0.1;
 
 /// The limits of modules and the budget that they share. A clone shares the budget.
@@ -57,7 +57,7 @@ pub(crate) enum BudgetError {
 /// The shared limits of several modules and their current use.
 #[derive(Debug)]
 pub(crate) struct Budget {
-    /// Names the modules that share it, for messages.
+    /// Name, in messages, of the modules that share the budget.
     owner: &'static str,
     total: WasmTotal,
     memory_bytes: AtomicUsize,
@@ -66,7 +66,7 @@ pub(crate) struct Budget {
     outer: Option<Arc<Self>>,
 }
 
-/// The time left at an instant.
+/// The time left in a budget, and the instant for which it was computed.
 #[derive(Debug)]
 struct Time {
     left: Duration,
@@ -136,7 +136,7 @@ impl Budget {
         Ok(())
     }
 
-    /// Returns the time left. The error is the budget whose time is used up.
+    /// Returns the time left. If the time of a budget is used up, the error names that budget.
     pub(crate) fn time_left(&self) -> Result<Duration, BudgetError> {
         let mut least = Duration::MAX;
         for budget in self.all() {
@@ -160,7 +160,8 @@ impl Budget {
         }
     }
 
-    /// Adds a fraction of the elapsed time, subtracts the time spent, and returns the time left.
+    /// Adds a fraction of the elapsed time to the time left, subtracts the time `spent`, and
+    /// returns the time left.
     fn update(&self, spent: Duration) -> Duration {
         let mut time = self.time.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();

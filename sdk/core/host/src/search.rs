@@ -1,4 +1,4 @@
-//! The places that are searched for models.
+//! The places in which the host searches for models.
 
 use std::path::{Path, PathBuf};
 
@@ -13,9 +13,9 @@ const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 const FOLDER: &str = "htex/plugins";
 
 /// The places to search for models, in order of precedence: `files`, models embedded in an asset,
-/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer version
-/// takes precedence over an older one with the same major version, wherever each was found
-/// ([`Registry`]).
+/// `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. Within `dirs` and the places
+/// after it, a newer version takes precedence over an older version with the same major version,
+/// wherever they were found ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};
@@ -30,17 +30,17 @@ pub struct Search {
     /// Plugin files. A file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
     /// Module files that the user did not name, e.g. files named by a recipe. They must be WASM
-    /// modules, which run in a sandbox. Anything else is an error and is not loaded, because a
-    /// native library runs with all the rights of its user. To use one, the user names it in
-    /// `files`, which takes precedence over this list.
+    /// modules, which run in a sandbox. Any other file is an error and is not loaded, because a
+    /// native library runs with all the rights of its user. To use a native library, the user names
+    /// it in `files`, which takes precedence over this list.
     pub modules: Vec<PathBuf>,
-    /// Plugin folders. A folder that cannot be read is an error. A plugin in it that cannot be
-    /// loaded is only a [`Note`].
+    /// Plugin folders. A folder that cannot be read is an error. A plugin in such a folder that
+    /// cannot be loaded is only a [`Note`].
     pub dirs: Vec<PathBuf>,
     /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,
-    /// Whether to search `htex/plugins` in the user's data folder (`$XDG_DATA_HOME`, else
-    /// `~/.local/share`).
+    /// Whether to search `htex/plugins` in the user's data folder (`$XDG_DATA_HOME`, or
+    /// `~/.local/share` if that is not set).
     pub user_dir: bool,
     /// Whether to include the models linked into this program.
     pub builtin: bool,
@@ -114,7 +114,8 @@ impl Search {
         Ok(registry)
     }
 
-    /// Adds the plugins of a folder that is not one of `dirs`. If it cannot be read, adds a note.
+    /// Adds the plugins of a folder that is not one of `dirs`. If the folder cannot be read, adds a
+    /// note.
     fn add_folder(&self, registry: &mut Registry, rank: Rank, dir: &Path) {
         match libraries_in(dir, Some("wasm")) {
             Ok(files) => self.add_all(registry, rank, files),

@@ -5,8 +5,8 @@ use htex_dsp::resample::Resampler;
 
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Samples at a requested rate. Contains a source at its own rate, such as a voice, and a resampler
-/// if the rates differ.
+/// A stream of samples at a requested rate. It contains a source of samples, such as a voice, and a
+/// resampler if the source has another rate.
 ///
 /// ```
 /// use htex_host::{Band, Registry, Stream};
@@ -25,7 +25,7 @@ pub struct Stream<S = ModelVoice> {
 
 impl<S> Stream<S> {
     /// Creates a stream at `rate_hz` from a source with samples at `source_rate_hz` and frequencies
-    /// up to `top_hz`. `own_rate` says that the source has this rate whatever rate is requested
+    /// up to `top_hz`. `own_rate` says whether the source has this rate whatever rate is requested
     /// ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors
@@ -53,8 +53,8 @@ impl<S> Stream<S> {
         &mut self.source
     }
 
-    /// Fills `out` with the next samples. `render` fills a block with samples of the source. Does
-    /// not allocate.
+    /// Fills `out` with the next samples. `render` is a function that fills a block with samples of
+    /// the source. This function does not allocate.
     ///
     /// # Errors
     /// The last error of `render`.
@@ -96,7 +96,7 @@ impl Stream {
         Self::from_source(voice, voice_rate_hz, rate_hz, band.high_hz, own_rate)
     }
 
-    /// Returns the rate at which the model renders, hertz.
+    /// Returns the sample rate of the model's voice, hertz.
     pub fn voice_rate_hz(&self) -> f64 {
         self.source_rate_hz
     }

@@ -1,6 +1,7 @@
-//! Alternatives to streaming a model's voice, which need less computation per sample.
+//! Methods of synthesis that need less computation per sample than a model's voice: loops and
+//! filtered noise.
 //!
-//! Models do not depend on these methods.
+//! A model need not know these methods.
 
 use std::fmt;
 use std::str::FromStr;
@@ -22,13 +23,14 @@ const LOOP_RANGE_S: (f64, f64) = (0.1, 60.0);
 const TAPS_RANGE: (usize, usize) = (15, 4095);
 /// Maximum number of samples in a loop (256 MiB).
 const MOST_SAMPLES: f64 = 6.7e7;
-/// Duration of a loop's cross-fade, seconds; at most a quarter of the loop.
+/// Duration of a loop's cross-fade, seconds, but never more than a quarter of the loop.
 const FADE_S: f64 = 0.1;
-/// Duration at the start of a voice and its resampler that is not used for a loop, seconds.
+/// Duration of the first samples of a voice and its resampler, seconds. A loop leaves these samples
+/// out.
 const RUN_IN_S: f64 = 0.1;
 
-/// A method of synthesis. Its text form is `streamed`, `loop:SECONDS` or `filter:TAPS`; the number
-/// is optional.
+/// A method of synthesis. As text it is `streamed`, `loop:SECONDS` or `filter:TAPS`. The number is
+/// optional: `loop` and `filter` have defaults.
 ///
 /// ```
 /// use htex_host::Synthesis;
@@ -39,19 +41,21 @@ const RUN_IN_S: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Synthesis {
-    /// The model's voice. It does not repeat, and its spectrum follows the motion.
+    /// The model's voice renders all samples. They do not repeat, and the spectrum follows the
+    /// motion.
     #[default]
     Streamed,
     /// A part of the voice, 0.1 to 60 s long, which is rendered once and repeated with a
     /// constant-power cross-fade. It needs the least computation per sample, and four bytes of
-    /// memory per sample. One section of noise determines the spectrum, which does not change.
+    /// memory per sample. The spectrum does not change. It is the spectrum of one random section of
+    /// the voice.
     Loop {
         /// Length of the loop, seconds.
         seconds: f64,
     },
     /// White noise through a linear-phase filter with the model's magnitude. The filter has 15 to
-    /// 4095 taps at the rate of noise models. Its resolution in hertz is four times that rate
-    /// divided by the number of taps. The spectrum does not change.
+    /// 4095 taps and runs at the sample rate of noise models. Its resolution in hertz is four times
+    /// that sample rate divided by the number of taps. The spectrum does not change.
     Filter {
         /// Number of coefficients of the filter.
         taps: usize,
@@ -99,7 +103,7 @@ impl Synthesis {
     }
 }
 
-/// Samples of unit RMS with a constant spectrum: a loop, or filtered noise.
+/// A sound with unit RMS and a constant spectrum: a loop, or filtered noise.
 ///
 /// ```
 /// use htex_host::{Band, Registry, StillSound, Synthesis};
@@ -122,11 +126,12 @@ enum Generator {
 }
 
 impl StillSound {
-    /// Creates the sound of `model` at `rate_hz`; `None` for [`Synthesis::Streamed`].
+    /// Creates the sound of `model` at the sample rate `rate_hz`. Returns `None` for
+    /// [`Synthesis::Streamed`].
     ///
     /// # Errors
-    /// [`HostError::Synthesis`] for a length out of range, or when the model refuses the parameters
-    /// or the rate, or cannot render.
+    /// [`HostError::Synthesis`] if the length is out of range. Another error if the model refuses
+    /// the parameters or the rate, or cannot render.
     pub fn new(
         synthesis: Synthesis,
         model: &LoadedModel,
@@ -162,7 +167,7 @@ impl StillSound {
         }
     }
 
-    /// Returns the memory of the stored samples or coefficients, bytes.
+    /// Returns the size of the stored samples or coefficients in memory, bytes.
     pub fn kept_bytes(&self) -> usize {
         size_of::<f32>()
             * match &self.0 {

@@ -170,7 +170,7 @@ impl RawModel for TableModel {
     }
 }
 
-/// A voice with its handle, which no other value holds.
+/// A voice and its handle. No other value contains this handle.
 struct TableVoice {
     model: TableModel,
     handle: i64,

@@ -1,22 +1,23 @@
 //! Renders several voices in as few calls as their models allow.
 //!
-//! Adjacent voices of the same model are grouped. If a model has no function for several voices,
-//! its voices are rendered one by one.
+//! It groups adjacent voices of the same model. If a model has no function that renders several
+//! voices, its voices are rendered one by one.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 
 use crate::{HostError, ModelVoice};
 
-/// The extension of models that render several voices in one call.
+/// Id of the extension of models that can render several voices in one call.
 pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
 /// Fills `out` with the next `frames` samples of each voice, one voice after another. The samples
 /// are bit-identical to [`ModelVoice::render`] of each voice. Adjacent voices of the same model are
 /// rendered in one call if the model has the extension `htex.voices/1`, as the built-in models do.
-/// AR then takes about six tenths of the time in blocks of 256 frames (`cargo xtask bench`). Below
-/// 64 frames, and for other models, voices are rendered separately. If `out` is too short, the
-/// remaining voices do not advance; if it is too long, the rest is filled with zeros. Does not
-/// allocate, lock or block if the models follow the ABI.
+/// In blocks of 256 frames, this reduces the time for the model AR to about six tenths (`cargo
+/// xtask bench`). With fewer than 64 frames, and for models without the extension, voices are
+/// rendered separately. If `out` is too short, the remaining voices do not advance; if it is too
+/// long, the rest is filled with zeros. Does not allocate, lock or block if the models follow the
+/// ABI.
 ///
 /// ```
 /// use htex_host::{Band, Registry, render_together};
@@ -30,7 +31,8 @@ pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 /// ```
 ///
 /// # Errors
-/// The first error of a model. The samples of its voice are zero, and other voices continue.
+/// The first error that a model returns. The samples of that voice are zero, and other voices
+/// continue.
 pub fn render_together<'a>(
     voices: impl IntoIterator<Item = &'a mut ModelVoice>,
     frames: usize,
@@ -65,7 +67,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Returns whether this call can also render this voice.
+    /// Returns whether the same call can also render this voice.
     fn takes(&self, voice: &ModelVoice) -> bool {
         let (Some(first), Some(new)) = (self.first(), voice.together()) else {
             return self.count == 0;

@@ -1,18 +1,18 @@
 //! A voice of a model.
 //!
-//! This is the one place that checks samples for NaN and infinity, for every loader. A WASM
-//! compiler would otherwise have to canonicalise NaNs in every operation.
+//! Only this module checks samples for NaN and infinity, whichever loader the model has. Without
+//! this check, a WASM compiler would have to canonicalise NaNs in every operation.
 //!
-//! A voice mixes the parameters of its conditions itself, in buffers that were allocated with the
-//! voice, and in its own instance if it is WASM. Therefore following a finger neither allocates nor
-//! locks.
+//! A voice interpolates the parameters of conditions itself, in buffers that were allocated with
+//! the voice. The voice of a WASM module interpolates them in its own instance. Therefore following
+//! a finger neither allocates nor locks.
 
 use htex_model::{Motion, Status};
 
 use crate::raw::{RawVoice, Together};
 use crate::{HostError, LoadedModel};
 
-/// An endless stream of samples of unit RMS at the model's own rate.
+/// A voice of a model: an endless stream of samples with unit RMS, at the model's sample rate.
 ///
 /// ```
 /// use htex_host::{Band, Registry};
@@ -58,8 +58,8 @@ impl ModelVoice {
         self.raw.as_mut()
     }
 
-    /// Returns the data needed to render the voice in one call with others, if its model has
-    /// `htex.voices/1`.
+    /// Returns the data for rendering this voice and others in one call, or `None` if the model
+    /// does not have `htex.voices/1`.
     pub(crate) fn together(&self) -> Option<Together> {
         self.raw.together()
     }
@@ -74,7 +74,8 @@ impl ModelVoice {
         Err(self.not_finite(out))
     }
 
-    /// Kept apart from the check, because every block passes through the check.
+    /// Makes the error. It is a separate function so that the check, which every block passes,
+    /// stays small.
     #[cold]
     fn not_finite(&self, out: &[f32]) -> HostError {
         let first = out.iter().position(|x| !x.is_finite()).unwrap_or_default();
@@ -116,9 +117,9 @@ impl ModelVoice {
         }
     }
 
-    /// Sets the motion at the next sample, for a voice whose model follows it
-    /// ([`LoadedModel::follows_motion`]). Does nothing for other voices. Does not allocate, lock or
-    /// block if the model follows the ABI.
+    /// Sets the motion of the finger at the next sample. Does nothing if the model does not follow
+    /// the motion ([`LoadedModel::follows_motion`]). Does not allocate, lock or block if the model
+    /// follows the ABI.
     ///
     /// # Errors
     /// When a number is not finite or out of range, or the model refuses it. The voice then
@@ -131,8 +132,8 @@ impl ModelVoice {
         self.set_any_motion(motion)
     }
 
-    /// For checkers of models: sets the motion as [`Self::set_motion`] does, but without checking
-    /// the numbers, to test which ones the model refuses.
+    /// For checkers of models: sets the motion as [`Self::set_motion`] does, but does not check the
+    /// numbers. A checker uses it to test which numbers the model refuses.
     ///
     /// # Errors
     /// The error that the model returns.
@@ -141,17 +142,17 @@ impl ModelVoice {
         self.done("motion_1_set", status)
     }
 
-    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes. `None`
-    /// for a native voice, which uses the memory of the process.
+    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes.
+    /// Returns `None` for a native voice, which uses the memory of the process.
     pub fn memory_bytes(&self) -> Option<usize> {
         self.raw.memory_bytes()
     }
 
-    /// For checkers of models: frees the voice and keeps its handle, to test whether the model
-    /// refuses a freed handle. An app drops the voice instead.
+    /// For checkers of models: frees the voice and keeps its handle. A checker uses it to test
+    /// whether the model refuses a freed handle. An app drops the voice instead.
     ///
     /// # Errors
-    /// The model's error. A second call must return that the handle is unknown.
+    /// The error that the model returns. A second call must return the error for an unknown handle.
     pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
         let status = self.raw.free();
         self.done("voice_free", status)

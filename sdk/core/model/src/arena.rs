@@ -8,7 +8,7 @@
 use core::alloc::Layout;
 use core::ptr::null_mut;
 
-/// Bytes by which WASM memory grows.
+/// Size of a page, bytes: WASM memory grows by whole pages.
 pub(crate) const PAGE_BYTES: usize = 65_536;
 /// Size of the smallest block and alignment of all blocks, bytes: enough for every number and
 /// vector.
@@ -19,8 +19,8 @@ const CLASSES: usize = STEPS * (usize::BITS as usize + 1);
 
 /// Memory that grows and never moves, divided into blocks.
 pub(crate) struct Arena {
-    /// The block of each class that was freed last. A freed block contains the address of the one
-    /// that was freed before it.
+    /// For each class, the block that was freed last. A freed block contains the address of the
+    /// block that was freed before it.
     freed: [*mut u8; CLASSES],
     /// Start of the memory that does not belong to a block yet.
     fresh: *mut u8,

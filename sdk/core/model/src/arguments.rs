@@ -60,7 +60,8 @@ pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
 /// Checks that all numbers of an argument are finite.
 ///
 /// # Errors
-/// Names the argument, and the index of the first number that is not finite.
+/// If a number is not finite. The message names the argument and the index of the first such
+/// number.
 pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),

@@ -1,6 +1,6 @@
 //! Decimal texts of numbers, without the text formatting of the standard library, which would add
-//! 20 kB to a WASM module. Packages such as `ryu` format exactly, but not at compile time, as
-//! `exact.rs` needs it.
+//! 20 kB to a WASM module. Packages such as `ryu` format exactly, but cannot run at compile time,
+//! which `exact.rs` needs.
 
 /// Significant digits of the result of [`rounded`].
 const DIGITS: i32 = 9;

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store, UsualRange};
 
-/// A model's description; passed through the ABI as JSON.
+/// The description of a model: its id, version, parameter fields and fit options. The ABI passes it
+/// as JSON.
 ///
 /// ```
 /// use htex_model::{StaticDescriptor, StaticField, json};
@@ -31,24 +32,25 @@ pub struct Descriptor {
         schemars(regex(pattern = r"^[a-z0-9_-]+(\.[a-z0-9_-]+){2,}$"))
     )]
     pub id: String,
-    /// Name for people, e.g. `sBeta`.
+    /// Display name, e.g. `sBeta`.
     pub name: String,
     /// Semantic version of the model's parameters and sound.
     pub version: String,
-    /// One sentence: the properties of a spectrum that the model stores.
+    /// One sentence that says which properties of a spectrum the model stores.
     pub summary: String,
-    /// Parameters, in the order of the flat array.
+    /// Parameter fields, in the order in which the flat parameter array contains them.
     #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = 32)))]
     pub fields: Vec<Field>,
-    /// Fit options, in the order of their array.
+    /// Fit options, in the order in which a fit receives their values.
     #[serde(default)]
     pub options: Vec<FitOption>,
-    /// Whether the level of a fit is determined by the parameters, as for energies, and is stored
-    /// unchanged. Otherwise the level may be taken from the recording.
+    /// Whether the parameters determine the level of a fit, e.g. because they are energies. If
+    /// true, hosts store the fitted level unchanged; if false, they may store the recording's level
+    /// instead.
     #[serde(default, skip_serializing_if = "is_false")]
     pub keeps_level: bool,
-    /// Whether hosts use the model only if the user names it. If not, they also fit it when the user
-    /// names no model.
+    /// Whether hosts use the model only if the user names it. If false, hosts also fit this model
+    /// when the user names no model.
     #[serde(default, skip_serializing_if = "is_false")]
     pub only_named: bool,
 }
@@ -78,11 +80,11 @@ fn is_false(flag: &bool) -> bool {
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schemars", schemars(description = "One parameter field."))]
 pub struct Field {
-    /// Name, units included, e.g. `peak_hz`.
+    /// Name, including the unit, e.g. `peak_hz`.
     pub name: String,
     /// Unit symbol; `1` for a pure number.
     pub unit: String,
-    /// One number or several.
+    /// Whether the field is one number or a list of numbers.
     pub kind: Kind,
     /// Smallest value allowed.
     pub min: f64,
@@ -90,10 +92,11 @@ pub struct Field {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value for assets of earlier minor versions, which lack the field; for scalars only.
+    /// Value of the field for assets that an earlier minor version of the model wrote without it.
+    /// Only for scalars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
-    /// Range of a slider, within `min` to `max`.
+    /// Range of a slider for this field. It lies within `min` to `max`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub usual: Option<UsualRange>,
     /// Meaning of the field.
@@ -128,7 +131,7 @@ pub struct Field {
     )
 )]
 pub struct FitOption {
-    /// Name as given on the command line.
+    /// Name of the option on the command line.
     pub name: String,
     /// Unit symbol; `1` for a pure number.
     pub unit: String,
@@ -138,28 +141,29 @@ pub struct FitOption {
     pub max: f64,
     /// Default value.
     pub default: f64,
-    /// Only whole numbers are allowed.
+    /// Whether only whole numbers are allowed.
     #[serde(default)]
     pub integer: bool,
-    /// Names of the values 0, 1, …; empty for a plain number.
+    /// Names of the values 0, 1, …; empty if the option is a plain number.
     #[serde(default)]
     pub choices: Vec<String>,
-    /// Values that a sweep tries in all combinations with those of the other options. A choice is
-    /// given by its index.
+    /// Values that a sweep of accuracy against cost (`htex tradeoff`) tries, in all combinations
+    /// with the `sweep` values of the other options. A named choice is given by its index.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<f64>,
-    /// Values that a sweep tries with all other options at their defaults.
+    /// Values that a sweep tries while all other options have their default values.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep_alone: Vec<f64>,
-    /// Name of another option: values above its value have no effect, and a sweep leaves them out.
+    /// Name of another option that limits this one. A value of this option above the other option's
+    /// value has no effect, and a sweep skips it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub not_above: Option<String>,
-    /// Effect of the option, and source of its default.
+    /// Effect of the option, and the source of its default value.
     pub description: String,
 }
 
 impl FitOption {
-    /// Returns a value as a user writes it: a choice by its name, otherwise the number. `None` if
+    /// Returns a value as a user writes it: the name of a choice, or the number. Returns `None` if
     /// the value is not allowed.
     ///
     /// ```

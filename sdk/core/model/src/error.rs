@@ -70,19 +70,20 @@ impl Error {
         Self { status, message: message.into() }
     }
 
-    /// Makes an error: the model cannot describe the spectrum.
+    /// Makes an error with the status [`Status::CannotFit`]: the model cannot describe the
+    /// spectrum.
     #[cold]
     pub fn cannot_fit(message: impl Into<String>) -> Self {
         Self::new(Status::CannotFit, message)
     }
 
-    /// Makes an error: an argument is invalid.
+    /// Makes an error with the status [`Status::InvalidArgument`]: an argument is invalid.
     #[cold]
     pub fn argument(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidArgument, message)
     }
 
-    /// Makes an error: the parameters are invalid.
+    /// Makes an error with the status [`Status::InvalidParameters`]: the parameters are invalid.
     #[cold]
     pub fn parameters(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidParameters, message)

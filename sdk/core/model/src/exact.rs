@@ -1,7 +1,8 @@
 //! Decimal texts of numbers that parse to exactly the same bits; computed at compile time.
 //!
-//! It is the project's own because no formatter of the standard library or of a package runs at
-//! compile time. A module thus contains a descriptor's text and no code that writes it.
+//! The project has its own code for this because no formatter of the standard library or of a
+//! package runs at compile time. A module thus contains a descriptor's text and no code that writes
+//! it.
 
 use crate::decimal::Decimal;
 
@@ -15,8 +16,9 @@ const ENOUGH_DIGITS: usize = 17;
 const LIMBS: usize = 86;
 const LIMB: u64 = 1_000_000_000;
 
-/// Returns a decimal that parses to the given finite number. It is the shortest one if a single
-/// exact product or quotient gives it (Clinger 1990); otherwise it has 17 digits.
+/// Returns a decimal that parses to the given finite number. It is the shortest such decimal if a
+/// single product or quotient of exact floats yields the number (Clinger 1990); otherwise it has 17
+/// digits.
 pub(crate) const fn exact(number: f64) -> Decimal {
     assert!(number.is_finite(), "a descriptor contains a number that is not finite");
     let negative = number < 0.0;

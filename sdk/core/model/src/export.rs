@@ -1,18 +1,19 @@
 //! The macro that generates a model's C functions.
 
-/// Generates the C functions of a [`Model`](crate::Model), as the table `pub static TABLE`.
+/// Generates the C functions of a [`Model`](crate::Model), and a table of them, `pub static TABLE`.
 ///
 /// `symbols: "FEATURE"` names a Cargo feature of the calling crate. When this feature is on, the
-/// functions are also exported under their C names (`htex_model_…`), as a native library or a WASM
-/// module needs them. Such a library or module contains exactly one model. A WASM module also gets
-/// the two memory functions of the ABI.
+/// macro also exports the functions under their C names (`htex_model_…`), which a native library or
+/// a WASM module needs. Such a library or module contains exactly one model. A WASM module also
+/// gets the two memory functions of the ABI.
 ///
 /// Add `extensions: [motion]`, as in `export_model!(Stick, symbols: "plugin", extensions:
-/// [motion])`, if the model has the extension `htex.motion/1`. Its voice then has to implement
-/// [`MotionVoice`](crate::MotionVoice).
+/// [motion])`, if the model has the extension `htex.motion/1`. The model's voice then has to
+/// implement [`MotionVoice`](crate::MotionVoice).
 ///
-/// The functions of extensions are in `pub static VOICES`, and in `pub static MOTION`, which is
-/// `None` without the extension.
+/// The macro also generates `pub static VOICES` and `pub static MOTION`, which contain the
+/// functions of the extensions `htex.voices/1` and `htex.motion/1`. `MOTION` is `None` if the model
+/// does not have that extension.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]

@@ -1,7 +1,8 @@
 //! Shared code of models whose voice is white noise through a recursive filter.
 //!
-//! A model implements [`MovingFilter`]. This module then provides its voice ([`FilteredVoice`]): the
-//! noise, the limits of the band, blocks of any length, and the change of parameters.
+//! A model implements [`MovingFilter`]. This module then provides its voice, [`FilteredVoice`]. The
+//! voice generates the noise, limits the output to the band, renders blocks of any length, and
+//! changes parameters gradually.
 
 use alloc::sync::Arc;
 
@@ -15,8 +16,8 @@ use crate::{Error, Values, Voice, text};
 
 /// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Duration that is rendered and discarded before the first sample, seconds, with a limit in
-/// samples. After it the filter's transient has decayed.
+/// Duration of the output that a new voice discards, seconds, so that the filter's transient has
+/// decayed before the first sample. A second constant limits it in samples.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
 /// Number of groups of samples per step.
@@ -25,25 +26,28 @@ const BLOCK: usize = 32;
 /// A group of output samples.
 type GroupSamples = [f32; GROUP];
 
-/// A filter whose coefficients move from one parameter set to the next, so that every filter on the
-/// way is stable. All methods but [`new`](Self::new) run on the render thread and do not allocate.
+/// A filter whose coefficients move gradually from one parameter set to the next. Every filter on
+/// the way is stable. All methods except [`new`](Self::new) run on the render thread and must not
+/// allocate.
 pub trait MovingFilter: Sized + Send + 'static {
-    /// Index of the field with the rate at which the filter runs, hertz.
+    /// Index of the parameter field that contains the filter's sample rate, hertz.
     const RATE_FIELD: usize;
 
-    /// Makes the filter of these parameters. Returns it with the level of white noise of unit RMS
-    /// behind it and behind the limits of the band.
+    /// Makes the filter that the parameters describe, and returns it with its level. The level is
+    /// the RMS of white noise that has a magnitude of 1 in each bin and then passes the filter and
+    /// the band limits.
     ///
     /// # Errors
     /// If the filter is not stable, or has no finite energy in the band.
     fn new(parameters: &Values<'_>, band: Band, passed: &PassedPower)
     -> Result<(Self, f64), Error>;
 
-    /// Sets the filter that is reached after `steps` calls of [`step`](Self::step), and returns the
-    /// level behind it, as [`new`](Self::new) does.
+    /// Sets the target: the filter that this one becomes after `steps` calls of
+    /// [`step`](Self::step). Returns the level of the target, as [`new`](Self::new) does.
     ///
     /// # Errors
-    /// As [`new`](Self::new). The filter then continues unchanged.
+    /// If the target is not stable, or has no finite energy in the band. The filter then continues
+    /// unchanged.
     fn set_target(
         &mut self,
         parameters: &Values<'_>,
@@ -51,7 +55,8 @@ pub trait MovingFilter: Sized + Send + 'static {
         steps: u32,
     ) -> Result<f64, Error>;
 
-    /// Moves the coefficients by one step. `is_last`: they reach the target itself.
+    /// Moves the coefficients by one step towards the target. With `is_last`, they reach the
+    /// target.
     fn step(&mut self, is_last: bool);
 
     /// Filters one sample.
@@ -60,7 +65,8 @@ pub trait MovingFilter: Sized + Send + 'static {
     /// Filters groups of samples in place.
     fn process(&mut self, block: &mut [Group]);
 
-    /// As [`Voice::render_together`].
+    /// Does the same as [`Voice::render_together`]. Override it if the filter can process several
+    /// voices faster in one call.
     fn render_together(voices: &mut [&mut FilteredVoice<Self>], frames: usize, out: &mut [f32]) {
         let rows = out.chunks_exact_mut(frames.max(1));
         for (voice, row) in voices.iter_mut().zip(rows) {
@@ -75,26 +81,27 @@ pub struct FilteredVoice<F> {
     pub noise: GaussianNoise,
     /// The filter.
     pub filter: F,
-    /// The limits of the band, behind the filter.
+    /// The filters after `filter` that limit the output to the band.
     pub edges: Pipeline,
     rate_hz: f64,
-    /// How much power passes `edges`.
+    /// The part of the power that passes `edges`.
     passed: Arc<PassedPower>,
     gain: f64,
     target_gain: f64,
     gain_step: f64,
     ramp_len: u32,
     ramp_left: u32,
-    /// Unused samples of the last group.
+    /// The last group of samples. The caller has already received the first `taken` of them.
     ready: GroupSamples,
     taken: usize,
 }
 
 impl<F: MovingFilter> FilteredVoice<F> {
-    /// Makes a voice with unit RMS.
+    /// Makes a voice whose samples have unit RMS.
     ///
     /// # Errors
-    /// If `rate_hz` is not the rate of the parameters, and the errors of [`MovingFilter::new`].
+    /// If `rate_hz` differs from the sample rate in the parameters, or if [`MovingFilter::new`]
+    /// fails.
     pub fn new(
         parameters: &Values<'_>,
         band: Band,
@@ -138,7 +145,7 @@ impl<F: MovingFilter> FilteredVoice<F> {
         self.gain
     }
 
-    /// Returns how many samples of the last group were already given out.
+    /// Returns how many samples of the last group the caller has already received.
     pub fn taken(&self) -> usize {
         self.taken
     }
@@ -248,7 +255,8 @@ fn rounded_up(samples: f64) -> u32 {
     whole + u32::from(f64::from(whole) < samples)
 }
 
-/// Returns the gain of the noise that gives samples of unit RMS.
+/// Returns the gain by which the noise before the filter is multiplied, so that the samples have
+/// unit RMS.
 fn gain(rate_hz: f64, level: f64) -> f64 {
     // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
     htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level
@@ -257,7 +265,7 @@ fn gain(rate_hz: f64, level: f64) -> f64 {
 /// Checks that magnitudes and samples can be divided by this level.
 ///
 /// # Errors
-/// If it is not finite, or not above 0.
+/// If the level is not finite, or not above 0.
 pub fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);

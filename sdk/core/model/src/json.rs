@@ -5,7 +5,7 @@ use crate::decimal::whole;
 use crate::exact::exact;
 use crate::{Kind, Scale, StaticDescriptor, StaticField, StaticOption, Store};
 
-/// Returns the length of a descriptor's JSON text, bytes.
+/// Returns the length of a descriptor's JSON text in bytes.
 pub const fn length(descriptor: &StaticDescriptor) -> usize {
     // A buffer of length 0 stores nothing, but all bytes are counted. A const function cannot
     // return a text whose length it has only just found.

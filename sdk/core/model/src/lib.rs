@@ -10,10 +10,10 @@
 //! the model's table of C functions ([`abi::ModelTable`]). Every host calls a model through this
 //! table, even if the model is built into the host.
 //!
-//! Parameters cross the ABI as one flat array of `f64`, in the order of the descriptor's fields. A
-//! scalar is one value; a list is its length followed by its values ([`Values`]). The spectra of a
-//! model are *shapes*: they have an RMS of 1 in the asset's band. The asset stores the level of
-//! each spectrum separately, in the unit of the asset's quantity.
+//! The ABI passes parameters as one flat array of `f64`, in the order of the descriptor's fields. A
+//! scalar is one value; a list is its length followed by its values ([`Values`]). A model's spectra
+//! are *shapes*: their RMS in the asset's band is 1. The asset stores the level of each spectrum
+//! separately, in the unit of the asset's quantity.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -17,13 +17,13 @@ pub struct Motion {
     pub speed_mm_s: f64,
     /// Normal force, newtons, not negative.
     pub force_n: f64,
-    /// Position along the finger's path, mm, of either sign.
+    /// Position along the finger's path, mm; may be negative.
     pub position_mm: f64,
-    /// First coordinate of the finger on the surface, mm, of either sign. If the coordinates are
-    /// unknown, it equals the position along the path.
+    /// First coordinate of the finger on the surface, mm; may be negative. If the coordinates are
+    /// unknown, this is the position along the path.
     pub x_mm: f64,
-    /// Second coordinate of the finger on the surface, mm, of either sign. If the coordinates are
-    /// unknown, it is 0.
+    /// Second coordinate of the finger on the surface, mm; may be negative. If the coordinates are
+    /// unknown, this is 0.
     pub y_mm: f64,
 }
 
@@ -64,7 +64,7 @@ impl Motion {
     }
 }
 
-/// Speed and force at which a recording was made, as far as they are known.
+/// Speed and normal force of a recording. Each is `None` if it is unknown.
 ///
 /// ```
 /// let condition = htex_model::FitCondition::from_numbers(80.0, f64::NAN)?;
@@ -73,7 +73,7 @@ impl Motion {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitCondition {
-    /// Scanning speed, mm/s, not negative.
+    /// Speed of the finger along the surface, mm/s, not negative.
     pub speed_mm_s: Option<f64>,
     /// Normal force, newtons, not negative.
     pub force_n: Option<f64>,
@@ -104,21 +104,21 @@ impl FitCondition {
     }
 }
 
-/// A voice that receives the finger's motion itself, through the extension `htex.motion/1`.
+/// A voice that receives the motion of the finger through the extension `htex.motion/1`.
 ///
 /// Implement this trait if the sound depends on more than speed and force, e.g. on the finger's
 /// position, on its direction, or on stick-slip. To declare the extension, pass `extensions:
-/// [motion]` to [`export_model!`](crate::export_model); the macro then requires this trait of
-/// [`Model::Voice`](crate::Model::Voice).
+/// [motion]` to [`export_model!`](crate::export_model); the macro then requires that
+/// [`Model::Voice`](crate::Model::Voice) implements this trait.
 ///
 /// # How a host uses it
 ///
 /// For a voice without this trait, the host scales all frequencies with the speed and the level
-/// with the force. For a voice with it, the host does neither. It only interpolates parameters
-/// between conditions, and calls [`set_motion`](Self::set_motion) before the first sample, and
-/// again before a block when the motion has changed. A host that does not know the extension never
-/// calls it: until its first motion, a voice plays its parameters as at the motion of the
-/// recording.
+/// with the force. For a voice with this trait, the host scales nothing. It only interpolates
+/// parameters between conditions, and calls [`set_motion`](Self::set_motion) before the first
+/// sample, and again before a block when the motion has changed. A host that does not support the
+/// extension never calls `set_motion`. Until the first such call, a voice therefore plays as if the
+/// finger moved as in the recording.
 ///
 /// # Example
 ///
@@ -169,7 +169,7 @@ impl FitCondition {
 /// assert_eq!(block[63], 0.0);
 /// ```
 ///
-/// `examples/model-rust-texel` is a complete model with this trait, whose sound follows the
+/// `examples/model-rust-texel` is a complete model with this trait. Its sound follows the finger's
 /// position.
 ///
 /// # Limits
@@ -181,10 +181,10 @@ pub trait MotionVoice: Voice {
     ///
     /// The voice changes to the new motion within about 10 ms and without a click. At a speed of 0
     /// the model decides what to play. A position far from the current one is a jump of the finger:
-    /// the voice should not play what lies in between. The samples depend only on the motions and
-    /// on the samples at which they are set, not on the block sizes. Before the same sample, this
-    /// call and [`retune`](Voice::retune) may come in either order, with the same effect. `[render
-    /// thread, no allocation, no lock, no I/O]`
+    /// the voice should not play the surface between the two positions. The samples depend only on
+    /// the motions and on the times at which the host sets them, not on the block sizes. If a host
+    /// calls this function and [`retune`](Voice::retune) before the same sample, the order of the
+    /// two calls makes no difference. `[render thread, no allocation, no lock, no I/O]`
     fn set_motion(&mut self, motion: Motion);
 }
 

@@ -10,15 +10,16 @@
 pub const MAX_SPEED_MM_S: f64 = 1_000_000.0;
 /// Largest normal force of a finger, newtons.
 pub const MAX_FORCE_N: f64 = 1_000_000.0;
-/// Largest distance of a finger from the start of its path, and largest coordinate on the surface,
-/// mm, in either direction.
+/// Largest absolute position of a finger along its path, and largest absolute coordinate on the
+/// surface, mm.
 pub const MAX_POSITION_MM: f64 = 1_000_000_000_000.0;
 
 /// Sets the motion of the finger at a voice's next sample. The arguments are the speed along the
 /// finger's path (mm/s, negative while the position decreases), the normal force (newtons, not
-/// negative), the position along the path, and the two coordinates on the surface (mm, of either
-/// sign). The speed stays constant until the next call. Returns a status. If it is negative, the
-/// voice continues unchanged. `[render thread, no allocation; one thread at a time for one voice]`
+/// negative), the position along the path, and the two coordinates on the surface (mm; all three
+/// may be negative). The speed stays constant until the next call. Returns a status. If it is
+/// negative, the voice continues unchanged. `[render thread, no allocation; one thread at a time
+/// for one voice]`
 pub type MotionSetFn = unsafe extern "C" fn(
     voice: i64,
     speed_mm_s: f64,
@@ -27,8 +28,8 @@ pub type MotionSetFn = unsafe extern "C" fn(
     x_mm: f64,
     y_mm: f64,
 ) -> i64;
-/// Fits a recording whose speed (mm/s) and normal force (newtons) are given; otherwise as
-/// `htex_model_fit`. Neither number is negative; NaN means unknown. `[any thread]`
+/// Fits a spectrum as `htex_model_fit` does, and also receives the speed (mm/s) and normal force
+/// (newtons) of the recording. Neither number is negative; NaN means unknown. `[any thread]`
 pub type MotionFitFn = unsafe extern "C" fn(
     band_low_hz: f64,
     band_high_hz: f64,

@@ -34,7 +34,7 @@ impl<'a> Numbers<'a> {
         numbers.iter().for_each(|number| self.push(*number));
     }
 
-    /// Returns the number of all values, including those that did not fit.
+    /// Returns the number of all values, including values that did not fit into the buffer.
     pub fn count(&self) -> usize {
         self.count
     }

@@ -28,12 +28,13 @@ mod here {
             Self(Mutex::new(value))
         }
 
-        /// Locks the value; never `None`. (In a WASM module, `None` means that the lock is held.)
+        /// Locks the value. Never returns `None` on this platform. (In a WASM module, `None` means
+        /// that the lock is already held.)
         pub fn lock(&self) -> Option<MutexGuard<'_, T>> {
             Some(self.0.lock().unwrap_or_else(PoisonError::into_inner))
         }
 
-        /// Locks the value without waiting. `None` if another holder has the lock.
+        /// Locks the value without waiting. Returns `None` if another holder has the lock.
         pub fn try_lock(&self) -> Option<MutexGuard<'_, T>> {
             match self.0.try_lock() {
                 Ok(value) => Some(value),
@@ -58,7 +59,8 @@ mod here {
         })
     }
 
-    /// Passes the text of this thread's last error to `with`. `None` if the text is already in use.
+    /// Passes the text of this thread's last error to `with`. Returns `None` if the text is already
+    /// in use.
     pub(crate) fn with_last_error<T>(with: impl FnOnce(&mut String) -> T) -> Option<T> {
         LAST_ERROR.with(|last| last.try_borrow_mut().ok().map(|mut text| with(&mut text)))
     }
@@ -86,12 +88,12 @@ mod here {
             Self(RefCell::new(value))
         }
 
-        /// Locks the value. `None` if the lock is held already.
+        /// Locks the value. Returns `None` if the lock is already held.
         pub fn lock(&self) -> Option<RefMut<'_, T>> {
             self.0.try_borrow_mut().ok()
         }
 
-        /// Locks the value without waiting. `None` if the lock is held.
+        /// Locks the value without waiting. Returns `None` if the lock is already held.
         pub fn try_lock(&self) -> Option<RefMut<'_, T>> {
             self.lock()
         }
@@ -121,7 +123,7 @@ mod here {
         call()
     }
 
-    /// Passes the text of the last error to `with`. `None` if the text is already in use.
+    /// Passes the text of the last error to `with`. Returns `None` if the text is already in use.
     pub(crate) fn with_last_error<T>(with: impl FnOnce(&mut String) -> T) -> Option<T> {
         LAST_ERROR.lock().map(|mut text| with(&mut text))
     }

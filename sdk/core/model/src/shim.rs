@@ -1,8 +1,8 @@
 //! The layer between the C functions and the traits: it checks arguments and turns panics into
 //! errors.
 //!
-//! The functions that [`export_model!`](crate::export_model) generates call it. Hosts call it for
-//! models that are Rust objects without C functions.
+//! The functions that [`export_model!`](crate::export_model) generates call this layer. Hosts also
+//! call it, for models that are Rust objects without C functions.
 
 use alloc::alloc::Layout;
 use core::marker::PhantomData;
@@ -32,8 +32,8 @@ pub struct State<M: Model> {
 pub struct Input<'a, T>(Option<&'a [T]>);
 
 impl<'a, T> Input<'a, T> {
-    /// Takes the host's pointer and length. A null or misaligned pointer with a `len` above 0 is
-    /// refused.
+    /// Wraps the host's pointer and length. If `len` is above 0 and the pointer is null or
+    /// misaligned, the call that uses the value fails with [`Status::InvalidArgument`].
     ///
     /// # Safety
     /// `pointer` is null, or `len` values can be read there for `'a`.
@@ -63,8 +63,8 @@ impl<'a, T> From<&'a [T]> for Input<'a, T> {
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
 impl<'a, T> Output<'a, T> {
-    /// Takes the host's pointer and length. A null or misaligned pointer with a `len` above 0 is
-    /// refused.
+    /// Wraps the host's pointer and length. If `len` is above 0 and the pointer is null or
+    /// misaligned, the call that uses the value fails with [`Status::InvalidArgument`].
     ///
     /// # Safety
     /// `pointer` is null, or `len` initialised values can be written there for `'a`, with exclusive
@@ -98,7 +98,7 @@ fn fits<T>(len: usize) -> bool {
     len <= isize::MAX as usize / size_of::<T>().max(1)
 }
 
-/// Arguments of a call of `htex_model_fit`.
+/// The arguments of `htex_model_fit`.
 #[allow(missing_docs)] // Named as in `abi::FitFn`.
 pub struct FitCall<'a> {
     pub band: (f64, f64),
@@ -287,8 +287,8 @@ fn values<'a>(
     Values::read(descriptor, parameters.get("parameters")?)
 }
 
-/// Fits with the model's function. Not generic: a WASM module thus contains it only once, compiled
-/// at the optimisation level of this crate.
+/// Fits with the model's own function. This function is not generic, so a WASM module contains it
+/// only once, compiled at the optimisation level of this crate.
 fn fit(
     descriptor: &StaticDescriptor,
     own: fn(&FitInput<'_>) -> Result<Fit, Error>,
@@ -349,7 +349,7 @@ pub fn last_error(out: Output<'_, u8>) -> i64 {
     with_last_error(|text| copy(text.as_bytes(), out)).unwrap_or(0)
 }
 
-/// See [`crate::abi::ExtensionFn`]. `motion`: whether the model has `htex.motion/1`.
+/// See [`crate::abi::ExtensionFn`]. `motion` says whether the model has `htex.motion/1`.
 pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
     let is = |known: &str| id.0 == Some(known.as_bytes());
     let voices = is(VoicesTable::ID) && !cfg!(target_family = "wasm");
@@ -371,7 +371,7 @@ fn bad_handle() -> Error {
     Error::new(Status::BadHandle, "no such voice; it may have been freed")
 }
 
-/// Copies as many values as fit into `out`; returns the number of all values.
+/// Copies as many values as fit into `out`. Returns the number of values in `from`.
 pub fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
     for (out, from) in out.iter_mut().zip(from) {
         *out = *from;

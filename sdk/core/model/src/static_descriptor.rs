@@ -1,5 +1,5 @@
 //! The descriptor as constants in a model's code. At compile time,
-//! [`export_model!`](crate::export_model) generates from it the JSON text that the ABI returns.
+//! [`export_model!`](crate::export_model) turns it into the JSON text that the ABI returns.
 
 use crate::{Kind, Store, UsualRange};
 
@@ -24,12 +24,12 @@ pub struct StaticDescriptor {
     pub summary: &'static str,
     /// Parameter fields, in the order of the flat array.
     pub fields: &'static [StaticField],
-    /// Fit options, in the order of the array of their values.
+    /// Fit options, in the order in which a fit receives their values.
     pub options: &'static [StaticOption],
     /// Whether the parameters determine the level of a fit. If so, hosts leave the level unchanged.
     pub keeps_level: bool,
-    /// Whether hosts use the model only if the user names it. If not, they also fit it when the
-    /// user names no model.
+    /// Whether hosts use the model only if the user names it. If false, hosts also fit this model
+    /// when the user names no model.
     pub only_named: bool,
 }
 
@@ -40,7 +40,7 @@ pub struct StaticField {
     pub name: &'static str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'static str,
-    /// One number or several.
+    /// Whether the field is one number or a list of numbers.
     pub kind: Kind,
     /// Smallest value allowed.
     pub min: f64,
@@ -48,9 +48,10 @@ pub struct StaticField {
     pub max: f64,
     /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value for assets of earlier minor versions, which do not have the field. Only for scalars.
+    /// Value of the field for assets that an earlier minor version of the model wrote without it.
+    /// Only for scalars.
     pub default: Option<f64>,
-    /// Range of a slider, within `min` to `max`.
+    /// Range of a slider for this field. It lies within `min` to `max`.
     pub usual: Option<UsualRange>,
     /// Meaning of the field.
     pub description: &'static str,
@@ -59,7 +60,7 @@ pub struct StaticField {
 /// One fit option: a number, or one of several named choices (the number is the choice's index).
 #[derive(Debug, Clone, Copy)]
 pub struct StaticOption {
-    /// Name, as given on the command line.
+    /// Name of the option on the command line.
     pub name: &'static str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'static str,
@@ -73,11 +74,13 @@ pub struct StaticOption {
     pub integer: bool,
     /// Names of the choices 0, 1, …; empty if the option is a plain number.
     pub choices: &'static [&'static str],
-    /// Values that a sweep tries in all combinations with those of the other options.
+    /// Values that a sweep of accuracy against cost (`htex tradeoff`) tries, in all combinations
+    /// with the `sweep` values of the other options. A named choice is given by its index.
     pub sweep: &'static [f64],
-    /// Values that a sweep tries with all other options at their defaults.
+    /// Values that a sweep tries while all other options have their default values.
     pub sweep_alone: &'static [f64],
-    /// Name of another option: values above its value have no effect, and a sweep leaves them out.
+    /// Name of another option that limits this one. A value of this option above the other option's
+    /// value has no effect, and a sweep skips it.
     pub not_above: Option<&'static str>,
     /// Effect of the option, and the source of its default.
     pub description: &'static str,
@@ -162,8 +165,8 @@ impl StaticField {
         Self { store, ..self }
     }
 
-    /// Sets the value for assets of earlier minor versions, which do not have the field. Only for
-    /// scalars.
+    /// Sets the field's value for assets that an earlier minor version of the model wrote without
+    /// the field. Only for scalars.
     pub const fn defaulted(self, value: f64) -> Self {
         Self { default: Some(value), ..self }
     }
@@ -221,10 +224,10 @@ impl StaticOption {
         Self { integer: true, choices, ..Self::number(name, "1", (0.0, last), 0.0, description) }
     }
 
-    /// Sets the values that a sweep of accuracy against cost (`htex tradeoff`) tries in all
-    /// combinations with the values of the other options, from coarse to fine. A choice is given by
-    /// its index. If no option of a model has values for a sweep, a sweep covers the ranges of the
-    /// options.
+    /// Sets the values that a sweep of accuracy against cost (`htex tradeoff`) tries, from coarse
+    /// to fine. The sweep combines them with all values of the other options. A named choice is
+    /// given by its index. If no option of a model has such values, the sweep covers the ranges of
+    /// all options.
     pub const fn sweep(self, values: &'static [f64]) -> Self {
         Self { sweep: values, ..self }
     }
@@ -234,14 +237,15 @@ impl StaticOption {
         Self { sweep_alone: values, ..self }
     }
 
-    /// Names the option above whose value this option has no effect.
+    /// Names another option that limits this one: a value of this option above the other option's
+    /// value has no effect.
     pub const fn not_above(self, option: &'static str) -> Self {
         Self { not_above: Some(option), ..self }
     }
 }
 
-/// Returns whether `id` is a valid model id: three or more parts, separated by dots, of `a-z`,
-/// `0-9`, `-` and `_`.
+/// Returns whether `id` is a valid model id: three or more parts, separated by dots. Each part
+/// consists of one or more of the characters `a-z`, `0-9`, `-` and `_`.
 ///
 /// ```
 /// assert!(htex_model::is_model_id("org.example.my-model_2"));

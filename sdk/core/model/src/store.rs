@@ -15,16 +15,16 @@
 pub enum Kind {
     /// One number.
     Scalar,
-    /// 0 to `max_len` numbers.
+    /// A list of 0 to `max_len` numbers.
     List {
-        /// Most numbers allowed, at most 65,535.
+        /// Largest number of values in the list; at most 65,535.
         #[cfg_attr(feature = "schemars", schemars(range(max = 65535)))]
         max_len: u32,
     },
 }
 
-/// Encoding of a field's values in a file: `offset + scale·q`, or `exp(offset + scale·q)` when
-/// `log` is set, for the integer kinds.
+/// Encoding of a field's values in a file. The integer encodings store a whole number `q` for the
+/// value `offset + scale·q`, or `exp(offset + scale·q)` if `log` is set.
 ///
 /// ```
 /// use htex_model::{StaticField, Store};
@@ -48,35 +48,38 @@ pub enum Store {
     F64,
     /// 32-bit float.
     F32,
-    /// Unsigned 16-bit steps.
+    /// Unsigned 16-bit integers.
     U16 {
-        /// Step.
+        /// Size of one step: the factor of the stored integer. If `log` is set, it is a step of the
+        /// value's natural logarithm.
         #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
         scale: f64,
-        /// Value at zero.
+        /// Value for the stored integer 0. If `log` is set, it is that value's natural logarithm.
         offset: f64,
-        /// Steps in the logarithm.
+        /// Whether `scale` and `offset` refer to the natural logarithm of the value.
         #[cfg_attr(feature = "host", serde(default))]
         log: bool,
     },
-    /// Unsigned 8-bit steps.
+    /// Unsigned 8-bit integers.
     U8 {
-        /// Step.
+        /// Size of one step: the factor of the stored integer. If `log` is set, it is a step of the
+        /// value's natural logarithm.
         #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
         scale: f64,
-        /// Value at zero.
+        /// Value for the stored integer 0. If `log` is set, it is that value's natural logarithm.
         offset: f64,
-        /// Steps in the logarithm.
+        /// Whether `scale` and `offset` refer to the natural logarithm of the value.
         #[cfg_attr(feature = "host", serde(default))]
         log: bool,
     },
     /// Unsigned 8-bit steps of a list, packed by their differences.
     Packed {
-        /// Step.
+        /// Size of one step: the factor of the stored integer. If `log` is set, it is a step of the
+        /// value's natural logarithm.
         scale: f64,
-        /// Value at zero.
+        /// Value for the stored integer 0. If `log` is set, it is that value's natural logarithm.
         offset: f64,
-        /// Steps in the logarithm.
+        /// Whether `scale` and `offset` refer to the natural logarithm of the value.
         #[cfg_attr(feature = "host", serde(default))]
         log: bool,
     },

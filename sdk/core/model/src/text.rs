@@ -8,7 +8,7 @@ use crate::decimal::{rounded, whole};
 /// A piece of a text.
 #[derive(Debug, Clone, Copy)]
 pub enum TextPart<'a> {
-    /// Words.
+    /// A string.
     Words(&'a str),
     /// A whole number.
     Whole(u64),

@@ -7,7 +7,8 @@ use htex_dsp::grid::level_rms;
 
 use crate::{Error, FitCondition, Numbers, StaticDescriptor, Values};
 
-/// Input of [`Model::fit`]: a texture spectrum, and what else is known about the recording.
+/// Input of [`Model::fit`]: the spectrum of a texture, the recorded signal, the fit options and the
+/// condition.
 #[derive(Debug, Clone, Copy)]
 pub struct FitInput<'a> {
     /// Band of the texture, hertz. The fitted shape has unit RMS in this band.
@@ -16,12 +17,13 @@ pub struct FitInput<'a> {
     pub frequency_hz: &'a [f64],
     /// Magnitude at each frequency, in the unit of the asset's quantity; finite and not negative.
     pub magnitude: &'a [f64],
-    /// The recording's segments, overlap-added to one band-limited signal, in the unit of
-    /// `magnitude`. May be empty.
+    /// The segments of the recording, joined by overlap-add to one band-limited signal, in the unit
+    /// of `magnitude`. May be empty.
     pub signal: &'a [f64],
     /// Sample rate of `signal`, hertz.
     pub signal_rate_hz: f64,
-    /// The value of each fit option, in the descriptor's order. All are in range.
+    /// The value of each fit option, in the descriptor's order. Every value is in its option's
+    /// range.
     pub options: &'a [f64],
     /// Speed and force of the recording. Both are unknown if the model does not have the extension
     /// `htex.motion/1`, or if the host does not know them.
@@ -44,30 +46,32 @@ impl FitInput<'_> {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The parameters as one flat array: a scalar is one number, a list its length and its numbers.
+    /// The parameters as one flat array: a scalar is one number; a list is its length followed by
+    /// its numbers.
     pub parameters: Vec<f64>,
     /// RMS of the fitted spectrum in the band, in the unit of [`FitInput::magnitude`]. The fitted
-    /// spectrum is the shape times this level.
+    /// spectrum is the shape that [`Model::magnitude`] computes, multiplied by this level.
     pub level_rms: f64,
 }
 
 /// A texture model: describes a spectrum by a few parameters, and renders it.
 ///
-/// Implement this trait, and [`Voice`] for what the model renders, to add a model to htex. Then
-/// call [`export_model!`](crate::export_model), which generates the C functions of the ABI.
+/// To add a model to htex, implement this trait for the model, and [`Voice`] for the object that
+/// renders its samples. Then call [`export_model!`](crate::export_model), which generates the C
+/// functions of the ABI.
 ///
 /// # How a host uses a model
 ///
 /// All methods are pure functions: they have no `self`, and the result depends only on the
-/// arguments. They are called in these situations:
+/// arguments. A host calls them in these situations:
 ///
-/// * **Authoring.** The host calls [`fit`](Self::fit) once for each recorded condition, and stores
-///   the parameters in the asset.
+/// * **Authoring.** The host calls [`fit`](Self::fit) once for each recorded condition (speed and
+///   normal force), and stores the parameters in the asset.
 /// * **Plots and error measures.** The host calls [`magnitude`](Self::magnitude), which computes
 ///   the spectrum without rendering.
 /// * **Opening a voice.** The host calls [`voice_rate_hz`](Self::voice_rate_hz) and then
-///   [`voice`](Self::voice), with the rate that the first call returned. It resamples the samples
-///   to the rate that it needs, and multiplies them by the level.
+///   [`voice`](Self::voice), with the rate that the first call returned. It resamples the voice's
+///   output to its own sample rate, and multiplies it by the level.
 /// * **Following a finger.** The host calls [`interpolate`](Self::interpolate) to get parameters
 ///   between two recorded conditions, and passes them to [`Voice::retune`].
 ///
@@ -79,9 +83,10 @@ pub struct Fit {
 ///
 /// # Threads
 ///
-/// A host may call all methods from any thread and from several threads at the same time.
-/// `interpolate` can run on the render thread. [`fit`](Self::fit), [`magnitude`](Self::magnitude)
-/// and [`voice`](Self::voice) do not, so they may allocate and take their time.
+/// A host may call all methods from any thread and from several threads at the same time. A host
+/// may call [`interpolate`](Self::interpolate) on the render thread, so it must not allocate or
+/// wait. A host never calls [`fit`](Self::fit), [`magnitude`](Self::magnitude) or
+/// [`voice`](Self::voice) on the render thread, so they may allocate and may be slow.
 ///
 /// # Example
 ///
@@ -209,16 +214,16 @@ pub struct Fit {
 ///
 /// * The descriptor has 1 to 32 fields, and a parameter set has at most 65,536 numbers, including
 ///   the lengths of lists.
-/// * Voices have to be reproducible on every machine. The math functions of the platform are not:
-///   use `libm` or `htex_dsp`, and no fused multiply-add.
+/// * A voice has to render the same samples on every machine. The math functions of the platform
+///   differ between machines: use `libm` or `htex_dsp` instead. Do not use fused multiply-add.
 /// * `htex plugin check FILE` checks a built plugin: the ranges, the level and spectrum of the
 ///   sound, clicks, memory allocation and more.
 ///
 /// # Known doubts
 ///
-/// * Sound and [`magnitude`](Self::magnitude) can differ by one bin of 5 Hz at steep flanks. There
-///   the measurement's window blurs the spectrum, and a model may choose whether its voice follows
-///   the spectrum before or after this blur.
+/// * At steep flanks of the spectrum, the sound and [`magnitude`](Self::magnitude) can differ by
+///   one bin (5 Hz). The window function of the measurement blurs such flanks. A model may choose
+///   whether its voice plays the blurred spectrum or the spectrum before the blur.
 /// * A host may replace [`Fit::level_rms`], e.g. by the RMS of the recording. A model whose
 ///   parameters determine the level declares [`StaticDescriptor::keeping_level`], and hosts then
 ///   leave the level unchanged.
@@ -232,13 +237,13 @@ pub trait Model: 'static {
     /// Finds the parameters that describe a spectrum. The same input gives the same result.
     ///
     /// # Errors
-    /// [`crate::Status::CannotFit`] if the model cannot describe the spectrum, e.g. if it is
-    /// silent.
+    /// [`crate::Status::CannotFit`] if the model cannot describe the spectrum, e.g. a spectrum that
+    /// is zero everywhere.
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
-    /// Writes the magnitude of the shape at each of `frequency_hz`. The shape has unit RMS on the 5
-    /// Hz grid in the band, and is zero outside the band. The value at a frequency does not depend
-    /// on the other frequencies of the call.
+    /// Writes the magnitude of the shape at each frequency in `frequency_hz`. The shape has unit
+    /// RMS on the 5 Hz grid in the band, and is zero outside the band. The value at a frequency
+    /// must not depend on which other frequencies the call contains.
     ///
     /// # Errors
     /// If the parameters describe no spectrum in this band.
@@ -250,8 +255,8 @@ pub trait Model: 'static {
     ) -> Result<(), Error>;
 
     /// Interpolates parameter sets. Weights are not negative and sum to one; a set with weight 1 is
-    /// returned unchanged. Most models call [`mix::linear`](crate::mix::linear). With up to eight
-    /// sets: `[render thread, no allocation, no lock, no I/O]`
+    /// returned unchanged. Most models call [`mix::linear`](crate::mix::linear). A host may pass up
+    /// to eight sets on the render thread: `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
     /// If the sets cannot be interpolated, e.g. because their lists differ in length.
@@ -261,15 +266,15 @@ pub trait Model: 'static {
         out: &mut Numbers<'_>,
     ) -> Result<(), Error>;
 
-    /// Returns the rate in hertz at which a voice renders when the host wants `wanted_hz`. The host
-    /// resamples from this rate to its own. A model that needs only the band can return a lower
-    /// rate, which saves time.
+    /// Returns the sample rate of a voice, hertz. `wanted_hz` is the host's own rate; the host
+    /// resamples the voice's output to it. A model whose output contains only frequencies in the
+    /// band can return a lower rate, which saves computing time.
     fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz
     }
 
-    /// Makes a voice that renders the shape at unit RMS, at `rate_hz`, which is a rate that
-    /// [`Self::voice_rate_hz`] returned. `seed` selects the random numbers of the voice.
+    /// Makes a voice that renders the shape at unit RMS. `rate_hz` is the voice's sample rate,
+    /// which [`Self::voice_rate_hz`] returned. `seed` selects the voice's random numbers.
     ///
     /// # Errors
     /// If the model cannot make a voice of these parameters at this rate.
@@ -295,20 +300,20 @@ pub trait Model: 'static {
 ///   blocks of length 0.
 /// * [`render`](Self::render) and [`retune`](Self::retune) do not allocate, lock, wait, or do input
 ///   or output. Allocate all buffers in [`Model::voice`].
-/// * State that decays is set to zero before it becomes subnormal. Arithmetic with subnormal
-///   numbers is slow on many processors.
+/// * The voice sets decaying state, such as the memory of a filter, to zero before it becomes
+///   subnormal. Arithmetic with subnormal numbers is slow on many processors.
 ///
 /// # Limits
 ///
-/// [`render`](Self::render) cannot fail. A voice that cannot continue writes zeros. If it panics,
-/// the content of `out` is undefined.
+/// [`render`](Self::render) cannot fail. A voice that cannot continue writes zeros. If a voice
+/// panics, the content of `out` is undefined.
 ///
-/// The example of [`Model`] implements this trait. Models that are noise with a given spectrum
-/// implement [`ShapedModel`](crate::shaped::ShapedModel) instead, and models that are noise through a
+/// The example of [`Model`] implements this trait. Models that play noise with a given spectrum
+/// implement [`ShapedModel`](crate::shaped::ShapedModel) instead. Models that play noise through a
 /// filter use [`FilteredVoice`](crate::filtered::FilteredVoice).
 pub trait Voice: Send + 'static {
-    /// Fills `out` with the next samples. `out` may have any length, and earlier contents are
-    /// arbitrary. `[render thread, no allocation, no lock, no I/O]`
+    /// Fills `out` with the next samples. `out` may have any length and any previous content.
+    /// `[render thread, no allocation, no lock, no I/O]`
     fn render(&mut self, out: &mut [f32]);
 
     /// Fills `out` with the next `frames` samples of each voice, one voice after another. The
@@ -325,8 +330,9 @@ pub trait Voice: Send + 'static {
         }
     }
 
-    /// Changes to other parameters from the next sample on, over about 10 ms and without a click. A
-    /// host may call this before every block. `[render thread, no allocation, no lock, no I/O]`
+    /// Changes the voice to other parameters. The change starts at the next sample, takes about 10
+    /// ms, and makes no click. A host may call this function before every block. `[render thread,
+    /// no allocation, no lock, no I/O]`
     ///
     /// # Errors
     /// If the voice cannot change to these parameters. It then continues unchanged.

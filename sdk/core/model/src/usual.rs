@@ -7,16 +7,16 @@
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schemars", schemars(description = "The scale of a slider."))]
 pub enum Scale {
-    /// Equal steps of the slider are equal differences.
+    /// Equal movements of the slider change the value by equal differences.
     Linear,
-    /// Equal steps of the slider are equal ratios.
+    /// Equal movements of the slider change the value by equal ratios.
     Log,
 }
 
 /// The usual range of a parameter, for sliders. For a list, it applies to each of its numbers.
 ///
-/// A field's own range is what can be stored, which is much wider than a slider needs (0.001 to
-/// 1,000,000 for a shape parameter of sBeta).
+/// A field's own range contains every value that can be stored. It is much wider than a slider
+/// needs, e.g. 0.001 to 1,000,000 for a shape parameter of sBeta.
 ///
 /// ```
 /// use htex_model::{StaticField, UsualRange};
@@ -38,7 +38,7 @@ pub struct UsualRange {
     pub min: f64,
     /// Upper end, within the range of the field and above `min`.
     pub max: f64,
-    /// Scale on which a slider moves evenly.
+    /// Scale of the slider: linear or logarithmic.
     pub scale: Scale,
 }
 

@@ -1,8 +1,8 @@
 //! The flat array of parameters, and access to its fields.
 //!
-//! A scalar field is one number; a list is its length followed by its numbers. Together with the
-//! descriptor, an array thus describes its own length, so several sets can be concatenated without
-//! further lengths.
+//! A scalar field is one number; a list is its length followed by its numbers. A reader that knows
+//! the descriptor can therefore tell where a parameter set ends, so several sets can be
+//! concatenated without separate lengths.
 
 use alloc::vec::Vec;
 
@@ -10,8 +10,8 @@ use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
 use crate::text;
 use crate::{Error, Kind, StaticDescriptor};
 
-/// Names and ranges of a model's parameters and fit options. Implemented for the constants of a
-/// model and for the descriptor that a host has read.
+/// Names and ranges of a model's parameters and fit options. Two types implement this trait:
+/// [`StaticDescriptor`], which a model declares, and `Descriptor`, which a host reads.
 pub trait Fields {
     /// Reverse-DNS id of the model.
     fn id(&self) -> &str;
@@ -37,7 +37,7 @@ pub struct Range<'a> {
     pub name: &'a str,
     /// Unit symbol; `1` for a pure number.
     pub unit: &'a str,
-    /// One number or several.
+    /// Whether the field is one number or a list of numbers. An option is one number.
     pub kind: Kind,
     /// Smallest value allowed.
     pub min: f64,
@@ -90,7 +90,7 @@ fields_of!(StaticDescriptor);
 #[cfg(feature = "host")]
 fields_of!(crate::Descriptor);
 
-/// A parameter set that was checked against a descriptor. It borrows the array.
+/// A parameter set that was checked against a descriptor. It borrows the flat array.
 ///
 /// ```
 /// use htex_model::{StaticDescriptor, StaticField, Values};
@@ -118,8 +118,8 @@ impl<'a> Values<'a> {
     /// Reads an array that contains exactly one parameter set.
     ///
     /// # Errors
-    /// Names the field that is missing, too long, out of range or not finite, or says how many
-    /// numbers are left over.
+    /// If a field is missing, too long, out of range or not finite, or if numbers follow the last
+    /// field. The message names the field, or says how many numbers follow.
     pub fn read(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<Self, Error> {
         let (values, used) = Self::read_first(descriptor, flat)?;
         if used == flat.len() {
@@ -136,7 +136,7 @@ impl<'a> Values<'a> {
     /// Reads the parameter set at the start of an array, and returns it with its length.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// If a field is missing, too long, out of range or not finite.
     pub fn read_first(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<(Self, usize), Error> {
         if descriptor.count() > MAX_FIELDS {
             return Err(Error::parameters(text![
@@ -177,18 +177,19 @@ impl<'a> Values<'a> {
         Ok((Self { flat, spans }, at))
     }
 
-    /// Returns the numbers of field `i`: one for a scalar. Empty if there is no such field.
+    /// Returns the numbers of field `i`; for a scalar field, this is one number. Returns an empty
+    /// slice if there is no field `i`.
     pub fn list(&self, i: usize) -> &'a [f64] {
         let (start, end) = self.spans.get(i).copied().unwrap_or_default();
         &self.flat[start as usize..end as usize]
     }
 
-    /// Returns the number of scalar field `i`; NaN if there is no such field.
+    /// Returns the number of the scalar field `i`, or NaN if there is no field `i`.
     pub fn scalar(&self, i: usize) -> f64 {
         self.list(i).first().copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns the flat array, as it crosses the ABI.
+    /// Returns the flat array, as the ABI passes it.
     pub fn flat(&self) -> &'a [f64] {
         self.flat
     }

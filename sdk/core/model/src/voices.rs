@@ -1,6 +1,6 @@
 //! The voices of one exported model, found by their handles.
 //!
-//! A stale handle is refused; a valid one is found without a lock.
+//! The lookup takes no lock. It refuses the handle of a voice that was freed.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -11,10 +11,10 @@ use crate::platform::{Lock, Once};
 
 /// Slots in the first chunk. Chunk `c` has `FIRST << c` slots, and is allocated when it gets its
 /// first voice. So a model with one voice needs the memory of a few slots (up to 2.8 kB each), and
-/// one with a thousand voices allocates at most twice as many slots.
+/// a model with a thousand voices allocates at most twice as many slots as it uses.
 const FIRST: usize = 4;
-/// Largest number of voices at a time. It is smaller in a WASM module, whose instances have only
-/// one or two.
+/// Largest number of voices at a time. It is smaller in a WASM module, because an instance of a
+/// module has only one or two voices.
 const MOST: usize = if cfg!(target_family = "wasm") { 1024 } else { 65_536 };
 /// Number of chunks for `MOST` slots.
 const CHUNKS: usize = place(MOST - 1).0 + 1;

@@ -1,9 +1,10 @@
-//! Writes many files at once. As with a single file, each one is written completely or not at all.
-//! The disk is waited for only once per group of files.
+//! Writes many files at once. As with a single file, each file is written completely or not at all.
+//! But the program waits for the disk only once per group of files.
 //!
 //! A flush takes the disk some milliseconds, so two flushes for each file would take minutes for
-//! 100,000 files. Instead, files are written next to their targets, then the file system is flushed
-//! (on Linux; on other systems each file), and then all files are renamed.
+//! 100,000 files. Instead, the program writes all files of a group next to their targets. Then it
+//! flushes the file system (on Linux; on other systems, each file). Then it renames all files to
+//! their targets.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -16,8 +17,8 @@ use crate::files::{Readers, Target, folder, sync_folder, unfinished};
 /// Number of files in a group.
 const GROUP: usize = 32_768;
 
-/// A batch of files that are being written. If it is dropped before [`Self::finish`], the files
-/// that are not yet in their places are removed.
+/// A batch of files that are being written. If it is dropped before [`Self::finish`], it removes
+/// the files that were not yet renamed to their targets.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -36,16 +37,17 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Writes a file. It is in its place after [`Self::finish`], or earlier.
+    /// Writes a file. The file is at `path` after [`Self::finish`], or earlier.
     ///
     /// # Errors
-    /// The errors of [`crate::files::write_file`], and the errors of earlier files if this file
-    /// completes their group.
+    /// The errors of [`crate::files::write_file`]. If this file completes a group, also the errors
+    /// of earlier files of the group.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_to(Target::new(path)?, bytes)
     }
 
-    /// Like [`Self::write`], but a link at `path` is replaced and not followed.
+    /// Writes a file as [`Self::write`] does, but replaces a link at `path` instead of following
+    /// it.
     pub(crate) fn write_in_place_of(
         &mut self,
         path: PathBuf,
@@ -71,10 +73,10 @@ impl Batch {
         if self.written.len() < GROUP { Ok(()) } else { self.keep() }
     }
 
-    /// Moves the files to their places, and flushes this to disk.
+    /// Renames all files to their targets, and flushes the changes to disk.
     ///
     /// # Errors
-    /// Errors of the system. Each file is then either the old one or complete.
+    /// Errors of the system. Each target is then either the old file or the complete new file.
     pub fn finish(mut self) -> io::Result<()> {
         self.keep()
     }

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub struct FileError {
     /// The file or folder.
     pub file: PathBuf,
-    /// Whether the file was being written, not read.
+    /// Whether the program was writing the file. If false, it was reading the file.
     pub is_output: bool,
     pub error: io::Error,
 }
@@ -66,7 +66,7 @@ impl std::error::Error for FileError {
 pub struct ContentError {
     /// The file or folder.
     pub file: PathBuf,
-    /// What is wrong and what to do.
+    /// The problem, and what to do about it.
     pub problem: String,
 }
 
@@ -76,7 +76,7 @@ impl ContentError {
         Self { file: file.as_ref().to_owned(), problem: problem.to_string() }
     }
 
-    /// Adds the file to an error about its content.
+    /// Converts an error about the content of a file to an error that names the file.
     pub fn in_file<E: fmt::Display>(file: impl AsRef<Path>) -> impl FnOnce(E) -> Self {
         move |problem| Self::new(file, problem)
     }
@@ -90,18 +90,18 @@ impl fmt::Display for ContentError {
 
 impl std::error::Error for ContentError {}
 
-/// Adds the name of the file to an error of the system.
+/// Converts an error of the system to an error that names the file.
 pub trait AtFile<T> {
-    /// Says that the file was being read.
+    /// Names the file, and says that the program was reading it.
     ///
     /// # Errors
-    /// The error of the result.
+    /// If the result is an error.
     fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 
-    /// Says that the file was being written.
+    /// Names the file, and says that the program was writing it.
     ///
     /// # Errors
-    /// The error of the result.
+    /// If the result is an error.
     fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError>;
 }
 

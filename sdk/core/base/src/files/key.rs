@@ -1,4 +1,4 @@
-//! Keys that authenticate stored data of this user's programs: compiled modules and fits.
+//! Keys that authenticate the stored data of this user's programs: compiled modules and fits.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -8,8 +8,9 @@ use crate::files::private;
 
 /// A secret key of this user.
 ///
-/// Data that is stored in a folder which others may have filled begins with a keyed hash of its
-/// name and content. Data that this user has not made is not used.
+/// Other users may be able to write to the folder of the stored data. Therefore each stored file
+/// begins with a keyed hash of its name and content. Programs do not use a file whose hash was not
+/// made with this user's key.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -26,8 +27,8 @@ impl Key {
     /// Reads the key with this name in a folder. Creates a random key if there is none.
     ///
     /// # Errors
-    /// If the folder belongs to another user or is writable by others, or the file belongs to
-    /// another user or is not private; and errors of the system.
+    /// If the folder belongs to another user or is writable by others, if the file belongs to
+    /// another user or is not private, or if the system reports an error.
     pub fn load_or_create(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);
@@ -39,7 +40,7 @@ impl Key {
         Ok(Self(key))
     }
 
-    /// Creates a temporary key that ends with this value, for a user without a folder for keys.
+    /// Creates a temporary key for a user without a folder for keys. It exists only in this value.
     ///
     /// # Errors
     /// If the system provides no random numbers.

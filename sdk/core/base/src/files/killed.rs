@@ -1,9 +1,9 @@
-//! Removes unfinished files of killed processes, which could not remove them themselves.
+//! Removes the unfinished files of killed processes. A killed process cannot remove its own files.
 //!
 //! The name of an unfinished file identifies its process: `.htex-MACHINE-PID-RANDOM.part`.
 //! `MACHINE` is a hash that distinguishes this system's process numbers from other systems'
-//! numbers. A folder may be shared with other machines and containers, whose processes cannot be
-//! seen from here. Their files are removed when they are old.
+//! numbers. Other machines and containers may share the folder, and this process cannot see their
+//! processes. So it removes their unfinished files only when these are old.
 
 use std::collections::BTreeSet;
 use std::fs::Metadata;
@@ -14,8 +14,8 @@ use std::time::Duration;
 /// Start and end of the name of an unfinished file.
 pub(crate) const BEGINNING: &str = ".htex-";
 pub(crate) const ENDING: &str = ".part";
-/// A file that has not changed for this long no longer belongs to a running process: even the
-/// longest commands write at least once an hour.
+/// Age from which an unfinished file counts as old. Even the longest commands write at least once
+/// an hour, so a file that has not changed for this long belongs to no running process.
 const OLD: Duration = Duration::from_secs(2 * 24 * 3600);
 
 /// Folders that this process has already searched.
@@ -38,9 +38,9 @@ static MACHINE: LazyLock<String> = LazyLock::new(|| {
     format!("{hash:016x}")
 });
 
-/// Removes unfinished files in a folder if their process has ended or they are old. Only files with
-/// the same owner as `own`, a file of this process in that folder, are removed. Only the first call
-/// for each folder has an effect. A file that cannot be removed is not an error.
+/// Removes unfinished files in a folder if their process has ended or they are old. `own` describes
+/// a file of this process in the same folder; only files with the same owner are removed. Only the
+/// first call for each folder has an effect. A file that cannot be removed is not an error.
 pub(crate) fn remove_from(folder: &Path, own: &Metadata) {
     let mut done = DONE.lock().unwrap_or_else(PoisonError::into_inner);
     // Listing a folder of 100,000 files for every file that is written would take far longer than

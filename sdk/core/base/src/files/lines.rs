@@ -3,8 +3,8 @@
 
 use std::io::{self, BufRead, Read};
 
-/// Returns the lines of an input without their line breaks. A line of more than `most_bytes`, or
-/// one that is not UTF-8, is an error and ends the iteration.
+/// Returns the lines of an input without their line breaks. A line that is longer than `most_bytes`
+/// or is not UTF-8 is an error and ends the iteration.
 ///
 /// ```
 /// let lines: Vec<_> = htex_base::files::bounded_lines(&b"1 2\r\n3 4\n12345678"[..], 5).collect();

@@ -1,17 +1,16 @@
-//! Reads and writes files safely, including files and folders that may come from somebody else.
+//! Reads and writes files safely, including untrusted files and folders.
 //!
-//! - A file that somebody else names is only read if it is a regular file, and only up to a size
-//!   limit ([`read_regular`]).
-//! - A folder that somebody else may have filled is written without following links
-//!   ([`OwnFolder`]).
-//! - Data stored in such a folder is authenticated (`Key`).
-//! - Files are written atomically: a file is written next to its target and then renamed into
-//!   place, so that readers see it either complete or not at all.
+//! - If an untrusted file, such as a recipe, names a file to read, that file must be a regular
+//!   file, and is read only up to a size limit ([`read_regular`]).
+//! - A program that writes to an untrusted folder follows no links in it ([`OwnFolder`]).
+//! - Data that a program stores in such a folder is authenticated (`Key`).
+//! - Files are written atomically: a file is first written next to its target and then renamed to
+//!   it, so that readers see either the old file or the complete new file.
 //!
-//! When a file is written, a symbolic link is followed, and its target is replaced and keeps its
-//! permissions. A device or a pipe is written to directly. A process that is asked to end removes
-//! its unfinished files with [`remove_unfinished`]. Files of a killed process are removed by the
-//! next process that writes to their folder.
+//! If the path of a file to write is a symbolic link, the link's target is replaced, with the
+//! permissions of the old target. A device or a pipe is written to directly. A process that
+//! receives a signal to end removes its unfinished files with [`remove_unfinished`]. The next
+//! process that writes to a folder removes the unfinished files of killed processes in it.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;
@@ -53,8 +52,8 @@ pub use regular::{check_regular_at, open_regular, read_regular, read_regular_tex
 /// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Removes the files that this process is writing. A signal handler calls it before the process
-/// ends. After that, no unfinished file can be completed.
+/// Removes the files that this process is writing. A signal handler calls this function before the
+/// process ends. After the call, no unfinished file can be completed.
 pub fn remove_unfinished() {
     let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     for path in unfinished.iter() {
@@ -68,8 +67,8 @@ fn unfinished<T>(run: impl FnOnce(&mut BTreeSet<PathBuf>) -> T) -> T {
     run(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// A file that is being written. If it is dropped before [`Self::keep`], it is removed. Data that
-/// was written to a pipe or a device cannot be removed.
+/// A file that is being written. If this value is dropped before [`Self::keep`], the file is
+/// removed. Data that was written to a pipe or a device cannot be removed.
 #[derive(Debug)]
 pub struct FileInProgress(Target);
 
@@ -102,7 +101,7 @@ impl Target {
         Self::beside(path, there, Readers::All)
     }
 
-    /// Creates a new file for `path`, whatever is there. A link is replaced and not followed.
+    /// Creates a temporary file for `path`. It will replace a link at `path` and not follow it.
     fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
         let there = path.symlink_metadata().ok();
         if there.as_ref().is_some_and(std::fs::Metadata::is_dir) {
@@ -140,7 +139,7 @@ impl FileInProgress {
         Target::new(path).map(Self)
     }
 
-    /// Creates the temporary file for `path`. A link at that path is replaced and not followed.
+    /// Creates the temporary file for `path`. It will replace a link at `path` and not follow it.
     fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
         Target::in_place_of(path, readable_by).map(Self)
     }
@@ -153,8 +152,8 @@ impl FileInProgress {
         }
     }
 
-    /// Flushes the file to disk and renames it to its target. A reader sees the old file or the new
-    /// one, never a part, even after a crash.
+    /// Flushes the file to disk and renames it to its target. A reader sees either the old file or
+    /// the complete new file, even after a crash.
     ///
     /// # Errors
     /// Errors of the system. The target is then unchanged.
@@ -185,13 +184,14 @@ impl Drop for FileInProgress {
 }
 
 /// A temporary file for data that does not fit into memory while another file is written. It is
-/// removed when it is dropped.
+/// removed when this value is dropped.
 #[derive(Debug)]
 pub struct Scratch(NamedTempFile);
 
 impl Scratch {
-    /// Creates a file next to `path`, where there is as much space as for the result. If `path` is
-    /// a pipe or a device, the file is created in the system's folder for temporary files.
+    /// Creates a file next to `path`, on the file system that must also have space for the result.
+    /// If `path` is a pipe or a device, the file is created in the system's folder for temporary
+    /// files.
     ///
     /// # Errors
     /// If the folder does not exist, or the system reports an error.
@@ -219,7 +219,8 @@ impl Drop for Scratch {
     }
 }
 
-/// Writes a file atomically: next to `path`, then renamed to `path` if `write` succeeds.
+/// Writes a file atomically: `write` writes to a temporary file next to `path`. If it succeeds, the
+/// temporary file is renamed to `path`.
 ///
 /// # Errors
 /// Errors of `write` and of the system. `path` is then unchanged.
@@ -232,7 +233,7 @@ pub fn replace_file(
     unfinished.keep()
 }
 
-/// Writes bytes to a file atomically, like [`replace_file`].
+/// Writes bytes to a file atomically, as [`replace_file`] does.
 ///
 /// # Errors
 /// The errors of [`replace_file`].
@@ -258,7 +259,7 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Who may read a new file.
+/// The users who may read a new file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Readers {
     /// Everyone, except where the process's umask forbids it.
@@ -267,9 +268,9 @@ pub(crate) enum Readers {
     User,
 }
 
-/// Returns a builder of temporary files. For all readers, they get the permissions of an ordinary
-/// file: readable and writable by all, limited by the process's umask. Otherwise they get the
-/// permissions that the library sets, which only include this user.
+/// Returns a builder of temporary files. With [`Readers::All`], they get the permissions of an
+/// ordinary file: readable and writable by all, limited by the process's umask. With
+/// [`Readers::User`], only this user may read and write them.
 fn builder(readable_by: Readers) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(&killed::OWN[..]).suffix(killed::ENDING);

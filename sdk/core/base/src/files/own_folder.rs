@@ -1,13 +1,14 @@
-//! A folder that a program fills but that may come from somebody else, such as the results of an
-//! earlier build that were unpacked from an archive.
+//! A folder in which a program writes and removes files, although somebody else may have made the
+//! folder. An example is the result of an earlier build that was unpacked from an archive.
 //!
-//! Whoever made it may have put links where the program writes and removes. So no link below the
-//! folder itself is followed; only the folder itself, which the user names, may be a link. Inside,
-//! a link is an error, and a file is written under a new name and renamed. Removing applies to an
-//! entry, never to the target of a link.
+//! Such a folder may contain links at the places where the program writes and removes files. So no
+//! link inside the folder is followed. Only the folder itself may be a link, because the user names
+//! it. To write a file, the program writes it under a new name and renames it, which replaces a
+//! link of that name. To remove an entry, the program removes the entry itself, never the target of
+//! a link. Any other use of a link inside the folder is an error.
 //!
-//! The checks are made before each access. They protect against what is in the folder, but not
-//! against a process that changes it at the same time.
+//! The checks run before each access. They protect against links that are already in the folder,
+//! but not against a process that changes the folder at the same time.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
@@ -31,19 +32,19 @@ pub struct OwnFolder {
 }
 
 impl OwnFolder {
-    /// Uses the folder at this path. It may itself be a link, because the user named it.
+    /// Uses the folder at this path. The path may be a link, because the user named it.
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::All }
     }
 
-    /// Like [`Self::new`], but only this user may read the folders and files that are created in
-    /// it, and the folder itself if it is created.
+    /// Uses the folder at this path, as [`Self::new`] does. But only this user may read the folders
+    /// and files that are created in it, and the folder itself if it is created.
     pub fn private(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), readable_by: Readers::User }
     }
 
-    /// Returns the folder of a file that the user named, and the file's name in it. Commands use it
-    /// for files that they write next to the named file.
+    /// Returns the folder of a file that the user named, and the file's name in the folder.
+    /// Commands use it for files that they write next to the named file.
     ///
     /// # Errors
     /// If the path does not end in a name.
@@ -58,8 +59,8 @@ impl OwnFolder {
         &self.folder
     }
 
-    /// Checks that nothing above an entry is a link, and returns the entry's path. An empty path
-    /// stands for the folder itself.
+    /// Checks that no folder above an entry, inside this folder, is a link. Returns the entry's
+    /// path. An empty path stands for the folder itself.
     ///
     /// # Errors
     /// If a part above the entry is a link or not a folder, or the path leads out of the folder.
@@ -79,11 +80,11 @@ impl OwnFolder {
         Ok(path)
     }
 
-    /// Creates a folder and the folders above it. An existing folder is left as it is.
+    /// Creates a folder and the missing folders above it. Does not change an existing folder.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], errors for a link or something that is not a folder, and errors
-    /// of the system.
+    /// The errors of [`Self::entry_path`], an error if the entry is not a folder or is a link, and
+    /// errors of the system.
     pub fn make_folder(&self, inside: &Path) -> io::Result<PathBuf> {
         self.make_itself()?;
         let mut folders: Vec<&Path> = inside.ancestors().collect();
@@ -103,8 +104,8 @@ impl OwnFolder {
     /// Opens a regular file for reading.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], errors for a link or something that is not a regular file, and
-    /// errors of the system.
+    /// The errors of [`Self::entry_path`], an error if the entry is not a regular file or is a
+    /// link, and errors of the system.
     pub fn open(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true))
     }
@@ -117,11 +118,12 @@ impl OwnFolder {
         self.open_with(inside, OpenOptions::new().read(true).append(true))
     }
 
-    /// Creates a file for writing in place. It must not exist yet. The folders above it are
-    /// created. Most files should be written with [`Self::replace`] instead.
+    /// Creates a file and opens it for writing. The file must not exist yet. Creates missing
+    /// folders above the file. For most files, use [`Self::replace`] instead, which is atomic.
     ///
     /// # Errors
-    /// The errors of [`Self::make_folder`], and an error if something is already in its place.
+    /// The errors of [`Self::make_folder`], and an error if the file, or anything else of this
+    /// name, exists.
     pub fn create(&self, inside: &Path) -> io::Result<File> {
         let path = self.entry(inside)?;
         let mut options = OpenOptions::new();
@@ -132,12 +134,12 @@ impl OwnFolder {
         options.write(true).create_new(true).open(path)
     }
 
-    /// Writes a file atomically: a new file next to it is flushed to disk and renamed into place. A
-    /// link in its place is replaced. The folders above it are created.
+    /// Writes a file atomically: writes a new file next to it, flushes that file to disk and
+    /// renames it. Replaces a link of the same name. Creates missing folders above the file.
     ///
     /// # Errors
     /// Errors of `write` and of the system, the errors of [`Self::make_folder`], and an error if a
-    /// folder is in its place. The previous file then stays.
+    /// folder has this name. The previous file then does not change.
     pub fn replace(
         &self,
         inside: &Path,
@@ -149,7 +151,7 @@ impl OwnFolder {
         unfinished.keep()
     }
 
-    /// Writes a file like [`Self::replace`], together with other files. It is in its place after
+    /// Writes a file as [`Self::replace`] does, but as part of a batch. The file has its name after
     /// [`Batch::finish`].
     ///
     /// # Errors
@@ -158,12 +160,12 @@ impl OwnFolder {
         batch.write_in_place_of(self.entry(inside)?, self.readable_by, bytes)
     }
 
-    /// Returns the path of a file for a writer that can only use paths, such as a device. The
-    /// folders above it are created.
+    /// Returns the path of a file for a writer that needs a path, such as a device. Creates missing
+    /// folders above the file.
     ///
     /// # Errors
-    /// The errors of [`Self::make_folder`], and an error if a link, or anything but a regular file,
-    /// is in its place.
+    /// The errors of [`Self::make_folder`], and an error if a link, or anything except a regular
+    /// file, has this name.
     pub fn path_to_write(&self, inside: &Path) -> io::Result<PathBuf> {
         let path = self.entry(inside)?;
         refuse_link(&path)?;
@@ -183,11 +185,11 @@ impl OwnFolder {
         read_regular(&path, most_bytes)
     }
 
-    /// Opens a file for writing in order to lock it. An existing file keeps its contents.
+    /// Opens a lock file: creates it, or opens an existing file without changing its contents.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], errors for a link or something that is not a regular file, and
-    /// errors of the system.
+    /// The errors of [`Self::entry_path`], an error if the entry is not a regular file or is a
+    /// link, and errors of the system.
     pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
         let mut options = OpenOptions::new();
         self.open_with(inside, options.write(true).create(true).truncate(false))
@@ -204,11 +206,11 @@ impl OwnFolder {
         options.open(&path)
     }
 
-    /// Writes a new file in the same folder and renames it into place. The folders above it are
-    /// created. It is not flushed to disk.
+    /// Writes a new file in the same folder and renames it. Creates missing folders above the file.
+    /// Does not flush the file to disk.
     ///
     /// # Errors
-    /// The errors of [`Self::make_folder`], an error if a folder is in its place, and errors of the
+    /// The errors of [`Self::make_folder`], an error if a folder has this name, and errors of the
     /// system.
     pub fn write(&self, inside: &Path, bytes: &[u8]) -> io::Result<()> {
         let mut part = inside.as_os_str().to_owned();
@@ -216,8 +218,8 @@ impl OwnFolder {
         self.write_by(Path::new(&part), inside, bytes)
     }
 
-    /// Like [`Self::write`], but the new file is first written to `part`, which may be anywhere in
-    /// this folder.
+    /// Writes a file as [`Self::write`] does, but first under the name `part`, which may be
+    /// anywhere in this folder.
     ///
     /// # Errors
     /// The errors of [`Self::write`].
@@ -233,7 +235,7 @@ impl OwnFolder {
         written
     }
 
-    /// Renames a file inside this folder. The folders above the new path are created.
+    /// Renames a file inside this folder. Creates missing folders above the new path.
     ///
     /// # Errors
     /// The errors of [`Self::write`].
@@ -242,8 +244,8 @@ impl OwnFolder {
         fs::rename(from, self.entry(to)?)
     }
 
-    /// Removes a file or a link, and then the folders above it that are empty. A missing file is
-    /// not an error.
+    /// Removes a file or a link, and then the folders above it that have become empty. A missing
+    /// file is not an error.
     ///
     /// # Errors
     /// The errors of [`Self::entry_path`], an error for a folder, and errors of the system.
@@ -266,8 +268,8 @@ impl OwnFolder {
         Ok(())
     }
 
-    /// Returns the names of the regular files in a folder, sorted by name; none if the folder is
-    /// missing.
+    /// Returns the names of the regular files in a folder, sorted by name. Returns an empty list if
+    /// the folder is missing.
     ///
     /// # Errors
     /// The errors of [`Self::entry_path`], an error for a link, and errors of the system.
@@ -295,8 +297,8 @@ impl OwnFolder {
     /// folder is not an error.
     ///
     /// # Errors
-    /// The errors of [`Self::entry_path`], errors for a link or something that is not a folder, and errors
-    /// of the system.
+    /// The errors of [`Self::entry_path`], an error if the entry is not a folder or is a link, and
+    /// errors of the system.
     pub fn remove_folder(&self, inside: &Path) -> io::Result<()> {
         let path = match self.entry_path(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -331,7 +333,8 @@ impl OwnFolder {
         self.entry_path(inside)
     }
 
-    /// Creates a file for writing. First removes what a killed process left under its name.
+    /// Creates a file for writing. If a killed process left a file of this name, removes that file
+    /// first.
     fn create_new(&self, path: &Path) -> io::Result<File> {
         let mut options = OpenOptions::new();
         options.write(true).create_new(true);

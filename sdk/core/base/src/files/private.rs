@@ -15,8 +15,8 @@ pub fn folder(path: &Path) -> io::Result<()> {
     check(&File::open(path)?.metadata()?, 0o022)
 }
 
-/// Creates a folder for this user only, and the folders above it. An existing folder is left as it
-/// is.
+/// Creates a folder for this user only, and the missing folders above it. Does not change an
+/// existing folder.
 ///
 /// # Errors
 /// Errors of the system.
@@ -31,7 +31,7 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
 /// Creates a folder for this user only.
 ///
 /// # Errors
-/// Errors of the system, including an error if something is already in its place.
+/// Errors of the system, including an error if a file or folder of this name exists.
 pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
     #[cfg_attr(not(unix), allow(unused_mut))] // Only Unix has modes.
     let mut builder = DirBuilder::new();
@@ -40,7 +40,7 @@ pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
-/// Removes all permissions that others have for a folder of this user.
+/// Removes all permissions that other users have for a folder of this user.
 ///
 /// # Errors
 /// Errors of the system.
@@ -59,7 +59,7 @@ pub fn close(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes created files readable and writable only by this user.
+/// Sets options so that only this user can read and write a file that is created with them.
 pub fn only_user(options: &mut std::fs::OpenOptions) -> &mut std::fs::OpenOptions {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(options, 0o600);

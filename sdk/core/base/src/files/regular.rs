@@ -1,9 +1,10 @@
-//! Reads files that somebody else names, for example in a recipe, a table, a scene, or the JSON
-//! next to a recording.
+//! Reads files that untrusted files name, for example a recipe, a table, a scene, or the JSON next
+//! to a recording.
 //!
 //! Such a name may lead to a pipe that never ends, to a device, or to a file that fills the memory.
-//! All such files are read here: only regular files, and only up to a size limit. A file that the
-//! user names as an argument may be a pipe, and is opened by its own reader.
+//! Programs read all such files with this module. It reads only regular files, and only up to a
+//! size limit. A file that the user names as an argument may be a pipe, so programs do not open it
+//! with this module.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
@@ -27,7 +28,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 /// Checks that a path leads to a regular file.
 ///
 /// # Errors
-/// The errors of [`open_regular`], as far as they are known without opening the file.
+/// The errors of [`open_regular`] that can be detected without opening the file.
 pub fn check_regular_at(path: &Path) -> io::Result<()> {
     check_regular(&path.metadata()?)
 }
@@ -35,7 +36,7 @@ pub fn check_regular_at(path: &Path) -> io::Result<()> {
 /// Reads a regular file of at most `most_bytes`.
 ///
 /// # Errors
-/// The errors of [`open_regular`], and an error if the file is larger; the rest is then not read.
+/// The errors of [`open_regular`], and an error if the file is larger.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -61,7 +62,7 @@ pub fn read_regular(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > most_bytes { Err(too_long()) } else { Ok(bytes) }
 }
 
-/// Reads a regular file of UTF-8 text, like [`read_regular`].
+/// Reads a regular file of UTF-8 text, as [`read_regular`] does.
 ///
 /// # Errors
 /// The errors of [`read_regular`], and an error if the file is not UTF-8.

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-/// Returns text for a table cell. If a spreadsheet would treat it as a formula, which may open an
-/// address or run a program, it gets an apostrophe in front, which marks it as text.
+/// Returns text for a table cell. If a spreadsheet would treat the text as a formula, this function
+/// adds an apostrophe at the start, which marks it as text. A formula could open an address or run
+/// a program.
 ///
 /// ```
 /// assert_eq!(htex_base::finding::as_text("=HYPERLINK(1)"), "'=HYPERLINK(1)");

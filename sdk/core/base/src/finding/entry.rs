@@ -19,9 +19,9 @@ use crate::finding::{Hint, Rule, plain};
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// The asset cannot be used.
+    /// The file cannot be used.
     Error,
-    /// The asset can be used, but probably contains a mistake.
+    /// The file can be used, but probably contains a mistake.
     Warning,
     /// Information that needs no action.
     Info,
@@ -41,17 +41,19 @@ pub struct Finding {
     pub code: String,
     /// Severity.
     pub severity: Severity,
-    /// JSON pointer into the manifest; empty for the whole file.
+    /// JSON pointer into the document, e.g. the manifest of an asset. It is empty if the finding
+    /// concerns the whole file.
     #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
     pub pointer: String,
-    /// What is wrong, where, and what to do.
+    /// The problem, its place, and what to do about it.
     pub message: String,
-    /// The JSON Schema keyword that the document breaks: the schema's file, `#`, and a JSON pointer
-    /// into it. Only validators that check documents against schemas set it.
+    /// The JSON Schema keyword that the document breaks: the name of the schema's file, `#`, and a
+    /// JSON pointer into the schema. Only validators that check documents against JSON Schemas set
+    /// this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,
-    /// The settings that would help. A finding that is read from JSON has none.
+    /// The settings that would fix the problem. A finding that is read from JSON has no hint.
     #[serde(skip)]
     pub hint: Hint,
 }

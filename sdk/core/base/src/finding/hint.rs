@@ -5,9 +5,9 @@ use std::ops::Deref;
 
 use serde::{Serialize, Serializer};
 
-/// The settings that would fix a problem. They are named as in flags, recipes and keywords: `map`,
-/// `most_numbers`, or with a value, `segments windows`. Messages describe a setting in words, so
-/// that each program can add its own name for it.
+/// The settings that would fix a problem. A hint names each setting as flags, recipes and keyword
+/// arguments do, e.g. `map` or `most_numbers`, or with a value, e.g. `segments windows`. Messages
+/// describe a setting in words. Each program can therefore add its own name for the setting.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hint(&'static [&'static str]);
 
@@ -24,15 +24,15 @@ impl Hint {
         self.0
     }
 
-    /// Returns this hint, or `other` if no setting helps here.
+    /// Returns this hint, or `other` if this hint has no settings.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         if self.0.is_empty() { other } else { self }
     }
 }
 
-/// A warning or a note: a sentence, and the settings that would help. Only the sentence is
-/// serialized.
+/// A warning or a note: a sentence, and a hint with the settings that would help. Serialization
+/// writes only the sentence.
 ///
 /// ```
 /// use htex_base::finding::{Hint, Notice};

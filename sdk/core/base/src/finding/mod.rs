@@ -1,5 +1,6 @@
-//! Results of validation: rules with stable codes, findings, reports and hints. Each kind of file
-//! has a table of rules in its own crate; this crate does not know any kind of file.
+//! Results of validation: rules with stable codes, findings, reports and hints. The crate that
+//! reads a kind of file contains the table of its rules. This crate has no rules for particular
+//! files.
 //!
 //! ```
 //! use htex_base::finding::{Findings, Severity};

@@ -4,7 +4,8 @@ use std::fmt::{Arguments, Write};
 
 use crate::finding::Rule;
 
-/// Generates a page of rules: `head`, a table of all codes, then each rule.
+/// Generates a page of rules: first `head`, then a table of all codes, then the description of each
+/// rule.
 pub fn rules_page(head: &str, rules: &[Rule]) -> String {
     let mut page = format!("{head}\n| code | severity | what was found |\n|---|---|---|\n");
     for rule in rules {

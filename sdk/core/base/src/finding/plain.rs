@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 /// Escapes control characters and invisible formatting characters (direction marks, zero-width
-/// characters, tags, other line ends) as `\u{1b}`. A message that quotes a file must neither
-/// control the terminal nor show text that is not in the file.
+/// characters, tags, other line ends) as `\u{1b}`. A message that quotes a file must not control
+/// the terminal, and must not appear to show text that is not in the file.
 ///
 /// ```
 /// assert_eq!(htex_base::finding::plain("a\tb\x1b[2J"), r"a\tb\u{1b}[2J");
@@ -20,8 +20,8 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-/// Returns whether [`plain`] escapes a character: a control character, or an invisible one that
-/// changes the text around it.
+/// Returns whether [`plain`] escapes a character: a control character, or an invisible character
+/// that changes the text around it.
 pub fn steers(c: char) -> bool {
     // All of Unicode's format characters (Cf) except the visible ones, and the plane with tags and
     // selectors.

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// A place in a document, stored as a chain up to its root. It is only formatted as a pointer when
-/// needed.
+/// A place in a JSON document. Each place refers to the place that contains it, up to the root.
+/// [`Self::pointer`] formats it as a JSON pointer.
 ///
 /// ```
 /// use htex_base::finding::Place;

@@ -10,26 +10,26 @@ use crate::finding::{FINDINGS_TRUNCATED, Finding, Notice, Rule, Severity};
 /// Largest number of findings in a report. A hostile file could cause millions.
 const KEPT: usize = 100;
 
-/// The result of validation.
+/// The result of a validation: whether the file is valid, and the findings.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
-    /// Whether the asset can be used: no finding is an error.
+    /// Whether the file can be used. This is the case if no finding is an error.
     pub valid: bool,
     /// All findings, in the order in which the file is read.
     pub findings: Vec<Finding>,
 }
 
-/// The result of validating a file, in the form that the command and the conformance reports write
-/// as JSON. Its schema is `spec/schemas/report-1.json`.
+/// The result of validating a file, in the JSON form that `htex validate` and the conformance
+/// reports write. Its schema is `spec/schemas/report-1.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FileReport {
-    /// The file.
+    /// Name of the file.
     pub file: String,
-    /// Whether the file can be used: no finding is an error.
+    /// Whether the file can be used. This is the case if no finding is an error.
     pub valid: bool,
-    /// All findings, in the order of the stages.
+    /// All findings, in the order in which the file is read.
     pub findings: Vec<Finding>,
-    /// Limits that differ from the defaults, by name.
+    /// The limits for reading that differ from their defaults: the name and the value of each.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub limits: BTreeMap<String, u64>,
 }
@@ -84,7 +84,7 @@ impl Findings {
         }
     }
 
-    /// Adds the finding unless `holds`. The pointer and the message are only formatted in that
+    /// Adds the finding if `holds` is false. The pointer and the message are formatted only in this
     /// case.
     pub fn require(
         &mut self,

@@ -9,16 +9,17 @@ pub struct Rule {
     pub code: &'static str,
     /// Severity of a finding for this rule.
     pub severity: Severity,
-    /// The stages of reading in which it is applied, if reading the file has stages.
+    /// The stages of reading in which the rule is applied. Empty if this kind of file is not read
+    /// in stages.
     pub stages: &'static [Stage],
     pub hint: Hint,
-    /// The setting that turns the rule on; without it, the rule is not applied.
+    /// The setting that turns the rule on. A rule with no such setting is always applied.
     pub checked_by: Hint,
-    /// What was found, in one line.
+    /// The problem, in one line.
     pub summary: &'static str,
-    /// Why it matters.
+    /// Why the problem matters.
     pub explanation: &'static str,
-    /// How to correct it.
+    /// How to correct the problem.
     pub fix: &'static str,
 }
 
@@ -31,7 +32,7 @@ pub struct Stage {
     pub ends: bool,
 }
 
-/// The stage that counts the findings after the first hundred.
+/// The stage that adds the number of findings after the first hundred.
 pub const COUNT: Stage =
     Stage { of: "the count of findings beyond the first hundred", ends: false };
 
@@ -48,9 +49,9 @@ pub const FINDINGS_TRUNCATED: &Rule = &Rule {
 };
 
 /// Defines a table of rules: a constant for each rule, and `RULES` with all of them in order. Three
-/// optional parts can follow the severity: the stages in `[]`, the settings that help in `()`, and
-/// after `by` the setting that turns the rule on. A last line `+ RULE;` adds a rule that is defined
-/// elsewhere.
+/// optional parts can follow the severity: in `[]` the stages, in `()` the settings that would fix
+/// the problem, and after `by` the setting that turns the rule on. A last line `+ RULE;` adds a
+/// rule that is defined elsewhere.
 ///
 /// ```
 /// htex_base::finding::rule_table! {

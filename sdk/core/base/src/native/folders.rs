@@ -4,14 +4,14 @@ use std::env::{consts::DLL_EXTENSION, split_paths, var_os};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder for cached files: `$HTEX_CACHE_DIR`, or else `htex` in the user's cache
-/// folder.
+/// Returns the folder for cached files: `$HTEX_CACHE_DIR`, or `htex` in the user's cache folder if
+/// the variable is not set.
 pub fn cache() -> Option<PathBuf> {
     absolute("HTEX_CACHE_DIR").or_else(|| Some(base("XDG_CACHE_HOME", ".cache")?.join("htex")))
 }
 
-/// Returns the folder for settings: `$HTEX_CONFIG_DIR`, or else `htex` in the user's configuration
-/// folder.
+/// Returns the folder for settings: `$HTEX_CONFIG_DIR`, or `htex` in the user's configuration
+/// folder if the variable is not set.
 pub fn config() -> Option<PathBuf> {
     absolute("HTEX_CONFIG_DIR").or_else(|| Some(base("XDG_CONFIG_HOME", ".config")?.join("htex")))
 }
@@ -26,8 +26,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the environment variables that contain a relative path, with the path. The other
-/// functions of this module ignore such variables.
+/// Returns the environment variables for folders whose value is a relative path, and these paths.
+/// The other functions of this module ignore such variables.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);
@@ -44,7 +44,8 @@ pub fn data(folder: &str) -> Option<PathBuf> {
     data.exists().then_some(data)
 }
 
-/// Returns the folders in an environment variable, which are separated as in `PATH`.
+/// Returns the folders in an environment variable, whose value lists folders in the same way as
+/// `PATH`.
 pub fn listed(variable: &str) -> Vec<PathBuf> {
     let value = var_os(variable).unwrap_or_default();
     let folders = split_paths(&value).filter(|dir| !dir.as_os_str().is_empty());
@@ -69,8 +70,9 @@ pub fn libraries_in(dir: &Path, other: Option<&str>) -> io::Result<Vec<PathBuf>>
     Ok(files)
 }
 
-/// Returns a folder of the XDG base directory specification: the value of the variable, or else a
-/// folder in the home folder. On Windows, returns the folder of local application data.
+/// Returns a folder of the XDG base directory specification: the value of the variable, or a folder
+/// in the home folder if the variable is not set. On Windows, returns the folder of local
+/// application data.
 fn base(variable: &str, in_home: &str) -> Option<PathBuf> {
     let home = || absolute("HOME").map(|home| home.join(in_home));
     let windows = || absolute("LOCALAPPDATA").filter(|_| cfg!(windows));

@@ -3,9 +3,9 @@
 //!
 //! A library is never unloaded, because function pointers, open devices and voices point into it.
 //!
-//! Apart from tests, this crate is the only place that loads libraries. A bare name is a file in
-//! the current folder, as it is for every other argument. The system's loader is asked only for the
-//! names of NI-DAQmx, and for a `driver` that is not a file.
+//! Apart from tests, only this crate loads libraries. A name without a folder means a file in the
+//! current folder, as for every other argument. The system's loader searches only for the library
+//! of NI-DAQmx, and for a `driver` that is not a file.
 
 pub mod folders;
 
@@ -24,7 +24,7 @@ pub struct LoadError(String);
 #[derive(Debug, Clone, Copy)]
 pub struct Library(&'static Loaded);
 
-/// The places where a bare name was searched for.
+/// The places in which the system's loader searched for a name, for messages.
 const SEARCHED: &str = if cfg!(windows) {
     "; the current folder has no such file, and the system finds none in its folders or in the folders of PATH"
 } else {
@@ -41,8 +41,8 @@ use libloading::Library as Loaded;
 enum Loaded {}
 
 impl Library {
-    /// Loads the library in a file. A relative path, including a bare file name, starts at the
-    /// current folder. The search path of the loader is not used.
+    /// Loads the library in a file. A relative path, including a file name alone, is relative to
+    /// the current folder. The loader's search path is not used.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
@@ -69,8 +69,9 @@ impl Library {
         unsafe { load(OsStr::new(name)) }
     }
 
-    /// Loads the library that a setting names: a path, or a bare name. A bare name is a file in the
-    /// current folder or, if no such file exists, a library of the system.
+    /// Loads the library that a setting names: a path, or a name without a folder. Such a name
+    /// means a file in the current folder or, if there is no such file, the library that the
+    /// system's loader finds by this name.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
@@ -95,7 +96,7 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// If the loader finds none; says for each of them why.
+    /// If the loader finds none of them. The message gives the reason for each.
     pub unsafe fn installed(names: &[&str]) -> Result<Self, LoadError> {
         let mut reasons = Vec::new();
         for name in names {
@@ -119,8 +120,7 @@ impl Library {
     }
 }
 
-/// Gets functions that a library must have. `missing` makes the error for a function that is
-/// missing.
+/// Looks up functions that a library must have. `missing` makes the error for a missing function.
 pub struct Symbols<'a, E> {
     pub library: Library,
     pub missing: &'a dyn Fn(&'static str) -> E,
@@ -140,10 +140,11 @@ impl<E> Symbols<'_, E> {
     }
 }
 
-/// Makes a table of a library's functions from [`Symbols`], or of a module's from anything with a
-/// method `get`. The name of each function is the prefix followed by the name of the field. Unsafe
-/// for a library, because each symbol must have the type of its field. An error returns from the
-/// function that uses the macro. Fields that are no functions follow after a semicolon.
+/// Makes a table of functions: of a library, with [`Symbols`], or of a module, with any value that
+/// has a method `get`. The name of each function is the prefix followed by the name of the field.
+/// For a library the macro is unsafe, because each symbol must have the type of its field. If a
+/// function is missing, the function that uses the macro returns the error. Fields that are not
+/// functions follow after a semicolon.
 #[macro_export]
 macro_rules! table_of_symbols {
     ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)* $(; $other:ident: $value:expr)*) => {

@@ -1,12 +1,13 @@
-//! Validation of documents against JSON Schemas. Nothing is downloaded: a `$ref` must refer to the
-//! schema itself.
+//! Validates documents against JSON Schemas. It downloads nothing: a `$ref` must refer to a part of
+//! the same schema.
 
 use std::error::Error;
 
 use jsonschema::{Retrieve, Uri, Validator};
 use serde_json::Value;
 
-/// Largest number of violations that are reported. A hostile document could have millions of them.
+/// Largest number of violations that are reported. A hostile document could have millions of
+/// violations.
 const MOST: usize = 1000;
 
 /// A compiled JSON Schema.

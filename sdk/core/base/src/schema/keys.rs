@@ -1,15 +1,16 @@
-//! Unknown keys: keys that a document has, but its schema does not.
+//! Finds unknown keys: keys of a document that its schema does not contain.
 
 use schemars::JsonSchema;
 use serde_json::{Map, Value};
 
-/// Jaro–Winkler similarity above which an unknown key is taken for a misspelt known key.
+/// Jaro–Winkler similarity above which an unknown key counts as a misspelt known key.
 const SIMILAR: f64 = 0.8;
 
-/// A key of a document that the schema does not have.
+/// A key of a document that the schema does not contain.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownKey {
-    /// The keys and indices on the way from the document to this key, and the key itself.
+    /// The path from the root of the document to the key: keys and indices, and the key itself at
+    /// the end.
     pub path: Vec<String>,
     /// The most similar known key, if one is similar enough.
     pub nearest: Option<String>,
@@ -35,10 +36,10 @@ fn place(path: &[String]) -> String {
     })
 }
 
-/// Refuses a document with keys that a `T` does not have.
+/// Refuses a document with keys that the schema of `T` does not contain.
 ///
 /// # Errors
-/// One sentence for each of these keys.
+/// If the document has such keys. The text has one sentence for each.
 pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
     let schema = crate::schema::crossing::<T>("", "");
     let unknown = unknown_keys(&schema, document);
@@ -46,8 +47,8 @@ pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
     if sentences.is_empty() { Ok(()) } else { Err(sentences.join("\n")) }
 }
 
-/// Returns the keys of a document that its schema refuses (`additionalProperties: false`). Of
-/// several alternatives, those for the type of the value apply.
+/// Returns the keys of a document that its schema refuses (`additionalProperties: false`). If the
+/// schema has alternatives for a value, the alternative for the value's type applies.
 ///
 /// ```
 /// #[derive(schemars::JsonSchema)]
@@ -117,7 +118,8 @@ impl<'a> Walk<'a> {
         });
     }
 
-    /// Returns the schema itself, or, if it has alternatives, the one for the type of the value.
+    /// Returns the schema itself or, if it has alternatives, the alternative for the type of the
+    /// value.
     fn of_type(&self, schema: &'a Value, value: &Value) -> Option<&'a Value> {
         let reference = schema.get("$ref").and_then(Value::as_str);
         if let Some(pointer) = reference.and_then(|to| to.strip_prefix('#')) {

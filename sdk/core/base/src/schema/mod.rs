@@ -34,7 +34,7 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema as Made, SchemaGenerator};
 use serde_json::{Value, json};
 
-/// Prefix of the schemas' ids. Nothing is downloaded from there.
+/// Prefix of the schemas' ids. Programs never download anything from this address.
 const BASE: &str = "https://htex.org/schemas/";
 
 /// The characters with Unicode's property `White_Space`, for use in the brackets of a pattern.
@@ -49,15 +49,16 @@ macro_rules! white_space {
 /// Pattern for a text that contains a character other than white space.
 pub const NOT_BLANK: &str = concat!("[^", white_space!(), "]");
 
-/// Returns the schema of a document. Unknown values are absent from the document, never `null`.
-/// `file` is the schema's name in `spec/schemas`.
+/// Returns the schema of a document. In such a document, a missing value has no key; its key never
+/// has the value `null`. `file` is the file name of the schema in `spec/schemas`.
 pub fn document<T: JsonSchema>(file: &str, title: &str) -> Value {
     let mut schema = made::<T>(file, title);
     without_null(&mut schema);
     schema.to_value()
 }
 
-/// Returns the schema of JSON that crosses an ABI. There `null` stands for an absent value.
+/// Returns the schema of JSON that is passed through an ABI. In such JSON, `null` stands for a
+/// missing value.
 pub fn crossing<T: JsonSchema>(file: &str, title: &str) -> Value {
     made::<T>(file, title).to_value()
 }
@@ -71,7 +72,8 @@ fn made<T: JsonSchema>(file: &str, title: &str) -> Made {
     schema
 }
 
-/// Removes Rust examples from descriptions, which are doc comments.
+/// Removes Rust examples from the descriptions in a schema. These descriptions are the doc comments
+/// of the Rust types.
 fn without_examples(schema: &mut Made) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         while let Some((before, code)) = text.split_once("```") {
@@ -82,7 +84,7 @@ fn without_examples(schema: &mut Made) {
     transform_subschemas(&mut (without_examples as fn(&mut Made)), schema);
 }
 
-/// Largest integer up to which every integer is exact in binary64. Documents contain no larger one.
+/// Largest integer in documents: up to it, binary64 represents every integer exactly.
 const EXACT: i64 = 1 << 53;
 
 /// Removes formats such as `double` and `uint64`, which the standard does not define. Formats of
@@ -115,7 +117,7 @@ fn remove_null(value: &mut Value) {
     }
 }
 
-/// Removes `null` where it is an alternative to another type.
+/// Removes the type `null` where it is an alternative to another type.
 fn without_null(schema: &mut Made) {
     transform_subschemas(&mut (without_null as fn(&mut Made)), schema);
     if let Some(Value::Array(types)) = schema.get_mut("type") {

@@ -8,12 +8,13 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {problem}")]
 pub struct StorageError {
-    /// The URI without secrets, a path, or the variable with a wrong value.
+    /// Where the problem is: the URI without secrets, a path, or the name of a variable whose value
+    /// is wrong.
     pub place: String,
     pub problem: StorageProblem,
 }
 
-/// What is wrong with a file.
+/// The problem with a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StorageProblem {
@@ -29,18 +30,18 @@ pub enum StorageProblem {
     /// There is no such file.
     #[error("there is no such file; check the bucket and the key")]
     Missing,
-    /// The server refused the credentials, or requires some.
+    /// The server refused the credentials, or requires credentials.
     #[error("the server refuses access ({what}); {advice}")]
     Denied {
         /// The status and the server's code.
         what: String,
-        /// What to do, with the names of variables.
+        /// What to do. It contains the names of environment variables.
         advice: String,
     },
-    /// The environment's settings are not sufficient.
+    /// The settings in environment variables are not sufficient.
     #[error("{problem}")]
     Settings {
-        /// What is missing, with the names of variables.
+        /// What is missing. It contains the names of environment variables.
         problem: String,
     },
     /// The file was replaced while it was read.
@@ -53,7 +54,7 @@ pub enum StorageProblem {
     #[error("bytes {offset} to {end} were asked for, and it has {len}")]
     Range {
         offset: u64,
-        /// One after the last byte.
+        /// End of the range: the offset of the last byte plus 1.
         end: u64,
         /// The size of the file.
         len: u64,
@@ -61,7 +62,7 @@ pub enum StorageProblem {
     /// The server cannot send parts of files.
     #[error("the server sends whole files only; download it and name the copy")]
     NoRanges,
-    /// Files by HTTP cannot be written.
+    /// The file is on a web server, so it cannot be written.
     #[error("files by HTTP are only read; write to s3://, gs://, az:// or a local file")]
     ReadOnly,
     /// The store cannot list its files.
@@ -81,7 +82,7 @@ pub enum StorageProblem {
     #[error("not done within {limit_s} s ({what}); set HTEX_STORAGE_TIMEOUT_S to wait longer")]
     TooSlow {
         limit_s: f64,
-        /// How far it came, or the last failure.
+        /// The progress of the operation, or the last failure.
         what: String,
     },
     /// Any other refusal, by the server or by a server to which it redirects.

@@ -19,9 +19,9 @@ const MOST_DEPTH: usize = 64;
 pub struct Entry {
     pub location: Location,
     pub bytes: u64,
-    /// Its entity tag, if the store has one.
+    /// The file's entity tag, if the store has one.
     pub etag: Option<String>,
-    /// When its content last changed, if the store states it.
+    /// Time when the file's content last changed, if the store states it.
     pub modified: Option<SystemTime>,
 }
 

@@ -39,8 +39,7 @@ pub(crate) struct Uri {
     pub(crate) scheme: Scheme,
     /// The bucket, the container, or the host with its port.
     pub(crate) authority: String,
-    /// The key as it is written, or the path of a URL with its escapes. Does not include the slash
-    /// before it.
+    /// The key as written, or the path of a URL with its escapes. Without the slash at its start.
     pub(crate) path: String,
     /// Query of a URL; `None` for other URIs. It is never displayed.
     pub(crate) query: Option<String>,
@@ -57,15 +56,15 @@ pub(crate) enum Scheme {
 }
 
 impl Location {
-    /// Parses an argument.
+    /// Parses a location that the user gave as an argument: a path or a URI.
     ///
-    /// `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY` take the key exactly as
-    /// written. `https://…` and `http://…` are URLs. `file:///PATH` may have escapes (`%20`).
-    /// Everything else is a local path, which is used unchanged whether or not it is Unicode.
+    /// In `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY`, the key is used exactly as
+    /// written. `https://…` and `http://…` are URLs. `file:///PATH` may have escapes (`%20`). Any
+    /// other argument is a local path. It is used unchanged, even if it is not Unicode.
     ///
     /// # Errors
-    /// A URI with another scheme, with a user name or password, that is incomplete, or that is not
-    /// Unicode.
+    /// If the argument is a URI that has another scheme, has a user name or password, is
+    /// incomplete, or is not Unicode.
     pub fn parse(argument: &OsStr) -> Result<Self, StorageError> {
         let lossy = argument.to_string_lossy();
         let Some((scheme, rest)) = split_scheme(&lossy) else {
@@ -104,8 +103,8 @@ impl Location {
         }
     }
 
-    /// Returns the last part of the path, which is the name for a local copy. The escapes of a URL
-    /// are resolved.
+    /// Returns the last part of the path, with the escapes of a URL resolved. Programs use it as
+    /// the name of a local copy.
     pub fn file_name(&self) -> Option<String> {
         match &self.0 {
             LocalOrRemote::Local(path) => Some(path.file_name()?.to_string_lossy().into_owned()),
@@ -255,7 +254,7 @@ impl fmt::Debug for Uri {
     }
 }
 
-/// Splits `scheme://rest`. A single letter before it is not a scheme but a Windows drive.
+/// Splits `scheme://rest`. A single letter before `://` is not a scheme but a Windows drive.
 fn split_scheme(text: &str) -> Option<(&str, &str)> {
     let (scheme, rest) = text.split_once("://")?;
     let is_scheme = scheme.len() > 1
@@ -291,7 +290,8 @@ fn os_path(bytes: Vec<u8>) -> Result<PathBuf, &'static str> {
     Ok(if has_drive { &text[1..] } else { &text[..] }.into())
 }
 
-/// Returns a URI for a message about its form, without what is before an `@` and without its query.
+/// Returns a URI for a message about a malformed URI. It omits the part before an `@`, and the
+/// query.
 fn without_secrets(text: &str) -> String {
     let Some((scheme, rest)) = split_scheme(text) else {
         return text.to_owned();

@@ -1,12 +1,12 @@
-//! Reads and writes files by URI, in blocking calls: local paths, `https://`, `s3://`, `gs://` and
-//! `az://`.
+//! Reads and writes files by URI, in blocking calls. A location is a local path, or a URI such as
+//! `https://`, `s3://`, `gs://` or `az://`.
 //!
-//! - A file is written completely or not at all: with one request, or in parts that only become a
-//!   file with the last request. Local files are renamed into place.
+//! - A file is written completely or not at all: with one request, or in parts that become a file
+//!   only with the last request. Local files are written next to their targets and then renamed.
 //! - Temporary failures (503, 429, a stalled or cut connection) are retried with growing pauses,
 //!   within a total time ([`Settings`]). A response that was cut off is resumed at the same version
 //!   of the file.
-//! - Credentials only come from environment variables, and no message contains one
+//! - Credentials come only from environment variables, and no message contains a credential
 //!   ([`StorageError`]).
 //! - [`Remote`] reads ranges of one version of a file, and counts its requests and bytes.
 //!
@@ -60,9 +60,9 @@ use location::LocalOrRemote;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stat {
     pub bytes: u64,
-    /// Its entity tag, if the store has one. It changes with the content.
+    /// The file's entity tag, if the store has one. It changes when the content changes.
     pub etag: Option<String>,
-    /// When its content last changed, if the store states it.
+    /// Time when the file's content last changed, if the store states it.
     pub modified: Option<SystemTime>,
 }
 
@@ -75,26 +75,27 @@ pub struct Storage {
     named: NameSource,
 }
 
-/// Who names the files that are accessed.
+/// The source of the names of the files to access.
 #[derive(Debug, Clone, Default)]
 enum NameSource {
     /// The user, who may name any server.
     #[default]
     ByPerson,
-    /// A file. It may name public servers, and the server on which it is stored itself.
+    /// A file named them, such as a recipe. It may name public servers, and the server on which it
+    /// is stored itself.
     InFileAt(Option<Location>),
 }
 
 impl Storage {
-    /// Creates access with these limits and variables.
+    /// Creates access to files with these settings and environment variables.
     pub fn new(settings: Settings, variables: Variables) -> Self {
         Self { settings, variables, clients: Arc::default(), named: NameSource::ByPerson }
     }
 
     /// Restricts access to locations that a file such as a recipe may name. `origin` is the
-    /// location of that file if it is remote. Of all web servers, only public ones and the server
-    /// of `origin` are allowed. Object stores are the ones that the user's environment variables
-    /// name.
+    /// location of that file if it is remote. The only web servers allowed are public servers and
+    /// the server of `origin`. The only object stores are the stores that the user's environment
+    /// variables name.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
         self.named = NameSource::InFileAt(origin.cloned());
@@ -123,7 +124,7 @@ impl Storage {
     }
 
     /// Downloads a whole file of at most `most_bytes` into an open, empty local file. After an
-    /// error, the local file may hold a part.
+    /// error, the local file may contain a part of the data.
     ///
     /// # Errors
     /// The errors of [`Self::read`].
@@ -141,10 +142,10 @@ impl Storage {
         }
     }
 
-    /// Returns the size and version of a file; `None` if it does not exist.
+    /// Returns the size and version of a file, or `None` if the file does not exist.
     ///
     /// # Errors
-    /// If this cannot be determined.
+    /// If the program cannot find this out.
     pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::stat(path),
@@ -189,8 +190,8 @@ impl Storage {
         Ok(remote.into_head())
     }
 
-    /// Opens one version of a file for reading ranges. A single request for the first `head_bytes`
-    /// also gives the size. Reads within these bytes need no further request.
+    /// Opens one version of a file for reading ranges. It sends a single request, which returns the
+    /// first `head_bytes` bytes and the size. Reading within these bytes needs no further request.
     ///
     /// # Errors
     /// The errors of [`Self::read`].
@@ -208,7 +209,7 @@ impl Storage {
     }
 
     /// Lists the files below a folder, sorted by name, whose relative names match a pattern:
-    /// `*.csv`, `**/*.htex`. At most 1,000,000 files.
+    /// `*.csv`, `**/*.htex`. Returns at most 1,000,000 files.
     ///
     /// # Errors
     /// The errors of [`Self::read`], an error for a malformed pattern, and an error for a web
@@ -243,8 +244,8 @@ impl Storage {
         }
     }
 
-    /// Uploads a local file, completely or not at all. Files above 16 MiB are sent in parts of 8
-    /// MiB, which are removed after a failure.
+    /// Uploads a local file, completely or not at all. A file above 16 MiB is sent in parts of 8
+    /// MiB. After a failure, the parts are removed.
     ///
     /// # Errors
     /// The errors of [`Self::write`], and an error if the local file cannot be read.
@@ -266,11 +267,11 @@ impl Storage {
         }
     }
 
-    /// Checks whether a file at this location could be written, as far as this is known without a
-    /// request: from its scheme and the settings of its store.
+    /// Checks whether a file at this location could be written. Sends no request, so it checks only
+    /// the scheme of the URI and the settings of the store.
     ///
     /// # Errors
-    /// If it could not be written.
+    /// If the file could not be written.
     pub fn check_writable(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(_) => Ok(()),

@@ -1,4 +1,4 @@
-//! Replaces the stores if the feature `cloud` is off: every remote URI is an error.
+//! Replaces the stores if the feature `cloud` is off. Every remote URI is then an error.
 
 use std::convert::Infallible;
 use std::fs::File;

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::storage::cloud::{Store, Version};
 use crate::storage::{Location, StorageError, StorageProblem, local};
 
-/// Cost of reading so far.
+/// The requests and bytes that reading has cost so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Usage {
     /// Number of requests that were sent, including retries; for a local file, the number of reads.
@@ -20,7 +20,7 @@ pub struct Usage {
     pub bytes: u64,
 }
 
-/// One version of a file, from which ranges can be read. If the file is replaced, reads fail with
+/// An open file, for reading ranges of one version of it. If the file is replaced, reads fail with
 /// [`StorageProblem::Changed`] and never mix two versions.
 ///
 /// ```
@@ -41,7 +41,7 @@ pub struct Remote {
     of: Content,
     len: u64,
     etag: Option<String>,
-    /// The bytes that the first request returned, and the offset of the first of them.
+    /// The bytes that the first request returned. A second field has the offset of the first byte.
     head: Vec<u8>,
     head_start: u64,
 }
@@ -110,7 +110,7 @@ impl Remote {
         self.etag.as_deref()
     }
 
-    /// Returns the requests and bytes so far, including those for opening.
+    /// Returns the number of requests and bytes so far, including the request that opened the file.
     pub fn usage(&self) -> Usage {
         let (requests, bytes) = match &self.of {
             Content::Store { store, .. } => store.usage(),
@@ -121,8 +121,8 @@ impl Remote {
         Usage { requests, bytes }
     }
 
-    /// Fills the buffer with the bytes from `offset` on. Sends one request, or none if the bytes
-    /// were received when the file was opened.
+    /// Fills the buffer with the bytes that start at `offset`. Sends one request, or no request if
+    /// the first request already returned these bytes.
     ///
     /// # Errors
     /// If the range ends after the end of the file, the file was replaced, or it cannot be read.

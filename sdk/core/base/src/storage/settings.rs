@@ -1,4 +1,4 @@
-//! Time limits, retries, and the variables that hold credentials.
+//! Time limits, retries, and the environment variables that contain credentials.
 //!
 //! The retries last as long as a server takes to restart. 20 pauses of at most 2 s add up to 33 s
 //! on average and at most 37 s; in 999 of 1,000 cases they last at least 22 s (100,000 random
@@ -19,13 +19,13 @@ pub struct Settings {
     /// Longest time for an operation with all its retries: 600 s, or the value of the variable
     /// `HTEX_STORAGE_TIMEOUT_S`.
     pub total: Duration,
-    /// Longest time without receiving a byte: 30 s, of which at most 10 s for the connection. After
-    /// it, the request is sent again.
+    /// Longest time without receiving a byte: 30 s. Opening the connection may take at most 10 s of
+    /// this time. After this time, the request is sent again.
     pub stall: Duration,
     /// Largest number of times that a request is sent again: 20.
     pub retries: usize,
-    /// Pause before the first retry: 0.2 s. Later pauses are random, up to six times the pause
-    /// before.
+    /// Pause before the first retry: 0.2 s. Each later pause is random, up to six times as long as
+    /// the pause before.
     pub first_pause: Duration,
     /// Longest pause: 2 s.
     pub longest_pause: Duration,
@@ -62,8 +62,8 @@ impl Settings {
     }
 }
 
-/// Environment variables by name, from which credentials and endpoints are read. Their values are
-/// never displayed.
+/// Names and values of environment variables. They contain credentials and endpoints, so their
+/// values are never displayed.
 #[derive(Clone, Default)]
 pub struct Variables(Vec<(String, String)>);
 
@@ -81,11 +81,11 @@ impl Variables {
         all.find_map(|(of, value)| (of == name).then_some(&value[..]))
     }
 
-    /// Refuses a control character in the value of a variable whose name starts with `prefix`. No
-    /// header, host or key contains one.
+    /// Refuses control characters in the values of variables whose names start with `prefix`. No
+    /// valid header, host or key contains a control character.
     ///
     /// # Errors
-    /// A sentence with the variable's name.
+    /// If a value contains a control character. The sentence contains the variable's name.
     #[cfg(feature = "cloud")]
     pub(crate) fn check(&self, prefix: &str) -> Result<(), String> {
         // A key in JSON form has line breaks, so it is not checked.

@@ -7,9 +7,9 @@ use crate::library::leaf::{CONTACTS, FORCE, ONE_FORCE, ONE_SPEED, SOURCES, SPEED
 use crate::library::page;
 use crate::library::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
 
-/// Unpacked size of a leaf, bytes, at which the next leaf begins. With this size, the first read
-/// and a packed leaf together stay below 64 kB, and the root page of a million textures fits into
-/// the first read.
+/// Largest unpacked size of a leaf, bytes; the next leaf begins before an entry that would exceed
+/// it. With this size, the first read and a packed leaf together stay below 64 kB, and the root
+/// page of a million textures fits into the first read.
 const LEAF_BYTES: usize = 40 << 10;
 
 /// The pages of an index.

@@ -1,11 +1,13 @@
-//! An entry of the index: what the library knows about a texture without opening it.
+//! An entry of the index: the facts about a texture that a library knows without opening the
+//! texture.
 
 use std::ops::Range;
 
 use crate::{Contact, Law};
 use serde::{Serialize, Serializer};
 
-/// What the index states about a texture.
+/// An entry of the index: a texture's name, search terms, recorded conditions, models, size and
+/// hash.
 ///
 /// ```no_run
 /// let library = htex_format::library::Library::open("cloth.htexlib".as_ref())?;
@@ -23,10 +25,10 @@ pub struct Entry {
     pub tags: Vec<String>,
     /// Range of the conditions at which the texture was recorded.
     pub conditions: Conditions,
-    /// What slid over the surface.
+    /// Kind of contact: what slid over the surface.
     pub contact: Contact,
-    /// How frequencies and level change at a motion outside these conditions, without the
-    /// measurements of its exponents.
+    /// The motion law: how frequencies and level change at a speed or force outside these
+    /// conditions. The index does not store the measurements of the law's exponents.
     pub law: Law,
     /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
@@ -42,10 +44,10 @@ pub struct Entry {
 /// Range of the recorded conditions: the smallest and the greatest known speed and force.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Conditions {
-    /// Scanning speeds, mm/s; `None` if no speed is known.
+    /// Range of the finger's speeds, mm/s; `None` if no speed is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_mm_s: Option<Interval>,
-    /// Normal forces, newtons; `None` if no force is known.
+    /// Range of the normal forces, newtons; `None` if no force is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_n: Option<Interval>,
 }
@@ -57,12 +59,12 @@ pub struct Interval {
     pub max: f64,
 }
 
-/// Where the bytes of a texture are.
+/// Place of a texture's bytes in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct TexturePlace {
     /// Range of the texture's own bytes, counted from the start of the payload.
     pub own: Range<u64>,
-    /// Shared objects to insert into its own bytes, in order.
+    /// Shared objects that a reader inserts into the texture's own bytes, in order.
     pub cuts: Vec<Cut>,
 }
 

@@ -43,7 +43,7 @@ pub enum LibraryError {
     /// The library has no texture with this name.
     #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
     Absent { name: String },
-    /// The library could not be written; an existing file is unchanged.
+    /// The library could not be written. If the file existed before, it is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Write {
         path: PathBuf,
@@ -68,12 +68,12 @@ pub enum LibraryError {
         /// The name that was added before.
         other: String,
     },
-    /// Textures state no licence, and packing them was not allowed.
+    /// Some textures state no licence, and the writer was not told to allow this.
     #[error("{}{} no licence, and a library is passed on; state it, or pack it as unlicensed", plain(.name), states(.others))]
     Unlicensed {
-        /// Name of the first of these textures.
+        /// Name of the first texture without a licence.
         name: String,
-        /// How many more textures state no licence.
+        /// Number of further textures without a licence.
         others: usize,
     },
     /// A texture to be added is not a valid asset.
@@ -87,17 +87,18 @@ pub enum LibraryError {
     #[cfg(feature = "storage")]
     #[error(transparent)]
     Storage(#[from] htex_base::storage::StorageError),
-    /// A texture or the library exceeds a limit of the index.
+    /// A texture, or the library, exceeds a limit of the index.
     #[error("{}: {problem}", plain(.name))]
     Limit {
         /// Name of the texture, or of the library.
         name: String,
-        /// The limit and what to do.
+        /// The limit, and what to do.
         problem: String,
     },
 }
 
-/// Returns the words that continue the message: the other textures, with the matching verb.
+/// Returns the words that continue the message: the number of other textures, with the matching
+/// verb.
 fn states(others: &usize) -> String {
     match others {
         0 => " states".to_owned(),

@@ -1,10 +1,10 @@
-//! Facts about an asset that the index states, taken from its manifest.
+//! The facts about an asset that the index states. They come from the asset's manifest.
 
 use crate::{Contact, Law, Manifest};
 
 use crate::library::entry::{Conditions, Interval};
 
-/// Largest number of tags, and of models, that a texture may have in the index.
+/// Largest number of tags of a texture in the index, and largest number of its models.
 pub(crate) const MOST_WORDS: usize = 64;
 
 /// Tags, models, conditions and law of an asset.

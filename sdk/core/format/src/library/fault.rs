@@ -6,7 +6,8 @@ use crate::library::error::LibraryError;
 use crate::library::rules as rule;
 use crate::library::wire::WireError;
 
-/// A broken rule, with its place and a message that says what is wrong and what to do.
+/// A broken rule, the place in the file that breaks it, and a message that says what is wrong and
+/// what to do.
 #[derive(Debug, Clone)]
 pub(crate) struct Fault {
     pub rule: &'static Rule,

@@ -8,7 +8,7 @@ use crate::library::page::crc32;
 use crate::library::rules as rule;
 
 /// First bytes of every library. As in PNG, one byte is not ASCII and both kinds of line ends
-/// follow, so that a transfer in text mode is detected.
+/// follow. A transfer in text mode changes these bytes, so a reader detects it.
 pub const MAGIC: [u8; 8] = *b"\x89HTL\r\n\x1a\n";
 /// File extension of libraries.
 pub const EXTENSION: &str = "htexlib";

@@ -1,5 +1,5 @@
-//! The index of an open library. It does no input or output: it says where pages and textures are,
-//! and decodes their bytes.
+//! The index of an open library. It does no input or output. It tells the caller where pages and
+//! textures are in the file, and decodes their bytes.
 
 use std::ops::Range;
 
@@ -20,12 +20,14 @@ use crate::library::rules as rule;
 ///
 /// A texture is opened in three steps:
 ///
-/// 1. [`Self::leaf_of`] its name and [`Self::leaf_range`] say which page of the index to read.
-/// 2. [`Self::read_leaf`] decodes that page, which contains the texture's entry.
-/// 3. [`Self::asset_ranges`] says which bytes to read, and [`Self::assemble`] makes the texture
-///    from them.
+/// 1. [`Self::leaf_of`] finds the leaf page for the texture's name, and [`Self::leaf_range`]
+///    returns the bytes of that page in the file.
+/// 2. [`Self::read_leaf`] decodes the page. One of its entries is the texture's entry.
+/// 3. [`Self::asset_ranges`] returns the ranges of the texture's bytes, and [`Self::assemble`]
+///    assembles the texture from these bytes.
 ///
-/// [`crate::library::Library`] does all this with a [`crate::library::LibrarySource`].
+/// [`crate::library::Library`] does these steps and reads the bytes from a
+/// [`crate::library::LibrarySource`].
 #[derive(Debug, Clone)]
 pub struct Index {
     header: Header,
@@ -53,8 +55,8 @@ impl Index {
         self.header.entries
     }
 
-    /// Returns the BLAKE3 of the index, which identifies the library: equal hashes mean equal
-    /// textures with equal names.
+    /// Returns the BLAKE3 hash of the index. It identifies the library: two libraries with the same
+    /// hash contain the same textures with the same names.
     pub fn blake3(&self) -> [u8; 32] {
         self.header.index_blake3
     }
@@ -81,7 +83,8 @@ impl Index {
         self.root.leaves()
     }
 
-    /// Returns the leaf page that may contain the entry with this name; `None` if no page can.
+    /// Returns the number of the leaf page that may contain the entry with this name, or `None` if
+    /// no page can contain it.
     pub fn leaf_of(&self, name: &str) -> Option<usize> {
         self.root.leaf_of(name.as_bytes())
     }
@@ -106,8 +109,8 @@ impl Index {
         reader.read(&page)
     }
 
-    /// Returns the byte ranges of the file that make up a texture: first its own bytes, then each
-    /// object that it shares.
+    /// Returns the ranges of the file that contain a texture's bytes: first the bytes that only
+    /// this texture has, then each object that it shares with other textures.
     pub fn asset_ranges(&self, entry: &Entry) -> Vec<Range<u64>> {
         let in_part = |part: &Range<u64>, range: &Range<u64>| {
             part.start.saturating_add(range.start)..part.start.saturating_add(range.end)
@@ -138,8 +141,8 @@ impl Index {
     }
 }
 
-/// Inserts the shared objects into the texture's own bytes; `None` if a part is missing or has the
-/// wrong length.
+/// Inserts the shared objects into the texture's own bytes. Returns `None` if a part is missing or
+/// has the wrong length.
 pub(crate) fn assembled<B: AsRef<[u8]>>(entry: &Entry, parts: &[B]) -> Option<Vec<u8>> {
     let (own, objects) = parts.split_first()?;
     let (own, cuts) = (own.as_ref(), &entry.place.cuts);

@@ -1,8 +1,8 @@
-//! A leaf page: the entries of a run of names, stored column by column.
+//! A leaf page: the entries of consecutive names, stored column by column.
 //!
-//! Columns help compression: hashes take most of a page and cannot be compressed, while the other
-//! columns can. A page's entries are chosen before compression, so that its size is bounded without
-//! trial and error.
+//! Columns help compression: hashes take most of a page and cannot be compressed, but the other
+//! columns can. The writer chooses a page's entries by their unpacked size, so that it need not
+//! compress a page several times to find its size.
 
 use crate::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
 
@@ -30,7 +30,8 @@ pub(crate) const FORCE: u8 = 2;
 pub(crate) const ONE_SPEED: u8 = 4;
 pub(crate) const ONE_FORCE: u8 = 8;
 
-/// Contacts and sources of exponents, at the index that the column of laws uses for them.
+/// The contacts and the sources of exponents. The column of laws stores their indices in these
+/// lists.
 pub(crate) const CONTACTS: [Contact; 3] = [Contact::Finger, Contact::Tool, Contact::Unknown];
 pub(crate) const SOURCES: [ExponentSource; 3] =
     [ExponentSource::Measured, ExponentSource::Given, ExponentSource::Assumed];
@@ -42,7 +43,7 @@ pub(crate) struct LeafReader<'a> {
     pub limits: &'a Limits,
 }
 
-/// The columns of a leaf, not yet checked against the rest of the file.
+/// The columns of a leaf before the checks against the rest of the file.
 struct Columns {
     names: Vec<String>,
     tags: Vec<Vec<String>>,

@@ -1,6 +1,7 @@
 //! Limits for reading untrusted libraries.
 
-/// Limits for reading. Each is checked before the bytes that it limits are read or unpacked.
+/// Limits for reading, with their default values. The reader checks each limit before it reads or
+/// unpacks the bytes that the limit concerns.
 ///
 /// ```
 /// use htex_format::library::{Limits, validate_source};
@@ -22,8 +23,9 @@ pub struct Limits {
     pub asset_bytes: u64,
     /// Number of different shared objects: 1,048,576. Only validation counts them.
     pub objects: u64,
-    /// Ratio of the size of all textures to the size of the file: 1,000. It applies when a program
-    /// reads all textures, to validate or to unpack them ([`crate::library::Ratio`]).
+    /// Ratio of the size of all textures to the size of the file: 1,000. This limit applies to
+    /// programs that read all textures, e.g. to validate or to unpack them
+    /// ([`crate::library::Ratio`]).
     pub ratio: u64,
 }
 

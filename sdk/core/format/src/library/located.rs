@@ -9,7 +9,7 @@ use crate::library::opening::FIRST_READ;
 use crate::library::reader::Library;
 use crate::library::source::{LibrarySource, LocalFile};
 
-/// A local or remote file, of which only the requested ranges are read.
+/// A local or remote file. Only the requested ranges of it are read.
 #[derive(Debug)]
 pub enum LibraryFile {
     /// A local file.
@@ -22,11 +22,12 @@ impl Library<LibraryFile> {
     /// Opens a library by path or URI, within the default [`Limits`](crate::library::Limits).
     ///
     /// Opening one texture of a remote file takes three requests: the start of the file, a page of
-    /// the index, and the texture. If the whole index fits into the start of the file, it takes
-    /// two.
+    /// the index, and the texture. If the first request already contains the whole index, opening
+    /// takes two requests.
     ///
     /// # Errors
-    /// The errors of [`Library::open`], and [`LibraryError::Storage`].
+    /// The errors of [`Library::open`], or [`LibraryError::Storage`] if a remote file cannot be
+    /// opened.
     ///
     /// ```
     /// use htex_format::library::Library;
@@ -47,7 +48,8 @@ impl LibraryFile {
     /// Opens a file by path or URI.
     ///
     /// # Errors
-    /// [`LibraryError::Open`], [`LibraryError::Storage`].
+    /// [`LibraryError::Open`] if a local file cannot be opened, [`LibraryError::Storage`] if a
+    /// remote file cannot be opened.
     pub fn open(storage: &Storage, location: &Location) -> Result<Self, LibraryError> {
         if let Some(path) = location.local() {
             return LocalFile::open(path).map(Self::File);
@@ -57,8 +59,8 @@ impl LibraryFile {
         Ok(Self::Elsewhere(Box::new(remote)))
     }
 
-    /// Returns the number of requests to the server so far and the bytes received; `None` for a
-    /// local file.
+    /// Returns the number of requests to the server so far and the number of bytes received.
+    /// Returns `None` for a local file.
     pub fn usage(&self) -> Option<htex_base::storage::Usage> {
         match self {
             Self::File(_) => None,

@@ -1,9 +1,9 @@
-//! Reads, writes and validates `.htexlib` files: thousands of textures in one file, opened one at a
-//! time.
+//! Reads, writes and validates `.htexlib` files: thousands of textures in one file. A reader can
+//! open one texture without reading the others.
 //!
-//! `spec/htexlib-1.md` is the normative text. The index comes first, in compressed pages sorted by
-//! name. So opening one texture takes three reads however large the library is: the start of the
-//! file, a page of the index, and the texture.
+//! `spec/htexlib-1.md` is the normative specification. The file starts with an index, which
+//! consists of compressed pages sorted by name. However large the library is, opening one texture
+//! takes three reads: the start of the file, a page of the index, and the texture.
 //!
 //! ```
 //! use htex_format::library::{Library, Writer};
@@ -34,7 +34,7 @@
 //!
 //! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and
 //! [`Opening`] do no input or output and only say which bytes of the file they need. [`Library`]
-//! reads these bytes from a [`LibrarySource`]; a browser fetches them.
+//! reads these bytes from a [`LibrarySource`]. In a browser, a page can fetch them instead.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -10,16 +10,16 @@ use crate::library::wire::TEXT_BYTES;
 
 /// File extension of a texture.
 const ENDING: &str = ".htex";
-/// Largest length of a part, bytes. With [`ENDING`] it is 255, the limit of file systems for a file
-/// name.
+/// Largest length of a part, bytes. A part with [`ENDING`] has at most 255 bytes, the limit of file
+/// systems for a file name.
 const PART_BYTES: usize = 255 - ENDING.len();
 /// Device names of Windows. No file can have one of these names.
 const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
-/// Device names that are followed by a digit, or by a superscript 1, 2 or 3, which Windows treats
-/// as digits.
+/// Device names of Windows that end with a digit. Windows also treats a superscript 1, 2 or 3 as a
+/// digit.
 const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 
-/// Why a text is not a valid name of a texture.
+/// The reason why a text is not a valid name of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidName {
@@ -27,7 +27,7 @@ pub enum InvalidName {
     Empty,
     #[error("it has {0} bytes and the most is 255; shorten it")]
     TooLong(usize),
-    /// It contains a character that file systems or terminals interpret.
+    /// The name contains a character that has a special meaning for file systems or terminals.
     #[error(
         "it contains {0:?}; leave out control characters, invisible characters, and \\ : * ? \" < > |"
     )]
@@ -53,7 +53,7 @@ pub enum InvalidName {
 /// every name is a relative file path.
 ///
 /// # Errors
-/// The rule that the name breaks.
+/// If the name breaks a rule. The error says which rule.
 ///
 /// ```
 /// use htex_format::library::check_name;
@@ -76,17 +76,17 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
     if folders.any(has_ending) { Err(InvalidName::Folder) } else { Ok(()) }
 }
 
-/// Returns a form of the name that is equal for two names if some system treats them as the same
-/// file, because it ignores case or compares names after normalisation. It is equal exactly for a
-/// canonical caseless match (The Unicode Standard, definition D145).
+/// Returns a form of the name without differences in case and Unicode normalisation. Some systems
+/// treat two names with the same form as the same file. Two names have the same form exactly if
+/// they are a canonical caseless match (The Unicode Standard, definition D145).
 fn of_one_file(name: &str) -> String {
     let decomposed = DecomposingNormalizer::new_nfd();
     let folded = |text: &str| CaseMapper::new().fold_string(text).into_owned();
     decomposed.normalize(&folded(&decomposed.normalize(name))).into_owned()
 }
 
-/// Returns the first 16 bytes of the hash of [`of_one_file`]. The whole text is not kept because a
-/// library may have millions of names.
+/// Returns the first 16 bytes of the hash of [`of_one_file`]. A set of names stores only these
+/// bytes, because a library may have millions of names.
 pub(crate) fn file_key(name: &str) -> [u8; 16] {
     let mut start = [0; 16];
     let mut hasher = blake3::Hasher::new();
@@ -95,8 +95,8 @@ pub(crate) fn file_key(name: &str) -> [u8; 16] {
     start
 }
 
-/// A set of texture names that are different files on every system. Packing, validating and
-/// unpacking all compare names with it.
+/// A set of texture names that denote different files on every system. The packer, the validator
+/// and the unpacker use it to find names that denote the same file.
 ///
 /// ```
 /// let mut names = htex_format::library::Names::default();

@@ -1,4 +1,4 @@
-//! Opens a library without doing input or output: it says which bytes it needs next.
+//! Opens a library without doing input or output: it tells the caller which bytes it needs next.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use crate::library::rules as rule;
 /// libraries.
 pub const FIRST_READ: u64 = 16 << 10;
 
-/// A library that is being opened. The caller gives it bytes until it becomes an [`Index`].
+/// A library that is being opened. The caller passes bytes to it until it becomes an [`Index`].
 ///
 /// ```
 /// use htex_format::library::{Index, LibraryError, Limits, Opening, Progress};
@@ -37,15 +37,15 @@ pub const FIRST_READ: u64 = 16 << 10;
 #[derive(Debug)]
 pub struct Opening {
     limits: Limits,
-    /// The start of the file, as far as the caller has given it.
+    /// The bytes from the start of the file that the caller has given so far.
     start: Vec<u8>,
     header: Option<Header>,
 }
 
-/// The result of giving bytes.
+/// Result of [`Opening::give`].
 #[derive(Debug)]
 pub enum Progress {
-    /// More bytes are needed: [`Opening::wanted`].
+    /// More bytes are needed. [`Opening::wanted`] says which.
     More(Opening),
     /// The library is open.
     Open(Index),
@@ -67,8 +67,8 @@ impl Opening {
         }
     }
 
-    /// Takes the wanted bytes, or fewer if the file ends earlier. `file_bytes` is the length of the
-    /// whole file.
+    /// Receives the bytes of the range [`Self::wanted`], or fewer bytes if the file ends earlier.
+    /// `file_bytes` is the length of the whole file.
     ///
     /// # Errors
     /// [`LibraryError::Invalid`] if the header or the root page breaks a rule.

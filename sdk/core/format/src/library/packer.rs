@@ -1,8 +1,9 @@
 //! Packs textures into a library.
 //!
-//! Which modules are shared is only known after the last texture. So textures are spooled when they
-//! are added, and the library is written when it is finished. It is written in order of names and
-//! hashes, never in the order of adding, so that the same textures always give the same file.
+//! The packer knows which modules are shared only after the last texture. So it first writes added
+//! textures to a spool, and writes the library when it is finished. It orders textures by name and
+//! shared objects by hash, so that the same textures always give the same file, whatever the order
+//! in which they were added.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -29,13 +30,13 @@ pub(crate) struct Packer<S> {
     path: PathBuf,
     name: String,
     spool: Spool<S>,
-    /// The textures by name. The map sorts them, as the index and the payload need them.
+    /// The textures by name, in the order in which the index and the payload contain them.
     added: BTreeMap<String, PendingTexture>,
-    /// The name of each texture by its [`file_key`], to find names that are the same file on some
-    /// systems.
+    /// The name of each texture by its [`file_key`], to find names that denote the same file on
+    /// some systems.
     files: BTreeMap<[u8; 16], String>,
-    /// Distinct sets of tags and models. Many textures have the same set, so each is in memory only
-    /// once.
+    /// Distinct sets of tags and models. Many textures have the same set, so each distinct set is
+    /// in memory only once.
     words: BTreeSet<Arc<Words>>,
     /// Whether textures without a licence may be packed.
     pub(crate) allows_unlicensed: bool,
@@ -48,7 +49,7 @@ struct Words {
     models: Vec<String>,
 }
 
-/// What is kept in memory for a texture that was added.
+/// The data in memory about a texture that was added.
 struct PendingTexture {
     words: Arc<Words>,
     conditions: Conditions,
@@ -59,7 +60,7 @@ struct PendingTexture {
     spooled: SpoolRange,
 }
 
-/// Numbers about a library that was written.
+/// Sizes, counts and hash of a library that was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PackSummary {
@@ -78,8 +79,7 @@ pub struct PackSummary {
 }
 
 impl<S: Store> Packer<S> {
-    /// Starts a library with this name. Textures are spooled to `store` until the library is
-    /// written.
+    /// Starts a library with this name. `store` holds the textures until the library is written.
     pub(crate) fn new(path: &Path, name: &str, store: S) -> Result<Self, LibraryError> {
         check_library_name(name)
             .map_err(|problem| LibraryError::Name { name: name.to_owned(), problem })?;
@@ -127,7 +127,8 @@ impl<S: Store> Packer<S> {
         Ok(())
     }
 
-    /// Returns these tags and models in one allocation that all textures with the same ones share.
+    /// Returns these tags and models in one allocation. All textures with the same tags and models
+    /// share it.
     fn common_words(&mut self, tags: Vec<String>, models: Vec<String>) -> Arc<Words> {
         let words = Arc::new(Words { tags, models });
         if let Some(known) = self.words.get(&words) {
@@ -137,7 +138,8 @@ impl<S: Store> Packer<S> {
         words
     }
 
-    /// Refuses textures without a licence. Only the people who made them may pass them on.
+    /// Refuses textures without a licence, because only the people who made such a texture may pass
+    /// it on.
     fn check_licences(&self) -> Result<(), LibraryError> {
         let mut unlicensed = self.added.iter().filter(|(_, texture)| !texture.is_licensed);
         match unlicensed.next() {
@@ -172,7 +174,8 @@ impl<S: Store> Packer<S> {
 }
 
 impl LibraryError {
-    /// Names the file of an error of the system, and says that the file is unchanged.
+    /// Turns an error of the system into a library error that names the file and says that it is
+    /// unchanged.
     pub(crate) fn unchanged(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |error| Self::Write { path: path.to_owned(), error }
     }

@@ -1,4 +1,4 @@
-//! The frame around a page: checksum, unpacked length, deflate stream.
+//! The frame of a page: a checksum, the unpacked length and a deflate stream.
 
 use flate2::{Crc, Decompress, FlushDecompress, Status};
 
@@ -60,8 +60,8 @@ pub(crate) fn check_packed_size(size: u64, most: u64, place: &str) -> Result<(),
     Err(Fault::new(rule::LIBRARY_PAGE_TOO_LARGE, place, message))
 }
 
-/// Computes the CRC-32 of pages and of the header with the inflater's implementation, whose tables
-/// are already in every program that reads a library.
+/// Computes the CRC-32 of pages and of the header with the inflater's code. Every program that
+/// reads libraries already contains the tables of this code.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = Crc::new();
     crc.update(bytes);

@@ -4,7 +4,7 @@ use crate::Condition;
 
 use crate::library::entry::{Entry, Interval};
 
-/// A search query: what a texture must have to be found. Fields that are `None` or empty are not
+/// A search query: the properties that a texture must have. A field that is `None` or empty is not
 /// checked.
 ///
 /// ```no_run
@@ -28,14 +28,14 @@ pub struct Query {
     /// Speed, mm/s, that must lie in the recorded range, or outside it by at most 5 %
     /// ([`crate::SAME_CONDITION`]).
     pub speed_mm_s: Option<f64>,
-    /// Force, newtons, with the same tolerance as the speed.
+    /// Force, newtons, that must lie in the recorded range, with the same tolerance as the speed.
     pub force_n: Option<f64>,
     /// Id of a model that describes the texture, or the last part of the id.
     pub model: Option<String>,
 }
 
 impl Query {
-    /// Returns whether the texture has everything that the query asks for.
+    /// Returns whether the texture has all properties of the query.
     pub fn matches(&self, entry: &Entry) -> bool {
         let (name, tags) = (caseless(&entry.name), entry.tags.iter().map(|tag| caseless(tag)));
         let tags: Vec<String> = tags.collect();

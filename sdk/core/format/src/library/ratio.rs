@@ -1,4 +1,4 @@
-//! Limits the size of all textures together, so that a small file cannot unpack to a huge folder.
+//! Limits the total size of all textures, so that a small file cannot unpack to a huge folder.
 
 use crate::library::entry::Entry;
 use crate::library::error::LibraryError;
@@ -7,7 +7,7 @@ use crate::library::rules as rule;
 
 /// Adds up the bytes of textures that are read one after another, and compares them with
 /// [`crate::library::Limits::ratio`] times the bytes of the file. A program that reads all
-/// textures, to check or to unpack them, must count each one first.
+/// textures, e.g. to check or to unpack them, must add each texture before it reads the texture.
 #[derive(Debug, Clone)]
 pub struct Ratio {
     file_bytes: u64,
@@ -20,10 +20,10 @@ impl Ratio {
         Self { file_bytes, most_ratio, total: 0 }
     }
 
-    /// Counts a texture before it is read.
+    /// Adds the size of a texture that the program is going to read.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] if all textures so far exceed the limit.
+    /// [`LibraryError::Invalid`] if the textures so far exceed the limit together.
     pub fn add(&mut self, entry: &Entry) -> Result<(), LibraryError> {
         Ok(self.count(entry, "")?)
     }

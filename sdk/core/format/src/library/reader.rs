@@ -1,4 +1,4 @@
-//! An open library, and how textures are read from it.
+//! An open library, which reads textures on request.
 
 use std::ops::Range;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::library::opening::{Opening, Progress};
 use crate::library::ratio::Ratio;
 use crate::library::source::{LibrarySource, LocalFile};
 
-/// A library of textures. Each texture is read only on request.
+/// A library of textures. It reads a texture only on request.
 ///
-/// The library caches the page of the index that was used last, so that a texture with a
-/// neighbouring name takes one read. A library can be shared between threads.
+/// The library caches the page of the index that it used last. If the name of the next texture is
+/// on the same page, opening that texture takes only one read. Threads can share a library.
 ///
 /// ```no_run
 /// let library = htex_format::library::Library::open("cloth.htexlib".as_ref())?;
@@ -97,8 +97,8 @@ impl<S: LibrarySource> Library<S> {
         self.index.notes()
     }
 
-    /// Returns a counter for reading many textures. It makes sure that a small file cannot unpack
-    /// to a huge folder.
+    /// Returns a counter for programs that read many textures. The counter makes sure that a small
+    /// file cannot unpack to a huge folder.
     ///
     /// ```no_run
     /// let library = htex_format::library::Library::open("cloth.htexlib".as_ref())?;
@@ -121,7 +121,7 @@ impl<S: LibrarySource> Library<S> {
     /// Reads a texture by name. Returns the bytes of its `.htex` file, whose hash has been checked.
     ///
     /// # Errors
-    /// [`LibraryError::Absent`] if there is no such texture, and errors for bytes that cannot be
+    /// [`LibraryError::Absent`] if there is no such texture, or another error if bytes cannot be
     /// read or break a rule.
     pub fn get(&self, name: &str) -> Result<Vec<u8>, LibraryError> {
         let entry =
@@ -129,7 +129,7 @@ impl<S: LibrarySource> Library<S> {
         self.read(&entry)
     }
 
-    /// Reads the entry of a texture; `None` if there is no such texture.
+    /// Reads the entry of a texture. Returns `None` if there is no such texture.
     ///
     /// # Errors
     /// If the page cannot be read or breaks a rule.
@@ -142,8 +142,8 @@ impl<S: LibrarySource> Library<S> {
         Ok(found.ok().map(|i| entries[i].clone()))
     }
 
-    /// Reads the entries of a leaf page of the index, sorted by name. Pages are counted from 0;
-    /// `None` if there is no such page.
+    /// Reads the entries of a leaf page of the index, sorted by name. `leaf` counts the pages
+    /// from 0. Returns `None` if there is no such page.
     ///
     /// # Errors
     /// If the page cannot be read or breaks a rule.
@@ -169,7 +169,7 @@ impl<S: LibrarySource> Library<S> {
         Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0 }
     }
 
-    /// Returns the entries of a leaf page. Reads the page unless it is the one that was read last.
+    /// Returns the entries of a leaf page. Reads the page unless it is the page in the cache.
     fn leaf(&self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
         // The lock is not held while a page is read, so that threads do not wait for each other's
         // requests. A thread that panics cannot leave half a page here, because pages are replaced
@@ -198,8 +198,8 @@ impl<S: LibrarySource> Library<S> {
     }
 }
 
-/// Reads a range, or less at the end of the file. Once a library is open, its ranges have been
-/// checked against its limits.
+/// Reads a range, or fewer bytes at the end of the file. The range is within the limits, because a
+/// library checks all its ranges when it is opened.
 fn read_up_to(source: &impl LibrarySource, range: Range<u64>) -> Result<Vec<u8>, LibraryError> {
     let length = usize::try_from(range.end - range.start)
         .map_err(|error| failed(&range, std::io::Error::other(error)))?;

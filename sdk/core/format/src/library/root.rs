@@ -1,4 +1,5 @@
-//! The root page: the library's name, and for every leaf page its first name and its length.
+//! The root page: the library's name, and for every leaf page a separator, at which its names
+//! begin, and its length.
 //!
 //! The root page of a million textures fits into the first 16 KiB of the file, so that the first
 //! read contains it.
@@ -19,7 +20,7 @@ pub(crate) const PLACE: &str = "/root";
 pub(crate) struct Root {
     /// Name of the library.
     pub name: String,
-    /// A separator for each leaf. It does not sort after any name of the leaf, and sorts after all
+    /// A separator for each leaf. It sorts before or equal to every name of the leaf, and after all
     /// names of the leaves before.
     separators: Texts,
     /// Offsets of the leaves in the file, followed by the end of the last leaf.
@@ -119,7 +120,8 @@ struct Texts {
 }
 
 impl Texts {
-    /// Reads `count` texts. The first must be empty, and each must sort after the one before.
+    /// Reads `count` texts. The first text must be empty, and each text must sort after the text
+    /// before it.
     fn read(cursor: &mut Cursor<'_>, count: usize) -> Result<Self, Fault> {
         let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(count));
         let mut text = Vec::new();

@@ -1,8 +1,9 @@
-//! Decides which embedded modules are shared between textures, and where their bytes go.
+//! Decides which embedded modules the textures of a library share, and where the file contains
+//! their bytes.
 //!
-//! While a library is written, modules that several textures embed are found by their hash and
-//! stored only once. A module that only one texture embeds stays among that texture's own bytes,
-//! because sharing it would save nothing.
+//! The writer finds modules that several textures embed by their hash, and stores them only once. A
+//! module that only one texture embeds stays among that texture's own bytes, because sharing it
+//! would save nothing.
 
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use crate::library::entry::{Cut, TexturePlace};
 use crate::library::leaf::{MOST_CUTS, length};
 use crate::library::spool::{Module, SpoolRange};
 
-/// The modules of all textures. Those that occur more than once are the shared objects.
+/// The modules of all textures. The modules that occur more than once are the shared objects.
 pub(crate) struct Sharing {
     modules: Vec<Module>,
     /// Place of each module in the shared part; `None` if only one texture has it.
@@ -40,7 +41,7 @@ impl Sharing {
         self.bytes
     }
 
-    /// Returns how many bytes the file does not need because modules are shared.
+    /// Returns the number of bytes that sharing modules saves.
     pub(crate) fn saved_bytes(&self) -> u64 {
         let modules = self.shared.iter().map(|i| &self.modules[*i]);
         modules.map(|m| length(&m.at) * (m.uses - 1)).sum()
@@ -51,8 +52,8 @@ impl Sharing {
         self.shared.iter().map(|i| self.modules[*i].at.clone())
     }
 
-    /// Returns where the texture's bytes will be in the file. Its own bytes begin at `start` in the
-    /// payload.
+    /// Returns the place of the texture's bytes in the library. The texture's own bytes begin at
+    /// `start` in the payload.
     pub(crate) fn place(&self, spooled: &SpoolRange, start: u64) -> TexturePlace {
         let (mut inlined, mut cuts) = (0, Vec::new());
         for (at, module) in &spooled.modules {

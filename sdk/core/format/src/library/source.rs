@@ -6,10 +6,10 @@ use std::path::Path;
 
 use crate::library::error::LibraryError;
 
-/// A source of a library's bytes: a file, a buffer, or ranges of a file on a server.
+/// A source of a library's bytes: a local file, a buffer, or a file on a server.
 ///
-/// A library reads a few large ranges, each of them once: 16 KiB when it is opened, a page of the
-/// index, and the texture.
+/// A library reads a few large ranges: the first 16 KiB when it is opened, and for each texture a
+/// page of the index and the texture's bytes.
 pub trait LibrarySource {
     /// Returns the length of the file, bytes. The library calls it only after the first read, so
     /// that a network source can take the length from its first response.
@@ -26,8 +26,8 @@ pub trait LibrarySource {
         Ok(self.len()? == 0)
     }
 
-    /// Fills `buffer` with the bytes from `offset` on. Returns the number of bytes read, which may
-    /// be less than requested only at the end of the file.
+    /// Fills `buffer` with the bytes that start at `offset`. Returns the number of bytes read,
+    /// which is less than the buffer's length only at the end of the file.
     ///
     /// # Errors
     /// The errors of the source.
@@ -42,7 +42,7 @@ impl LocalFile {
     /// Opens a file.
     ///
     /// # Errors
-    /// [`LibraryError::Open`].
+    /// [`LibraryError::Open`] if the file cannot be opened.
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
         let file = File::open(path)
             .map_err(|error| LibraryError::Open { path: path.to_owned(), error })?;

@@ -8,13 +8,13 @@ use std::ops::Range;
 use crate::entry_ranges;
 use htex_base::files::Scratch;
 
-/// Start of the names of archive entries that can be shared: embedded models.
+/// Prefix of the names of archive entries that textures can share: embedded models.
 const MODULES: &str = "plugins/";
-/// Smallest size of a shared object, bytes. Below it, the object's place in the index would take up
-/// a good part of what sharing saves.
+/// Smallest size of a shared object, bytes. For a smaller object, its place in the index would cost
+/// much of what sharing saves.
 const LEAST_SHARED: usize = 64;
 
-/// Where the spooled bytes are stored.
+/// The storage of the spooled bytes.
 pub(crate) trait Store: Read + Write + Seek {}
 
 impl<T: Read + Write + Seek> Store for T {}
@@ -58,11 +58,11 @@ pub(crate) struct Module {
     pub blake3: [u8; 32],
     /// Range of its bytes in the spool.
     pub at: Range<u64>,
-    /// How many times it occurs.
+    /// Number of times that textures embed the module.
     pub uses: u64,
 }
 
-/// Where a texture's bytes are in the spool.
+/// Place of a texture's bytes in the spool.
 #[derive(Debug, Clone)]
 pub(crate) struct SpoolRange {
     /// Range of all bytes except the modules.
@@ -104,7 +104,8 @@ impl<S: Store> Spool<S> {
         Ok(SpoolRange { own: start..self.end, modules: cuts.into() })
     }
 
-    /// Adds a module, or counts one more use if it is already there. Returns its index.
+    /// Adds a module, or counts one more use if the spool already contains it. Returns the module's
+    /// index.
     fn add_module(&mut self, bytes: &[u8]) -> io::Result<u32> {
         let blake3 = *blake3::hash(bytes).as_bytes();
         if let Some(index) = self.by_hash.get(&blake3) {

@@ -1,4 +1,4 @@
-//! Validates a whole library: the index page by page, and every texture.
+//! Validates a whole library: every page of the index, and every texture.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,10 +20,10 @@ use crate::library::rules as rule;
 use crate::library::source::{LibrarySource, LocalFile};
 
 /// Validates a library file within the default limits: every page of the index, and every texture
-/// as [`crate::validate`] does.
+/// with [`crate::validate`].
 ///
 /// # Errors
-/// If the file cannot be read. Anything wrong with its contents is a finding.
+/// If the file cannot be read. Problems of its contents are findings in the report, not errors.
 pub fn validate(path: &Path) -> Result<Report, LibraryError> {
     validate_source(LocalFile::open(path)?, &Limits::default())
 }
@@ -55,11 +55,12 @@ struct Validation<'a, S> {
     library: &'a Library<S>,
     limits: &'a Limits,
     findings: Findings,
-    /// Where the next texture's own bytes must start; `None` after a leaf that could not be read.
+    /// Offset at which the next texture's own bytes must start; `None` after a leaf that could not
+    /// be read.
     next: Option<u64>,
-    /// Shared objects seen so far: end by start.
+    /// Shared objects seen so far: the start of each object and its end.
     objects: BTreeMap<u64, u64>,
-    /// Names seen so far, as 128-bit hashes that ignore case, however long a name is.
+    /// Names seen so far, as 128-bit hashes that ignore case.
     names: Names,
     entries: u64,
     /// Counts the bytes of all textures so far.
@@ -114,8 +115,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(())
     }
 
-    /// Checks the entries of a leaf and their textures. Returns false if no further texture must be
-    /// read.
+    /// Checks the entries of a leaf and their textures. Returns false if a limit forbids reading
+    /// further textures.
     fn check_leaf(&mut self, leaf: usize, entries: &[Entry]) -> Result<bool, LibraryError> {
         for (i, entry) in entries.iter().enumerate() {
             let place = entry_place(leaf, i);
@@ -135,7 +136,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(true)
     }
 
-    /// Checks that no earlier name is the same file on some system.
+    /// Checks that no earlier name denotes the same file on some system.
     fn check_name(&mut self, entry: &Entry, place: &str) {
         let is_other = self.names.insert(&entry.name);
         self.findings
@@ -162,8 +163,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         }
     }
 
-    /// Checks that shared objects are either equal or do not overlap. Returns false if there are
-    /// too many.
+    /// Checks that any two shared objects are equal or do not overlap. Returns false if there are
+    /// too many objects.
     fn check_objects(&mut self, entry: &Entry, place: &str) -> bool {
         for cut in &entry.place.cuts {
             let (start, end) = (cut.object.start, cut.object.end);
@@ -232,7 +233,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         }
     }
 
-    /// Checks what can only be known after the last leaf.
+    /// Checks the totals, which are known only after the last leaf.
     fn check_end(&mut self) {
         if !self.is_whole {
             return;

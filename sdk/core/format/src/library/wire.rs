@@ -1,12 +1,13 @@
-//! Encoding of numbers and texts in pages: little-endian numbers, LEB128 integers, and texts that
-//! omit the start they share with the text before.
+//! Encoding of numbers and texts in pages: little-endian numbers, LEB128 integers, and texts
+//! without the prefix that they share with the text before.
 
 /// Longest text in a page, bytes: a name, a tag or the id of a model.
 pub(crate) const TEXT_BYTES: usize = 255;
 /// Largest size of a 64-bit integer in LEB128, bytes. Each byte holds seven bits.
 const VARINT_BYTES: usize = 10;
 
-/// Why a page's contents cannot be read: the offset in the unpacked page, and what is wrong there.
+/// The reason why a page's contents cannot be read: an offset in the unpacked page, and the problem
+/// at that offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{problem} at byte {at} of the unpacked page")]
 pub(crate) struct WireError {
@@ -52,7 +53,7 @@ impl<'a> Cursor<'a> {
         self.array().map(|[byte]| byte)
     }
 
-    /// Reads a LEB128 integer. Superfluous bytes are an error.
+    /// Reads a LEB128 integer. A longer code than necessary is an error.
     pub(crate) fn varint(&mut self) -> Result<u64, WireError> {
         let mut value = 0u64;
         for i in 0..VARINT_BYTES {
@@ -101,7 +102,7 @@ impl<'a> Cursor<'a> {
         std::str::from_utf8(bytes).map_err(|_| self.malformed("a text is not UTF-8"))
     }
 
-    /// Replaces `text`, which holds the text before, by the next text.
+    /// Reads the next text into `text`, which must contain the text before it.
     pub(crate) fn following(&mut self, text: &mut Vec<u8>) -> Result<(), WireError> {
         let shared = self.length()?;
         if shared > text.len() {
@@ -134,7 +135,7 @@ pub(crate) fn put_text(page: &mut Vec<u8>, text: &str) {
     page.extend_from_slice(text.as_bytes());
 }
 
-/// Appends a text of at most 255 bytes, without the start that it shares with the text before.
+/// Appends a text of at most 255 bytes, without the prefix that it shares with the text before.
 #[cfg(feature = "write")]
 pub(crate) fn put_following(page: &mut Vec<u8>, before: &[u8], text: &[u8]) {
     let shared = common_prefix(before, text);
@@ -143,7 +144,7 @@ pub(crate) fn put_following(page: &mut Vec<u8>, before: &[u8], text: &[u8]) {
     page.extend_from_slice(&text[shared..]);
 }
 
-/// Returns how many bytes two texts share at their start.
+/// Returns the length of the prefix that two texts share, bytes.
 #[cfg(feature = "write")]
 pub(crate) fn common_prefix(a: &[u8], b: &[u8]) -> usize {
     a.iter().zip(b).take_while(|(a, b)| a == b).count()

@@ -9,15 +9,16 @@ use crate::library::error::LibraryError;
 use crate::library::packer::{PackSummary, Packer};
 use crate::library::spool::ScratchFile;
 
-/// Number of bytes collected in memory before they are written.
+/// Number of bytes that the writer collects in memory before it writes them.
 const BUFFER_BYTES: usize = 1 << 20;
 
 /// Writes a library file. Textures may be added in any order; the same textures give the same
 /// bytes.
 ///
-/// Added textures are stored in a temporary file next to the target, so that only the index is in
-/// memory: about 500 bytes for each texture. [`Self::finish`] writes the target and renames it into
-/// place. A writer that is dropped before that leaves no file behind.
+/// The writer stores added textures in a temporary file next to the target. It keeps only the index
+/// in memory, about 500 bytes for each texture. [`Self::finish`] writes the library to another
+/// temporary file and renames it to the target. A writer that is dropped before that leaves no file
+/// behind.
 ///
 /// ```no_run
 /// let mut writer = htex_format::library::Writer::create("cloth.htexlib".as_ref(), "Cloth")?;
@@ -33,10 +34,12 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Starts a library. `path` is the file. `name` is shown to users and may be empty.
+    /// Starts a library. `path` is the file to write. Programs show `name` to users; it may be
+    /// empty.
     ///
     /// # Errors
-    /// If the name has a control character or more than 255 bytes, or no file can be written there.
+    /// If the name has a control character or more than 255 bytes, or if the folder of `path` does
+    /// not allow writing files.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
         let target = FileInProgress::create(path).map_err(LibraryError::unchanged(path))?;
@@ -44,25 +47,26 @@ impl Writer {
         Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
     }
 
-    /// Allows textures that state no licence. Otherwise [`Self::finish`] refuses them, because only
-    /// the people who made them may pass them on.
+    /// Allows textures that state no licence. Without this call, [`Self::finish`] refuses them,
+    /// because only the people who made such a texture may pass it on.
     pub fn allow_unlicensed(&mut self) {
         self.packer.allows_unlicensed = true;
     }
 
-    /// Adds a texture. `asset` holds the bytes of a `.htex` file, which are stored unchanged.
+    /// Adds a texture. `asset` contains the bytes of a `.htex` file. The library stores them
+    /// unchanged.
     ///
     /// # Errors
-    /// - The name breaks a rule of [`check_name`](crate::library::check_name), or was added before
-    ///   in the same or another case.
-    /// - The asset is not valid, or has more tags or longer tags than the index can hold (64 tags
-    ///   of 255 bytes).
+    /// - The name breaks a rule of [`check_name`](crate::library::check_name), or equals an earlier
+    ///   name apart from case and Unicode normalisation.
+    /// - The asset is not valid, or has more or longer tags than the index can store (64 tags of
+    ///   255 bytes).
     /// - The bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.packer.add(name, asset)
     }
 
-    /// Writes the library and renames it into place.
+    /// Writes the library and renames it to the target.
     ///
     /// # Errors
     /// If a texture states no licence, a file cannot be written, or the library exceeds the default
@@ -78,7 +82,8 @@ impl Writer {
     }
 }
 
-/// Writes a library in memory like [`Writer`], for programs without a file system.
+/// Writes a library to memory instead of a file, for programs without a file system. See
+/// [`Writer`].
 ///
 /// ```
 /// let writer = htex_format::library::MemoryWriter::new("Cloth")?;
@@ -97,12 +102,12 @@ impl MemoryWriter {
         Packer::new(Path::new(""), name, Cursor::default()).map(Self)
     }
 
-    /// Allows textures that state no licence, like [`Writer::allow_unlicensed`].
+    /// Allows textures that state no licence, as [`Writer::allow_unlicensed`] does.
     pub fn allow_unlicensed(&mut self) {
         self.0.allows_unlicensed = true;
     }
 
-    /// Adds a texture, like [`Writer::add`].
+    /// Adds a texture, as [`Writer::add`] does.
     ///
     /// # Errors
     /// The errors of [`Writer::add`].

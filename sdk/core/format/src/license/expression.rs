@@ -1,7 +1,8 @@
 //! The grammar of SPDX expressions.
 //!
-//! The lists of ids come from the crate `spdx`. The crate itself is not used because it also holds
-//! the full names of all licences, four times as many bytes. A test compares both.
+//! The lists of ids come from the crate `spdx`. This module does not use the crate itself, because
+//! the crate also contains the full names of all licences and is four times as large. A test
+//! compares this module with the crate.
 
 use core::cmp::Ordering;
 
@@ -12,7 +13,8 @@ const EXCEPTIONS: &str = include_str!("exceptions.txt");
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Token {
-    /// A listed licence. `gnu` tells whether it is a GNU licence, whose id already says "or later".
+    /// A listed licence. `gnu` says whether it is a GNU licence; their ids state themselves whether
+    /// later versions are allowed.
     License {
         gnu: bool,
     },
@@ -28,7 +30,8 @@ enum Token {
     Or,
 }
 
-/// Returns whether a licence, with its exception if it has one, may end at this token.
+/// Returns whether the name of a licence, including its exception if it has one, may end at this
+/// token.
 const fn ends_term(token: Option<Token>) -> bool {
     use Token::{AdditionRef, Close, Exception, License, LicenseRef, Plus, Unlisted};
     matches!(
@@ -60,7 +63,7 @@ const fn unexpected(last: Option<Token>) -> &'static str {
 /// Checks an expression against the grammar. Returns the first unlisted id, if there is one.
 ///
 /// # Errors
-/// A text that says what is wrong.
+/// If the expression breaks the grammar. The text says what is wrong.
 pub(super) fn check(expression: &str) -> Result<Option<&str>, &'static str> {
     let (mut rest, mut last, mut open, mut unlisted) = (expression, None, 0_usize, None);
     loop {
@@ -152,8 +155,8 @@ fn is_of_id(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '-' || c == '.'
 }
 
-/// Returns whether an id is a line of a list. The lists are sorted by their bytes, so this is a
-/// binary search: every asset with a licence needs a look-up when it is opened.
+/// Returns whether an id is a line of a list. The lists are sorted by their bytes, so a binary
+/// search finds the id. The search is fast because opening any asset with a licence needs it.
 fn is_listed(mut list: &str, id: &str) -> bool {
     while !list.is_empty() {
         let (before, after) = list.split_at_checked(list.len() / 2).unwrap_or_default();

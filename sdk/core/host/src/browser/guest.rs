@@ -59,8 +59,8 @@ impl Guest {
         function.call(&self.raw, parameters)
     }
 
-    /// Checks the result of a call that was allowed to take `most`. A call that took longer fails
-    /// only now, because it cannot be interrupted.
+    /// Checks the result of a call whose time limit was `most`. A call that took longer fails only
+    /// here, because the host cannot interrupt it.
     pub(super) fn returned<R>(
         &mut self,
         _module: &WasmModule,
@@ -110,7 +110,7 @@ impl Usage {
         Ok(Self { budget: Arc::clone(budget), memory_bytes: 0 })
     }
 
-    /// Counts the memory that the instance has grown by.
+    /// Adds the growth of the instance's memory to the budget.
     fn grow(&mut self, memory_bytes: usize) -> Result<(), BudgetError> {
         let more = memory_bytes.saturating_sub(self.memory_bytes);
         if more > 0 {

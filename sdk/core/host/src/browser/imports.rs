@@ -5,17 +5,17 @@
 mod raw {
     #[link(wasm_import_module = "htex")]
     unsafe extern "C" {
-        /// Compiles a module; 0 if that fails.
+        /// Compiles a module. Returns its handle, or 0 if that fails.
         pub(super) fn module_new(bytes: *const u8, len: usize) -> u32;
         pub(super) fn module_free(module: u32);
-        /// Creates an instance with the exports of these names, separated by commas; 0 if that
-        /// fails.
+        /// Creates an instance and looks up its exports with these names, which are separated by
+        /// commas. Returns the instance's handle, or 0 if that fails.
         pub(super) fn instance_new(module: u32, names: *const u8, names_len: usize) -> u32;
         pub(super) fn instance_free(instance: u32);
         /// Returns the size of the instance's memory, bytes.
         pub(super) fn instance_memory(instance: u32) -> usize;
-        /// Calls the export with this index with `len` arguments of the types that `typed` states;
-        /// 0 if it returns.
+        /// Calls the export with this index. `typed` states the types of the `len` arguments and of
+        /// the result. Returns 0 if the call returns.
         pub(super) fn instance_call(
             instance: u32,
             function: u32,
@@ -25,9 +25,9 @@ mod raw {
             returns: u32,
             result: *mut u64,
         ) -> u32;
-        /// Copies from the instance's memory; 0 if that succeeds.
+        /// Copies bytes from the instance's memory. Returns 0 on success.
         pub(super) fn instance_read(instance: u32, at: u32, to: *mut u8, len: usize) -> u32;
-        /// Copies to the instance's memory; 0 if that succeeds.
+        /// Copies bytes to the instance's memory. Returns 0 on success.
         pub(super) fn instance_write(instance: u32, at: u32, from: *const u8, len: usize) -> u32;
         /// Copies the text of the last failure; returns its length.
         pub(super) fn failure_text(to: *mut u8, capacity: usize) -> usize;
@@ -115,7 +115,7 @@ impl GuestInstance {
         }
     }
 
-    /// Reads bytes, or numbers, at an address.
+    /// Reads bytes or numbers at an address of the instance's memory.
     pub(super) fn read<T: Number>(&self, at: u32, out: &mut [T]) -> Result<(), Outside> {
         // SAFETY: a live slice of numbers, each of whose bit patterns is one.
         let failed =
@@ -123,7 +123,7 @@ impl GuestInstance {
         if failed == 0 { Ok(()) } else { Err(Outside) }
     }
 
-    /// Writes bytes, or numbers, at an address.
+    /// Writes bytes or numbers at an address of the instance's memory.
     pub(super) fn write<T: Number>(&self, at: u32, from: &[T]) -> Result<(), Outside> {
         // SAFETY: a live slice of numbers.
         let failed =

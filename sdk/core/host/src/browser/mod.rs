@@ -1,12 +1,13 @@
-//! Runs models in WASM modules by the browser or Node.js that runs this program.
+//! Runs models in WASM modules with the engine of the browser, or of Node.js, that runs this
+//! program.
 //!
 //! The rules are the same as for the engine of the feature `wasm`: a module imports nothing, its
 //! memory and tables are limited, each voice has a separate instance, and an instance that trapped
-//! is not called again. But a call cannot be interrupted from here. A call that took longer than
-//! its limit becomes an error afterwards, and an endless loop ends only with the worker that runs
-//! it (`sdk/bindings/web/src/guarded.js`).
+//! is not called again. But this engine cannot interrupt a call. A call that took longer than its
+//! limit returns an error afterwards. An endless loop ends only when the worker that runs it is
+//! stopped (`sdk/bindings/web/src/guarded.js`).
 //!
-//! This is only a second engine. The loader is the one in `wasm` (`calls.rs`, `model.rs`,
+//! This module contains only the engine. It shares the loader with `wasm` (`calls.rs`, `model.rs`,
 //! `voice.rs`).
 
 #[path = "../wasm/allowance.rs"]
@@ -41,7 +42,7 @@ use module::WasmModule;
 use crate::HostError;
 use crate::sandbox::Sandbox;
 
-/// Loads a model from the bytes of a module. `origin` names it in messages.
+/// Loads a model from the bytes of a module. `origin` is the module's name in messages.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let module = WasmModule::new(bytes, sandbox).map_err(HostError::loading(origin))?;
     WasmModel::new(origin, Arc::new(module))

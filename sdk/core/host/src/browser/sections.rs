@@ -9,10 +9,10 @@ const PAGE: usize = 1 << 16;
 const IMPORT: u8 = 2;
 const TABLE: u8 = 4;
 const MEMORY: u8 = 5;
-/// Flag in the limits: a maximum follows.
+/// Flag of a memory or table: its limits include a maximum.
 const HAS_MAXIMUM: u8 = 1;
 
-/// Error: a module states a higher limit than is allowed, or its sections cannot be read.
+/// Error: a module states a higher limit than the host allows, or its sections cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SectionError {
     #[error("invalid module: its section {id} cannot be read")]

@@ -1,4 +1,4 @@
-//! Arguments and results of functions as 64-bit numbers with their types.
+//! Converts the arguments and results of functions to 64-bit numbers with their types.
 
 use std::marker::PhantomData;
 
@@ -11,7 +11,7 @@ const I64: u8 = 1;
 const F64: u8 = 2;
 const NONE: u8 = 3;
 
-/// A function of an instance, by its index among the names.
+/// A function of an instance: its index among the requested names.
 pub(super) struct TypedFunc<P, R> {
     index: u32,
     of: PhantomData<fn(P) -> R>,

@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use super::fault::Fault;
 
-/// Longest rendering time of samples, as a multiple of their duration.
+/// Largest rendering time, as a multiple of the duration of the rendered samples.
 const TIMES: f64 = 10.0;
-/// The time at the start, which is also the maximum.
+/// Time that a new voice has. It is also the largest time that a voice can save up.
 const FIRST: Duration = Duration::from_secs(1);
 
-/// The time of one voice: one second, and ten times the duration of its samples. The rendering time
-/// is therefore at most proportional to the duration of the samples.
+/// The time left for one voice. A voice starts with one second, and each rendered sample adds ten
+/// times its duration. So in the long run rendering takes at most ten times the duration of the
+/// samples.
 #[derive(Debug)]
 pub(super) struct Allowance {
     left: Duration,

@@ -1,12 +1,12 @@
 //! Compiled modules on disk.
 //!
-//! A file is named by the hash of the module and of the engine. It begins with a keyed hash of its
-//! name and its content, which detects damaged files and files of other users. [`WasmCache`]
-//! documents who is trusted.
+//! The name of a file contains the hashes of the module and of the engine. The file begins with a
+//! keyed hash of its name and its content, which detects damaged files and files of other users.
+//! [`WasmCache`] describes how the cache is protected.
 //!
-//! The files are run as machine code. Therefore a folder that belongs to another user, or that
-//! others may write to, is not used. A file without a tag by this user's key ([`Key`]) is compiled
-//! again.
+//! The program runs these files as machine code. Therefore it does not use a folder that belongs to
+//! another user or to which other users may write. If a file has no tag made with this user's key
+//! ([`Key`]), the program compiles the module again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
@@ -32,8 +32,9 @@ pub(super) struct Cache {
 }
 
 impl Cache {
-    /// Opens the cache, and creates its folder and key if they do not exist. `None` if the cache is
-    /// off, or if its folder belongs to another user or others may write to it.
+    /// Opens the cache, and creates its folder and key if they do not exist. Returns `None` if the
+    /// cache is off, if its folder belongs to another user, or if other users may write to the
+    /// folder.
     pub(super) fn open(cache: &WasmCache) -> Option<Self> {
         let folder = match cache {
             WasmCache::User => folders::cache()?.join("wasm"),
@@ -45,7 +46,7 @@ impl Cache {
         Some(Self { folder, key })
     }
 
-    /// Returns a cached module if its file exists and is authentic.
+    /// Returns the compiled module if its file exists and is authentic.
     pub(super) fn find(&self, engine: &Engine, module: &[u8]) -> Option<Module> {
         let name = name(engine, module);
         let bytes = std::fs::read(self.folder.join(&name)).ok()?;
@@ -60,7 +61,7 @@ impl Cache {
         unsafe { Module::deserialize(engine, artifact) }.ok()
     }
 
-    /// Writes a temporary file and renames it into place.
+    /// Stores a compiled module: writes a temporary file and renames it.
     pub(super) fn keep(&self, engine: &Engine, module: &[u8], artifact: &[u8]) -> io::Result<()> {
         self.keep_as(&name(engine, module), artifact)
     }
@@ -103,7 +104,8 @@ fn is_own(name: &str) -> bool {
         .is_some_and(|(module, engine)| hex(module, 2 * HASH) && hex(engine, 16))
 }
 
-/// Removes the cache's oldest files above the limit. Files that do not belong to the cache stay.
+/// Removes the oldest files until the cache has no more than [`MOST_FILES`]. Does not remove files
+/// that do not belong to the cache.
 #[allow(
     clippy::disallowed_methods,
     reason = "a folder of this user that no other user may write to"

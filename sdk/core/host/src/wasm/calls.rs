@@ -1,5 +1,5 @@
-//! The calls of the model ABI on an instance. Arrays are copied into the instance's buffer, and
-//! results are copied out of it.
+//! The calls of the model ABI on an instance. They copy arguments into the instance's buffer and
+//! results out of it.
 
 use htex_model::{Band, FitInput, Motion};
 
@@ -8,7 +8,7 @@ use super::instance::{Deadline, Instance};
 
 /// Longest last-error text that is read, bytes.
 const LONGEST_ERROR: usize = 4096;
-/// Longest block that is rendered at once. Longer ones are rendered in parts.
+/// Longest block that one call renders, samples. Longer blocks are rendered in parts.
 pub(super) const BLOCK: usize = 8192;
 
 impl Instance {

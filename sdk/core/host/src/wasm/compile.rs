@@ -12,8 +12,8 @@ use super::process;
 use crate::sandbox::Sandbox;
 use crate::{WasmCompiler, WasmLimits};
 
-/// Compilation time on the slowest machine for which the limit holds, as a multiple of the time on
-/// the machine where the estimate was measured.
+/// Factor by which a machine may be slower than the machine on which the estimate was measured, so
+/// that the time limit still holds.
 const SLOWER: f64 = 3.0;
 
 /// Returns the highest effort that the time limit allows.

@@ -1,9 +1,10 @@
 //! The engine that compiles and runs modules, and the clock that interrupts them.
 //!
-//! Time limits use wasmtime's epochs, which a thread counts with at most 20 ticks per second under
-//! the default limits. An endless loop is therefore stopped on every machine. Instructions (`fuel`)
-//! are deterministic and can also be counted. A memory limit costs no time while a module runs: the
-//! engine reserves addresses, so no access has to be compared with a bound.
+//! Time limits use wasmtime's epochs: a thread increments a counter, with the default limits at
+//! most 20 times per second, and stops a call at its deadline. This also stops endless loops. The
+//! engine can also count instructions (`fuel`), which gives the same result on every machine. A
+//! memory limit costs no time while a module runs: the engine reserves addresses, so it need not
+//! compare each access with a bound.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -14,10 +15,10 @@ use wasmtime::{Config, Engine, EngineWeak, Module, OptLevel, RegallocAlgorithm};
 use super::compile_error::CompileError;
 use crate::{WasmEngine, WasmLimits};
 
-/// Shortest and longest time between two ticks.
+/// Shortest and longest time between two increments of the epoch.
 const TICK: (Duration, Duration) = (Duration::from_millis(1), Duration::from_millis(50));
 
-/// How much the compiler optimises.
+/// The effort that the compiler makes to optimise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Effort {
     Optimised,
@@ -33,8 +34,8 @@ struct Clock {
 
 static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 
-/// Waits until the clock threads of engines without modules have ended, at most 50 ms each. A
-/// program must call this before it unloads this code.
+/// Waits until the clock threads of engines without modules have ended, at most 50 ms for each
+/// thread. A program must call this function before it unloads this code.
 pub fn end_wasm_clocks() {
     // Taken out, so that the lock is free while threads end.
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));
@@ -80,15 +81,15 @@ impl ClockedEngine {
         Ok(Self { engine, tick })
     }
 
-    /// Converts a time to ticks. Rounds up and adds one, because the first tick may come
-    /// immediately.
+    /// Converts a time to a number of epochs. Rounds up and adds one, because the first increment
+    /// may come immediately.
     pub(super) fn ticks(&self, time: Duration) -> u64 {
         let ticks = time.as_nanos().div_ceil(self.tick.as_nanos().max(1));
         u64::try_from(ticks).unwrap_or(u64::MAX / 2).saturating_add(1)
     }
 }
 
-/// Returns an engine without a clock, which is needed only to run modules.
+/// Returns an engine without a clock. Only running modules needs a clock.
 pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, CompileError> {
     let mut config = Config::new();
     if effort == Effort::Quick {

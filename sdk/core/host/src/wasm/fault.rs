@@ -14,7 +14,7 @@ pub(super) enum Fault {
     /// The voice's time, or the time of all modules together, ran out during the call.
     #[error("the module was stopped: {0}")]
     Stopped(Box<Self>),
-    /// A resource was refused, or the engine reported an error that is not a trap.
+    /// The host refused a resource, or the engine reported an error that is not a trap.
     #[error("the module was stopped: {what}")]
     Refused { what: String },
     #[error("the module was stopped: it ran longer than {ms} ms")]

@@ -11,7 +11,7 @@ use super::module::WasmModule;
 use super::typed::{Parameters, Returned, TypedFunc};
 use super::usage::Usage;
 
-/// A store and the instance's memory in it.
+/// A wasmtime store, and the memory of the instance in this store.
 pub(super) struct Guest {
     store: Store<Usage>,
     memory: Memory,
@@ -51,7 +51,7 @@ impl Guest {
         function.call(&mut self.store, parameters)
     }
 
-    /// Checks the result of a call that was allowed to take `most`.
+    /// Checks the result of a call whose time limit was `most`.
     pub(super) fn returned<R>(
         &mut self,
         module: &WasmModule,
@@ -82,7 +82,7 @@ impl Guest {
     }
 }
 
-/// Sets the time and the instructions of the next call.
+/// Sets the limits of time and instructions for the next call.
 fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtime::Result<()> {
     store.set_epoch_deadline(module.engine.ticks(time));
     match module.limits.fuel {

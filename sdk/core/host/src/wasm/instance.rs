@@ -1,5 +1,5 @@
 //! One instance of a module: its functions, and a buffer in its memory for arguments and results.
-//! Both engines share this code; their own part is `guest`.
+//! Both engines share this code. The module `guest` contains the code that differs.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,13 +17,14 @@ pub(super) struct Instance {
     module: Arc<WasmModule>,
     guest: Guest,
     functions: Functions,
-    /// The time of a voice. Other calls use the time of the modules' budget.
+    /// The time left for a voice, if this is the instance of a voice. Other instances use the time
+    /// of the modules' budget.
     allowance: Option<Allowance>,
     /// Address and length of the buffer; length 0 until it is allocated.
     buffer: (Usize, Usize),
 }
 
-/// Guard bytes behind an array, which reveal a call that writes beyond it.
+/// Guard bytes behind an array. They reveal a call that writes beyond the array.
 const GUARD: [u8; 4096] = [0xA5; 4096];
 
 /// The time limit of a call.
@@ -40,12 +41,13 @@ impl Instance {
         Ok(Self { module: Arc::clone(module), guest, functions, allowance: None, buffer: (0, 0) })
     }
 
-    /// Makes this the instance of a voice that renders at a rate, with a separate time limit.
+    /// Makes this the instance of a voice with a time limit of its own. `rate_hz` is the voice's
+    /// sample rate.
     pub(super) fn limit_as_voice(&mut self, rate_hz: f64) {
         self.allowance = Some(Allowance::new(rate_hz));
     }
 
-    /// Adds the time that is allowed for rendered samples.
+    /// Adds the time that the voice earns by rendering `samples` samples.
     pub(super) fn earn(&mut self, samples: usize) {
         if let Some(allowance) = &mut self.allowance {
             allowance.earn(samples);
@@ -77,7 +79,7 @@ impl Instance {
         self.call_if(deadline, |functions| Some(function(functions)), parameters)
     }
 
-    /// Calls a function as [`Self::call`] does, but one that only some models have.
+    /// Calls a function that only some models have. Otherwise the same as [`Self::call`].
     pub(super) fn call_if<P: Parameters, R: Returned>(
         &mut self,
         deadline: Deadline,
@@ -156,8 +158,8 @@ impl Instance {
         if self.module.limits.guards { self.guest.write(behind, &GUARD) } else { Ok(()) }
     }
 
-    /// Fails if a call wrote to the guard bytes behind an array of `len` values. The argument
-    /// `bound` states that length.
+    /// Returns an error if a call wrote to the guard bytes behind an array of `len` values. `bound`
+    /// is the name of the argument that states the length.
     pub(super) fn unharmed(
         &self,
         behind: Usize,

@@ -37,7 +37,7 @@ pub use process::serve_compiler;
 use crate::HostError;
 use crate::sandbox::Sandbox;
 
-/// Loads a model from the bytes of a module. `origin` names it in messages.
+/// Loads a model from the bytes of a module. `origin` is the module's name in messages.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let module = WasmModule::new(bytes, sandbox).map_err(HostError::loading(origin))?;
     WasmModel::new(origin, Arc::new(module))
@@ -49,7 +49,8 @@ pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, Hos
     load(&origin, &bytes, sandbox)
 }
 
-/// Reads a file up to one byte more than the limit, so that a file over the limit is noticed.
+/// Reads a file, but at most one byte more than the limit. The extra byte shows that a file exceeds
+/// the limit.
 fn read(path: &Path, most: usize) -> std::io::Result<Vec<u8>> {
     use std::io::Read;
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! A model in a module: all calls except calls of voices.
+//! A model in a module: all calls except the calls of voices.
 
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -24,7 +24,7 @@ std::thread_local! {
 pub(crate) struct WasmModel {
     module: Arc<WasmModule>,
     marker: u32,
-    /// The instance for all calls except calls of voices; `None` after a trap.
+    /// The instance for all calls except the calls of voices; `None` after a trap.
     shared: Mutex<Option<Instance>>,
 }
 
@@ -54,7 +54,7 @@ impl WasmModel {
         Ok(Self { module, marker, shared: Mutex::new(shared) })
     }
 
-    /// Calls the shared instance. `failed` converts a status to the result of a failed call.
+    /// Calls the shared instance. If the call fails, `failed` converts the status to the result.
     fn call<T: Copy>(
         &self,
         failed: impl Fn(i64) -> T,

@@ -21,7 +21,7 @@ pub(super) struct WasmModule {
 }
 
 impl WasmModule {
-    /// Checks and compiles a module, or takes it from the cache.
+    /// Checks a module, and compiles it or loads it from the cache.
     pub(super) fn new(bytes: &[u8], sandbox: &Sandbox) -> Result<Self, CompileError> {
         let limits = &sandbox.limits;
         if bytes.len() > limits.module_bytes {

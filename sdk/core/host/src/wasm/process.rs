@@ -1,4 +1,4 @@
-//! Compilation in a separate process, which is stopped if it exceeds its limits.
+//! Compilation in a separate process. The host stops the process if it exceeds its limits.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -64,9 +64,9 @@ pub(super) fn compile(
 }
 
 /// Compiles the module on standard input and writes the result to standard output. A host starts
-/// the program of [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments given there,
-/// followed by these `arguments`. On Unix, the process first limits its memory and its processor
-/// time.
+/// the program of [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments of that
+/// variant, followed by further arguments; `arguments` are these further arguments. On Unix, the
+/// process first limits its memory and its processor time.
 ///
 /// ```no_run
 /// let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -16,12 +16,12 @@ impl Shared {
         self.follows_motion.load(Ordering::Relaxed)
     }
 
-    /// Requires the functions of `htex.motion/1` of all later instances.
+    /// Requires that all later instances have the functions of `htex.motion/1`.
     pub(super) fn require_motion(&self) {
         self.follows_motion.store(true, Ordering::Relaxed);
     }
 
-    /// Counts one more voice; `None` if there are already `most`.
+    /// Counts one more voice. Returns `None` if there are already `most` voices.
     pub(super) fn place(self: &Arc<Self>, most: usize) -> Option<VoicePlace> {
         let take = |n: usize| (n < most).then_some(n + 1);
         let taken = self.voices.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);

@@ -38,8 +38,8 @@ impl Drop for Usage {
     }
 }
 
-/// Stops an instance that exceeds a limit. An error here is a trap, whereas `false` would only be
-/// the result of the instruction.
+/// Stops an instance that exceeds a limit. The functions return an error, which stops the instance;
+/// with `false` it would continue, and only the instruction that requested memory would fail.
 impl ResourceLimiter for Usage {
     fn memory_growing(
         &mut self,

@@ -1,7 +1,7 @@
-//! A voice in a separate instance, which is not called again after a trap.
+//! A voice in a separate instance. The instance is not called again after a trap.
 //!
-//! Arguments are copied into a buffer in the module's memory, which is allocated once per voice,
-//! and samples are copied out once per call.
+//! The host copies arguments into a buffer in the module's memory, which is allocated once for each
+//! voice, and copies samples out of it once for each call.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(super) struct WasmVoice {
 }
 
 impl WasmVoice {
-    /// Creates a voice. An error is a status with its text.
+    /// Creates a voice. The error is a status code and its text.
     pub(super) fn new(
         module: &Arc<WasmModule>,
         place: VoicePlace,

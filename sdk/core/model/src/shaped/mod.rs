@@ -1,7 +1,8 @@
 //! Models that describe a spectrum by a curve and play it as noise.
 //!
-//! A model implements [`Curve`] and [`ShapedModel`], and is then a [`Model`]: its magnitude at unit
-//! RMS, its interpolation, its rate and its voice ([`ShapedVoice`]) follow from the curve.
+//! Every type that implements [`ShapedModel`], with a type that implements [`Curve`], is also a
+//! [`Model`]. This module derives the magnitude at unit RMS, the sample rate and the voice
+//! ([`ShapedVoice`]) from the curve, and interpolates parameters linearly by default.
 mod places;
 
 use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Values, Voice, mix};
@@ -13,8 +14,8 @@ pub use places::Places;
 const NO_SPECTRUM: &str =
     "these parameters describe no spectrum: nothing in the band, or nothing finite";
 
-/// A model that plays random-phase noise with the spectrum of a [`Curve`]. Every such model is a
-/// [`Model`].
+/// A model that plays random-phase noise with the spectrum of a [`Curve`]. Every type that
+/// implements this trait also implements [`Model`].
 ///
 /// # Example
 ///
@@ -88,16 +89,17 @@ pub trait ShapedModel: 'static {
     /// The curve that the parameters define.
     type Curve: Curve;
 
-    /// As [`Model::DESCRIPTOR`].
+    /// The descriptor; see [`Model::DESCRIPTOR`].
     const DESCRIPTOR: StaticDescriptor;
 
-    /// As [`Model::fit`].
+    /// Finds the parameters that describe a spectrum; see [`Model::fit`].
     ///
     /// # Errors
-    /// As [`Model::fit`].
+    /// Finds the parameters that describe a spectrum; see [`Model::fit`].
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
-    /// As [`Model::magnitude`]. The default is the curve at unit RMS.
+    /// Writes the magnitude of the shape; see [`Model::magnitude`]. The default writes the curve,
+    /// scaled to unit RMS.
     ///
     /// # Errors
     /// If the parameters describe no spectrum in this band.
@@ -111,10 +113,11 @@ pub trait ShapedModel: 'static {
         magnitude::<Self::Curve>(parameters, band, frequency_hz, out)
     }
 
-    /// As [`Model::interpolate`]. By default every number is interpolated linearly.
+    /// Interpolates parameter sets; see [`Model::interpolate`]. The default interpolates every
+    /// number linearly.
     ///
     /// # Errors
-    /// As [`Model::interpolate`].
+    /// If the sets cannot be interpolated, e.g. because their lists differ in length.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -174,18 +177,20 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 /// A magnitude curve that a model's parameters define.
 ///
 /// Implement this trait and [`ShapedModel`] for a model that plays random-phase noise with the
-/// spectrum of the curve. A [`Model`] that does more with the noise uses [`ShapedVoice`] in its
-/// voice, and calls [`magnitude`] and [`voice_rate_hz`] for the methods of the same names.
+/// spectrum of the curve. A model that processes the noise further implements [`Model`] itself. Its
+/// voice then contains a [`ShapedVoice`], and its methods `magnitude` and `voice_rate_hz` call the
+/// functions [`magnitude`] and [`voice_rate_hz`] of this module.
 ///
 /// # How it is used
 ///
 /// * [`magnitude`] makes a curve with [`new`](Self::new), and divides [`magnitude_at`](Self::magnitude_at) by
 ///   [`level`](Self::level).
-/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `magnitude_at`. It then calls
-///   [`prepare`](Self::prepare) once, with the frequencies of the noise. Both may allocate.
-/// * Every retune of the voice calls [`set`](Self::set). [`fill`](Self::fill) follows at once, or
-///   at the end of the cross-fade of 10 ms that is in progress. Both run on the render thread and
-///   do not allocate.
+/// * [`ShapedVoice::new`] makes a curve and starts the noise with the values of `magnitude_at`. It
+///   then calls [`prepare`](Self::prepare) once, with the frequencies of the noise. `new` and
+///   `prepare` may allocate.
+/// * Every retune of the voice calls [`set`](Self::set). The voice then calls [`fill`](Self::fill):
+///   at once, or at the end of a cross-fade (10 ms) if one is in progress. `set` and `fill` run on
+///   the render thread and must not allocate.
 ///
 /// The scale of `magnitude_at` and `fill` does not matter, and they may have different scales: the voice
 /// always normalises to unit RMS in the band.
@@ -193,12 +198,12 @@ fn check<C: Curve>(parameters: &Values<'_>, band: Band) -> Result<(), Error> {
 /// # Known doubt
 ///
 /// When a retune arrives during the cross-fade of an earlier one, the voice accepts the parameters
-/// before it knows whether [`fill`](Self::fill) can describe them. If `fill` then writes no power,
-/// the old spectrum continues without an error. Detect invalid parameters in [`set`](Self::set) if
-/// that is cheap.
+/// before it knows whether [`fill`](Self::fill) will write a valid spectrum. If `fill` then writes
+/// no power, the old spectrum continues without an error. Detect invalid parameters in
+/// [`set`](Self::set) if that is cheap.
 pub trait Curve: Sized + Send + 'static {
-    /// Makes the curve of these parameters in a band. May allocate, unless [`Self::set`] is the
-    /// default.
+    /// Makes the curve of these parameters in a band. It may allocate, but not if the type keeps
+    /// the default [`Self::set`], which calls it on the render thread.
     ///
     /// # Errors
     /// If the parameters describe no spectrum, i.e. the curve is zero or not finite everywhere in
@@ -211,14 +216,15 @@ pub trait Curve: Sized + Send + 'static {
     /// Changes the parameters. By default it makes a new curve. `[render thread, no allocation]`
     ///
     /// # Errors
-    /// As [`Self::new`]. After an error the curve may be unusable.
+    /// If the parameters describe no spectrum, as for [`Self::new`]. After an error the curve may
+    /// be unusable.
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         *self = Self::new(parameters, self.band())?;
         Ok(())
     }
 
-    /// Returns the curve at a frequency in the band, in any scale. The value is finite and not
-    /// negative.
+    /// Returns the value of the curve at a frequency in the band, in any scale. The value is finite
+    /// and not negative.
     fn magnitude_at(&self, frequency_hz: f64) -> f64;
 
     /// Returns the RMS of the curve on the band's grid, in the scale of [`Self::magnitude_at`]. The default
@@ -234,8 +240,8 @@ pub trait Curve: Sized + Send + 'static {
     /// Writes the curve at the prepared frequencies, in any scale. If the parameters describe no
     /// spectrum, all values are zero or not finite. `[render thread, no allocation]`
     ///
-    /// A voice calls [`Self::set`] with every retune, but does not call this while it cross-fades
-    /// (10 ms). So slow computations belong here and not in `set`.
+    /// A voice calls [`Self::set`] with every retune, but does not call `fill` during a cross-fade
+    /// (10 ms). So slow computations belong in `fill` and not in `set`.
     fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
             *m = self.magnitude_at(f);
@@ -275,7 +281,7 @@ pub struct ShapedVoice<C> {
 }
 
 impl<C: Curve> ShapedVoice<C> {
-    /// Makes a voice with unit RMS.
+    /// Makes a voice whose samples have unit RMS.
     ///
     /// # Errors
     /// If the parameters describe no spectrum.

@@ -11,7 +11,8 @@ use htex_dsp::shared::Shared;
 /// and band share them.
 pub struct Places(Vec<BinPosition>);
 
-/// Position between two neighbouring bins: the lower bin, and the part of the way to the next one.
+/// Position between two neighbouring bins: the lower bin, and the fraction of the way to the next
+/// bin.
 struct BinPosition {
     below: u32,
     part: f64,
@@ -19,7 +20,7 @@ struct BinPosition {
 
 impl Places {
     /// Returns the positions of these frequencies, hertz. `key` identifies the frequencies, so that
-    /// equal ones are computed only once.
+    /// voices with the same frequencies share one table.
     pub fn shared(frequency_hz: &[f64], key: ComponentsKey, band: Band) -> Arc<Self> {
         static PLACES: Shared<ComponentsKey, Places> = Shared::new();
         PLACES.get(key, || Arc::new(Self::new(frequency_hz, band)))

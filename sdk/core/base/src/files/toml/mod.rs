@@ -1,13 +1,14 @@
-//! Reads every TOML file: recipes, studies, calibrations and the profiles of actuators.
+//! Reads TOML. All programs of htex read TOML files with this module: recipes, studies,
+//! calibrations and the profiles of actuators.
 //!
 //! The parser of the crate `toml` is recursive. Its own limit (80 levels) has two gaps. After an
 //! error it counts wrongly: a closing bracket without an opening one lowers its count, so that
 //! 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. And it counts the dots of each
 //! dotted key separately, so that 80 nested tables with 80 names each make 6,400 levels.
 //!
-//! Therefore the brackets and dots of the text are counted before it is parsed (`nesting.rs`), and
-//! a text with more than [`MOST_LEVELS`] levels is an error. No other module may call the crate
-//! (`clippy.toml`; no other crate depends on it).
+//! Therefore this module counts the brackets and dots of a text before it parses the text
+//! (`nesting.rs`). A text with more than [`MOST_LEVELS`] levels is an error. No other module may
+//! call the crate (`clippy.toml`; no other crate depends on it).
 #![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
 
 mod nesting;
@@ -21,14 +22,14 @@ use toml::{Spanned, de};
 pub use nesting::MOST_LEVELS;
 use nesting::check_nesting;
 
-/// What is wrong with a TOML text and where. It is displayed as `line 3, column 5: …`.
+/// An error in a TOML text and its place. It is displayed as `line 3, column 5: …`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlError {
     /// The line, counted from 1.
     pub line: usize,
     /// The column in characters, counted from 1.
     pub column: usize,
-    /// What is wrong, in one line.
+    /// The problem, in one line.
     pub message: String,
 }
 
@@ -65,14 +66,16 @@ impl TomlError {
 /// ```
 ///
 /// # Errors
-/// If the text is not TOML, holds another type of value, or is nested deeper than [`MOST_LEVELS`].
+/// If the text is not TOML, contains a value of another type, or is nested deeper than
+/// [`MOST_LEVELS`].
 pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
     check_nesting(text)?;
     toml::from_str(text).map_err(|error| TomlError::from_parser(text, &error))
 }
 
-/// Returns the line of each key, counted from 1, or `None` if the text has no such key. A path
-/// consists of the names of the tables that contain the key, the indices of arrays, and the key.
+/// Returns the line of each key, counted from 1, or `None` if the text has no such key. A key is
+/// given by its path: the names of the tables and the indices of the arrays that contain it, and
+/// then its own name.
 pub fn lines_of_keys<'p>(
     text: &str,
     paths: impl IntoIterator<Item = &'p [String]>,

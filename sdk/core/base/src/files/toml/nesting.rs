@@ -5,8 +5,8 @@ use toml_parser::lexer::{Token, TokenKind};
 
 use super::{TomlError, place};
 
-/// Largest nesting depth of a TOML text: nested tables and arrays, through brackets and through the
-/// dots of keys together. Recipes and studies have at most 8 levels.
+/// Largest nesting depth of a TOML text. Both brackets and the dots of keys count as levels of
+/// nested tables and arrays. Recipes and studies have at most 8 levels.
 pub const MOST_LEVELS: usize = 24;
 
 /// An open bracket.

@@ -1,17 +1,17 @@
-//! Decides to which addresses a request may go. The same rule applies to arguments, to names in
-//! files, and to redirects.
+//! Decides to which addresses a program may send a request. This module checks the addresses of
+//! arguments, of names in files, and of redirects.
 //!
 //! In an argument or in an environment variable, the user may name any address. A file such as a
 //! recipe may only name public addresses, or the server that the user named, and a server may only
-//! redirect to these. Otherwise anyone's file could send requests inside the user's network, to the
-//! machine itself, and to the metadata service of its cloud. The rule does not apply to the name,
-//! but to the address to which it resolves, because that is the address of the connection.
+//! redirect to these. Otherwise an untrusted file could cause requests inside the user's network,
+//! to the machine itself, and to the metadata service of its cloud. The rule applies to the address
+//! to which a name resolves, because the connection goes to this address.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
 use reqwest::dns::{Addrs, Name, Resolve, Resolving};
 
-/// Who named an address.
+/// The source of an address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum UrlSource {
     Person,
@@ -19,7 +19,7 @@ pub(super) enum UrlSource {
     Other,
 }
 
-/// The reason not to go to an address.
+/// The reason for refusing an address.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub(super) struct RedirectRefusal(pub(super) &'static str);
@@ -28,8 +28,8 @@ pub(super) struct RedirectRefusal(pub(super) &'static str);
 pub(super) const INNER: &str = "it leads to an address of this machine or network, which only the user may name: give that URL as an \
                                 argument if you mean it";
 
-/// Returns whether an address is not public: it belongs to this machine, its network or a provider,
-/// stands for several machines, or is unassigned.
+/// Returns whether an address is not public, i.e. it belongs to this machine, its network or a
+/// provider, stands for several machines, or is unassigned.
 pub(super) fn is_inner(address: IpAddr) -> bool {
     // An IPv6 address can hold an IPv4 address (`::ffff:127.0.0.1`), to which the same rules apply.
     match address.to_canonical() {
@@ -80,8 +80,8 @@ fn is_inner_v6(v6: Ipv6Addr) -> bool {
         || (a, b) == (0x2001, 0)
 }
 
-/// Returns whether a host is written as an address, which is not resolved, and this address is not
-/// public.
+/// Returns whether a host is a numeric address that is not public. Such an address is never
+/// resolved, so the [`Resolver`] does not see it.
 pub(super) fn is_inner_number(host: &str) -> bool {
     let number = host.trim_start_matches('[').trim_end_matches(']');
     number.parse().is_ok_and(is_inner)
@@ -92,7 +92,7 @@ pub(super) struct Resolver(pub(super) UrlSource);
 
 impl Resolver {
     /// Returns whether a connection to an address is allowed. No name may lead to a link-local
-    /// address, where a machine in a cloud gets its credentials.
+    /// address, because a machine in a cloud gets its credentials from such an address.
     fn may_connect(&self, address: IpAddr) -> bool {
         let is_link_local = match address.to_canonical() {
             IpAddr::V4(v4) => v4.is_link_local(),

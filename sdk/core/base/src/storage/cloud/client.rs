@@ -1,5 +1,5 @@
 //! The HTTP clients: TLS with rustls, time limits, and a check of the addresses. They do not follow
-//! redirects; [`super::redirects`] does, with another client.
+//! redirects. The module [`super::redirects`] follows them, with another client.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -12,25 +12,25 @@ use rustls_platform_verifier::BuilderVerifierExt;
 use super::addresses::{Resolver, UrlSource};
 use crate::storage::Settings;
 
-/// Longest time for a connection. If the server has not answered by then, the request is tried
-/// again.
+/// Longest time for opening a connection. If the server has not answered by then, the request is
+/// sent again.
 const LONGEST_CONNECT: Duration = Duration::from_secs(10);
 
 /// The clients. Each is created when it is first needed and then shared together with its
 /// connections.
 #[derive(Debug, Default)]
 pub(crate) struct Clients {
-    /// For addresses that the user named.
+    /// Client for addresses that the user named.
     by_person: Mutex<Option<reqwest::Client>>,
-    /// Only for public addresses.
+    /// Client that connects only to public addresses.
     world: Mutex<Option<reqwest::Client>>,
 }
 
 impl Clients {
-    /// Returns the client for addresses that were named in this way.
+    /// Returns the client for addresses from this source.
     ///
     /// # Errors
-    /// A sentence if no certificate of the system can be read.
+    /// If no certificate of the system can be read. The error is a sentence.
     pub(super) fn client_for(
         &self,
         by: UrlSource,

@@ -1,6 +1,6 @@
 //! Turns a failed request into an error that says what to do.
 //!
-//! Messages only use a status and a code, because responses and the library's own errors quote
+//! Messages contain only a status and a code, because responses and the library's own errors quote
 //! signatures and keys.
 
 use std::io;
@@ -11,7 +11,7 @@ use super::log::Last;
 use crate::storage::location::{LocalOrRemote, Scheme};
 use crate::storage::{StorageError, StorageProblem};
 
-/// Why an operation failed.
+/// The reason why an operation failed.
 pub(super) enum Fail {
     /// A request failed before its body.
     Request(Box<object_store::Error>),
@@ -39,8 +39,8 @@ impl From<object_store::Error> for Fail {
 }
 
 impl Store {
-    /// Returns the error for a failure. Texts of the library and of the server are not quoted,
-    /// because they may contain signatures and keys.
+    /// Returns the error for a failure. It does not quote texts of the library and of the server,
+    /// because these may contain signatures and keys.
     pub(super) fn explain(&self, fail: Fail, begun: Instant) -> StorageError {
         use object_store::Error;
         let seconds = begun.elapsed().as_secs_f64();

@@ -1,7 +1,7 @@
 //! Counts the requests for a file, and remembers the last one for error messages.
 //!
-//! This layer lies below the library and remembers how the last request ended, because the library
-//! retries and its errors do not say that.
+//! This layer is between the library and the HTTP client. It remembers how the last request ended,
+//! because the library retries requests and its errors do not say how the last one ended.
 
 use std::error::Error;
 use std::pin::Pin;
@@ -25,7 +25,7 @@ use super::redirects::RedirectClient;
 /// Largest part of a refusal's body that is read to find its code, bytes.
 const MOST_REFUSAL_BYTES: usize = 65_536;
 
-/// What was sent and received.
+/// Record of the requests and responses for a file.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     requests: AtomicU64,
@@ -33,14 +33,14 @@ pub(crate) struct Log {
     last: Mutex<Last>,
 }
 
-/// How the last request ended.
+/// The end of the last request.
 #[derive(Debug, Default, Clone)]
 pub(crate) enum Last {
     #[default]
     Nothing,
     Status {
         status: u16,
-        /// The server's code for it, such as `NoSuchKey`.
+        /// The server's error code, such as `NoSuchKey`.
         code: Option<String>,
     },
     /// No response, or only a part of one.
@@ -93,7 +93,7 @@ fn cause(error: &HttpError) -> Last {
 /// MB including its escapes.
 const MOST_LIST_BYTES: usize = 16 << 20;
 
-/// The client with which requests are sent.
+/// The client that sends requests.
 #[derive(Debug, Clone)]
 pub(crate) enum Client {
     /// With credentials, to a store in the environment. Redirects are not followed.
@@ -150,7 +150,7 @@ impl LoggingClient {
     }
 }
 
-/// Returns a body that ends with an error if it is larger than a list can be.
+/// Returns a body that ends with an error if it is larger than [`MOST_LIST_BYTES`].
 fn bounded(body: HttpResponseBody) -> HttpResponseBody {
     let limited = Limited::new(body, MOST_LIST_BYTES);
     let too_long = |_| HttpError::new(HttpErrorKind::Decode, RedirectRefusal(LONG_LIST));

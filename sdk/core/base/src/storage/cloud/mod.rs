@@ -79,7 +79,7 @@ impl Store {
         (self.log.requests(), self.log.bytes())
     }
 
-    /// Returns size and version; `None` if there is no such file.
+    /// Returns the size and version of the file, or `None` if there is no such file.
     pub(crate) fn stat(&self) -> Result<Option<Stat>, StorageError> {
         use object_store::ObjectStoreExt;
         let here = self.clone();
@@ -138,7 +138,7 @@ impl Store {
         })
     }
 
-    /// Runs requests on the runtime and waits for them, at most for the total time.
+    /// Runs requests on the runtime and waits for them, at most for [`Settings::total`].
     fn run<T: Send + 'static>(
         &self,
         work: impl Future<Output = Result<T, Fail>> + Send + 'static,
@@ -178,7 +178,8 @@ fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
     })
 }
 
-/// Returns when a file changed. A store that does not state it gives 1970.
+/// Returns the time when a file last changed, or `None` if the store does not state it. The library
+/// then gives 1970.
 fn modified(meta: &object_store::ObjectMeta) -> Option<std::time::SystemTime> {
     let milliseconds = u64::try_from(meta.last_modified.timestamp_millis()).ok();
     let since = Duration::from_millis(milliseconds.filter(|ms| *ms > 0)?);

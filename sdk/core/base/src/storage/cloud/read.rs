@@ -17,8 +17,8 @@ use crate::storage::{StorageError, StorageProblem};
 pub(crate) struct Version {
     pub(crate) bytes: u64,
     pub(crate) etag: Option<String>,
-    /// If there is no tag, when the file was written; if that is also unknown, the same time for
-    /// all versions.
+    /// The time when the file was written, used if there is no tag. If this time is also unknown,
+    /// all versions have the same time.
     modified: i64,
 }
 
@@ -31,7 +31,7 @@ impl Version {
         Self { bytes: meta.size, etag: meta.e_tag.clone(), modified }
     }
 
-    /// Returns the tag for `If-Match`, which only compares strong tags.
+    /// Returns the tag for the header `If-Match`, which compares only strong tags.
     fn strong_etag(&self) -> Option<String> {
         self.etag.clone().filter(|etag| !etag.starts_with("W/"))
     }
@@ -86,8 +86,8 @@ impl Store {
         self.run(async move { here.whole(file, most_bytes).await })
     }
 
-    /// Reads a range, which is cut off at the end of the file. Reads only the given version, if
-    /// there is one.
+    /// Reads a range. If the range ends beyond the end of the file, the result is shorter. If
+    /// `version` is given, reads only this version.
     pub(crate) fn part(
         &self,
         range: Range<u64>,

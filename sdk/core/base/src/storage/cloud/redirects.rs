@@ -1,4 +1,4 @@
-//! Redirects of web servers: where they may lead, and which client follows them.
+//! Follows the redirects of web servers, and decides to which addresses they may lead.
 
 use http::{HeaderMap, Method, Response, StatusCode, header};
 use object_store::client::{HttpError, HttpErrorKind, HttpRequest, HttpResponse, HttpService};
@@ -12,18 +12,18 @@ const MOST_REDIRECTS: usize = 5;
 /// The clients for requests to a web server.
 #[derive(Debug, Clone)]
 pub(super) struct RedirectClient {
-    /// For the named server itself.
+    /// Client for the server that was named.
     pub(super) first: reqwest::Client,
-    /// For the servers to which it redirects.
+    /// Client for the servers to which that server redirects.
     pub(super) world: reqwest::Client,
-    /// Who named the server.
+    /// The source of the server's address.
     pub(super) by: UrlSource,
 }
 
 impl RedirectClient {
     /// Sends a request and follows its redirects. Does not follow a redirect from HTTPS to HTTP, or
-    /// to an address of this machine or network, except on the same server. A request does not
-    /// state its referrer, whose query may be a signature.
+    /// to an address of this machine or network, except on the same server. A request has no
+    /// `Referer` header, because the query of the first URL may be a signature.
     pub(super) async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         let (method, headers) = (request.method().clone(), request.headers().clone());
         let first = url(&request.uri().to_string())?;
@@ -53,7 +53,7 @@ impl RedirectClient {
     }
 }
 
-/// Returns where a response redirects to.
+/// Returns the URL to which a response redirects.
 fn target(
     method: &Method,
     at: &Url,
@@ -92,8 +92,8 @@ fn again(method: &Method, to: &Url, headers: &HeaderMap) -> Result<HttpRequest, 
     request.body(body).map_err(|_| refused("it redirects to what is no URL"))
 }
 
-/// Returns whether a header is sent again after a redirect. Only headers about the file are; all
-/// others are meant for one server.
+/// Returns whether a header is sent again after a redirect. Only headers about the file are sent
+/// again, because all other headers are meant for one server.
 fn is_kept(name: &header::HeaderName) -> bool {
     [
         header::RANGE,

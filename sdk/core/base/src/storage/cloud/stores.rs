@@ -24,7 +24,7 @@ pub(crate) struct StoreAndKey {
     pub(crate) is_signed: bool,
 }
 
-/// What a store is created from.
+/// The data from which a store is created.
 pub(crate) struct StoreRequest<'a> {
     pub(crate) uri: &'a Uri,
     pub(crate) settings: &'a Settings,
@@ -36,7 +36,8 @@ impl StoreRequest<'_> {
     /// Creates the store of a URI. No request is sent yet.
     ///
     /// # Errors
-    /// A sentence that contains the names of variables but never their values.
+    /// If settings are missing or wrong. The sentence contains the names of variables but never
+    /// their values.
     pub(crate) fn open(self) -> Result<StoreAndKey, String> {
         match self.uri.scheme {
             Scheme::S3 => self.s3(),

@@ -1,4 +1,4 @@
-//! Writes files completely or not at all: with one request, or in parts that only become a file
+//! Writes files completely or not at all: with one request, or in parts that become a file only
 //! with the last request.
 
 use std::fs::File;
@@ -58,8 +58,8 @@ impl Store {
         self.run_within(limit, self.clone().in_parts(file))
     }
 
-    /// Returns what the store tells readers about the file: its media type, and that a stored copy
-    /// must be compared before it is used, because a file can be replaced under its name.
+    /// Returns the headers that the store sends with the file: its media type, and the instruction
+    /// that a cached copy must be checked before each use, because the file can be replaced.
     fn attributes(&self) -> Attributes {
         let name = self.location.file_name().unwrap_or_default();
         let media_type = media_type(&name);

@@ -107,7 +107,7 @@ impl Entries for Quality {
 
 impl Entries for LeftOut {
     const NAME: &'static str = "LeftOut";
-    const DESCRIPTION: &'static str = "Leave-one-out error: agreement with the recorded spectrum of what a player interpolates at a condition without its own\nparameters.";
+    const DESCRIPTION: &'static str = "Left-out error: how well a fit without certain blocks of time plays the spectra of these blocks.";
 
     fn entries(&self) -> impl Iterator<Item = Entry<'_>> {
         let entry = |measure: Measure| Entry {

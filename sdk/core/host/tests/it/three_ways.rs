@@ -90,10 +90,7 @@ fn the_same_samples_three_ways() {
             };
             let difference = difference(&expected, &got);
             println!("{name:8} built in and {kind:6}: differ by {difference:e} of full scale");
-            // Bit-exact, except for models with an FFT: only an FFT may choose instructions by the
-            // machine.
-            let exact = ["ar", "speak"].contains(&name);
-            assert!(difference <= if exact { 0.0 } else { 1e-9 }, "{name} {kind}");
+            assert!(difference <= 0.0, "{name} {kind}");
             let refitted = fitted(&other);
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * a.abs().max(1e-6);
             assert!(parameters.iter().zip(&refitted).all(near), "{name} {kind}: fit");

@@ -35,9 +35,9 @@ pub(crate) struct Bake {
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// A condition of the grid, e.g. speed=80,force=0.4 (mm/s, N). May be given several times, if
-    /// all combinations of the speeds and forces are given [default: the asset's first condition,
-    /// or the strongest if the first is silent]
+    /// A condition of the grid, e.g. speed=80,force=0.4 (mm/s, N). If you give several, give all
+    /// combinations of their speeds and forces [default: the asset's first condition, or the
+    /// strongest if the first is silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 

@@ -18,7 +18,7 @@ use crate::recordings::RecordingArgs;
 /// Show the texture spectrum of a recording
 ///
 /// htex cuts the recording into segments of 0.2 s and computes the spectrum of each, with a Hann
-/// window. It combines two axes into one (DFT321), divides by the frequency response of the rig if
+/// window. It combines the axes into one (DFT321), divides by the frequency response of the rig if
 /// you give it (--frf), and averages over the segments. The result has a magnitude every 5 Hz from
 /// 20 to 1000 Hz. A sinusoid of amplitude A at one of these frequencies has the magnitude A.
 #[derive(Args)]

@@ -26,7 +26,8 @@ const BLOCK: usize = 4096;
 
 /// Render a scene to a file
 ///
-/// Writes exactly the samples that the scene's device would get. Does not wait for real time.
+/// Writes exactly the samples that the scene's device would get. Renders as fast as it can, without
+/// waiting for real time.
 ///
 /// The extension of the file selects the format: WAV, CSV, NPY or raw samples. The samples are in
 /// the unit of the scene's device, e.g. newtons, the drive voltage of a display, or sound.

@@ -59,10 +59,9 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
-    /// How the texture follows the motion: the exponents of the power laws by which frequencies and
-    /// level change from those at 80 mm/s and 0.4 N, as
-    /// frequency-speed=X,level-speed=X,level-force=X. A relief has the exponents 1, 0 and 1, which
-    /// are the default
+    /// How frequencies and level follow the motion, as exponents of power laws:
+    /// frequency-speed=X,level-speed=X,level-force=X. The exponents change nothing at 80 mm/s and
+    /// 0.4 N. The default is a relief: 1, 0 and 1
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 

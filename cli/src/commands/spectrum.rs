@@ -15,10 +15,10 @@ use crate::plugins::PlayerArgs;
 ///
 /// Prints the spectrum of one of the asset's models, from 20 to 1000 Hz in steps of 5 Hz.
 ///
-/// You can compare the magnitudes with those of `htex process`. They are the result that
-/// `htex process` would give for a long recording of the played texture, if it averages the
-/// segments by power. Outside the recorded speeds and forces, the magnitudes follow the law of the
-/// asset, as during playback.
+/// You can compare the magnitudes with the output of `htex process`: for a long recording of the
+/// played texture, `htex process` gives these magnitudes if it averages the segments by power.
+/// Outside the recorded speeds and forces, the magnitudes follow the law of the asset, as during
+/// playback.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset

@@ -52,7 +52,7 @@ pub(crate) struct Record {
     #[command(flatten)]
     input: InputArgs,
 
-    /// Name of the takes, which begins their file names
+    /// Name of the takes; their file names begin with it
     #[arg(long, value_name = "NAME", default_value = "take")]
     take: String,
 
@@ -65,8 +65,9 @@ pub(crate) struct Record {
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract the mean of the signals without a finger on the surface. htex measures it for one
-    /// second, before the first take (once) or before each take (each)
+    /// Subtract from each signal its mean without a finger on the surface (not from positions and
+    /// speeds). htex measures the means for one second, before the first take (once) or before each
+    /// take (each)
     #[arg(
         long,
         value_enum,

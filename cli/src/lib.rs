@@ -42,7 +42,7 @@ use htex_device_builtin::SOUND;
 use commands::Command;
 use failure::{Exit, Failure, Result};
 
-/// The output of `htex --version`: the version, and one line each for the commit of the sources, the
+/// The output of `htex --version`: the version, and a line each for the commit of the sources, the
 /// target and the features of this build. `htex -V` prints only the version.
 const LONG_VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),

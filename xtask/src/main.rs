@@ -43,8 +43,8 @@ enum Task {
     Book(Out),
     /// Package the C player for Arduino, ESP-IDF and Zephyr
     Firmware(Out),
-    /// Test the bindings to other languages, and the command on other processors; says what is
-    /// missing
+    /// Test the bindings to other languages, and the command on other processors; names missing
+    /// programs
     Bindings {
         /// Bindings to test: c, web, studio, python or processors [default: all]
         names: Vec<String>,
@@ -53,7 +53,7 @@ enum Task {
     Web(Out),
     /// Build the studio as one file (DIR/studio.html) and as a folder for a web server (DIR/static)
     Studio(Out),
-    /// Make the library of textures that comes with the studio again:
+    /// Rebuild the library of textures that comes with the studio:
     /// sdk/bindings/studio/shelf/shelf.htexlib
     StudioShelf,
     /// Run a proof in full; continuous integration runs only a sample of it

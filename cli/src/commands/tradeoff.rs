@@ -50,7 +50,7 @@ pub(crate) struct Tradeoff {
     #[arg(long)]
     quick: bool,
 
-    /// The error that the pictures show, and by which htex finds the best settings (fronts and
+    /// The error to show in the pictures, and to use for finding the best settings (fronts and
     /// knees)
     ///
     /// held-out: htex fits a model to the odd blocks of a recording, plays the model, and compares

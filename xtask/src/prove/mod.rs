@@ -21,7 +21,7 @@ pub enum Proof {
     /// Print hashes of all files and texts that the command writes, to compare two builds with
     /// `diff`
     Outputs(outputs::Options),
-    /// Fuzz each target in fuzz/fuzz_targets for ten minutes, without a finding
+    /// Fuzz each target in fuzz/fuzz_targets for ten minutes; any finding is a failure
     Fuzz(fuzz::Options),
     /// Compile libhtex for Android, iOS and macOS, small and with scenes and libraries of textures
     ///
@@ -30,8 +30,7 @@ pub enum Proof {
     /// Run the fuzz targets on their seeds with every extreme value, cell and byte; tests take one
     /// input in eleven
     Edges,
-    /// Check every model, native and as a WASM module, with four more seeds for the checks of
-    /// sounds
+    /// Check every model, native and as a WASM module; checks of sounds run with four more seeds
     ///
     /// Also shows, for each known fault of a model, that exactly one check fails.
     Models,
@@ -78,8 +77,8 @@ pub enum Proof {
     Processors,
     /// Test the released archive and wheel for Linux in an empty root of Debian
     ///
-    /// The root has no compilers. Programs in C must find the libraries. QEMU emulates the other
-    /// processor.
+    /// The root has no compilers. Programs in C must find the libraries. QEMU emulates the
+    /// processor if it is not this machine's.
     Bare(released::Bare),
     /// Make the empty root of Debian that `bare` uses; proves nothing
     BareRoot,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use htex_lab::study::{Clock, utc};
 
 /// A clock in milliseconds since 1970. It reads the system's clock once, when it is created, and
-/// then continues with the monotonic clock. With the system's clock alone, somebody who sets the
+/// then continues with the monotonic clock. If it always read the system's clock, a change of that
 /// clock during a session could make a response time negative, or a rest an hour long.
 pub(super) struct WallClock {
     made_ms: u64,

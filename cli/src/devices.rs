@@ -82,7 +82,7 @@ impl DeviceArgs {
         opened.map_err(|error| explained(name, Direction::Input, error).into())
     }
 
-    /// Returns these arguments for another run of this program.
+    /// Returns these arguments as words of a command line, for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.device_file.iter().map(|path| ("--device-file", path));
         let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
@@ -157,7 +157,7 @@ impl OneDeviceArgs {
         })
     }
 
-    /// Returns these arguments for another run of this program.
+    /// Returns these arguments as words of a command line, for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let mut arguments = self.devices.again();
         arguments.extend(self.settings.again());
@@ -191,7 +191,7 @@ impl SettingArgs {
         pairs("--set", &self.settings)
     }
 
-    /// Returns these arguments for another run of this program.
+    /// Returns these arguments as words of a command line, for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let profile = self.profile.iter().map(|name| ("--profile", name));
         let settings = self.settings.iter().map(|pair| ("--set", pair));

@@ -179,9 +179,9 @@ fn run_command(command: Command) -> Result {
     Ok(exit)
 }
 
-/// Refuses a relative path in an environment variable of htex (`HTEX_…`). About a relative path in
-/// a variable that other programs also read, only warns: the XDG base directory specification says
-/// to ignore such a path.
+/// Refuses a relative path in an environment variable of htex (`HTEX_…`). Only warns about a
+/// relative path in a variable that other programs also read, because the XDG base directory
+/// specification says to ignore such a path.
 fn check_folders() -> Result<()> {
     let mut ignored = Vec::new();
     for (variable, path) in relative() {

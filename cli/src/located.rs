@@ -295,8 +295,8 @@ pub(crate) fn with_uris(text: &str) -> String {
 /// are kept.
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
-/// Downloads the inputs, and checks that the outputs can be written, as far as that is possible
-/// without a request.
+/// Checks that the outputs can be written, as far as this is possible without a network request.
+/// Then downloads the inputs.
 #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
 pub(crate) fn download() -> Result<()> {
     let files = files(|_| true);

@@ -88,7 +88,7 @@ pub(crate) struct PlayerArgs {
     #[command(flatten)]
     plugins: PluginArgs,
 
-    /// Do not run models that are embedded in the asset (without this, they run in a sandbox)
+    /// Do not run models that are embedded in the asset. Without this, they run in a sandbox
     #[arg(long)]
     no_embedded_plugins: bool,
 }

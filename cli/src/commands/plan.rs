@@ -70,7 +70,7 @@ fn name(name: &str, surface: Option<usize>) -> String {
     surface.map_or_else(|| name.to_owned(), |i| format!("{name} [{i}]"))
 }
 
-/// A plan as it is printed.
+/// A plan, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct PlanReport(Planned);

@@ -32,7 +32,7 @@ pub(crate) struct Spectrum {
     player: PlayerArgs,
 
     /// Do not apply the law of the asset: outside the recorded speeds and forces, show the spectrum
-    /// at the nearest recorded ones
+    /// at the nearest recorded speed and force
     #[arg(long)]
     unscaled: bool,
 

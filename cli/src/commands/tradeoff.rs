@@ -196,7 +196,7 @@ fn simulated() -> Result<Vec<Take>> {
     Surface::ALL.into_iter().map(take).collect()
 }
 
-/// A trade-off as it is printed.
+/// A trade-off, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct TradeoffReport<'a> {

@@ -45,7 +45,7 @@ impl Plan {
     }
 }
 
-/// A plan as it is printed.
+/// A plan, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct PlanReport<'a> {

@@ -1,5 +1,4 @@
-//! The summary of an asset, as JSON and as a table, and the files of assets that commands read and
-//! write.
+//! The summary of an asset, as JSON and as a table. Also reads and writes the files of assets.
 
 use std::fmt::{Display, Formatter, Write as _};
 use std::fs::File;
@@ -22,48 +21,48 @@ use crate::failure::Result;
 use crate::grid::grid_text;
 use crate::output::{show, warn, write_file};
 
-/// The summary of an asset that is printed by the commands that make or show one: its manifest, and
-/// what is computed.
+/// The summary of an asset, which commands print when they make or show an asset: its manifest, and
+/// values computed from the asset.
 #[derive(Serialize)]
 pub(crate) struct AssetSummary {
     asset: String,
     pub(crate) bytes: u64,
     pub(crate) manifest: Manifest,
-    /// The stated law, else the assumed one.
+    /// The law that the manifest states, or else the law that htex assumes.
     law: Law,
     /// Sizes of the embedded models, bytes, in the manifest's order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     plugin_bytes: Vec<usize>,
-    /// In the manifest's order.
+    /// The values computed for each representation, in the manifest's order.
     pub(crate) representations: Vec<RepresentationSummary>,
-    /// After a fit: the grid in which the conditions were collected.
+    /// After a fit on a grid: the grid of speeds and forces to which the conditions belong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) grid: Option<GridReport>,
     /// Warnings that the manifest does not contain.
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
-    /// Whether the text leaves out the manifest's warnings.
+    /// Whether the text leaves out the manifest's warnings, because they were already printed.
     #[serde(skip)]
     pub(crate) is_warned: bool,
 }
 
-/// What is computed about a representation.
+/// The values computed for a representation, which is one fitted model of the asset.
 #[derive(Serialize)]
 pub(crate) struct RepresentationSummary {
     pub(crate) model: String,
     pub(crate) payload_bytes: usize,
-    /// After a fit: its time.
+    /// After a fit: the time that the fit took, milliseconds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fit_ms: Option<f64>,
-    /// In the order of the manifest's `at`.
+    /// The values computed at each condition, in the order of the manifest's `at`.
     pub(crate) at: Vec<AtSummary>,
 }
 
-/// What is computed about a representation at one condition.
+/// The values computed for a representation at one condition.
 #[derive(Serialize)]
 pub(crate) struct AtSummary {
     parameters: Map<String, Value>,
-    /// After a fit: the part of the difference that can be felt.
+    /// After a fit: the part of the error that a fingertip can feel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) felt: Option<FeltError>,
 }
@@ -98,7 +97,7 @@ impl AssetSummary {
         }
     }
 
-    /// Adds the felt part of the differences, by representation and condition.
+    /// Adds the felt part of each error, by representation and condition.
     pub(crate) fn with_felt(mut self, felt: &[Vec<Option<FeltError>>]) -> Self {
         for (representation, felt) in self.representations.iter_mut().zip(felt) {
             for (at, felt) in representation.at.iter_mut().zip(felt) {
@@ -108,7 +107,8 @@ impl AssetSummary {
         self
     }
 
-    /// Returns the summary of a representation with its conditions in the manifest.
+    /// Returns a representation's conditions: what the manifest states about each, and the values
+    /// computed for it.
     pub(crate) fn conditions(
         &self,
         index: usize,
@@ -223,7 +223,7 @@ impl AssetSummary {
         let mut has_heading = false;
         for r in &self.manifest.representations {
             let all: Vec<LeftOut> = r.at.iter().filter_map(|at| at.left_out).collect();
-            // The error of one condition is the error of the whole.
+            // With one condition, there is nothing to summarise over conditions.
             if all.is_empty() || r.at.len() < 2 {
                 continue;
             }
@@ -250,7 +250,7 @@ fn left_out_heading(measure: Measure) -> String {
 
 /// Returns the table cells under [`left_out_heading`]: the RMS and the largest of some errors.
 fn spread_cells(measure: Measure, errors: Vec<f64>) -> String {
-    // Each cell has two spaces before it, and the second one is as wide as `largest`.
+    // Each cell has two spaces before it, and the second cell is as wide as `largest`.
     let width = left_out_heading(measure).len() - "    largest".len();
     if errors.is_empty() {
         return format!("  {:>width$}  {:>7}", "-", "-");
@@ -340,7 +340,8 @@ impl AtSummary {
         column.value(stated.quality.as_ref(), self.felt.as_ref())
     }
 
-    /// Returns the lines of a model that is a sum of sines, as pairs of hertz and newtons.
+    /// Returns the spectral lines of a model that is a sum of sines, as pairs of frequency (Hz) and
+    /// amplitude (asset's unit).
     pub(crate) fn lines(&self, level_rms: f64) -> Vec<(f64, f64)> {
         let list = |name: &str| {
             let values = self.parameters.get(name).and_then(Value::as_array);
@@ -350,12 +351,12 @@ impl AtSummary {
     }
 }
 
-/// Returns a file's bytes. If the file is larger than an asset may be, returns one byte more than
-/// is allowed.
+/// Reads the bytes of a file. Of a file that is too large for an asset, reads one byte more than is
+/// allowed.
 pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    // The reader refuses the additional byte with its own finding, so only it says what the limit
-    // is.
+    // The reader of assets refuses the additional byte. So only the reader's finding has to state
+    // the limit.
     let most = Limits::default().file_bytes.saturating_add(1);
     File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).reading(path)?;
     Ok(bytes)

@@ -18,11 +18,12 @@ pub(crate) struct CheckArgs {
     #[arg(long)]
     json: bool,
 
-    /// Longest time of one check, s
+    /// Time limit of each check, s
     #[arg(long, default_value_t = 60.0, value_name = "S")]
     timeout: f64,
 
-    /// Run only the check NAME, in this process instead of one of its own, e.g. under a debugger
+    /// Run only the check NAME, and in this process instead of its own process, e.g. under a
+    /// debugger
     #[arg(long, value_name = "NAME", conflicts_with = "timeout")]
     pub(crate) reproduce: Option<String>,
 }
@@ -52,7 +53,8 @@ impl CheckArgs {
         Ok(Exit::ok_if(!finding.outcome.is_bad()))
     }
 
-    /// Prints a report. `again` is the command that runs one of its checks in a single process.
+    /// Prints a report. `again` returns the command that runs the check with this name again, in
+    /// one process.
     pub(crate) fn print_report<Subject: Display + Serialize>(
         &self,
         report: &Report<Subject>,

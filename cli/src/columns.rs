@@ -3,7 +3,7 @@
 use htex_author::FeltError;
 use htex_format::{By, Measure, Quality};
 
-/// Minimum width, which fits a correlation with its sign.
+/// Minimum width of a column, characters; a correlation with its sign fits in it.
 const WIDTH: usize = 6;
 
 /// A column: a measure of the model's magnitudes or of rendered samples.

@@ -40,13 +40,15 @@ pub(crate) struct DeviceArgs {
     #[arg(long, value_name = "FILE")]
     device_file: Vec<PathBuf>,
 
-    /// A folder of such libraries, searched before HTEX_DEVICE_PATH and the user's own folder
+    /// A folder of device libraries, which htex searches before HTEX_DEVICE_PATH and the user's own
+    /// folder
     #[arg(long, value_name = "DIR")]
     device_dir: Vec<PathBuf>,
 }
 
 impl DeviceArgs {
-    /// Returns the devices that are found. Reports those that shadow others on standard error.
+    /// Returns the devices that are found. Prints the notes of the search as warnings, e.g. that a
+    /// device shadows another one.
     pub(crate) fn devices(&self) -> Result<Devices, Failure> {
         let devices = self.devices_quietly()?;
         let notes: Vec<String> = devices.notes().iter().map(ToString::to_string).collect();
@@ -54,7 +56,7 @@ impl DeviceArgs {
         Ok(devices)
     }
 
-    /// Returns the devices as [`Self::devices`] does, but without reports.
+    /// Returns the devices as [`Self::devices`] does, but prints nothing.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
         let (files, dirs) = (self.device_file.clone(), self.device_dir.clone());
         Ok(Devices::search(builtin(), &Search { files, dirs, ..Search::default() })?)
@@ -80,7 +82,7 @@ impl DeviceArgs {
         opened.map_err(|error| explained(name, Direction::Input, error).into())
     }
 
-    /// Returns these arguments for another run of this program.
+    /// Returns these arguments as words of a command line, for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.device_file.iter().map(|path| ("--device-file", path));
         let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
@@ -89,7 +91,7 @@ impl DeviceArgs {
 }
 
 /// Returns the reason why no device of this name exists, if this build leaves it out. `instead` is
-/// a sentence.
+/// a sentence on what to use instead.
 fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
     let left_out = Optional::left_out(name)?;
     let (what, how) = (left_out.what, built_with(&left_out));
@@ -109,14 +111,14 @@ fn explained(name: &str, direction: Direction, error: DeviceError) -> DeviceErro
     why.unwrap_or(error)
 }
 
-/// A device, and how it is set.
+/// A device and its settings.
 #[derive(Args)]
 pub(crate) struct OneDeviceArgs {
     /// The device, by short name, id or library file
     #[arg(value_name = "FILE|ID")]
     pub(crate) device: String,
 
-    /// The input of this name, if an output has the same name
+    /// Use the input of this name, if an output has the same name
     #[arg(long)]
     input: bool,
 
@@ -134,7 +136,8 @@ impl OneDeviceArgs {
         Some(Path::new(&self.device)).filter(|file| file.is_file())
     }
 
-    /// Finds the device in `devices`: an output of this name, or else an input.
+    /// Finds the device in `devices`: an output of this name, or else an input. With `--input`,
+    /// finds only an input.
     pub(crate) fn find(&self, devices: &Devices) -> Result<AdapterEntry, DeviceError> {
         let name = &self.device;
         let found = match devices.find_output(name) {
@@ -154,7 +157,7 @@ impl OneDeviceArgs {
         })
     }
 
-    /// Returns these arguments for another run of this program.
+    /// Returns these arguments as words of a command line, for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let mut arguments = self.devices.again();
         arguments.extend(self.settings.again());
@@ -168,12 +171,12 @@ impl OneDeviceArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
-    /// A named group of settings
+    /// Name of a profile: a group of settings of the device (`htex device info` lists the profiles)
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// A setting of the device, e.g. rate_hz=20000, which overrides the profile; may be
-    /// given several times
+    /// A setting of the device, e.g. rate_hz=20000. It overrides the profile; may be given several
+    /// times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
 }
@@ -188,7 +191,7 @@ impl SettingArgs {
         pairs("--set", &self.settings)
     }
 
-    /// Returns these arguments for another run of this program.
+    /// Returns these arguments as words of a command line, for another run of this program.
     pub(crate) fn again(&self) -> Vec<OsString> {
         let profile = self.profile.iter().map(|name| ("--profile", name));
         let settings = self.settings.iter().map(|pair| ("--set", pair));

@@ -1,21 +1,21 @@
-//! Arguments together with the information which of them the user gave. A default value is not
-//! something that the user asked for.
+//! Parsed arguments, with the names of the arguments that the user gave. An argument that has its
+//! default value was not given.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 
 use crate::failure::Result;
 
-/// Arguments with the names of those that were given.
+/// Parsed arguments, with the names of the arguments that the user gave.
 pub(crate) struct ExplicitArgs<T> {
     pub(crate) values: T,
-    /// Their names as keywords, e.g. `full_scale` for `--full-scale`.
+    /// The names of the given arguments as keywords, e.g. `full_scale` for `--full-scale`.
     pub(crate) settings: Vec<String>,
 }
 
 impl<T: Args> ExplicitArgs<T> {
     fn settings_of(matches: &ArgMatches) -> Vec<String> {
-        // The parsed command has further arguments. This one has only the arguments of `T`.
+        // `command` has only the arguments of `T`. The parsed command may have more.
         let command = T::augment_args(Command::new("explicit"));
         let given = command.get_arguments().filter(|argument| {
             let source = matches.value_source(argument.get_id().as_str());

@@ -30,11 +30,11 @@ impl Exit {
     pub(crate) const FAILURE: Self = Self(1);
     /// Wrong usage.
     pub(crate) const USAGE: Self = Self(2);
-    /// Partly made, with some left out.
+    /// Some results were made, and others were left out.
     #[cfg(feature = "build")]
     pub(crate) const PART: Self = Self(3);
 
-    /// Returns the status of a check: a success, or findings.
+    /// Returns the status of a check: success if there are no findings.
     pub(crate) fn ok_if(is_clean: bool) -> Self {
         if is_clean { Self::SUCCESS } else { Self::FAILURE }
     }
@@ -48,7 +48,7 @@ impl Exit {
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// An error that does not name its file, and the file.
+    /// An error that does not name the file that it is about, with this file.
     #[error("{file}: {error}")]
     InFile { file: String, error: Box<Failure> },
     #[error(transparent)]
@@ -67,7 +67,7 @@ pub(crate) enum Failure {
     Library(LibraryError),
     #[error("{cannot} (`htex explain CODE` says more){}", listed(.findings))]
     Findings {
-        /// What cannot be done with them.
+        /// What the findings prevent, e.g. `this scene cannot be played`.
         cannot: &'static str,
         findings: Vec<Finding>,
     },
@@ -101,8 +101,8 @@ impl Failure {
         Self::Other(error.to_string())
     }
 
-    /// Adds the file that the error is about, unless the error is about an argument or names its
-    /// file.
+    /// Adds the file that the error is about, unless the error is about an argument or already
+    /// names its file.
     pub(crate) fn in_file(self, file: &Path) -> Self {
         match self {
             Self::Usage(_) | Self::File(_) | Self::Storage(_) | Self::InFile { .. } => self,
@@ -139,12 +139,12 @@ impl Failure {
         }
     }
 
-    /// Returns the message line by line. It may quote files and their names, so control characters
-    /// are escaped, and lines end only where this program ends them.
+    /// Returns the lines of the message. The message may quote files and their names, so control
+    /// characters are escaped. Quoted text can therefore not begin a new line.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
-        // The message of a recipe itself consists of lines: the position in the TOML file, with a
-        // mark under it.
+        // The message about a recipe has several lines: it shows the position in the TOML file,
+        // with a mark under it.
         #[cfg(feature = "build")]
         if let Self::Build(htex_build::BuildError::Recipe(_)) = self.cause() {
             return text.lines().map(shown_line).collect();
@@ -155,14 +155,15 @@ impl Failure {
             _ => &[],
         };
         let first = match text.split_once('\n') {
-            // The message also lists the findings, but without their flags. They are listed below.
+            // The message also lists the findings, but without flags. The lines with flags are
+            // added below.
             Some((first, _)) if !findings.is_empty() => first,
             _ => &text,
         };
         let first = with_flags(first, self.flags());
         let for_finding = findings.iter().map(|finding| {
             let line = format!("  {} {finding}", finding.severity);
-            // Commands that play run embedded models unless a flag forbids it.
+            // Commands that play a texture run its embedded models unless a flag forbids it.
             let is_off = finding.hint == htex_scene::ALLOW_EMBEDDED;
             let flags = is_off.then(|| "--no-embedded-plugins".to_owned());
             with_flags(&line, flags.or_else(|| flags_for(finding.hint))).into_owned()
@@ -206,7 +207,8 @@ fn flags_for(hint: Hint) -> Option<String> {
     (!flags.is_empty()).then(|| flags.join(", "))
 }
 
-/// Adds the flags that would fix the problem to a message, before its last stop or colon.
+/// Adds the flags that would fix the problem to a message, before the full stop or colon at its
+/// end.
 pub(crate) fn with_hint(message: &str, hint: Hint) -> Cow<'_, str> {
     with_flags(message, flags_for(hint))
 }
@@ -234,7 +236,7 @@ fn shown_line(line: &str) -> String {
     }
 }
 
-/// Returns the flag that caused an error of the library, which knows no flags.
+/// Returns the flag that caused an error of the crate `htex`, whose messages do not name flags.
 fn flag_of(error: &htex::Error) -> &'static str {
     match error {
         htex::Error::EmbeddedOff { .. } | htex::Error::ModelOlder { embedded: true, .. } => {
@@ -245,7 +247,7 @@ fn flag_of(error: &htex::Error) -> &'static str {
 }
 
 impl From<htex::Error> for Failure {
-    /// What a block for microcontrollers cannot have was asked for by flags.
+    /// A wrong rate or grid of a block for microcontrollers comes from flags, so it is wrong usage.
     fn from(error: htex::Error) -> Self {
         match error {
             htex::Error::BakeRate { .. } => Self::Usage(format!("--rate {error}")),
@@ -270,8 +272,8 @@ impl From<htex_format::ReadError> for Failure {
 }
 
 impl From<AuthorError> for Failure {
-    /// A setting becomes a flag of this program. A file that cannot be read is not a matter of
-    /// flags.
+    /// Names a wrong setting by its flag. An error that no flag caused, e.g. that a file cannot be
+    /// read, stays as it is.
     fn from(error: AuthorError) -> Self {
         match error {
             AuthorError::Model(error) => Self::Model(error),

@@ -1,4 +1,4 @@
-//! People's gains and the levels of scenes, shared by `gain` and `play`.
+//! The stored gains of people, and the levels of scenes; shared by `gain` and `play`.
 
 use std::path::PathBuf;
 
@@ -15,12 +15,13 @@ use crate::scenes::Ready;
 /// The representation and levels to use instead of the scene's.
 #[derive(Args)]
 pub(crate) struct FeltArgs {
-    /// The representation that plays every surface, by its model's short name or id
+    /// The model that plays every surface, by short name or id
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// `normalised`: all representations are equally strong; `own`: each keeps its energy relative
-    /// to the one with which the gain of --person was found, else to the strongest
+    /// `normalised`: a texture is equally strong with every model. `own`: each model keeps its own
+    /// energy, relative to the model with which the gain of --person was found, or else to the
+    /// strongest model
     #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
     levels: Option<String>,
 }
@@ -74,12 +75,12 @@ pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey
     }
 }
 
-/// Returns the hash by which earlier versions identified a texture.
+/// Returns the hash by which earlier versions of htex identified a texture.
 pub(crate) fn hash(ready: &Ready) -> Result<String> {
     Ok(Gains::hash_of(&ready.file).reading(&ready.file)?)
 }
 
-/// Returns the names of the files in which the textures were recorded.
+/// Returns the file names of the recordings from which the textures were made.
 pub(crate) fn recordings(ready: &Ready) -> Vec<String> {
     recordings_of(manifests(ready))
 }
@@ -88,7 +89,7 @@ fn manifests(ready: &Ready) -> impl Iterator<Item = &Manifest> {
     ready.scene.assets.iter().map(|asset| asset.manifest())
 }
 
-/// Applies the stored gain of the user to a scene.
+/// Applies the stored gain of this person to a scene.
 pub(crate) fn apply_gain(person: &str, texture: Option<&str>, ready: &mut Ready) -> Result<()> {
     let (gains, _) = gains()?;
     let key = key(person, texture, ready);

@@ -68,14 +68,15 @@ fn entry(cell: &GridCell) -> String {
 /// Formats a number with three digits.
 fn short(x: f64) -> String {
     match x {
-        // The least number that rounds to 100.
+        // The smallest number that rounds to 100.
         x if x >= 99.95 => format!("{x:.0}"),
         x if x >= 9.995 => format!("{x:.1}"),
         x => format!("{x:.2}"),
     }
 }
 
-/// Draws the steady windows over speed and force, the mesh, and the conditions by repeatability.
+/// Draws the steady windows over speed and force, the mesh, and the conditions, which have the
+/// colour of their repeatability.
 pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     let mut plot = Plot::new(
         &format!("{name}: steady windows, conditions and mesh"),
@@ -104,7 +105,7 @@ pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     let thin = grid.cells.iter().filter(|c| c.status == CellStatus::Thin);
     push_cells(&mut plot, "too thin: no condition", THIN, thin);
     if let Some(last) = plot.series.last_mut() {
-        // Without thin cells nothing was added, and the last series is another one.
+        // Without thin cells, no series was added, and the last series is another one.
         last.marker_hollow = last.name.starts_with("too thin");
     }
     plot

@@ -1,5 +1,4 @@
-//! Arguments about a source's channels and a tracker, and opening sources, shared by the commands
-//! that record.
+//! Arguments for the channels of a source and for a tracker, shared by the commands that record.
 
 use std::collections::BTreeMap;
 use std::io::{BufReader, IsTerminal};
@@ -14,18 +13,19 @@ use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, 
 
 use crate::failure::{Failure, Result};
 
-/// The signals of a source, and an additional tracker.
+/// The signals of a source, and a separate tracker of the finger's motion.
 #[derive(Args)]
 #[command(next_help_heading = "Source")]
 pub(crate) struct InputArgs {
-    /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31.
-    /// Without this, roles follow from the channels' names
+    /// What each channel measures, and its scale, written as for `htex fit`:
+    /// lateral_x=fx1+fx2,normal=-fz*0.31. Without this, htex finds the channels by their names
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Option<String>,
 
-    /// Calibration of a six-axis sensor on the first six channels, which are then called fx, fy,
-    /// fz, tx, ty, tz: six rows of six numbers (N and N m per volt) as CSV, or `matrix` in TOML. A
-    /// second file calibrates the next six; axes are then called fx1, fx2, …
+    /// Calibration of a six-axis force sensor on the first six channels, which are then called fx,
+    /// fy, fz, tx, ty, tz. The file has six rows of six numbers (N and N m per volt), as CSV or as
+    /// `matrix` in TOML. A second file calibrates a sensor on the next six channels; the axes are
+    /// then called fx1, fx2, …
     #[arg(long, value_name = "FILE")]
     calibration: Vec<PathBuf>,
 
@@ -39,12 +39,13 @@ pub(crate) struct InputArgs {
     #[arg(long, value_name = "NAME:TARGET")]
     tracker: Option<String>,
 
-    /// Columns of a tracker's file by role, as ROLE=COLUMN or ROLE=COLUMN:SCALE; COLUMN is a name or
-    /// a number (#2). For example time=stamp_ms:0.001,x=#2
+    /// What the columns of a tracker's file are, as ROLE=COLUMN or ROLE=COLUMN:SCALE, e.g.
+    /// time=stamp_ms:0.001,x=#2. COLUMN is a name or a number (#2)
     #[arg(long, value_name = "MAP", requires = "tracker")]
     tracker_map: Option<String>,
 
-    /// Format of the recordings [default: csv; for trials npy, which takes a third of the space]
+    /// Format of the recordings [default: csv; for the trials of a study npy, which takes a third
+    /// of the space]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
 }

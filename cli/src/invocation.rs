@@ -39,9 +39,10 @@ impl Program {
     }
 }
 
-/// Stores the shown arguments (without the program's name) and the program of this run.
+/// Stores the arguments of this run in a form that may be shown (without the program's name), and
+/// its program.
 pub(crate) fn set(arguments: Vec<OsString>, program: Vec<OsString>) {
-    // Not set once per process: the Python package may run several commands.
+    // Set for each run, because a process of the Python package may run several commands.
     *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Invocation { arguments, program };
 }
 
@@ -54,7 +55,7 @@ pub(crate) fn arguments() -> Vec<OsString> {
 /// Returns the program that starts the command again.
 ///
 /// # Errors
-/// When it is unknown.
+/// When the program is unknown.
 pub(crate) fn program() -> Result<Program, UnknownProgram> {
     let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
     let (file, arguments) = current.program.split_first().ok_or(UnknownProgram)?;

@@ -42,7 +42,7 @@ use htex_device_builtin::SOUND;
 use commands::Command;
 use failure::{Exit, Failure, Result};
 
-/// The output of `htex --version`: the version, and one line each for the commit of the sources, the
+/// The output of `htex --version`: the version, and a line each for the commit of the sources, the
 /// target and the features of this build. `htex -V` prints only the version.
 const LONG_VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
@@ -56,8 +56,9 @@ const LONG_VERSION: &str = concat!(
 
 /// Fit, inspect, measure and play texture assets for touch.
 ///
-/// A recording of a finger sliding over a surface becomes a `.htex` file of a few hundred bytes
-/// with models of its spectrum and the measured error of each.
+/// `htex fit` turns a recording of a finger sliding over a surface into a `.htex` file of a few
+/// kilobytes. The file holds models of the recording's spectrum, and the measured error of each
+/// model.
 #[derive(Parser)]
 #[command(name = "htex", version, long_version = LONG_VERSION, max_term_width = 100, after_help = first_steps())]
 struct Cli {
@@ -79,7 +80,7 @@ fn first_steps() -> String {
     format!(
         "\
 First steps:
-  htex demo out                       everything, on simulated surfaces
+  htex demo out                       run everything on simulated surfaces
   htex fit rec.csv -o cloth.htex      fit models to your recording
   htex info cloth.htex                show the error of each model
   htex synth cloth.htex -o cloth.wav  play it to a file
@@ -91,10 +92,11 @@ Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
 
 /// Runs the command and returns its exit status: 0 ok, 1 findings or failure, 2 wrong usage.
 ///
-/// `arguments` are a program's arguments, beginning with the program's name. `program` starts the
-/// command again in a separate process: a file, and arguments that come before the command's own,
-/// e.g. `python -m htex`. Checks of models and devices and the output of a display need it. If
-/// `program` is empty, they fail with an error.
+/// `arguments` begin with the program's name, as in [`std::env::args_os`]. `program` is what starts
+/// this command again in another process: a program file, followed by the arguments that come
+/// before the command's own, e.g. `python -m htex`. The command starts itself again to check a
+/// model or a device, and to hold the output of a display. If `program` is empty, these uses fail
+/// with an error.
 ///
 /// The first call installs a Ctrl-C handler for the rest of the process. Only one call may run at a
 /// time.
@@ -114,8 +116,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
     code
 }
 
-/// Checks whether the command accepts these arguments, beginning with the program's name. Nothing
-/// is run. Tests use it to check command lines in the documentation.
+/// Checks whether the command accepts these arguments, which begin with the program's name. Does
+/// not run the command. Tests use this function to check command lines in the documentation.
 ///
 /// ```
 /// assert!(htex_cli::check_usage(["htex", "info", "a.htex"].map(Into::into)).is_ok());
@@ -123,7 +125,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
 /// ```
 ///
 /// # Errors
-/// The text that the command would print.
+/// Returns the error message that the command would print.
 pub fn check_usage(
     arguments: impl IntoIterator<Item = OsString>,
 ) -> std::result::Result<(), String> {
@@ -157,26 +159,29 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
             failure.exit().code()
         }
     };
-    // Last, because it waits as long as the output may have a voltage.
+    // Called last, because it waits as long as the display's output may have a voltage.
     playing::stay_until_zero();
     code
 }
 
 /// Downloads the inputs of a command, runs it, and uploads its outputs.
 fn run_command(command: Command) -> Result {
-    // Also resets what an earlier command in this process has set.
+    // Also resets the meaning of signals, which an earlier command in this process may have
+    // changed.
     signals::handle()?;
     check_folders()?;
     located::download()?;
     let exit = command.run()?;
-    // The command may have asked for signals, but from here on nothing checks for them.
+    // The command may have called `signals::ask`. From here on nothing checks for signals, so they
+    // end the program again.
     signals::handle()?;
     located::upload()?;
     Ok(exit)
 }
 
-/// Refuses a relative path in htex's own variables. In variables that other programs also read, it
-/// only warns, because the XDG base directory specification says to ignore a relative path.
+/// Refuses a relative path in an environment variable of htex (`HTEX_…`). Only warns about a
+/// relative path in a variable that other programs also read, because the XDG base directory
+/// specification says to ignore such a path.
 fn check_folders() -> Result<()> {
     let mut ignored = Vec::new();
     for (variable, path) in relative() {

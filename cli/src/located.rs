@@ -2,7 +2,7 @@
 //! uploaded when it is done. The command itself sees only local files.
 //!
 //! The argument parsers ([`ASSET`], [`RECORDING`], [`OUTPUT`]) replace a URI by a path in a
-//! temporary folder. Printed messages show the URI again ([`named`]).
+//! temporary folder. Printed messages show the URI again ([`with_uris`]).
 
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
@@ -28,7 +28,8 @@ pub(crate) const RECORDING: Argument = Argument(Role::Recording);
 /// An argument for a file to write.
 pub(crate) const OUTPUT: Argument = Argument(Role::Output);
 
-/// An argument for a local file to write, next to which other files are written.
+/// An argument for a file to write that must be local, because the command writes other files next
+/// to it.
 pub(crate) const LOCAL_OUTPUT: Argument = Argument(Role::LocalOutput);
 
 /// The remote files of the current run.
@@ -96,9 +97,9 @@ const FORMATS: [&str; 27] = [
     "svg", "toml", "tsv", "wav", "xlsx",
 ];
 
-/// Refuses an output whose extension names a different format from the one that is written. The
-/// argument's value name states that format (`CSV`, `OUT.htexlib`). If the value name is not a
-/// format (`FILE`), the extension and the command choose the format.
+/// Refuses an output whose extension names another format than the command writes. The argument's
+/// value name states the written format (`CSV`, `OUT.htexlib`). If the value name is no format
+/// (`FILE`), any extension is allowed, because the extension or the command chooses the format.
 fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(), String> {
     let names = argument.and_then(clap::Arg::get_value_names);
     let written = names
@@ -121,7 +122,7 @@ fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(),
     }
 }
 
-/// An argument that may be a URI and that the command itself reads.
+/// An argument that may be a URI, for a command that reads URIs itself.
 #[cfg(feature = "build")]
 #[derive(Debug, Clone)]
 pub(crate) struct Anywhere(PathBuf);
@@ -142,12 +143,12 @@ impl std::ops::Deref for Anywhere {
     }
 }
 
-/// Refuses a URI in an argument for a local path, where it would name a file or folder such as
-/// `s3:`. An argument that may be a URI has the parser [`Argument`], which returns a local path, or
-/// has another type than a path.
+/// Refuses a URI in an argument for a local path, where the URI would name a folder such as `s3:`.
+/// Does not affect arguments that may be URIs: either their parser [`Argument`] has already
+/// replaced the URI by a local path, or their type is not a path.
 ///
 /// # Errors
-/// Names the argument, and says what to give.
+/// The error names the argument, and says what to give.
 pub(crate) fn check_paths(
     command: &clap::Command,
     matches: &ArgMatches,
@@ -208,7 +209,7 @@ impl RemoteFiles {
             return Err(format!("{location}: it has no file name at its end; name a file"));
         };
         let failed = |error| format!("no temporary folder for {location}: {error}");
-        // A folder for each, because several URIs may have the same file name.
+        // Each copy has its own folder, because several URIs may have the same file name.
         let folder = self.folder().map_err(failed)?.join(self.files.len().to_string());
         std::fs::create_dir(&folder).map_err(failed)?;
         let local = folder.join(name);
@@ -222,7 +223,7 @@ impl RemoteFiles {
         }
         let folder = tempfile::Builder::new().prefix("htex-").tempdir()?;
         let path = folder.path().to_owned();
-        // The copy must not be readable by others, because the store may be private.
+        // Other users must not be able to read the copies, because the remote files may be private.
         htex_base::files::private::close(&path)?;
         *FOLDER.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.clone());
         self.folder = Some(folder);
@@ -274,7 +275,7 @@ pub(crate) fn is_copy(path: &Path) -> bool {
     remote_files().files.iter().any(|file| file.local == path)
 }
 
-/// Replaces local copies in a text by their URIs, both as plain text and inside JSON.
+/// Replaces the paths of local copies in a text by their URIs, both in plain text and inside JSON.
 pub(crate) fn with_uris(text: &str) -> String {
     let mut text = text.to_owned();
     for file in &remote_files().files {
@@ -282,7 +283,7 @@ pub(crate) fn with_uris(text: &str) -> String {
         let escaped = |text: &str| serde_json::Value::from(text).to_string();
         let in_json = |text: &str| escaped(text).trim_matches('"').to_owned();
         if text.contains(&copy) || text.contains(&in_json(&copy)) {
-            // First as a whole JSON string, in which a Windows path has other characters.
+            // First as a whole JSON string, in which the backslashes of a Windows path are escaped.
             text = text.replace(&escaped(&copy), &escaped(&uri));
             text = text.replace(&copy, &uri);
         }
@@ -294,8 +295,8 @@ pub(crate) fn with_uris(text: &str) -> String {
 /// are kept.
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
-/// Downloads the inputs, and checks that the outputs can be written, as far as that is possible
-/// without a request.
+/// Checks that the outputs can be written, as far as this is possible without a network request.
+/// Then downloads the inputs.
 #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
 pub(crate) fn download() -> Result<()> {
     let files = files(|_| true);
@@ -303,7 +304,7 @@ pub(crate) fn download() -> Result<()> {
         return Ok(());
     }
     let storage = Storage::from_environment()?;
-    // Before any download, which a wrong output would make useless.
+    // Checked before any download, because a wrong output would make the download useless.
     for (location, _, _) in files.iter().filter(|(_, _, role)| *role == Role::Output) {
         storage.check_writable(location)?;
     }
@@ -322,7 +323,7 @@ pub(crate) fn download() -> Result<()> {
     Ok(())
 }
 
-/// Uploads the outputs of a command that has succeeded. If that fails, the local copy is kept.
+/// Uploads the outputs of a command that has succeeded. Keeps the local copies if an upload fails.
 pub(crate) fn upload() -> Result<()> {
     let outputs = files(|role| role == Role::Output);
     if outputs.is_empty() {
@@ -336,13 +337,14 @@ pub(crate) fn upload() -> Result<()> {
     Ok(())
 }
 
-/// Returns the error for an output, whose local copy is kept after the command.
+/// Keeps the local copies after a failed upload. Returns the error, which names the copy of the
+/// output.
 fn kept(copy: &Path, error: StorageError) -> Failure {
     keep();
     Failure::Other(format!("{error}; the result is kept in {}", copy.display()))
 }
 
-/// Returns an argument in a form that may be shown and stored: a URL without its query, which may
+/// Returns an argument in a form that may be shown and stored. A URL loses its query, which may
 /// contain a signature.
 pub(crate) fn without_secrets(argument: OsString) -> OsString {
     let Some(text) = argument.to_str() else {

@@ -1,5 +1,5 @@
-//! A live motion. It is either read from lines and passed to the playing loop without a lock, or it
-//! is the motion of a finger on a page.
+//! The finger's motion while a scene plays. It comes either from input lines, which a thread reads
+//! and passes to the playing loop without a lock, or from a finger on a page.
 
 use std::io::BufRead;
 use std::thread;
@@ -11,7 +11,7 @@ use htex_lab::study::Touch;
 use htex_scene::Renderer;
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// Maximum number of motions that may wait for the player.
+/// Maximum number of motions that may wait in the queue for the player.
 const ROOM: usize = 1024;
 /// Time between two attempts of the reader if the queue is full.
 const WAIT: Duration = Duration::from_millis(1);
@@ -37,8 +37,8 @@ enum MotionUpdate {
 
 impl Motions {
     /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a separate thread. A
-    /// malformed line is reported with its number and skipped. A line with numbers that no finger
-    /// can have is a failed reading, as in the renderer.
+    /// malformed line is reported with its number and skipped. A line with a speed or force that no
+    /// finger can have is a failed reading, as in the renderer.
     pub(crate) fn from_stdin() -> Self {
         let (sender, receiver) = RingBuffer::new(ROOM);
         // A read cannot be interrupted, so the thread is left to the end of the process.
@@ -50,8 +50,8 @@ impl Motions {
     pub(crate) fn follow(&mut self, renderer: &mut Renderer) -> bool {
         match self.update() {
             MotionUpdate::New(finger) => {
-                // After a failed reading, the last motion is held for a while and then becomes no
-                // contact. The next reading may be valid.
+                // After a failed reading, the renderer keeps the last motion for a while, and then
+                // assumes no contact. The next reading may be valid.
                 let _ = renderer.set_motion(finger);
                 true
             }

@@ -37,7 +37,7 @@ pub(crate) fn show(result: &(impl Serialize + Display), is_json: bool) -> Result
 }
 
 /// Writes text to standard output. Control characters are escaped, because the text may quote
-/// untrusted files. A reader that has ended (`| head`) is not an error.
+/// untrusted files. It is no error if the program that reads the output has ended (`| head`).
 pub(crate) fn print(text: &str) -> Result<()> {
     let lines: String = text
         .split_inclusive('\n')
@@ -65,13 +65,14 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<()> {
     }
 }
 
-/// Writes a value as JSON with a line end. Characters that could control a terminal or change the
-/// direction of text are escaped as JSON escapes, because such characters occur only in strings.
+/// Writes a value as JSON with a line end. Writes characters that could control a terminal or
+/// change the direction of text as JSON escapes. The value stays the same, because such characters
+/// occur only in strings.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     write(&(json_line(value)? + "\n"))
 }
 
-/// Returns a value as JSON on one line, in which every character that steers a terminal is escaped.
+/// Returns a value as JSON on one line. Escapes every character that could control a terminal.
 pub(crate) fn json_line(value: &impl Serialize) -> Result<String> {
     use std::fmt::Write as _;
     let text = serde_json::to_string(value)?;
@@ -139,8 +140,8 @@ pub(crate) enum OutputFile<'a> {
     /// A file that the user named. A link is followed, because the user may have named it for that
     /// purpose.
     Named(&'a Path),
-    /// A file with a name of ours, in a folder that the user named or next to a file that the user
-    /// named. Somebody else may have filled the folder, so no link in it is followed.
+    /// A file whose name this program chose, in a folder that the user named or next to a file that
+    /// the user named. Somebody else may have filled the folder, so no link in it is followed.
     Inside(&'a OwnFolder, &'a Path),
 }
 
@@ -170,7 +171,8 @@ impl OutputFile<'_> {
     }
 }
 
-/// Writes a file that the user named, under a temporary name next to it, and renames it.
+/// Writes a file that the user named: first under a temporary name next to it, which is then
+/// renamed.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     Ok(OutputFile::Named(path).write(bytes)?)
 }
@@ -180,8 +182,8 @@ pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string()).into_owned()
 }
 
-/// Returns a progress bar over `steps` named steps on standard error. It is hidden unless that is a
-/// terminal.
+/// Returns a progress bar over `steps` named steps on standard error. It is hidden if standard
+/// error is not a terminal.
 pub(crate) fn bar(steps: u64) -> ProgressBar {
     bar_like(steps, "{bar:24} {pos}/{len} {msg}")
 }

@@ -9,9 +9,10 @@ use std::path::Path;
 use crate::failure::{Failure, Result};
 use crate::output::shown;
 
-/// Refuses outputs that are inputs, and outputs that are the same file, under any name.
+/// Refuses an output that is also an input, and two outputs that are the same file, even under
+/// different names.
 ///
-/// Inputs that do not exist are reported by the code that reads them.
+/// Does not report inputs that do not exist; the code that reads them does.
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
@@ -36,8 +37,8 @@ pub(crate) fn check_outputs<'a>(
     Ok(())
 }
 
-/// Whether two paths lead to the same file, following links. For files that do not exist yet,
-/// whether they would.
+/// Whether two paths lead to the same file. Follows links. If neither file exists yet, returns
+/// whether the two paths would be the same file.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (std::fs::metadata(a), std::fs::metadata(b)) {
         (Ok(a_is), Ok(b_is)) => is_one_file((a, &a_is), (b, &b_is)),

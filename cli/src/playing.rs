@@ -24,13 +24,13 @@ const LIVE_BLOCK_S: f64 = 0.005;
 /// zero.
 const DISPLAY_BLOCK_S: f64 = 0.02;
 
-/// Returns the block size in frames: the device's, or less with a live motion or on a display at a
-/// low rate.
+/// Returns the block size in frames: the device's block size, or a smaller one if the motion is
+/// live or the device is a display.
 fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
     let most_s = match ready.scene.file.motion {
         Motion::Live => LIVE_BLOCK_S,
-        // Zero must be reached within 0.5 s of a signal, and buffer and ramp may take 400 ms of
-        // that.
+        // The output must be at zero within 0.5 s after a signal. The buffer and the ramp may take
+        // 400 ms of this time.
         _ if is_wanted(&ready.capabilities) => DISPLAY_BLOCK_S,
         _ => f64::INFINITY,
     };
@@ -45,9 +45,9 @@ fn guardian() -> Result<Command, DeviceError> {
     Ok(command)
 }
 
-/// Waits while the output of a display is not confirmed to be at zero. Meanwhile, the guardian's
-/// crate keeps trying, and prints every second that the amplifier must be switched off. A signal
-/// ends the program.
+/// Waits until the output of a display is confirmed to be at zero. While this function waits, the
+/// guardian's crate keeps trying, and prints every second that the amplifier must be switched off.
+/// A signal ends the program.
 pub(crate) fn stay_until_zero() {
     if is_unconfirmed() && signals::handle().is_ok() {
         while is_unconfirmed() {
@@ -61,7 +61,8 @@ pub(crate) struct Output {
     pub(crate) device: Box<dyn htex_device::Output>,
     block: Vec<f32>,
     rate_hz: f64,
-    /// When the first block was made. Used for a device without a clock in a scene without an end.
+    /// When playback in real time began; `None` if the device takes samples as fast as they are
+    /// made or has its own clock.
     pace: Option<Instant>,
     frames: u64,
     /// Number of frames in the last written block.
@@ -110,7 +111,8 @@ impl Output {
         }
     }
 
-    /// Uses blocks of at most 10 ms in real time, as a device with a clock would.
+    /// Makes playback wait for real time, as a device with a clock would. Blocks are then at most
+    /// 10 ms long.
     pub(crate) fn paced(mut self) -> Self {
         let most = (self.rate_hz / 100.0).ceil().max(1.0) as usize;
         self.block.truncate(most);
@@ -133,7 +135,7 @@ impl Output {
             self.last = frames;
         }
         if let Some(start) = self.pace {
-            // From the start, so that the errors of the sleeps do not add up.
+            // Measured from the start, so that the errors of the sleeps do not add up.
             let due = Duration::from_secs_f64(self.frames as f64 / self.rate_hz);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
         }
@@ -155,8 +157,8 @@ impl Output {
         Ok(())
     }
 
-    /// Returns the time in seconds until the first written frame is at the display, as far as the
-    /// device knows.
+    /// Returns the time until the first written frame is at the display, seconds, as far as the
+    /// device knows it.
     #[cfg(feature = "lab")]
     pub(crate) fn lead_s(&self) -> f64 {
         self.device.status().latency_s - self.frames as f64 / self.rate_hz
@@ -173,7 +175,8 @@ impl Output {
         self.frames
     }
 
-    /// Plays what was written, and keeps the result unless there was an error.
+    /// Plays all written samples to their end. After an error of the renderer, returns this error,
+    /// and leaves no file behind.
     pub(crate) fn finish(mut self) -> Result<htex_device::Status> {
         if let Some(error) = self.failed.take() {
             // The fade to zero still has to be played on a device with a clock. A file is not kept.

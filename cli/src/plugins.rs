@@ -18,27 +18,29 @@ pub(crate) struct PluginArgs {
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// A folder of plugins, searched before HTEX_PLUGIN_PATH and the user's own folder
+    /// A folder of plugins, which htex searches before HTEX_PLUGIN_PATH and the user's own folder
     #[arg(long, value_name = "DIR")]
     plugin_dir: Vec<PathBuf>,
 
-    /// What a WASM model may use, by name: memory-mib (of an instance) [64], stack-kib [256],
-    /// call-ms (longest call) [5000], render-ms (of 8192 samples, or a retune) [500], voices [256],
-    /// table-elements [10000], module-mib [16], fuel (instructions of a call) [not counted],
-    /// compile-ms [5000], compile-mib [512]; of all models of an asset together asset-ms (but
-    /// voices) [10000], asset-mib [512], asset-instances [512], and of all in one command all-ms
-    /// [30000], all-mib [1024], all-instances [2048]; may be given several times
+    /// A limit on what WASM models may use; may be given several times. For each model: memory-mib
+    /// (of one instance) [64], stack-kib [256], call-ms (longest call) [5000], render-ms (for 8192
+    /// samples, or for one retune) [500], voices [256], table-elements [10000], module-mib [16],
+    /// fuel (instructions in one call) [not counted], compile-ms [5000], compile-mib [512]. For all
+    /// models of one asset together: asset-ms (without voices) [10000], asset-mib [512],
+    /// asset-instances [512]. For all models in one command together: all-ms (without voices)
+    /// [30000], all-mib [1024], all-instances [2048]
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 }
 
 impl PluginArgs {
-    /// Returns the plugins that were named.
+    /// Returns the plugin files that the user named.
     pub(crate) fn files(&self) -> &[PathBuf] {
         &self.plugin
     }
 
-    /// Returns the models that are found. Reports those that shadow others on standard error.
+    /// Returns the models that are found. Prints the notes of the search as warnings, e.g. that a
+    /// model shadows another one.
     pub(crate) fn registry(&self) -> Result<Registry> {
         self.registry_with(&[])
     }
@@ -51,13 +53,13 @@ impl PluginArgs {
         Ok(registry)
     }
 
-    /// Returns the models as [`Self::registry`] does, but without reports.
+    /// Returns the models as [`Self::registry`] does, but prints nothing.
     pub(crate) fn registry_quietly(&self) -> Result<Registry> {
         self.search(&[])
     }
 
-    /// Returns the model in the file of this name if the file exists, else the model with this short
-    /// name or id.
+    /// Returns the model in the file of this name, if there is such a file, else the model with
+    /// this short name or id.
     pub(crate) fn find(&self, name: &str) -> Result<LoadedModel> {
         let file = Path::new(name);
         if file.is_file() {
@@ -86,13 +88,13 @@ pub(crate) struct PlayerArgs {
     #[command(flatten)]
     plugins: PluginArgs,
 
-    /// Do not run models embedded in the asset (they run in a sandbox)
+    /// Do not run models that are embedded in the asset. Without this, they run in a sandbox
     #[arg(long)]
     no_embedded_plugins: bool,
 }
 
 impl PlayerArgs {
-    /// Returns the models that are found, without those embedded in assets.
+    /// Returns the models that are found, without the models embedded in assets.
     pub(crate) fn registry(&self) -> Result<Registry> {
         self.plugins.registry()
     }
@@ -113,8 +115,8 @@ impl PlayerArgs {
     }
 }
 
-/// Returns the order and the name of a way to load a model. The built-in model comes first, because
-/// the others are compared with it.
+/// Returns how a model was loaded: a number for sorting, and a name. The built-in model comes
+/// first, because the others are compared with it.
 pub(crate) fn way(origin: &Origin) -> (u8, &'static str) {
     match origin {
         Origin::Builtin => (0, "built in"),

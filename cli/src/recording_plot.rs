@@ -1,18 +1,18 @@
-//! Draws a recording with the segments that are used and those that are left out.
+//! Draws a recording with the segments that are used and the segments that are left out.
 
 use std::ops::Range;
 
 use htex_author::report::{Axis, Line, Plot, Series, series_color};
 use htex_author::{Recording, Segments};
 
-/// Number of columns in the picture. Each shows the lowest and the highest of its samples.
+/// Number of columns in the picture. Each column shows the lowest and the highest of its samples.
 const COLUMNS: usize = 1000;
 const READ: &str = "#0072b2";
 const LEFT_OUT: &str = "#d55e00";
 const QUIET: &str = "#b5b5b5";
 
-/// Draws the signal's magnitude over time, with the segments that are used, those that are left
-/// out, and the threshold by which sweeps are found.
+/// Draws the signal's magnitude over time, and marks the segments that are used, the segments that
+/// are left out, and the threshold by which sweeps are found.
 pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot {
     let values: Vec<f64> = (0..recording.samples()).map(|at| recording.magnitude_at(at)).collect();
     let draw = |name: String, color: &str, parts: &[Range<usize>]| {
@@ -46,7 +46,8 @@ pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot
     plot
 }
 
-/// Returns the incomplete sweeps, if sweeps are read, and the segments off their target.
+/// Returns the incomplete sweeps, if the segments come from sweeps, and the segments off their
+/// target.
 fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
     let cut_off = segments
         .sweeps

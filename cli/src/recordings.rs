@@ -24,16 +24,17 @@ pub(crate) struct RecordingArgs {
     #[command(flatten)]
     pub(crate) settings: ReadingSettings,
 
-    /// Scanning speed, mm/s, if the recording does not state it, or instead of the stated one
+    /// Scanning speed, mm/s, for recordings that do not state it. It also replaces a stated speed
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force, N, if the recording does not state it, or instead of the stated one
+    /// Normal force, N, for recordings that do not state it. It also replaces a stated force
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 
-    /// Exploration condition of each recording in order, or one for all: speed=80,force=0.4. If a
-    /// recording contains the motion, segments that differ from this by more than 10 % are left out
+    /// Speed and normal force of each recording in order, or one pair for all recordings:
+    /// speed=80,force=0.4 (mm/s, N). If a recording contains the finger's motion, htex leaves out
+    /// segments that differ from this pair by more than 10 %
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 
@@ -118,7 +119,7 @@ impl RecordingArgs {
     /// Whether any option for reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
-        // clap fills in the default, so only another value was given.
+        // clap fills in the default, so only another value shows that the user gave one.
         let bounded = self.settings.most_values.is_some_and(|most| most != MOST_VALUES);
         condition || self.strict || bounded || !self.settings.recorded().is_empty()
     }
@@ -148,7 +149,8 @@ fn known_take(file: &Path) -> Result<Option<KnownTake>> {
     Ok(KnownTake::find(file)?)
 }
 
-/// Replaces the settings of recordings of experiments in a build without them.
+/// Stands in for the settings of recordings by `htex record` and studies, in a build without these
+/// commands.
 #[cfg(not(feature = "lab"))]
 struct KnownTake {
     recording: PathBuf,
@@ -166,7 +168,8 @@ fn known_take(_: &Path) -> Result<Option<KnownTake>> {
     Ok(None)
 }
 
-/// Parses `speed=80,force=0.4`. A quantity that is not given keeps its value.
+/// Parses `speed=80,force=0.4`. A quantity that the text does not give keeps its value in
+/// `condition`.
 pub(crate) fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration> {
     let wrong = |what: &str| {
         Failure::Usage(format!("--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"))

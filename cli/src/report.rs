@@ -30,12 +30,12 @@ impl ReportSource<'_> {
             .collect::<Result<_, _>>()?;
         if textures.len() > 1 {
             for texture in &mut textures {
-                // The name has it then, so it is not shown again.
+                // The name now contains the condition, so it is not shown a second time.
                 let condition = std::mem::take(&mut texture.condition);
                 texture.name = format!("{}, {condition}", texture.name);
             }
         }
-        // These apply to the asset as a whole, so only the first condition shows them.
+        // The warnings apply to the asset as a whole, so only the first condition shows them.
         for texture in textures.iter_mut().skip(1) {
             texture.warnings.clear();
         }
@@ -69,7 +69,8 @@ impl ReportSource<'_> {
         })
     }
 
-    /// Returns a model's curve at a condition; `None` if the model was not fitted there.
+    /// Returns a model's curve and measures at a condition; `None` if the model was not fitted at
+    /// this condition.
     fn model(&self, index: usize, condition: usize) -> Result<Option<ModelResult>, htex::Error> {
         let Some((stated, at)) =
             self.summary.conditions(index).find(|(stated, _)| stated.condition == condition)
@@ -102,7 +103,7 @@ impl ReportSource<'_> {
     }
 }
 
-/// Returns the tables of the measures: the column and the measure of each.
+/// Returns the tables of measures in a report: the column and the measure of each table.
 fn tables() -> Vec<(Column, Measure)> {
     let mut tables = Vec::new();
     for measure in htex_format::Measure::of_both() {
@@ -140,8 +141,9 @@ fn note(quality: Option<&Quality>) -> String {
     format!("r = {r}, error {} dB RMS", value(htex_format::Measure::NineBand, 1))
 }
 
-/// Counts, over the textures at all their conditions, how many each model keeps below the
-/// difference threshold and how many within the variation of the recording.
+/// Counts for each model the textures at each of their conditions: all of them, how many have an
+/// error below the difference threshold, and how many have an error within the recording's
+/// repeatability.
 pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) -> Vec<Share> {
     let mut shares: Vec<(String, FeltShare)> = Vec::new();
     for summary in summaries {

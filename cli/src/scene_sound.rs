@@ -29,7 +29,7 @@ pub(crate) struct Scene {
     loader: Loader,
     /// The warnings that have been printed.
     told: RefCell<BTreeSet<String>>,
-    /// The files that it reads.
+    /// The files that the scene reads.
     pub(crate) inputs: Vec<PathBuf>,
     rights: Rights,
     quantity: Quantity,
@@ -116,8 +116,8 @@ pub(crate) fn is_scene(file: &Path) -> bool {
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
-/// Returns the quantity of the first texture. If the scene or the texture cannot be read, loading
-/// it will report the error.
+/// Returns the quantity of the first texture. Returns `None` if the scene or the texture cannot be
+/// read; loading the scene then reports the error.
 fn quantity(scene: &Path) -> Option<Quantity> {
     let bytes = read_regular(scene, MOST_BYTES).ok()?;
     let read = read_scene(&bytes, &Limits::default(), &mut Default::default())?;
@@ -125,7 +125,7 @@ fn quantity(scene: &Path) -> Option<Quantity> {
     Some(htex_format::Asset::open(&first).ok()?.manifest.quantity)
 }
 
-/// Returns a device that takes plain numbers and is not opened.
+/// Returns the choice of a device that takes plain numbers and is not opened.
 fn numbers(quantity: Option<Quantity>, rate_hz: Option<f64>) -> DeviceOverride {
     let quantity = quantity.map(|quantity| ("quantity".to_owned(), quantity.name().to_owned()));
     DeviceOverride {

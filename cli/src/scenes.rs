@@ -33,14 +33,15 @@ pub(crate) struct SceneArgs {
 /// A device and its settings.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// The device, by short name or id, instead of the scene's; its settings are then the defaults
+    /// The device to use instead of the scene's, by short name or id. htex then ignores the scene's
+    /// settings for its device
     #[arg(long, value_name = "ID", help_heading = "Devices")]
     pub(crate) device: Option<String>,
 
     #[command(flatten)]
     pub(crate) settings: SettingArgs,
 
-    /// Value of one unit of the assets' quantity in the device's unit, if they differ: 0.1 plays an
+    /// Factor from the assets' unit to the device's unit, if the quantities differ: 0.1 plays an
     /// acceleration of 1 m/s2 as 0.1 N
     #[arg(long, value_name = "GAIN", help_heading = "Devices")]
     quantity_gain: Option<f64>,
@@ -73,7 +74,7 @@ impl ChoiceArgs {
         let settings = ready.device.descriptor().settings.iter();
         for setting in settings.filter(|s| s.kind == SettingKind::Path) {
             let path = ready.scene.settings.text(&setting.name);
-            // `exists` would follow a link, and miss one that leads nowhere.
+            // `exists` would follow a link, and so overlook a link whose target does not exist.
             if !given.contains_key(&setting.name) && Path::new(path).symlink_metadata().is_ok() {
                 return Err(Failure::Usage(format!(
                     "{path} exists; name the file to write, or to replace, by --set {}=FILE",
@@ -137,7 +138,8 @@ impl SceneArgs {
         })
     }
 
-    /// Validates a scene. Models that its assets embed run only with limits for them.
+    /// Validates a scene. Runs the models that its assets embed only if `embedded` gives limits for
+    /// them.
     pub(crate) fn validate(
         file: &Path,
         embedded: Option<WasmLimits>,
@@ -172,8 +174,8 @@ pub(crate) struct Loader {
 }
 
 impl Loader {
-    /// Creates a loader with only this program's own devices, for scenes that are rendered and not
-    /// heard.
+    /// Creates a loader with only this program's own devices, for scenes that are rendered but not
+    /// played.
     pub(crate) fn builtin(player: &PlayerArgs) -> Result<Self> {
         Ok(Self {
             models: player.registry()?,
@@ -214,7 +216,7 @@ impl Ready {
         htex_scene::plan(&self.scene, &self.capabilities, costs).map_err(for_file(&self.file))
     }
 
-    /// Refuses an output file from which the scene was read.
+    /// Refuses an output that is one of the files from which the scene was read.
     pub(crate) fn check_output(&self, output: &Path) -> Result<()> {
         let mut inputs = self.scene.inputs();
         inputs.push(self.file.clone());
@@ -222,8 +224,8 @@ impl Ready {
     }
 }
 
-/// Returns the capabilities of a device. For a display that is not connected, they are derived from
-/// its settings, as far as a plan or a file needs them.
+/// Returns the capabilities of a device. For a display that is not connected, derives them from its
+/// settings, as far as a plan or a file needs them.
 fn capabilities(
     device: &AdapterEntry,
     settings: &Settings,
@@ -240,7 +242,7 @@ fn capabilities(
         .filter(|(_, value)| !value.is_empty())
         .collect();
     given.insert("quantity".to_owned(), "display_voltage".to_owned());
-    // The setting has to be given. Nothing is opened, so nothing is written.
+    // A path has to be given, but no file is opened, so nothing is written.
     given.insert("path".to_owned(), "display.wav".to_owned());
     let like = Settings::resolve(file.descriptor(), None, &given)?;
     let able = file.adapter.capabilities(&like).map_err(|_| missing)?;

@@ -1,4 +1,4 @@
-//! Adds violations of JSON Schemas to the findings of the rules.
+//! Validates documents against JSON Schemas, and adds the violations to the findings of the rules.
 
 use std::path::{Path, PathBuf};
 
@@ -42,8 +42,8 @@ impl SchemaFile {
         Ok(Self { file, schema })
     }
 
-    /// Adds the schema's violations. A violation is added to the finding about the same place, or
-    /// becomes its own finding.
+    /// Adds the schema's violations to a report. If a finding is about the same place, it gets the
+    /// name of the violated rule. Otherwise the violation becomes a finding.
     pub(crate) fn check(&self, document: &Value, report: &mut Report) {
         for violation in self.schema.violations(document) {
             let rule = format!("{}#{}", self.file, violation.rule);
@@ -65,7 +65,7 @@ fn covers(finding: &str, violation: &str) -> bool {
         let rest = inner.strip_prefix(outer);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     };
-    // An empty pointer is the whole document, in which every violation lies.
+    // An empty pointer means the whole document, which contains every violation.
     inside(finding, violation) || (!finding.is_empty() && inside(violation, finding))
 }
 
@@ -79,7 +79,7 @@ fn add(report: &mut Report, broken: &Rule, violation: Violation, rule: String, a
         report
             .findings
             .push(Finding { schema_rule: Some(rule), ..Finding::new(broken, pointer, &message) });
-    // The note itself makes the list longer than this, so it is added once.
+    // The note itself makes the list longer than `KEPT`, so it is added only once.
     } else if shown == KEPT {
         let message = "more findings are not shown";
         let finding = Finding::new(FINDINGS_TRUNCATED, "", message);

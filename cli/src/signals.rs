@@ -1,7 +1,7 @@
 //! Handles Ctrl-C, a closed terminal, and a request to end.
 //!
-//! A signal has one of three meanings at a time. It ends the program and removes unfinished files,
-//! it makes a player ramp to zero, or a guardian ignores it.
+//! At any time, a signal has one of three meanings. It ends the program and removes unfinished
+//! files; it makes a player ramp its output to zero; or it is ignored, in a guardian.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};

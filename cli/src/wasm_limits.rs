@@ -28,7 +28,7 @@ const LIMITS: [(&str, u64, Set); 16] = [
     ("table-elements", 10_000_000, |l, n| l.table_elements = n as usize),
     ("stack-kib", 1024, |l, n| l.stack_bytes = (n as usize) << 10),
     ("voices", 100_000, |l, n| l.voices = n as usize),
-    // A day, for all limits of time.
+    // The largest value of every limit of time is a day.
     ("call-ms", 86_400_000, |l, n| l.call = Duration::from_millis(n)),
     ("render-ms", 86_400_000, |l, n| l.render = Duration::from_millis(n)),
     ("fuel", u64::MAX / 2, |l, n| l.fuel = Some(n)),
@@ -43,7 +43,7 @@ const LIMITS: [(&str, u64, Set); 16] = [
 ];
 
 impl WasmLimit {
-    /// Parses `NAME=VALUE`. A build without the engine knows no limits.
+    /// Parses `NAME=VALUE`. A build without the WASM engine refuses every limit.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         if cfg!(not(feature = "wasm")) {
             return Err(
@@ -63,8 +63,8 @@ impl WasmLimit {
         }
     }
 
-    /// Returns the default limits with these changes. Modules are compiled by another process of
-    /// this program.
+    /// Returns the default limits with these changes. Another process of this program compiles the
+    /// modules, unless the program is unknown.
     pub(crate) fn all(given: &[Self]) -> WasmLimits {
         let mut limits = WasmLimits::default();
         if let Some((program, arguments)) = compiler() {

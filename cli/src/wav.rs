@@ -11,12 +11,12 @@ use crate::failure::{Failure, Result};
 use crate::output::{OutputFile, shown, warn};
 
 /// Maximum number of frames in a WAV file.
-// Sizes in a RIFF file have 32 bits. 64 bytes are for the header; rights that do not fit as well
-// are left out.
+// Sizes in a RIFF file have 32 bits. 64 bytes are for the header. Licence and author are left out
+// if they do not fit.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
-/// Writes `frames` samples of one channel, with the rights of the textures that are played.
-/// `render` produces them block by block. Warns if all samples are 0.
+/// Writes `frames` samples of one channel, and the rights of the textures that are played. `render`
+/// produces the samples block by block. Warns if all samples are 0.
 pub(crate) fn write_wav(
     wav: OutputFile<'_>,
     rate_hz: u32,
@@ -37,7 +37,7 @@ pub(crate) fn write_wav(
         bits_per_sample: 32,
         sample_format: SampleFormat::Float,
     };
-    // `replace` passes on only errors of the system, so the error of the model is kept here.
+    // `replace` passes on only errors of the system, so an error of the model is stored here.
     let mut failed = None;
     let mut is_silent = true;
     let path = wav.path();

@@ -11,7 +11,7 @@ use crate::programs::run;
 /// Builds the benchmark and the command, finds Python, and runs the benchmark.
 ///
 /// # Errors
-/// When one of the programs cannot be built or fails.
+/// If a program cannot be built or fails.
 pub fn bench(json: Option<&Path>) -> Result<()> {
     let mut build = Command::new(cargo());
     run(build.args(["build", "--release", "-p", "htex-bench", "-p", "htex-cli"]))?;

@@ -69,7 +69,8 @@ const PROOFS: [Binding; 2] = [
 /// Tests the named bindings, or all of them.
 ///
 /// # Errors
-/// A message about what is missing, or which test failed. The test's own output has been printed.
+/// The error says what is missing, or which test failed. The test has already printed its own
+/// output.
 pub fn test(names: &[String]) -> Result<()> {
     let known = BINDINGS.map(|binding| binding.name);
     if let Some(name) = names.iter().find(|name| !known.contains(&&name[..])) {
@@ -77,8 +78,8 @@ pub fn test(names: &[String]) -> Result<()> {
     }
     let named =
         |binding: &&Binding| names.is_empty() || names.iter().any(|name| name == binding.name);
-    // Most of the time they wait: for browsers, for emulated processors, and for their turn to
-    // compile.
+    // Two at a time, because the tests mostly wait: for browsers, for emulated processors, and for
+    // their turn to compile.
     let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
     all_of(tested)
 }
@@ -91,7 +92,8 @@ fn all_of(tested: Vec<Result<()>>) -> Result<()> {
     Ok(())
 }
 
-/// Proves completely what the tests only sample.
+/// Runs the proof with this name in full. The tests of continuous integration run only a sample of
+/// it.
 ///
 /// # Errors
 /// As [`test`].
@@ -113,9 +115,9 @@ impl Binding {
 }
 
 impl Program {
-    /// Returns the first of the names that is installed.
+    /// Returns the first of the names for which a program is installed.
     fn find(&self) -> Option<&'static str> {
-        // Whether it starts is enough: not every program knows `--version`.
+        // It is enough that the program starts: not every program knows `--version`.
         let there = |name: &&&str| Command::new(name).arg("--version").output().is_ok();
         self.names.iter().find(there).copied()
     }
@@ -137,7 +139,7 @@ fn which(name: &str) -> std::path::PathBuf {
     all.find(|file| file.is_file()).unwrap_or_else(|| name.into())
 }
 
-/// Copies a file into a folder under a name.
+/// Copies a file to a path.
 fn copy(from: &Path, to: &Path) -> Result<()> {
     fs_err::copy(from, to)?;
     Ok(())

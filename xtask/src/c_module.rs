@@ -11,8 +11,8 @@ use crate::programs::run;
 /// Compiles a source file of the workspace to a module. The module's path must be absolute.
 ///
 /// # Errors
-/// A message about what is missing, or the compiler's status. The compiler's own output has been
-/// printed.
+/// The error says what is missing, or gives the compiler's status. The compiler has already printed
+/// its own output.
 pub fn build(source: &str, module: &Path) -> Result<()> {
     let mut clang = Command::new("clang");
     // Without `errno`, `sqrt` becomes an instruction. There is no C library to call.

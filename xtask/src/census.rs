@@ -1,8 +1,9 @@
 //! Measures the size of the sources: `cargo xtask census`.
 //!
-//! Counts what the compiler's parser reads, so layout and comments change no number except their
-//! own. A file is a test if it lies in a folder `tests`, `benches` or `fuzz`, or is named
-//! `tests.rs`. The rest of a file after `#[cfg(test)] mod` also counts as a test.
+//! Counts code in the tokens of a Rust parser, so that layout and comments do not change the count.
+//! Other rows count lines, packages, error types and public names. A file is a test if it lies in a
+//! folder `tests`, `benches` or `fuzz`, or is named `tests.rs`. The part of a file after
+//! `#[cfg(test)] mod` also counts as a test.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -96,7 +97,7 @@ fn sources() -> Result<Vec<Source>> {
         Command::new("git").current_dir(workspace()).args(["ls-files", "*.rs"]).output()?;
     ensure!(listed.status.success(), "git ls-files failed");
     let names = String::from_utf8(listed.stdout)?;
-    // Templates of new plugins have words in place of names, which no parser takes.
+    // The templates of new plugins contain placeholders, which no parser accepts.
     let names = names.lines().filter(|name| !name.contains("/templates/"));
     names.map(|name| source(Path::new(name))).collect()
 }
@@ -112,7 +113,8 @@ fn source(path: &Path) -> Result<Source> {
     found.visit_file(&file);
     let test_lines = if is_test { text.lines().count() } else { found.test_lines };
     WithoutTests.visit_file_mut(&mut file);
-    // Visited twice: the lines of tests are counted before tests are removed, names after.
+    // The file is visited twice: first to count the lines of tests, then, without the tests, to
+    // count names.
     let mut kept = FileCount::default();
     kept.visit_file(&file);
     Ok(Source {
@@ -209,7 +211,7 @@ fn attributes(item: &syn::Item) -> &[syn::Attribute] {
     }
 }
 
-/// What is counted in a file.
+/// The counts of one file.
 #[derive(Default)]
 struct FileCount {
     test_lines: usize,
@@ -309,9 +311,9 @@ struct Packages {
 }
 
 struct Package {
-    /// Its folder in the workspace.
+    /// The package's folder in the workspace.
     folder: PathBuf,
-    /// Packages of this workspace that it needs outside tests.
+    /// Packages of this workspace that the package needs outside tests.
     needs: Vec<String>,
 }
 
@@ -361,10 +363,10 @@ impl Packages {
     }
 }
 
-/// Returns `pub` items of internal crates whose name occurs in no other crate and in no public
-/// signature or field of its own crate, as `crate::item`.
+/// Returns the `pub` items of internal crates that need not be public, as `crate::item`. The name
+/// of such an item occurs in no other crate, and in no public signature or field of its own crate.
 fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
-    // Integration tests are crates of their own.
+    // Integration tests count as separate crates.
     let mut words: BTreeMap<&str, BTreeSet<(&str, bool)>> = BTreeMap::new();
     for source in sources {
         let package = packages.package(&source.path).unwrap_or_default();
@@ -396,8 +398,8 @@ fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
     unused
 }
 
-/// Counts the names that `use htex::*` brings in: items and re-exports. A wildcard counts as the
-/// names of the crate behind it.
+/// Counts the names that `use htex::*` imports: items and re-exports. A wildcard re-export counts
+/// as all names of the crate that it re-exports.
 fn root_names(packages: &Packages) -> Result<usize> {
     let mut names = BTreeSet::new();
     root_names_of("htex", packages, &mut names)?;
@@ -427,7 +429,7 @@ fn root_names_of(package: &str, packages: &Packages, names: &mut BTreeSet<String
     Ok(())
 }
 
-/// Adds the names that a `use` tree brings in, and the crates of its wildcards.
+/// Adds the names that a `use` tree imports, and the crates that it imports with wildcards.
 fn used(tree: &syn::UseTree, before: &str, found: &mut (Vec<String>, Vec<String>)) {
     match tree {
         syn::UseTree::Path(path) => used(&path.tree, &path.ident.to_string(), found),

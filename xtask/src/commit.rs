@@ -9,14 +9,15 @@ use crate::places::workspace;
 /// The commit that is released.
 #[derive(Debug, Clone)]
 pub(crate) struct Commit {
-    /// Its first twelve digits; with `-modified` if the sources have changes.
+    /// The first twelve digits of its hash, followed by `-modified` if the sources have uncommitted
+    /// changes.
     pub(crate) id: String,
-    /// Its time, seconds since 1970.
+    /// Time of the commit, seconds since 1970.
     pub(crate) seconds: String,
 }
 
 impl Commit {
-    /// For sources that are not a clone.
+    /// Returns a placeholder, for sources that are not a clone.
     pub(crate) fn unknown() -> Self {
         Self { id: "unknown".to_owned(), seconds: "0".to_owned() }
     }

@@ -7,12 +7,13 @@ use fs_err as fs;
 
 use crate::places::{version, workspace};
 
-/// Placeholder for the workspace's version.
+/// Placeholder that the workspace's version replaces.
 const VERSION: &str = "@version@";
 
 /// The folder and the name of a file in the workspace.
 type Own = (&'static str, &'static str);
-/// A folder, and its files: where each is in the workspace, and its name in the layout.
+/// A folder to write, and its files: where each file is in the workspace, and its path in the new
+/// folder.
 type Layout = (&'static str, &'static [(Own, &'static str)]);
 
 const SOURCE: Own = ("sdk/runtime/player/c", "htex_player.c");

@@ -1,6 +1,6 @@
-//! Generated files. Tests compare them with what the code generates, or write them if
-//! `HTEX_GENERATE=1` is set, which `cargo xtask generate` does. The names of these tests start with
-//! `generated_…`.
+//! Generated files. Tests compare these files with what the code generates. If `HTEX_GENERATE=1` is
+//! set, the tests write the files instead; `cargo xtask generate` runs them in this way. The names
+//! of these tests start with `generated_`.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -10,7 +10,7 @@ use std::process::Command;
 use anyhow::Result;
 use fs_err as fs;
 
-/// If this variable is 1, the tests write what they would otherwise compare.
+/// If this variable is 1, the tests write the files that they would otherwise compare.
 const VARIABLE: &str = "HTEX_GENERATE";
 
 /// The test programs that have generated files.
@@ -41,7 +41,7 @@ pub fn file(path: impl AsRef<str>, bytes: &[u8]) {
     file_with(path, bytes, |kept| kept == bytes);
 }
 
-/// As [`file()`], but `is_fresh` compares the bytes of the file.
+/// As [`file()`], but `is_fresh` decides whether the existing bytes are up to date.
 ///
 /// # Panics
 /// As [`file()`].
@@ -65,7 +65,7 @@ pub fn section(path: &str, name: &str, text: &str) {
     section_with(path, name, text, |kept| kept == text);
 }
 
-/// As [`section`], but `is_fresh` compares the text in the document.
+/// As [`section`], but `is_fresh` decides whether the existing text is up to date.
 ///
 /// # Panics
 /// As [`section`].
@@ -83,8 +83,8 @@ pub fn section_with(path: &str, name: &str, text: &str, is_fresh: impl FnOnce(&s
     file_with(path, bytes.as_bytes(), |_| is_fresh(kept));
 }
 
-/// Compares the files of a folder that contains nothing else, or writes them and removes all
-/// others.
+/// Compares the files of a folder, which must contain nothing else; or writes the files and removes
+/// all others.
 ///
 /// # Panics
 /// As [`file()`], and when the folder has other files or cannot be read.
@@ -95,8 +95,8 @@ pub fn folder(path: &str, files: &[File]) {
     only(path, files.iter().map(|(path, _)| path.as_str()));
 }
 
-/// Removes all files of a folder except `expected` (paths relative to the workspace), or fails
-/// because of them.
+/// Fails if a folder has files other than `expected` (paths relative to the workspace). If
+/// generated files are written, removes the other files instead.
 ///
 /// # Panics
 /// When the folder has other files, or cannot be read.

@@ -4,14 +4,14 @@ use std::panic::resume_unwind;
 use std::sync::Mutex;
 use std::thread::scope;
 
-/// Calls a function with each item, several at the same time.
+/// Calls a function with each item, in `jobs` threads at the same time.
 pub(crate) fn at_a_time<T: Send, R: Send>(
     jobs: usize,
     items: Vec<T>,
     call: impl Fn(T) -> R + Sync,
 ) -> Vec<R> {
     let waiting = Mutex::new(items.into_iter());
-    // The lock is free again before `call` runs.
+    // `next` releases the lock before `call` runs.
     let next = || waiting.lock().ok()?.next();
     let work = || std::iter::from_fn(next).map(&call).collect::<Vec<R>>();
     scope(|scope| {

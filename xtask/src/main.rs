@@ -26,42 +26,44 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
-    /// Fuzz targets of fuzz/fuzz_targets; see fuzz/README.md
+    /// Build and run the fuzz targets in fuzz/fuzz_targets; see fuzz/README.md
     Fuzz(fuzz::Options),
     /// Build and install libhtex for C, C++ and C#
     Dist {
         #[arg(long, value_name = "DIR")]
         prefix: PathBuf,
-        /// Also install, in lib/whole, libhtex with scenes, libraries and the engine of WASM
-        /// modules
+        /// Also install the whole libhtex in lib/whole: with scenes, libraries of textures and the
+        /// engine of WASM modules
         #[arg(long)]
         whole: bool,
     },
     /// Build archives, wheels and the npm package
     Release(Release),
-    /// Make a book in HTML of the pages of docs and spec, by mdBook, and check its links
+    /// Make an HTML book from the pages in docs and spec with mdBook, and check its links
     Book(Out),
-    /// Lay out the player in C for Arduino, ESP-IDF and Zephyr
+    /// Package the C player for Arduino, ESP-IDF and Zephyr
     Firmware(Out),
-    /// Test the bindings to other languages and on other processors; says what is missing
+    /// Test the bindings to other languages, and the command on other processors; names missing
+    /// programs
     Bindings {
-        /// c, web, studio, python or processors [default: all]
+        /// Bindings to test: c, web, studio, python or processors [default: all]
         names: Vec<String>,
     },
     /// Build the npm package `htex` for browsers and Node.js
     Web(Out),
-    /// Build the studio: DIR/studio.html, one file, and DIR/static, for a web server
+    /// Build the studio as one file (DIR/studio.html) and as a folder for a web server (DIR/static)
     Studio(Out),
-    /// Make the textures that come with the studio anew: sdk/bindings/studio/shelf/shelf.htexlib
+    /// Rebuild the library of textures that comes with the studio:
+    /// sdk/bindings/studio/shelf/shelf.htexlib
     StudioShelf,
-    /// Run a proof that takes too long for continuous integration, which runs a sample of it
+    /// Run a proof in full; continuous integration runs only a sample of it
     #[command(subcommand, arg_required_else_help = true)]
     Prove(Proof),
     /// Write the generated files of spec (schemas, pages, conformance files) and the fuzz seeds
     Generate,
     /// Measure the size of the sources
     Census {
-        /// Print the names behind the numbers
+        /// Also print the names that were counted
         #[arg(long)]
         list: bool,
     },
@@ -76,8 +78,7 @@ struct Plugins {
     /// Build only WASM modules
     #[arg(long)]
     wasm_only: bool,
-    /// Build modules with the installed toolchain, with Debian's compiler, or with the first found
-    /// [default: HTEX_WASM_TOOLCHAIN, or auto]
+    /// How to choose the toolchain that builds WASM modules [default: HTEX_WASM_TOOLCHAIN, or auto]
     #[arg(long, value_name = "WAY", verbatim_doc_comment)]
     wasm_toolchain: Option<Way>,
 }

@@ -11,7 +11,7 @@ pub struct Block {
     pub text: String,
     /// The number of the first line in the page, starting at 1.
     pub line: usize,
-    /// Where the text is in the page.
+    /// The position of the text in the page, bytes.
     pub range: Range<usize>,
 }
 
@@ -54,7 +54,8 @@ fn begun(line: &str, fence: &str, number: usize, at: usize) -> Block {
     Block { language: language.to_owned(), text: String::new(), line: number, range: at..at }
 }
 
-/// Returns where a page's links and pictures lead, without titles. Links in code are ignored.
+/// Returns the positions of the targets of a page's links and pictures, without titles. Ignores
+/// links in code.
 ///
 /// ```
 /// let page = "[a](b.md#c), ![d](e.svg \"f\")\n\n```c\nx[0](1);\n```\n`[g](h)`\n";
@@ -74,7 +75,7 @@ pub fn links(page: &str) -> Vec<Range<usize>> {
     links
 }
 
-/// Returns where the links in a line lead. The line begins at `start`.
+/// Returns the positions of the link targets in a line that begins at `start`.
 fn links_of_line(line: &str, start: usize) -> Vec<Range<usize>> {
     let mut links = Vec::new();
     for (at, _) in line.match_indices("](") {
@@ -112,7 +113,7 @@ pub fn anchor(heading: &str) -> String {
     kept.collect()
 }
 
-/// Returns the anchors of a page's headings, and the anchors that it defines itself with
+/// Returns the anchors of a page's headings, and the anchors that the page defines with
 /// `<a id="…">`.
 pub fn anchors(page: &str) -> Vec<String> {
     let code = blocks(page);
@@ -143,7 +144,7 @@ fn heading(line: &str) -> Option<&str> {
     is_heading.then(|| text.trim())
 }
 
-/// Removes the number that the anchor of a repeated heading has.
+/// Removes the number at the end of the anchor of a repeated heading.
 fn without_number(anchor: &str) -> &str {
     match anchor.rsplit_once('-') {
         Some((before, number)) if number.parse::<usize>().is_ok() => before,

@@ -1,5 +1,5 @@
-//! Software, apart from Rust and a C compiler, that tests use if it is installed. No test installs
-//! anything; `.ci/run` does.
+//! Software that tests use if it is installed, in addition to Rust. Tests install nothing;
+//! `.ci/run` installs the software.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ pub struct Need {
     pub what: &'static str,
     /// How to install it.
     pub how: &'static str,
-    /// Whether its absence is an error under `HTEX_REQUIRE_WASM=1`.
+    /// Whether it is an error under `HTEX_REQUIRE_WASM=1` that the software is missing.
     pub for_wasm: bool,
 }
 
@@ -109,7 +109,7 @@ pub const QEMU_RISCV: Need = Need {
     for_wasm: false,
 };
 
-/// Another reader and player, written in Python.
+/// An independent reader and player, written in Python, needs these packages.
 pub const PEERS: Need = Need {
     what: "Python with NumPy, SciPy and other packages",
     how: "python3 -m venv target/peers && target/peers/bin/pip install -r tests/peers/independent/requirements.txt",
@@ -124,7 +124,7 @@ pub const CHROMIUM: Need =
 pub const AJV: Need =
     Need { what: "Ajv", how: "npm install --prefix target/node ajv@8", for_wasm: false };
 
-/// The validator of glTF files of Khronos.
+/// Khronos's validator of glTF files.
 pub const GLTF_VALIDATOR: Need = Need {
     what: "gltf-validator",
     how: "npm install --prefix target/node gltf-validator@2.0.0-dev.3.10",
@@ -132,8 +132,9 @@ pub const GLTF_VALIDATOR: Need = Need {
 };
 
 impl Need {
-    /// Returns `there`, which says whether the software is installed. If it is not, the running
-    /// test is listed at the end of `cargo test` ([`told`]).
+    /// Returns `there`, which says whether the software is installed. If it is not installed, also
+    /// records the running test as skipped, so that it is listed at the end of `cargo test`
+    /// ([`told`]).
     ///
     /// # Panics
     /// When software for WASM is missing and `HTEX_REQUIRE_WASM=1` is set.
@@ -144,10 +145,10 @@ impl Need {
         let test = std::thread::current().name().unwrap_or("a test").to_owned();
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let record = format!("{test} {what}").replace(|c| !is_plain(c), "-");
-        // A file for each, because the tests run in several programs at the same time.
+        // Each record is a file, because the tests run in several programs at the same time.
         let record = folder().join(record);
         if there {
-            // An earlier run may have written it, when the software was not installed yet.
+            // An earlier run may have written the record, when the software was not installed yet.
             let _ = fs::remove_file(record);
             return true;
         }

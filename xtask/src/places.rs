@@ -15,7 +15,7 @@ pub(crate) fn workspace() -> PathBuf {
 
 pub(crate) fn target() -> PathBuf {
     let own = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    // An absolute path replaces the workspace's.
+    // `join` replaces the workspace by an absolute path.
     workspace().join(own.unwrap_or_else(|| "target".into()))
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn version() -> Result<String> {
     Ok(version.trim_matches('"').to_owned())
 }
 
-/// Makes an empty folder, removing what was there.
+/// Makes an empty folder. Removes an existing folder with its contents.
 pub(crate) fn emptied(folder: &Path) -> Result<()> {
     if folder.exists() {
         fs_err::remove_dir_all(folder)?;

@@ -1,5 +1,5 @@
 //! The systems for which htex is built, and how to call cargo, the linkers and the C compilers for
-//! each.
+//! each system.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -32,7 +32,7 @@ pub struct Platform {
     pub system: System,
 }
 
-/// Determines the names and kinds of libraries.
+/// An operating system, which determines the names and kinds of libraries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum System {
     Linux,
@@ -68,14 +68,14 @@ pub const PLATFORMS: [Platform; 4] = [
     },
 ];
 
-/// How something is built. For this machine its own tools are used. For a release zig is used,
-/// because its headers and libraries for each system are the same everywhere. Windows builds use
-/// mingw-w64 instead: zig's linker exports all functions of a DLL, of which there may be at most
-/// 65,535.
+/// How to build something. A build for this machine uses the machine's own tools. A release uses
+/// zig, whose headers and libraries for each system are the same on every machine. A release for
+/// Windows uses mingw-w64 instead: zig's linker would export all functions of a DLL, but a DLL can
+/// export at most 65,535.
 #[derive(Debug, Clone)]
 pub struct Build {
     platform: Platform,
-    /// The commit, for a release.
+    /// The commit that is released; `None` outside a release.
     commit: Option<Commit>,
 }
 
@@ -94,8 +94,9 @@ impl Platform {
         }
     }
 
-    /// Whether a wheel is released. A wheel for macOS would need Apple's frameworks for
-    /// certificates, which are not available here; on macOS, pip builds it from the sources.
+    /// Whether a release has a wheel for this platform. A wheel for macOS would need Apple's
+    /// frameworks for certificates, which are not available here. On macOS, pip builds the package
+    /// from the sources.
     pub(crate) fn has_wheel(&self) -> bool {
         self.system != System::MacOs
     }
@@ -148,7 +149,7 @@ impl Build {
         } else {
             Command::new(cargo())
         };
-        // The subcommands of cargo-zigbuild.
+        // cargo-zigbuild has a subcommand `zigbuild` instead of `build`.
         let is_build = self.is_by_zig() && verb == "build";
         command.arg(if is_build { "zigbuild" } else { verb });
         command.current_dir(workspace());
@@ -175,14 +176,14 @@ impl Build {
         command.env("MACOSX_DEPLOYMENT_TARGET", MACOS);
         command.env("RUSTFLAGS", self.flags());
         // cargo-zigbuild, and maturin, which contains it, name their C compilers after the running
-        // program. With the same name and the same version (requirements.txt), the wheel reuses
-        // what was compiled for the archive.
+        // program. With the same name and the same version of both (requirements.txt), the wheel
+        // reuses the crates that were compiled for the archive.
         command.env("CARGO_BIN_EXE_cargo-zigbuild", tools().join("cargo-zigbuild"));
     }
 
     /// Returns compiler flags that keep this machine's paths and the names of functions out of
-    /// released files. They also tell zig where to find the names of Apple's functions that it
-    /// lacks, in files of this project.
+    /// released files. They also tell zig where this project lists the names of Apple's functions
+    /// that zig lacks.
     fn flags(&self) -> String {
         let mut flags = vec![without_places()];
         match self.platform.system {
@@ -201,9 +202,9 @@ impl Build {
         flags.join(" ")
     }
 
-    /// Returns cargo for building the command and the whole libhtex together, so that each has the
-    /// features of the other. With the tests' profile it builds the entire workspace, which has the
-    /// tests' features.
+    /// Returns cargo for building the command and the whole libhtex together, so that both have the
+    /// same features. With the tests' profile, cargo builds the entire workspace, so that it reuses
+    /// the crates of the tests.
     pub(crate) fn cargo_of_both(&self) -> Command {
         let mut command = self.cargo("build");
         command.arg("--locked").args(self.profile());
@@ -214,7 +215,8 @@ impl Build {
     }
 
     /// Returns cargo's arguments that select the profile: `release` or, outside releases, the
-    /// profile in `HTEX_PROFILE`. The profile of the tests reuses what was compiled for them.
+    /// profile in `HTEX_PROFILE`. With the profile of the tests, a build reuses the crates that
+    /// were compiled for the tests.
     pub(crate) fn profile(&self) -> [String; 2] {
         ["--profile".to_owned(), self.profile_name()]
     }
@@ -272,7 +274,7 @@ pub(crate) fn without_places() -> String {
     all.map(flag).collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the folder of the release tools: zig, and the programs through which cargo calls it.
+/// Returns the folder of the release tools: zig, and the programs through which cargo calls zig.
 pub fn tools() -> PathBuf {
     let tools = target().join("release-tools/bin");
     std::path::absolute(&tools).unwrap_or(tools)

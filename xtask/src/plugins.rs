@@ -26,10 +26,10 @@ pub fn models() -> Result<Vec<String>> {
 }
 
 /// Builds every model as a native library, and returns their folder, `htex-plugins` in the target
-/// folder. A library that is newer than its sources is not rebuilt.
+/// folder. cargo does not rebuild a library that is newer than its sources.
 ///
 /// # Errors
-/// Which model could not be built. The compiler has printed the reason.
+/// The error names the model that could not be built. The compiler has printed the reason.
 pub fn native() -> Result<PathBuf> {
     let target = target();
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
@@ -42,10 +42,10 @@ pub fn native() -> Result<PathBuf> {
 }
 
 /// Builds every model as a WASM module, with the toolchain that `HTEX_WASM_TOOLCHAIN` names, and
-/// returns their folder, as [`native`] does.
+/// returns the folder of the modules.
 ///
 /// # Errors
-/// Instructions if no toolchain is found, or which model could not be built.
+/// The error says how to install a toolchain, or names the model that could not be built.
 pub fn wasm() -> Result<PathBuf> {
     wasm_by(way()?)
 }
@@ -79,8 +79,8 @@ pub fn wasm_is_installed() -> bool {
     Toolchain::find(Way::Installed).is_ok()
 }
 
-/// Returns the folder of the WASM modules for a test. If no toolchain for them is installed, it
-/// returns `None`, and the test is listed at the end.
+/// Returns the folder of the WASM modules for a test. If no toolchain for WASM is installed,
+/// returns `None`, and the test is listed as skipped at the end.
 ///
 /// # Panics
 /// When a model cannot be built, and as [`Need::met`](crate::needs::Need::met).
@@ -93,8 +93,8 @@ pub fn wasm_if_there() -> Option<PathBuf> {
     Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))
 }
 
-/// Returns the short names of the models that are fitted if none is named, in alphabetical order,
-/// from the descriptors in `spec/models`.
+/// Returns the short names of the models that `htex fit` fits if the user names none, in
+/// alphabetical order. Reads them from the descriptors in `spec/models`.
 ///
 /// # Errors
 /// As [`models`], and when a descriptor cannot be read.
@@ -115,8 +115,7 @@ fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Resul
     run(cargo
         .args(["rustc", "--quiet", "--lib", "--package", &package])
         .args(more)
-        // The manifests do not ask for a library of this kind, because programs also link the
-        // models.
+        // The manifests do not name the crate type `cdylib`, because programs also link the models.
         .args(["--features", "plugin", "--crate-type", "cdylib"])
         .env("CARGO_TARGET_DIR", target)
         .current_dir(workspace()))

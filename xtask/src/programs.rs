@@ -1,4 +1,4 @@
-//! Runs programs and waits for their end.
+//! Runs programs and waits until they end.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use anyhow::{Context, Result, bail};
 
-/// Returns a program with its folder and environment. Arguments can be added.
+/// Returns a command that runs a program in a folder. Arguments can be added.
 pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
     let mut command = Command::new(name);
     command.current_dir(folder);
@@ -16,7 +16,7 @@ pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
 /// Runs a program and waits for its end.
 ///
 /// # Errors
-/// When it cannot be run or fails. Its own output has been printed.
+/// If the program cannot be run or fails. It has already printed its own output.
 pub fn run(command: &mut Command) -> Result<()> {
     forget_package(command);
     let status = command.status();
@@ -45,8 +45,9 @@ fn check(command: &Command, status: ExitStatus) -> Result<()> {
     bail!("{} {}: {status}", name(command), arguments.join(" "))
 }
 
-/// Removes the variables that cargo sets for the package it runs. Build scripts that watch them
-/// (such as `ring`'s) would run again, and everything that depends on them would be rebuilt.
+/// Removes the variables that cargo sets for the package it runs. Otherwise build scripts that
+/// watch these variables (such as `ring`'s) would run again, and all crates that depend on them
+/// would be rebuilt.
 fn forget_package(command: &mut Command) {
     for (name, _) in std::env::vars_os() {
         if name.to_string_lossy().starts_with("CARGO_PKG_") {

@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use crate::programs::{program, run};
 
-/// Makes the library on the studio's shelf with the `htex` command.
+/// Makes the library of textures that comes with the studio, with the `htex` command.
 ///
 /// # Errors
 /// A message with the file or the program.

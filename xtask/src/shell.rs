@@ -1,5 +1,5 @@
-//! Parses shell scripts, as far as pages use them: words, quotes, comments, continued lines, pipes,
-//! loops.
+//! Parses the part of the shell language that pages use: words, quotes, comments, continued lines,
+//! pipes, loops.
 
 /// Returns the simple commands of a script, each as its words. Redirections are left out. A loop's
 /// variable is replaced only by its first value.
@@ -60,7 +60,7 @@ impl Reader {
         }
     }
 
-    /// A digit before the sign is a stream number, as in `2>log`.
+    /// Handles `<` or `>`. A digit before the sign is the number of a stream, as in `2>log`.
     fn redirect(&mut self) {
         if self.word.as_deref().is_some_and(|word| word.parse::<u8>().is_ok()) {
             self.word = None;
@@ -78,7 +78,7 @@ impl Reader {
     }
 }
 
-/// Returns the rest of `$(…)`, as one word of the command that contains it.
+/// Returns the rest of `$(…)` as one word of the command that contains it.
 fn substituted(rest: &mut std::iter::Peekable<std::str::Chars>) -> String {
     let mut depth = 0;
     let inner = rest.take_while(|c| {

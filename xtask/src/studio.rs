@@ -1,4 +1,4 @@
-//! Builds the studio of `sdk/bindings/studio`: one page, as a file and as a folder.
+//! Builds the studio from `sdk/bindings/studio`: one page, both as a single file and as a folder.
 
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ pub(crate) fn build(source: &Path, out: &Path) -> Result<()> {
     run(program("npm", source).args(["run", "--silent", "build", "--"]).arg(fs::canonicalize(out)?))
 }
 
-/// Installs what the lock file lists.
+/// Installs the npm packages that the lock file lists.
 pub(crate) fn install(folder: &Path) -> Result<()> {
     run(program("npm", folder).args(["ci", "--silent", "--no-audit", "--no-fund"]))
         .context("Node.js from version 20 and npm build the studio")

@@ -12,10 +12,10 @@ pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The profile of modules in the workspace's manifest, and the name of its build folder.
 pub(crate) const PROFILE: &str = "module";
 
-/// Enables 128-bit vectors, which every engine supports. Larger functions are not inlined. Loops
-/// with an unknown number of rounds stay a single loop, without extra copies for several rounds,
-/// for the first round, or for vectors. Loops that should use vectors work on arrays. Places of
-/// panics are named without the folder of the crates.
+/// The environment variable for the compiler flags of modules, and the flags. They enable 128-bit
+/// vectors, which every engine supports. The compiler does not inline large functions, and does not
+/// copy the body of a loop for several rounds, for the first round, or for vectors. (Loops that
+/// should use vectors work on arrays.) Messages of panics do not contain the folder of the crates.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
     "-Ctarget-feature=+simd128 -Cno-vectorize-loops -Cllvm-args=-inline-threshold=75 \
@@ -39,9 +39,9 @@ pub enum Way {
 
 /// A toolchain for WASM modules.
 pub(crate) enum Toolchain {
-    /// The toolchain in use has the target's standard library.
+    /// The toolchain in use, which has the target's standard library.
     Ready,
-    /// Debian's own compiler, which builds the standard library first; with this linker.
+    /// Debian's own compiler, which builds the standard library first, and this linker.
     Debian { linker: PathBuf },
 }
 
@@ -56,7 +56,7 @@ impl Toolchain {
         found.context(NO_TOOLCHAIN)
     }
 
-    /// Returns the command to which `rustc --profile …` can be added, and the build folder.
+    /// Returns cargo, to which `rustc --profile …` can be added, and the build folder.
     pub(crate) fn cargo(&self, target: &Path) -> (Command, PathBuf) {
         let (mut command, folder) = self.plain_cargo(target);
         command.env(FLAGS.0, FLAGS.1);
@@ -70,7 +70,7 @@ impl Toolchain {
                 let mut command = Command::new("/usr/bin/cargo");
                 command
                     .env("RUSTC", "/usr/bin/rustc")
-                    // A stable compiler needs it for `-Z build-std`.
+                    // A stable compiler needs this variable for `-Z build-std`.
                     .env("RUSTC_BOOTSTRAP", "1")
                     .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker)
                     .env_remove("RUSTUP_TOOLCHAIN");
@@ -86,7 +86,7 @@ impl Toolchain {
         match self {
             Self::Ready => &["--target", TARGET],
             Self::Debian { .. } => {
-                // Debian's compiler may be older than the manifests ask for.
+                // Debian's compiler may be older than the version that the manifests require.
                 &["-Z", "build-std=std,panic_abort", "--ignore-rust-version", "--target", TARGET]
             }
         }

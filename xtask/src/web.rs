@@ -1,4 +1,4 @@
-//! Builds the npm package of `sdk/bindings/web`.
+//! Builds the npm package from `sdk/bindings/web`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -50,8 +50,8 @@ const COPIED: [&str; 34] = [
     "worker.node.js",
 ];
 
-/// The parts of the audio worklet's file. It has no imports, because bundlers copy only a worklet's
-/// file itself.
+/// The files that become the file of the audio worklet. That file must not import others, because
+/// bundlers copy only the worklet's file itself.
 const PROCESSOR: [&str; 9] = [
     "guests.js",
     "core.js",
@@ -64,7 +64,7 @@ const PROCESSOR: [&str; 9] = [
     "processor.js",
 ];
 
-/// The parts of the page worker's file, which bundlers also copy by itself.
+/// The files that become the file of the page's worker. Bundlers also copy only that file.
 const WORKER: [&str; 8] = [
     "guests.js",
     "core.js",
@@ -76,11 +76,11 @@ const WORKER: [&str; 8] = [
     "worker.js",
 ];
 
-/// The parts of the file of the worker that fits models.
+/// The files that become the file of the worker that fits models.
 const AUTHOR_WORKER: [&str; 5] =
     ["guests.js", "core.js", "author-core.js", "author-serve.js", "author-worker.js"];
 
-/// Features of `sdk/bindings/web/author`, and the modules built with them.
+/// The features of `sdk/bindings/web/author`, and the name of the module built with each.
 const MODULES: [(&str, &str); 3] =
     [("make", "htex-author.wasm"), ("import", "htex-import.wasm"), ("scene", "htex-scene.wasm")];
 
@@ -113,7 +113,7 @@ pub fn web(out: &Path) -> Result<()> {
     join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
 }
 
-/// Writes a script from the files of a folder.
+/// Joins files of a folder into one script.
 fn join(folder: &Path, names: &[&str], out: &Path) -> Result<()> {
     let mut script = String::new();
     for name in names {

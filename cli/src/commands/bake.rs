@@ -13,34 +13,36 @@ use crate::output::{show, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
-/// Range of the number of coefficients in a filter.
+/// Smallest and largest number of coefficients in a filter.
 const FEWEST: i64 = BakeLimits::FEWEST as i64;
 const MOST: i64 = BakeLimits::MOST as i64;
 
 /// Write a texture for microcontrollers
 ///
-/// Writes a block of bytes for the player on microcontrollers (docs/microcontroller.md).
+/// Writes a block of bytes, which a small player renders on the microcontroller
+/// (docs/microcontroller.md).
 ///
-/// The block has a filter or sinusoids for each condition of a grid of speeds and forces; the
-/// player interpolates between them. The command prints the block's size and its error in nine
-/// bands, at the conditions and midway between them.
+/// The block stores the texture at the conditions of a grid: each condition is a pair of a speed
+/// and a force. Between the conditions, the player interpolates. The command prints the block's
+/// size and its error over nine bands, at the conditions and midway between them.
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
     asset: PathBuf,
 
-    /// The representation, by its model's short name or id [default: least nine-band error]
+    /// Which of the asset's models to use, by short name or id [default: the one with the smallest
+    /// nine-band error]
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// A condition, e.g. speed=80,force=0.4; may be given several times, as all combinations of
-    /// some speeds and forces [default: the asset's first condition, or the strongest if the first
-    /// is silent]
+    /// A condition of the grid, e.g. speed=80,force=0.4 (mm/s, N). If you give several, give all
+    /// combinations of their speeds and forces [default: the asset's first condition, or the
+    /// strongest if the first is silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 
-    /// A grid of conditions, where each axis is FIRST:LAST:COUNT or one number:
-    /// speed=40:160:3,force=0.2:0.6:3
+    /// A grid of conditions, e.g. speed=40:160:3,force=0.2:0.6:3 (mm/s, N). Each axis is
+    /// FIRST:LAST:COUNT or one number
     #[arg(long, value_name = "GRID")]
     grid: Option<String>,
 
@@ -48,25 +50,25 @@ pub(crate) struct Bake {
     #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Largest allowed nine-band error midway between conditions, dB. Conditions are added until the
-    /// error is within this limit or there are 64 conditions
+    /// Largest allowed nine-band error midway between conditions, dB. The command inserts
+    /// conditions until the error is within this limit or the block has 64 conditions
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 
-    /// Maximum number of filter coefficients, 65 to 641; more cost more time per sample [default:
-    /// 641]
+    /// Maximum number of coefficients in a filter, 65 to 641. A longer filter takes more time per
+    /// sample [default: 641]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
     longest: Option<u16>,
 
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). Source files
-    /// state licence and author in comments; for bytes, FILE.license states them
+    /// The file to write: a C array (.h), a Rust array (.rs) or the bytes (.bin). A source file
+    /// states licence and author in comments. For bytes, the command writes them to FILE.license
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// Name of the array in a .h or .rs file [default: the file's name]
+    /// Name of the array in a .h or .rs file [default: made from the file's name]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
 
@@ -102,8 +104,8 @@ impl Bake {
             Format::C | Format::Rust => None,
         };
         let beside = rights.and_then(|rights| rights.beside(&self.output));
-        // The licence goes to a second file, whose name the user did not give. It is known only
-        // now.
+        // The licence goes to a second file, whose name the user did not give. Only the baked asset
+        // tells whether there is a licence, so this file is checked only now.
         check_outputs(beside.as_deref(), [self.asset.as_path()])?;
         let written = match format {
             Format::Bytes => baked.bytes.clone(),
@@ -144,8 +146,9 @@ impl Bake {
     }
 }
 
-/// Warns if the law moves frequencies, but the grid is narrower than the recorded speeds or has
-/// only one speed. A filter does not follow the speed beyond the grid.
+/// Warns if the texture's law changes frequencies with the speed, but the grid has only one speed
+/// or covers fewer speeds than the recordings. Outside the grid, a filter cannot change its
+/// frequencies.
 fn warn_of_frequencies(baked: &BakeResult) {
     let speeds = baked.grid.speeds_mm_s();
     let (Some(beyond_db), [lowest, .., highest] | [lowest @ highest]) = (baked.beyond_db, speeds)
@@ -171,8 +174,8 @@ enum Format {
     Rust,
 }
 
-/// Returns the name of the array and the format. A given name is checked; otherwise the file's name
-/// is used.
+/// Returns the name of the array and the format of the file. Checks the name that the user gave, or
+/// else makes one from the file's name.
 fn name_and_format(output: &Path, given: Option<&str>) -> Result<(String, Format)> {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|p| p.to_str()).map(str::to_owned);
     let stem = text(output.file_stem()).unwrap_or_default();
@@ -248,7 +251,7 @@ fn span(text: &str) -> Option<Vec<f64>> {
     }
 }
 
-/// A block that was written.
+/// The report on a block that was written.
 struct BakeReport<'a> {
     output: &'a Path,
     baked: &'a BakeResult,

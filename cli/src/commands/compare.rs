@@ -21,11 +21,12 @@ use crate::recordings::RecordingArgs;
 
 /// Compare an asset with a recording
 ///
-/// Measures each representation of the asset, or another recording, against a recording.
+/// Measures how far each model of an asset, or a second recording, is from a recording.
 ///
-/// The asset plays at the recording's speed and force if both are known, else at its first
-/// condition. `felt` is the part of the difference above the detection threshold of a fingertip, in
-/// third octaves.
+/// htex evaluates the models at the recording's speed and force if both are known. Otherwise it
+/// uses the asset's first condition, or the strongest one if the first is silent. `felt` counts
+/// only what a fingertip can feel: the parts of both spectra above its detection threshold,
+/// compared in third octaves.
 #[derive(Args)]
 pub(crate) struct Compare {
     #[arg(help = format!("The recording: {}", format_names()))]
@@ -61,7 +62,7 @@ struct Comparison {
     warnings: Vec<Notice>,
 }
 
-/// A recording that is compared with the first one.
+/// The second recording, and how far it is from the first one.
 #[derive(Serialize)]
 struct OtherRecording {
     recording: String,
@@ -74,7 +75,8 @@ struct OtherRecording {
 
 impl Compare {
     pub(crate) fn run(self) -> Result {
-        // Before any file is parsed: swapped arguments get advice, not the error of a wrong parser.
+        // Checked before any file is parsed, so that swapped arguments lead to advice and not to a
+        // parser's error.
         self.check_kinds()?;
         let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
         let mut comparison = Comparison {
@@ -104,7 +106,7 @@ impl Compare {
         show(&comparison, self.json)
     }
 
-    /// Refuses files of other kinds, and says what to do with them.
+    /// Refuses two files that cannot be compared, and says what to do instead.
     fn check_kinds(&self) -> Result<()> {
         let advice = match (kind(&self.recording), kind(&self.other)) {
             (Kind::Asset, Kind::Asset) => {
@@ -138,7 +140,7 @@ impl Compare {
         })
     }
 
-    /// Compares another recording, which is read in the same way as the first.
+    /// Reads the other recording in the same way as the first one, and compares the two.
     fn other_recording(&self, spectrum: &TextureSpectrum) -> Result<(OtherRecording, Vec<Notice>)> {
         let (other, found, warnings) = self.spectrum(&self.other)?;
         let difference = Difference::between(spectrum, &other).ok_or_else(|| {

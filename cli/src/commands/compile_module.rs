@@ -6,7 +6,7 @@ use crate::failure::{Exit, Failure, Result};
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct CompileModule {
-    /// Limits, as that process passes them
+    /// The limits, in the form in which that process passes them
     arguments: Vec<String>,
 }
 

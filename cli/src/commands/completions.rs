@@ -6,9 +6,9 @@ use crate::output::write_bytes;
 
 /// Print a shell completion script
 ///
-/// bash: source it, or keep it as htex in ~/.local/share/bash-completion/completions. zsh: as _htex
-/// in a folder of fpath. fish: as htex.fish in ~/.config/fish/completions. PowerShell: at the end
-/// of $PROFILE.
+/// For bash, source the script, or save it as ~/.local/share/bash-completion/completions/htex. For
+/// zsh, save it as _htex in a folder of fpath. For fish, save it as
+/// ~/.config/fish/completions/htex.fish. For PowerShell, append it to $PROFILE.
 #[derive(Args)]
 pub(crate) struct Completions {
     /// The shell
@@ -18,7 +18,7 @@ pub(crate) struct Completions {
 
 impl Completions {
     pub(crate) fn run(self) -> Result {
-        // Not to standard output: `generate` panics if it cannot write, e.g. to a closed pipe.
+        // Generated in memory: `generate` panics if it cannot write, e.g. to a closed pipe.
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut crate::command(), "htex", &mut script);
         write_bytes(&script)?;

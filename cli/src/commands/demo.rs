@@ -32,17 +32,21 @@ const PICTURED: [&str; 2] = ["bands", "ar"];
 /// File name of the simulated rig's response.
 const RIG: &str = "rig.csv";
 const REPORT: &str = "report.html";
-/// The condition at which the surfaces are explored (paper, Texture recording).
+/// The speed and force at which the surfaces are explored (paper, Texture recording).
 const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
 
 /// Try everything on five simulated surfaces
 ///
-/// Simulates recordings, fits all models, plays the assets and writes a report.
+/// Simulates recordings, fits the six default models, plays the assets to WAV files, and writes a
+/// report.
 ///
-/// Needs nothing but this program. Writes these files to DIR: NAME.csv (the simulated recording),
-/// NAME.htex, NAME-MODEL.wav, rig.csv (the response of the simulated rig, which is divided out of
-/// the recordings), report.html and spectra.svg (all recordings with the Bands and AR models). The
-/// WAV files hold newtons as 32-bit floats and are quiet: to listen, raise them in an audio editor.
+/// For each surface, writes to DIR the simulated recording (NAME.csv), the asset (NAME.htex) and 5
+/// s of each model (NAME-MODEL.wav). Also writes report.html, spectra.svg (the spectra of all
+/// recordings, with the models Bands and AR) and rig.csv (the frequency response of the simulated
+/// rig; htex divides the spectra of the recordings by it).
+///
+/// The samples in the WAV files are newtons as 32-bit floats. They are quiet: to listen, raise
+/// their level in an audio editor.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder to write to; created if it does not exist
@@ -96,7 +100,7 @@ impl Demo {
         let csv = PathBuf::from(format!("{name}.csv"));
         self.write_recording(surface, OutputFile::Inside(own, &csv))?;
         let csv = self.dir.join(csv);
-        // The files are read back, so that the demo takes the way of a user's recording and asset.
+        // Reads the files back, so that the demo handles them exactly as a user's files.
         let recording = read_recording(&csv, &ReadOptions::default())?;
         let take = Take { recording, given: CONDITION };
         let fitted = fit_asset(&[take], &request(&name, rig)?)?;

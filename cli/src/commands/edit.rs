@@ -1,5 +1,5 @@
-//! Edits metadata by writing the asset again. An asset is refused if this version would not write
-//! all of its parts again, such as entries that nothing refers to.
+//! Edits metadata by writing the asset again. Refuses an asset with parts that this version would
+//! not write again, such as entries that nothing refers to.
 
 use std::path::PathBuf;
 
@@ -16,20 +16,20 @@ use crate::outputs::check_outputs;
 
 /// Change an asset's metadata
 ///
-/// Metadata that you do not give stays. An empty text (--author "") removes the entry, and --tag
-/// replaces all tags. Parameters, recorded spectra and embedded models with their signatures stay
-/// the same byte for byte.
+/// The command changes only the metadata that you give. An empty text (--author "") removes an
+/// entry. --tag replaces all tags. Parameters, recorded spectra and embedded models with their
+/// signatures stay the same, byte for byte.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
-    /// Further assets, which are refused with what to do
+    /// Further assets. The command refuses them, and says what to do instead
     #[arg(hide = true)]
     more: Vec<PathBuf>,
 
-    /// The asset to write [default: the asset itself]
+    /// The file to write [default: replace the asset]
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
@@ -50,8 +50,8 @@ impl Edit {
                 "nothing to change: give at least one of the metadata, such as --author",
             ));
         }
-        // The command sees the local copy of a remote asset. Replacing the copy would change
-        // nothing.
+        // Here, a remote asset is only a local copy. Replacing the copy would not change the remote
+        // asset.
         if self.output.is_none() && located::is_copy(&self.asset) {
             let file = located::with_uris(&shown(&self.asset));
             return Err(Failure::Usage(format!(

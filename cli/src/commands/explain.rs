@@ -22,10 +22,10 @@ pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
 
 /// Explain the code of a finding
 ///
-/// Prints what it means and what to do.
+/// Prints what the finding means and what to do about it.
 #[derive(Args)]
 pub(crate) struct Explain {
-    /// The code, as `htex validate` prints it; without a code, all codes are listed
+    /// The code, as `htex validate` prints it. Without a code, the command lists all codes
     code: Option<String>,
 }
 

@@ -22,15 +22,15 @@ use crate::scene_sound::{Scene, is_scene};
 
 /// Write a texture in another haptic format
 ///
-/// Writes a texture at a condition or along a stroke, or a whole scene, as a file that phones,
-/// controllers and engines can play.
+/// Writes a texture or a whole scene as a file that phones, game controllers and game engines can
+/// play. A texture is written as it feels at one speed and force, or along a stroke of the finger.
 ///
-/// The profile of an actuator decides how much of the spectrum it can reproduce. The written file
-/// is read again, played through the profile, and compared with the asset's own samples. The
-/// difference is printed.
+/// The profile of an actuator describes how much of the spectrum it can reproduce. The command
+/// reads the written file again, plays it through the profile, compares the result with the asset's
+/// own samples, and prints the difference.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The asset, or a scene, which has its own motion and models
+    /// The asset or the scene to export. A scene states its own motion and models
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
@@ -44,8 +44,8 @@ pub(crate) struct Export {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write; with --to android, Kotlin if it ends in .kt, else JSON; with --to gltf,
-    /// JSON if it ends in .gltf, else a .glb
+    /// The file to write. For --to android, a name ending in .kt selects Kotlin, and any other name
+    /// JSON. For --to gltf, a name ending in .gltf selects JSON, and any other name binary (.glb)
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: PathBuf,
 
@@ -54,34 +54,35 @@ pub(crate) struct Export {
     json: bool,
 }
 
-/// Settings, of which each format uses some.
+/// Settings. Each format uses only some of them.
 #[derive(Args)]
 struct Settings {
     #[command(flatten)]
     choice: ChoiceArgs,
 
-    /// A stroke instead of a condition: a CSV of time, speed and force (t_s, speed_mm_s, force_n),
-    /// or of time, position and force
+    /// Play along this stroke instead of at one speed and force. The CSV has columns for time,
+    /// speed and force (t_s, speed_mm_s, force_n), or for time, position and force
     #[arg(long, value_name = "CSV", value_parser = located::RECORDING, conflicts_with_all = ["speed", "force", "seconds"])]
     stroke: Option<PathBuf>,
 
-    /// The actuator [default: the format's own]
+    /// The actuator that will play the file; `htex formats` lists the names [default: the format's
+    /// own]
     #[arg(long, value_name = "NAME", value_parser = profile_names())]
     profile: Option<String>,
 
-    /// Duration, s [default: 2 for a condition; for a scene its own]
+    /// Duration, s [default: the scene's own duration, or 2]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
-    /// Sample rate of WAV, Hz [default: 8000]
+    /// Sample rate of a WAV file, Hz [default: 8000]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(100..=192_000))]
     rate: Option<u32>,
 
-    /// How hjif encodes a texture [default: vectorial]
+    /// How a .hjif file encodes the texture [default: vectorial]
     #[arg(long, value_enum, value_name = "CODING")]
     coding: Option<Coding>,
 
-    /// The same seed gives the same samples
+    /// Seed of the random numbers: the same seed gives the same samples
     #[arg(long, default_value_t = 0)]
     seed: u64,
 }
@@ -166,7 +167,7 @@ impl Export {
         Ok(Path::Condition(settings.choice.motion(asset).map_err(for_file(&self.asset))?))
     }
 
-    /// Converts an error. An error of playing names the asset.
+    /// Converts an error. An error from playing also names the asset.
     fn failure(&self, error: ExchangeError) -> Failure {
         match error {
             ExchangeError::Play(error) => Failure::from(error).in_file(&self.asset),
@@ -199,7 +200,7 @@ fn limited(played: &ActuatorPlay) -> String {
     format!("; the actuator is too weak in {:.0} % of the time", 100.0 * played.limited)
 }
 
-/// Says in words what is lost.
+/// Describes in words what the exported file loses.
 fn lost(lost: &Loss) -> String {
     let felt = &lost.difference.felt.error;
     let threshold = if felt.below_difference_threshold { "below" } else { "above" };

@@ -23,8 +23,9 @@ use crate::report::{ReportSource, measures, shares};
 ///
 /// Writes an asset (.htex) with the models and the measured error of each.
 ///
-/// Recordings whose speed and force differ by less than 5 % are averaged as one exploration
-/// condition. Other recordings become further conditions of the same texture.
+/// htex averages recordings whose speed and force differ by less than 5 %. They become one
+/// condition of the texture: a pair of a speed and a force. Other recordings become further
+/// conditions.
 #[derive(Args)]
 pub(crate) struct Fit {
     #[arg(help = format!("Recordings of one texture: {}", format_names()))]
@@ -42,8 +43,8 @@ pub(crate) struct Fit {
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT, display_order = 3)]
     output: PathBuf,
 
-    /// A model's WASM module to fit with and to embed in the asset, so that any player can play it;
-    /// may be given several times
+    /// A WASM module that contains a model. htex fits this model and embeds the module in the
+    /// asset, so that any player can play it; may be given several times
     #[arg(long, value_name = "WASM", display_order = 5)]
     embed_plugin: Vec<PathBuf>,
 
@@ -51,7 +52,8 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "FILE", requires = "embed_plugin", display_order = 6)]
     sign_with: Option<PathBuf>,
 
-    /// Draw the grid: steady windows over speed and force, mesh, repeatability
+    /// Draw the grid of conditions: the steady parts of the recording over speed and force, the
+    /// fitted conditions with their repeatability, and the mesh between them
     #[arg(long, value_name = "SVG", requires = "grid", display_order = 8)]
     grid_svg: Option<PathBuf>,
 
@@ -81,7 +83,7 @@ impl Fit {
         check_outputs(outputs.map(PathBuf::as_path), files.chain(self.reading.inputs()))?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
         check_metadata(&self.metadata)?;
-        // Wrong options are reported before the recordings are read, which may be long.
+        // Reports wrong options before it reads the recordings, which may take long.
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;

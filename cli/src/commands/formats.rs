@@ -10,7 +10,7 @@ use crate::output::show;
 
 /// List the formats to import and export
 ///
-/// Prints what each format keeps and loses, and the profiles of actuators.
+/// Prints what each format keeps and loses of a texture, and the profiles of actuators.
 #[derive(Args)]
 pub(crate) struct Formats {
     /// Print JSON instead of lists

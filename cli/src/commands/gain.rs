@@ -20,31 +20,32 @@ const LARGE_STEP_DB: f64 = 4.0;
 
 /// Find a participant's preferred gain
 ///
-/// The participant adjusts the gain of a surface on a display. The result is stored.
+/// The participant touches the display and adjusts how strong the texture is. htex stores the gain,
+/// and `htex play --person` uses it.
 ///
-/// The surface plays without end. `+` and `-`, each followed by Enter, make it 1 dB stronger or
-/// weaker, `++` and `--` 4 dB. Enter alone accepts the gain. It starts 20 dB below the device's
-/// limit, so a finger feels nothing stronger than the participant asked for. In the paper,
-/// participants start at the device's limit; htex does not. `htex play --person` then uses the
-/// stored gain. Ctrl-C stores nothing.
+/// The texture plays without end. Type `+` or `-` and Enter to make it 1 dB stronger or weaker, and
+/// `++` or `--` and Enter for 4 dB. Press only Enter to accept the gain, or Ctrl-C to leave without
+/// storing one. The gain starts 20 dB below the device's limit, so that the finger feels nothing
+/// stronger than the participant asked for. (In the paper, participants start at the limit.)
 ///
-/// htex stores one gain for each person, texture and device. All representations of a texture share
-/// it. An asset that is fitted again keeps its gain, because the name and the author identify a
-/// texture. The paper finds the gain with `--model ar` and plays all models with it.
+/// htex stores one gain for each combination of person, texture and device. All models of a texture
+/// share this gain. htex identifies a texture by its name and author, so the gain stays valid if
+/// you fit the texture again. In the paper, participants found the gain with the model AR
+/// (`--model ar`), and all models were played with it.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
     file: PathBuf,
 
-    /// The person whose gain it is
+    /// Name of the participant, under which htex stores the gain
     #[arg(long, value_name = "NAME")]
     person: String,
 
-    /// Largest voltage to start at, V [default: a tenth of the device's limit]
+    /// Drive at the start, as its largest voltage, V [default: a tenth of the device's limit]
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
-    /// Name of the texture, if another one has the same name and author
+    /// Name under which htex stores the gain, if another texture has the same name and author
     #[arg(long, value_name = "NAME")]
     texture: Option<String>,
 
@@ -58,7 +59,7 @@ pub(crate) struct Gain {
     with: SceneArgs,
 }
 
-/// A drive, volts, and the RMS that was played with it, in the assets' unit.
+/// The accepted drive, volts, and the RMS that was played with this drive, in the assets' unit.
 struct MatchedGain {
     drive_v: f64,
     reference_rms: f64,
@@ -86,7 +87,7 @@ impl Gain {
                 "--start {start_v}: more than 0, at most {limit_v} V"
             )));
         }
-        // The participant needs any amount of time, whatever the scene says.
+        // The participant may take any time, so the scene's duration does not apply.
         ready.scene.file.duration_s = None;
         self.felt.apply(&mut ready)?;
         let key = key(&self.person, self.texture.as_deref(), &ready);
@@ -128,9 +129,11 @@ fn limit(ready: &Ready) -> Result<f64> {
     }
 }
 
-/// Plays until the participant accepts the gain; `None` if the input ends or is interrupted before.
+/// Plays until the participant accepts the gain. Returns `None` if the input ends or is interrupted
+/// before that.
 fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<MatchedGain>> {
-    // Before the device is opened: from then on a signal must first bring the output to zero.
+    // Called before the device is opened: from then on, a signal must bring the output to zero
+    // before the program ends.
     signals::ask();
     let wishes = wishes();
     let (mut drive_v, mut output, mut kept) = (start_v, None, None);
@@ -167,7 +170,7 @@ fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output> {
     Ok(if ready.capabilities.paced { output } else { output.paced() })
 }
 
-/// Plays until a line asks for something, then fades to silence.
+/// Plays until an input line makes a request, then fades to silence.
 fn play_until_wish(
     renderer: &mut Renderer,
     output: &mut Output,
@@ -176,7 +179,7 @@ fn play_until_wish(
     let mut answer = None;
     let mut stopped = false;
     while output.step(renderer)? {
-        // Blocks go on until the fade to silence is written.
+        // Continues with further blocks until the fade to silence is written.
         if stopped {
             continue;
         }
@@ -190,10 +193,10 @@ fn play_until_wish(
     Ok(answer)
 }
 
-/// Reads requests from the lines of standard input. An invalid line is reported.
+/// Reads requests from the lines of standard input. Reports an invalid line on standard error.
 fn wishes() -> Receiver<Wish> {
     let (sender, receiver) = channel();
-    // A read cannot be interrupted, so the thread is left to the end of the process.
+    // A read cannot be interrupted, so the thread runs until the process ends.
     std::thread::spawn(move || {
         for line in std::io::stdin().lines().map_while(Result::ok) {
             let sent = wish(&line).map(|wish| sender.send(wish));
@@ -218,7 +221,7 @@ fn wish(line: &str) -> Option<Wish> {
     })
 }
 
-/// Formats the drive: its largest voltage, and V_g.
+/// Formats the drive as its largest voltage, and as V_g (the largest voltage divided by √2).
 fn volts(drive_v: f64) -> String {
     format!("{drive_v:.1} V at most, V_g {:.2} V", drive_v / std::f64::consts::SQRT_2)
 }

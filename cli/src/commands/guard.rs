@@ -4,7 +4,7 @@ use htex_device::guardian::hold;
 use crate::devices::DeviceArgs;
 use crate::failure::{Exit, Result};
 
-/// Hold a device for the process that started this one (internal; `htex play` starts it).
+/// Hold a device's output for the process that started this one (internal; `htex play` starts it).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct Guard {

@@ -18,12 +18,14 @@ use crate::plugins::PluginArgs;
 
 /// Read another haptic format as a texture
 ///
-/// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a
-/// texture directly. A glTF file returns the texture embedded in its material, bit for bit. Files
-/// of the other formats are signals without this information, and are fitted like a recording. Give
-/// the strength of 1 (--full-scale), and the speed and force at which the file is felt. Licence and
-/// author are taken from the file or from FILE.license next to it, unless they are given.
-/// `htex formats` lists what is kept and lost.
+/// A model file of the Penn Haptic Texture Toolkit states its units, speeds and forces, so it
+/// becomes a texture directly. From a glTF file, htex takes the texture that a material embeds, bit
+/// for bit. A file of any other format is a signal without this information. htex fits models to
+/// this signal as to a recording, so give the value of its full scale (--full-scale), and the speed
+/// and the force at which the file is felt (--speed, --force).
+///
+/// htex takes licence and author from the file, or from FILE.license next to it, unless you give
+/// them. `htex formats` lists what each format keeps and loses.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -48,13 +50,13 @@ pub(crate) struct Import {
     json: bool,
 }
 
-/// Settings, of which each format uses some.
+/// Settings. Each format uses only some of them.
 #[derive(Args)]
 struct Settings {
     #[command(flatten)]
     signal: SignalSettings,
 
-    /// Quantity of the full scale
+    /// Physical quantity of the signal, whose unit --full-scale has
     #[arg(long, value_enum, default_value_t, display_order = 1)]
     quantity: Quantity,
 
@@ -62,7 +64,7 @@ struct Settings {
     #[arg(long, value_name = "MM_S", display_order = 1)]
     speed: Option<f64>,
 
-    /// Its normal force, N
+    /// Normal force of the finger, N
     #[arg(long, value_name = "N", display_order = 1)]
     force: Option<f64>,
 

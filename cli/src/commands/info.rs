@@ -11,16 +11,19 @@ use crate::output::show;
 
 /// Show what an asset holds, and its errors
 ///
-/// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS
-/// energy difference over nine critical bands, from the model's magnitudes and from samples that it
-/// played; bytes of parameters.
+/// Prints the asset's metadata, and a table with a row for each model and condition (a speed and a
+/// force). `level` is the RMS in the asset's unit, and `corr.` the Pearson correlation with the
+/// recorded spectrum. `bands/dB`, `third-oct/dB` and `log-sp/dB` are errors of the model's
+/// spectrum: over nine overlapping bands, over third octaves, and over all frequencies. The columns
+/// `played…` show the same errors for samples that the model rendered. `bytes` is the size of the
+/// model's parameters.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The asset
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
-    /// Further assets, which are refused with what to do
+    /// Further assets. The command refuses them, and says what to do instead
     #[arg(hide = true)]
     more: Vec<PathBuf>,
 

@@ -24,34 +24,37 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe
 ///
-/// Fits the recordings that the recipe names, imports files as `htex import` does, and writes
-/// DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the catalogue DIR/index.html. If a
-/// build fails, the report contains its error. Finished fits stay in DIR/.htex-build: a killed
-/// build continues where it was, and a repeated build fits only what changed. Recordings and other
-/// files of a recipe may also be URIs.
+/// Fits the recordings that the recipe names, and imports files as `htex import` does. Writes the
+/// library DIR/NAME.htexlib, the folder DIR/textures, the report DIR/build-report.json and the
+/// catalogue DIR/index.html. If the build fails, the report contains the error. The recordings and
+/// other files that a recipe names may be URIs.
 ///
-/// Exit status: 0 if every texture was made, 1 if none was, 3 if some were made and others left out
-/// (they miss a gate, or with --keep-going cannot be made), 2 for wrong usage.
+/// Finished fits stay in DIR/.htex-build. A build that was killed continues from there, and a
+/// repeated build fits only what has changed.
+///
+/// Exit status: 0 if every texture was made; 1 if none was made or the build failed; 2 for wrong
+/// usage; 3 if some textures were made and others left out. htex leaves out a texture that misses a
+/// gate (a limit in the recipe), and with --keep-going a texture that cannot be made.
 #[derive(Args)]
 pub(crate) struct Build {
-    /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
+    /// Path or URI of the recipe, e.g. library.toml. `htex schema recipe` prints its JSON Schema
     recipe: Anywhere,
 
-    /// A folder for the results, or a URI (s3://, gs://, az://). For a URI, results are made in
-    /// --work and copied when complete
+    /// Folder for the results, or a URI (s3://, gs://, az://). For a URI, htex makes the results in
+    /// the folder --work, and uploads them when they are complete
     #[arg(short, long, value_name = "DIR|URI")]
     output: OsString,
 
-    /// The folder in which results for a URI are made; it keeps what the next build needs [default:
-    /// a folder in the user's cache]
+    /// Folder of this machine in which htex makes the results for a URI. Keep it: the next build
+    /// continues from its contents [default: a folder in the user's cache]
     #[arg(long, value_name = "DIR")]
     work: Option<PathBuf>,
 
-    /// Textures to fit at the same time [default: one for each processor]
+    /// Number of textures to fit at the same time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
 
-    /// Continue after a texture that cannot be made, and leave it out
+    /// Leave out a texture that cannot be made, and continue with the others
     #[arg(long)]
     keep_going: bool,
 
@@ -60,28 +63,28 @@ pub(crate) struct Build {
     #[arg(long)]
     no_removals: bool,
 
-    /// Check the recipe with its files, plugins, options and gates, print what would be fitted and
-    /// why, and fit nothing
+    /// Fit nothing: check the recipe with its files, plugins, options and gates, and print what a
+    /// build would fit and why
     #[arg(long)]
     dry_run: bool,
 
-    /// A plugin to fit with: a WASM module (sandboxed) or a native library (it runs with all your
-    /// rights: load only what you trust); may be given several times. A recipe itself can name only
-    /// WASM modules
+    /// A model's plugin to fit with: a WASM module (sandboxed) or a native library (it runs with
+    /// all your rights: load only what you trust); may be given several times. A recipe itself can
+    /// name only WASM modules
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// Remove unused fits at once; otherwise they stay for 30 days, so that undoing a change of a
-    /// setting needs no new fit
+    /// Remove unused fits at once. Without this, they stay for 30 days, so that you can undo a
+    /// change of a setting without fitting again
     #[arg(long)]
     prune: bool,
 
-    /// Folder of the browser package: the catalogue then plays textures with a copy of it instead
-    /// of short sounds
+    /// Folder of the browser package. The catalogue then contains a copy of this package and plays
+    /// the textures with it, instead of short sounds
     #[arg(long, value_name = "DIR")]
     browser_package: Option<PathBuf>,
 
-    /// What a WASM model may use, by name; see `htex fit --help`
+    /// A limit on what WASM models may use; `htex fit --help` lists the names
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 
@@ -122,8 +125,8 @@ struct Work {
 }
 
 impl Build {
-    /// Runs the build. An error is also written to the report, and as JSON to standard output, for
-    /// programs that read those.
+    /// Runs the build. Also writes an error to the report, and with `--json` to standard output,
+    /// for programs that read the report or the output.
     pub(crate) fn run(self) -> Result {
         let built = self.build();
         if let Err(failure) = &built {
@@ -140,7 +143,7 @@ impl Build {
             self.dry_run || matches!(failure.cause(), Failure::Build(BuildError::Removes { .. }));
         // Wrong usage is not written, because no build has begun.
         if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit()) {
-            // If the report cannot be written, the reason is the one in `failure`.
+            // If the report cannot be written either, `failure` already states the reason.
             let _ = report_failure(to.folder(), &tool(), &lines);
         }
         if self.json { print_json(&json!({ "textures": 0, "error": lines })) } else { Ok(()) }
@@ -173,7 +176,7 @@ impl Build {
             return self.announce(&build, &work);
         }
         if work.textures > 0 {
-            // A store that refuses files must say so before hours of fitting.
+            // Finds out whether the remote storage accepts files before hours of fitting.
             to.try_out().map_err(for_file(&self.recipe))?;
         }
         fit(&mut build, &work).map_err(for_file(&self.recipe))?;
@@ -277,7 +280,7 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), BuildError> {
     let bar = byte_bar(work.bytes);
     let (count, all) = (AtomicUsize::new(0), work.textures);
     let done = |job: &Job| {
-        // Only a number on the screen depends on the order.
+        // Relaxed, because only a number on the screen depends on the order.
         let count = count.fetch_add(1, Ordering::Relaxed) + 1;
         bar.set_message(format!("{count}/{all} textures"));
         bar.inc(job.recording_bytes());

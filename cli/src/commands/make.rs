@@ -24,19 +24,21 @@ pub(crate) struct Make {
     #[arg(long, value_name = "ID")]
     model: String,
 
-    /// Parameters; a list has commas, e.g. cepstrum=-12,3.1,0.4
+    /// The model's parameters, e.g. alpha=2 beta=5. Separate the values of a list with commas:
+    /// cepstrum=-12,3.1,0.4
     #[arg(long, value_name = "NAME=NUMBER", num_args = 1.., required = true)]
     set: Vec<String>,
 
-    /// RMS of the texture, in the quantity's unit (newtons)
+    /// RMS of the texture, in the unit of --quantity (newtons for a force)
     #[arg(long, value_name = "RMS")]
     level: f64,
 
-    /// Speed and force of this texture, e.g. speed=80,force=0.4 [default: unknown]
+    /// Speed and normal force at which the texture feels like this, e.g. speed=80,force=0.4
+    /// [default: unknown]
     #[arg(long, value_name = "speed=MM_S,force=N")]
     at: Option<String>,
 
-    /// Quantity of the samples
+    /// Physical quantity of the samples
     #[arg(long, default_value = "lateral_force", value_parser = quantity)]
     quantity: Quantity,
 

@@ -11,10 +11,11 @@ use crate::failure::{Exit, Result};
 ///
 /// Writes one page for each subcommand.
 ///
-/// `man -l DIR/htex-fit.1` shows a page. In a man1 folder of MANPATH, `man htex-fit` finds it.
+/// `man -l DIR/htex-fit.1` shows one page. If DIR is the folder man1 of a folder in MANPATH,
+/// `man htex-fit` finds the page.
 #[derive(Args)]
 pub(crate) struct Manual {
-    /// The folder to write to; it is created
+    /// Folder to write to; created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

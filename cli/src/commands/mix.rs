@@ -14,14 +14,14 @@ use crate::plugins::PlayerArgs;
 /// Make a texture between two others
 ///
 /// Each model that describes both textures interpolates between their parameters, as it does
-/// between the conditions of one texture. The asset states its two origins.
+/// between the recorded speeds and forces of one texture. The new asset names the two textures.
 #[derive(Args)]
 pub(crate) struct Mix {
-    /// A texture
+    /// The first texture
     #[arg(value_parser = located::ASSET)]
     a: PathBuf,
 
-    /// Another texture
+    /// The second texture
     #[arg(value_parser = located::ASSET)]
     b: PathBuf,
 
@@ -60,7 +60,8 @@ impl Mix {
     /// Opens a texture and computes the hash of its file.
     fn open(&self, path: &Path) -> Result<(htex::Texture, String)> {
         let asset = self.player.open(path)?;
-        // An opened asset does not keep its file's bytes, and written again it may have others.
+        // An opened asset does not keep its file's bytes, and writing it again may give different
+        // bytes.
         let bytes = read_asset(path)?;
         Ok((asset, blake3::hash(&bytes).to_hex().to_string()))
     }

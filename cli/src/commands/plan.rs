@@ -14,18 +14,20 @@ use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
 /// Show which stages a scene needs, and why
 ///
-/// Nothing is played. Costs are in nanoseconds per sample of the device.
+/// Prints the processing stages with which htex would play the scene, and why each one is needed or
+/// left out. Also prints the time that each stage takes, in nanoseconds per sample of the device.
+/// Plays nothing.
 #[derive(Args)]
 pub(crate) struct Plan {
     /// The scene
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// Measure the costs on this machine first, and keep them for later plans
+    /// Measure the times of the stages on this machine first, and store them for later plans
     #[arg(long)]
     measure: bool,
 
-    /// Draw the chain
+    /// Draw the chain of stages as an SVG picture
     #[arg(long, value_name = "SVG", value_parser = located::OUTPUT)]
     svg: Option<PathBuf>,
 
@@ -68,7 +70,7 @@ fn name(name: &str, surface: Option<usize>) -> String {
     surface.map_or_else(|| name.to_owned(), |i| format!("{name} [{i}]"))
 }
 
-/// A plan as it is printed.
+/// A plan, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct PlanReport(Planned);

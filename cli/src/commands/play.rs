@@ -19,10 +19,10 @@ use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device
 ///
-/// Plays until its end or Ctrl-C.
+/// Plays until the scene ends or you press Ctrl-C.
 ///
-/// An asset is played at the speed and force of its first condition (or of the strongest, if the
-/// first is silent). It is played as sound if no device is named.
+/// htex plays an asset at the speed and force of its first condition, or of the strongest one if
+/// the first is silent. Without --device, it plays an asset as sound.
 #[derive(Args)]
 #[command(after_help = without_sound())]
 pub(crate) struct Play {
@@ -30,13 +30,13 @@ pub(crate) struct Play {
     #[arg(value_parser = located::ASSET)]
     file: PathBuf,
 
-    /// Read the motion from standard input during playback, as lines
-    /// `speed_mm_s force_n [x_mm y_mm]` with a negative speed on the back stroke; playback stops at
+    /// Read the finger's motion from standard input during playback, as lines
+    /// `speed_mm_s force_n [x_mm y_mm]`. The speed is negative on the way back. Playback stops at
     /// the end of the input
     #[arg(long, value_name = "-", value_parser = ["-"])]
     motion: Option<String>,
 
-    /// Duration, s, instead of the scene's
+    /// Duration, s [default: the scene's own]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
@@ -44,7 +44,7 @@ pub(crate) struct Play {
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
 
-    /// Name under which the gain is stored, if it is not the texture's own
+    /// Name under which `htex gain --texture` stored the gain, if it is not the texture's own name
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
 
@@ -70,12 +70,14 @@ impl Play {
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.file))?;
-        // Before the device is opened: from then on a signal must first bring the output to zero.
+        // Called before the device is opened: from then on, a signal must bring the output to zero
+        // before the program ends.
         signals::ask();
         let mut output = Output::open(&ready, &plan)?;
         let mut motions = self.motion.is_some().then(Motions::from_stdin);
         let endless = motions.is_some() || plan.frames.is_none();
-        // A device without a clock takes samples at once. A file would fill the disk.
+        // A device without a clock takes samples as fast as they are made, so that a file would
+        // fill the disk.
         if endless && !ready.capabilities.paced {
             output = output.paced();
         }
@@ -108,15 +110,15 @@ impl Play {
         }
         self.felt.apply(&mut ready)?;
         if let Some(person) = &self.person {
-            // After `--levels`: own levels also need the level at which the gain was found.
+            // Applied after `--levels`: if each model keeps its own level, the scene also needs the
+            // level at which the gain was found.
             apply_gain(person, self.texture.as_deref(), &mut ready)?;
         }
         Ok(ready)
     }
 }
 
-/// Opens a scene. An asset is opened as a scene of its own, and played as sound if no device is
-/// named.
+/// Opens a scene, or makes a scene from an asset. An asset plays as sound if no device is named.
 pub(crate) fn open(
     with: &SceneArgs,
     file: &std::path::Path,
@@ -126,7 +128,7 @@ pub(crate) fn open(
     if is_asset(file) {
         device.adapter.get_or_insert_with(|| SOUND.short_name().to_owned());
     }
-    // A device that this build does not have is reported with how to get it.
+    // If this build lacks the device, the error says how to get it.
     if let Some(why) = device.adapter.as_deref().and_then(DeviceArgs::missing) {
         return Err(why.into());
     }

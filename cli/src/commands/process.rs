@@ -17,9 +17,10 @@ use crate::recordings::RecordingArgs;
 
 /// Show the texture spectrum of a recording
 ///
-/// The spectrum is computed from Hann-windowed segments of 0.2 s. Two axes are combined into one
-/// (DFT321), divided by the setup's response if there is one, and averaged. The result has steps of
-/// 5 Hz from 20 to 1000 Hz. A sinusoid of amplitude A on that grid reads A.
+/// htex cuts the recording into segments of 0.2 s and computes the spectrum of each, with a Hann
+/// window. It combines the axes into one (DFT321), divides by the frequency response of the rig if
+/// you give it (--frf), and averages over the segments. The result has a magnitude every 5 Hz from
+/// 20 to 1000 Hz. A sinusoid of amplitude A at one of these frequencies has the magnitude A.
 #[derive(Args)]
 pub(crate) struct Process {
     #[arg(help = format!("The recording: {}", format_names()))]
@@ -60,12 +61,13 @@ impl Process {
     }
 }
 
-/// Says where the segments come from.
+/// Says whether the segments come from sweeps of the finger or from windows at regular times.
 fn origin(reading: &SegmentedTake) -> &'static str {
     if reading.spectra.segments.from_sweeps { "sweeps" } else { "windows" }
 }
 
-/// Returns the segments that are used, in seconds of the file.
+/// Returns the stretches of the recording that are used, each as its start and end in seconds of
+/// the file.
 fn stretches_s(recording: &Recording, reading: &SegmentedTake) -> Vec<[f64; 2]> {
     let stretches = reading.spectra.segments.stretches().into_iter();
     stretches.map(|part| [part.start, part.end].map(|at| recording.second(at))).collect()
@@ -90,7 +92,7 @@ fn seconds_read(recording: &Recording, reading: &SegmentedTake) -> String {
     text
 }
 
-/// The spectrum of a recording, and what was read of it.
+/// The spectrum of a recording, and the segments from which it was computed.
 struct RecordingSpectrum<'a> {
     recording: &'a Recording,
     reading: SegmentedTake,

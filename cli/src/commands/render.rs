@@ -26,22 +26,23 @@ const BLOCK: usize = 4096;
 
 /// Render a scene to a file
 ///
-/// Writes exactly the samples that the scene's device would get, faster than real time where
-/// possible.
+/// Writes exactly the samples that the scene's device would get. Renders as fast as it can, without
+/// waiting for real time.
 ///
-/// The file's extension selects WAV, CSV, NPY or raw samples. They are in the unit of the scene's
-/// device: newtons, the drive voltage of a display, or sound.
+/// The extension of the file selects the format: WAV, CSV, NPY or raw samples. The samples are in
+/// the unit of the scene's device, e.g. newtons, the drive voltage of a display, or sound.
 #[derive(Args)]
 pub(crate) struct Render {
     /// The scene
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// The file to write or replace [default: the scene's name with .wav, if no such file exists]
+    /// The file to write. An existing file is replaced [default: the scene's name with .wav; such a
+    /// file must not exist yet]
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
-    /// Duration, s, instead of the scene's
+    /// Duration, s [default: the scene's own]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
 
@@ -102,7 +103,7 @@ impl Render {
         )
     }
 
-    /// Sets the requested length, and refuses a scene without end.
+    /// Sets the requested length, and refuses a scene without an end.
     fn check_length(&self, ready: &mut Ready) -> Result<()> {
         let scene = &mut ready.scene.file;
         if let Some(seconds) = self.seconds {
@@ -151,7 +152,7 @@ impl Render {
             ready.check_output(&beside)?;
         }
         let is_named = self.output.is_some() || self.choice.settings.given()?.contains_key("path");
-        // `exists` would follow a link, and miss one that leads nowhere.
+        // `exists` would follow a link, and so overlook a link whose target does not exist.
         if !is_named && path.symlink_metadata().is_ok() {
             let path = shown(&path);
             return Err(Failure::Usage(format!(

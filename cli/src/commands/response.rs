@@ -25,32 +25,34 @@ use crate::outputs::check_outputs;
 ///
 /// Measures the frequency response of a recording rig or a finger display.
 ///
-/// The response is computed from recordings of input and output. With an impact hammer, each hit is
-/// one average; double hits, overloads and incomplete hits are discarded and listed. With
-/// --continuous, the input is a drive such as noise. Writes a CSV for --frf of the commands for
-/// recordings, and for the `response` of a scene's device.
+/// htex computes the response from recordings of the input and the output. If the input is an
+/// impact hammer, htex averages over the hits. It discards double hits, overloads and incomplete
+/// hits, and lists them. If the input is a continuous drive such as noise, give --continuous.
+///
+/// htex can write the response as a CSV file. Give this file to --frf of the commands that read
+/// recordings, or name it as the `response` of a scene's device.
 #[derive(Args)]
 pub(crate) struct Response {
     #[arg(help = format!("The recordings, all of one rate: {}", format_names()))]
     #[arg(value_parser = located::RECORDING, required = true)]
     recordings: Vec<PathBuf>,
 
-    /// The force of the hammer, or the drive of the display: COLUMN, COLUMN:SCALE, or an expression
-    /// of columns (fx1+fx2). A column is given by its name, its number (#1) or its path in the file
-    /// (/run1/fx). Without a scale, the unit is the file's
+    /// Column with the force of the hammer or the drive of the display: COLUMN, COLUMN:SCALE, or an
+    /// expression of columns (fx1+fx2). COLUMN is a name, a number (#1) or a path in the file
+    /// (/run1/fx). Without SCALE, the values keep the file's unit
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     input: String,
 
-    /// The output of the rig or the display: a column as for --input
+    /// Column with the output of the rig or the display, written as for --input
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     output: String,
 
-    /// The time column and its scale to seconds, if htex does not recognise its name:
-    /// time=stamp_ms:0.001
+    /// Name of the time column, and its scale to seconds, e.g. time=stamp_ms:0.001; needed if htex
+    /// does not recognise the name
     #[arg(long, value_name = "MAP")]
     map: Option<String>,
 
-    /// Sample rate; needed if the file does not state it (NPY, CSV without a time column)
+    /// Sample rate, Hz; needed if the file does not state it (NPY, CSV without a time column)
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
 
@@ -62,7 +64,7 @@ pub(crate) struct Response {
     #[arg(long, value_name = "S")]
     to: Option<f64>,
 
-    /// Maximum number of values of a recording that are kept in memory
+    /// Maximum number of values of a recording to keep in memory
     #[arg(long, value_name = "N", default_value_t = MOST_VALUES)]
     most_numbers: usize,
 
@@ -105,7 +107,7 @@ impl Response {
         show(&ResponseReport { args: &self, measured, remarks }, self.json)
     }
 
-    /// Reads the records. Also returns each notice about them once.
+    /// Reads the records. Also returns the notices about them, without duplicates.
     fn read(&self) -> Result<(Vec<Record>, Vec<Notice>)> {
         let others = self.map.as_deref().map(str::parse::<ColumnMap>).transpose()?;
         let map = column_map(&self.input, &self.output, others.as_ref())?;
@@ -144,7 +146,7 @@ struct ResponseReport<'a> {
 impl Serialize for ResponseReport<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { args, measured, remarks } = self;
-        // Collected in a map, because that has the order of the alphabet.
+        // Converted to a map, because a map lists its keys in alphabetical order.
         let mut summary = serde_json::to_value(measured).map_err(S::Error::custom)?;
         // Indexing inserts a key. It cannot panic, because a struct is always a JSON object.
         summary["input"] = json!(args.input);
@@ -155,8 +157,8 @@ impl Serialize for ResponseReport<'_> {
     }
 }
 
-/// Converts an error about columns so that it names the flags of this command, which differ from
-/// other commands' flags.
+/// Converts an error about columns so that it names the flags of this command. Other commands have
+/// other flags for columns.
 fn read_failure(error: ReadError) -> Failure {
     match error.problem {
         ReadProblem::Columns { .. } => {

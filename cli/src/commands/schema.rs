@@ -6,7 +6,8 @@ use crate::output::print;
 
 /// Print JSON Schemas and model descriptors
 ///
-/// Prints a JSON Schema of the manifest, of scenes or of reports, or the descriptors of the models.
+/// Prints one JSON Schema, e.g. of the manifest in an asset or of scenes, or prints the descriptors
+/// of all built-in models.
 #[derive(Args)]
 pub(crate) struct Schema {
     /// What to print
@@ -16,11 +17,11 @@ pub(crate) struct Schema {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum What {
-    /// JSON Schema of `manifest.json`
+    /// JSON Schema of `manifest.json`, the description in an asset
     Manifest,
     /// JSON Schema of scenes
     Scene,
-    /// JSON Schema of reports of validation
+    /// JSON Schema of a file's report in `htex validate --json`
     Report,
     /// JSON Schema of recipes (`htex build`)
     #[cfg(feature = "build")]
@@ -31,13 +32,13 @@ enum What {
     /// JSON Schema of studies (`htex study`)
     #[cfg(feature = "lab")]
     Study,
-    /// JSON Schema of a line of a participant's answers (`htex study run`)
+    /// JSON Schema of one line in a participant's file of answers (`htex study run`)
     #[cfg(feature = "lab")]
     Answers,
-    /// JSON Schema of the header of a take (`htex record`)
+    /// JSON Schema of the header that describes a take (`htex record`)
     #[cfg(feature = "lab")]
     Take,
-    /// JSON Schema of files of persons' gains (`htex gain`)
+    /// JSON Schema of the file of stored gains (`htex gain`)
     Gains,
     /// Each model's parameters and fit options, with units and ranges
     Models,

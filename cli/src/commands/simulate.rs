@@ -14,25 +14,25 @@ use crate::outputs::check_outputs;
 
 /// Simulate a recording of a surface
 ///
-/// The signal is physically motivated and meant for experiments. It consists of back-and-forth
-/// sweeps, friction, a texture read at the finger's position, setup resonance and sensor noise. It
-/// is not a measurement, and is labelled as simulated.
+/// The signal is meant for experiments. It imitates a finger that slides over a surface: it
+/// contains friction, the texture at the finger's position, the resonance of a rig, and sensor
+/// noise. It is not a measurement, and the file states that it is simulated.
 #[derive(Args)]
 pub(crate) struct Simulate {
     /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl
     #[arg(long)]
     surface: Surface,
 
-    /// The same seed gives the same recording
+    /// Seed of the random numbers: the same seed gives the same recording
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// Where to write it: CSV with columns t_s,fx_n,fy_n,fz_n,x_mm,y_mm
+    /// Where to write the recording: CSV with columns t_s,fx_n,fy_n,fz_n,x_mm,y_mm
     #[arg(short, long, value_name = "CSV", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// Where to write the simulated rig's response: CSV with columns
-    /// frequency_hz,magnitude,phase_rad, for `htex fit --frf`
+    /// Where to write the simulated rig's frequency response, for `htex fit --frf`: CSV with
+    /// columns frequency_hz,magnitude,phase_rad
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     frf: Option<PathBuf>,
 
@@ -49,16 +49,19 @@ pub(crate) struct Simulate {
     #[arg(long, value_enum, default_value = "sweeps")]
     motion: MotionArg,
 
-    /// Scanning speed, mm/s; for a free motion the lowest and highest [default there: 36:280]
+    /// Scanning speed, mm/s [default: 80]. For --motion free, the lowest and the highest speed
+    /// [default: 36:280]
     #[arg(long, value_name = "MM_S")]
     speed: Option<Range>,
 
-    /// Normal force, N; for a free motion the lowest and highest [default there: 0.15:3.8]
+    /// Normal force, N [default: 0.4]. For --motion free, the lowest and the highest force
+    /// [default: 0.15:3.8]
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
-    /// How the texture follows the motion, as exponents relative to 80 mm/s and 0.4 N:
-    /// frequency-speed=X,level-speed=X,level-force=X; a relief has 1, 0 and 1
+    /// How frequencies and level follow the motion, as exponents of power laws:
+    /// frequency-speed=X,level-speed=X,level-force=X. The exponents change nothing at 80 mm/s and
+    /// 0.4 N. The default is a relief: 1, 0 and 1
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 
@@ -66,12 +69,13 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "DB", default_value_t = 0.0, allow_negative_numbers = true)]
     drift: f64,
 
-    /// Fraction of time that the finger is off the surface, for 50 to 250 ms each, 0 to 0.8
+    /// Fraction of the time in which the finger is off the surface, 0 to 0.8. Each lift takes 50 to
+    /// 250 ms
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     lifted: f64,
 
-    /// Where to write the true spectra of a free motion: JSON with the magnitudes at any speed and
-    /// force
+    /// Where to write the true spectra, for --motion free: JSON with magnitudes over the range of
+    /// speeds, and the rule that gives the magnitudes at any force
     #[arg(long, value_name = "JSON")]
     truth: Option<PathBuf>,
 }

@@ -13,11 +13,12 @@ use crate::plugins::PlayerArgs;
 
 /// Show the spectrum that an asset plays
 ///
-/// Prints one representation, 20 to 1000 Hz in steps of 5 Hz.
+/// Prints the spectrum of one of the asset's models, from 20 to 1000 Hz in steps of 5 Hz.
 ///
-/// Magnitudes are comparable with `htex process`: they are what a long recording of the voice would
-/// measure if segments are averaged by power. Outside the recorded speeds and forces they follow
-/// the law of the asset, as a voice does.
+/// You can compare the magnitudes with the output of `htex process`: for a long recording of the
+/// played texture, `htex process` gives these magnitudes if it averages the segments by power.
+/// Outside the recorded speeds and forces, the magnitudes follow the law of the asset, as during
+/// playback.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
@@ -30,7 +31,8 @@ pub(crate) struct Spectrum {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Show the nearest recorded spectrum, without the law of the asset
+    /// Do not apply the law of the asset: outside the recorded speeds and forces, show the spectrum
+    /// at the nearest recorded speed and force
     #[arg(long)]
     unscaled: bool,
 
@@ -39,10 +41,11 @@ pub(crate) struct Spectrum {
     json: bool,
 }
 
-/// A choice of a representation and a motion.
+/// The choice of the model that plays an asset, and of the motion.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
-    /// The representation, by its model's short name or id [default: least nine-band error]
+    /// Which of the asset's models to use, by short name or id [default: the one with the smallest
+    /// nine-band error]
     #[arg(long, value_name = "ID")]
     pub(crate) model: Option<String>,
 
@@ -58,8 +61,9 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// Returns the requested motion. Missing values come from the asset's default condition, or
-    /// else from the paper's default.
+    /// Returns the requested motion, or `None` if the user gave neither a speed nor a force. A
+    /// missing value comes from the asset's default condition, or else from the paper (80 mm/s, 0.4
+    /// N).
     pub(crate) fn motion(
         &self,
         asset: &htex::Texture,
@@ -71,7 +75,8 @@ impl ChoiceArgs {
         Ok(Some(representation.motion(self.speed, self.force)))
     }
 
-    /// Returns a note on how a motion that was not recorded is played.
+    /// Returns a note on how the asset plays the requested motion, if the motion is outside the
+    /// recorded ones.
     pub(crate) fn beyond(
         &self,
         asset: &htex::Texture,

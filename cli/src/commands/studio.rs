@@ -25,11 +25,12 @@ const KEY: &str = "studio.key";
 
 /// Touch and shape textures in the browser
 ///
-/// Serves the studio only on this machine, until Ctrl-C, at an address that only you know:
-/// `http://NAME.localhost:8420/`, where NAME depends on you and on the folder. Chromium, Edge and
-/// Firefox find it. For a browser that does not, such as Safari, add the line
-/// `127.0.0.1 NAME.localhost` to /etc/hosts. `cargo xtask studio --out DIR` builds the page, which
-/// makes no requests beyond this address.
+/// The studio is a page that htex serves until you press Ctrl-C, only on this machine. The command
+/// prints its address, `http://NAME.localhost:8420/`. Other users do not know NAME, which depends
+/// on a key of yours and on the folder. Chromium, Edge and Firefox find this address. For a browser
+/// that does not, such as Safari, add the line `127.0.0.1 NAME.localhost` to /etc/hosts.
+///
+/// `cargo xtask studio --out DIR` builds the page. The page sends requests only to this address.
 #[derive(Args)]
 pub(crate) struct Studio {
     /// Folder of the page, as written by `cargo xtask studio` [default: $HTEX_STUDIO, or
@@ -37,8 +38,8 @@ pub(crate) struct Studio {
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 
-    /// Port of the address; 0 is any free port, but the browser does not find your earlier textures
-    /// there
+    /// Port of the address. 0 selects any free port, at which the browser does not find the
+    /// textures that you stored earlier
     #[arg(long, default_value_t = PORT, value_name = "PORT")]
     port: u16,
 }
@@ -74,8 +75,8 @@ impl Studio {
     }
 }
 
-/// Returns the key for the address that only this user knows. Without a folder to store it, the
-/// address changes every time.
+/// Returns the user's secret key, from which the address is derived. If there is no folder to store
+/// the key, key and address are new every time.
 fn key() -> Result<Key> {
     let config = htex_host::folders::config();
     if let Some(key) = config.and_then(|folder| Key::load_or_create(&folder, KEY).ok()) {
@@ -85,13 +86,14 @@ fn key() -> Result<Key> {
     Key::passing().map_err(|error| Failure::Other(format!("there are no random numbers: {error}")))
 }
 
-/// Returns the folder of an installation.
+/// Returns the folder in which an installation keeps the page.
 fn shared() -> Option<PathBuf> {
     let command = std::env::current_exe().ok()?;
     Some(command.parent()?.join(SHARED))
 }
 
-/// Returns the page in a folder: in a build, or in its part for servers, which must not be a link.
+/// Returns the folder that contains `index.html`: the subfolder [`STATIC`] of this folder, or else
+/// this folder itself. Does not follow links inside the folder.
 fn page_in(folder: &Path) -> Option<PathBuf> {
     let own = OwnFolder::new(folder);
     let has_page = |place: &&str| {

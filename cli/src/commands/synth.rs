@@ -16,8 +16,9 @@ use crate::wav::write_wav;
 
 /// Play an asset to a WAV file
 ///
-/// Samples are 32-bit floats in the asset's unit, such as newtons. Forces of a few millinewtons are
-/// quiet: to listen, raise the file in an audio editor, or use `htex play` in a build with sound.
+/// The samples are 32-bit floats in the asset's unit, such as newtons. Forces of a few millinewtons
+/// are quiet: to listen, raise the level of the file in an audio editor, or use `htex play` in a
+/// build with sound.
 #[derive(Args)]
 pub(crate) struct Synth {
     /// The asset
@@ -30,14 +31,14 @@ pub(crate) struct Synth {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Play the texture as it was recorded, at any speed and force. Without this, frequencies and
-    /// level follow the law of the asset outside the recorded motions, and a resting finger feels
-    /// nothing
+    /// Do not apply the law of the asset: outside the recorded speeds and forces, play the texture
+    /// as it was recorded at the nearest speed and force. Without this, frequencies and level
+    /// follow the law there, and a resting finger feels nothing
     #[arg(long)]
     as_recorded: bool,
 
-    /// Highest level at a motion outside the recorded ones, as a multiple of the strongest recorded
-    /// level: above 0 and finite
+    /// Highest level to which the law of the asset may raise the texture, as a multiple of the
+    /// strongest recorded level; above 0
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
 
@@ -50,13 +51,13 @@ pub(crate) struct Synth {
           value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
     rate: u32,
 
-    /// The same seed gives the same samples
+    /// Seed of the random numbers: the same seed gives the same samples
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// How samples are made: `streamed` (the model's voice), `loop[:SECONDS]` (a repeated piece of
-    /// it) or `filter[:TAPS]` (white noise through a filter); loop and filter need less
-    /// computation, but their spectrum is constant
+    /// How to make the samples: `streamed` (the model computes every sample), `loop[:SECONDS]` (a
+    /// piece of the model's samples, repeated) or `filter[:TAPS]` (white noise through a filter).
+    /// Loop and filter need less computation, but their spectrum cannot follow the motion
     #[arg(long, default_value_t = Synthesis::Streamed, value_name = "WAY")]
     quality: Synthesis,
 
@@ -91,7 +92,7 @@ impl Synth {
         let mut voice = representation
             .and_then(|representation| representation.voice(&options))
             .map_err(for_file(&self.asset))?;
-        // At least one, because a very short time is also more than 0.
+        // At least one sample, because a very short duration is also allowed.
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::from_manifest(asset.manifest());
         let wav = OutputFile::Named(&self.output);

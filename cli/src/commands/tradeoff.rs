@@ -25,11 +25,12 @@ use crate::recordings::RecordingArgs;
 
 /// Measure accuracy against bytes and time
 ///
-/// Sweeps models and their options over your recordings.
+/// Fits models with many values of their options to your recordings, and measures error, bytes and
+/// time.
 ///
-/// Measures each recording and the medians over all. Writes a page that plots each setting as a
-/// point, and these points as CSV and JSON next to it. An interrupted sweep continues when the same
-/// command is given again.
+/// Measures each recording, and computes the medians over all recordings. Writes a page that shows
+/// each setting as a point, and the same points as CSV and JSON next to the page. To continue an
+/// interrupted sweep, run the same command again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
     #[arg(help = format!("Recordings: {}", format_names()))]
@@ -44,15 +45,18 @@ pub(crate) struct Tradeoff {
     #[arg(long, value_delimiter = ',', value_name = "ID,…")]
     only: Vec<String>,
 
-    /// Vary one option at a time, only at its ends and middle, with fewer timing runs
+    /// Save time: vary only one option at a time, over its lowest, middle and highest value, and
+    /// measure times with fewer runs
     #[arg(long)]
     quick: bool,
 
-    /// The error that pictures, fronts and knees use
+    /// The error to show in the pictures, and to use for finding the best settings (fronts and
+    /// knees)
     ///
-    /// held-out: fit to the odd blocks of a recording, play, and compare with the even blocks in
-    /// third octaves, where 1 is as good as a second recording. The other errors compare with the
-    /// data of the fit [default: held-out; third-octave if a recording is too short]
+    /// held-out: htex fits a model to the odd blocks of a recording, plays the model, and compares
+    /// the result with the even blocks in third octaves. The value 1 is as good as a second
+    /// recording. The other errors compare a model with the data to which it was fitted [default:
+    /// held-out; third-octave if a recording is too short]
     #[arg(long, value_parser = error_axis())]
     error: Option<ErrorAxis>,
 
@@ -71,7 +75,7 @@ pub(crate) struct Tradeoff {
     json: bool,
 }
 
-/// Parses an error by the first words of its name, e.g. `third-octave`.
+/// Parses an error by the first word of its name, e.g. `third-octave`.
 fn error_axis() -> impl TypedValueParser<Value = ErrorAxis> {
     let name = |error: ErrorAxis| error.name().split(' ').next().unwrap_or_default();
     let by_name = move |given: String| ErrorAxis::ALL.into_iter().find(|e| name(*e) == given);
@@ -98,7 +102,7 @@ impl Tradeoff {
             models: self.models()?,
             quick: self.quick,
             error: self.error,
-            // If the path is unknown, a journal is continued by every build.
+            // If this path is unknown, any build of this program continues the journal.
             program: std::env::current_exe().unwrap_or_default(),
         };
         let subjects = self.subjects()?;
@@ -112,13 +116,14 @@ impl Tradeoff {
         bar.finish_and_clear();
         let tradeoff = htex_author::tradeoff::Tradeoff::new(&tool(), &subjects, swept);
         let json = serde_json::to_vec(&tradeoff)?;
-        // Their names are ours, so no link is followed.
+        // This command chose the names of these files, so no link is followed.
         for (file, bytes) in [(&csv_file, csv(&tradeoff).as_bytes()), (&json_file, &json[..])] {
             let (own, name) = OwnFolder::of_file(file).writing(file)?;
             OutputFile::Inside(&own, &name).write(bytes)?;
         }
         write_file(&self.output, page(&tradeoff, &command_line()).as_bytes())?;
-        // Last: if a file cannot be written, the next run still continues from the journal.
+        // Discarded last, so that the next run can continue from the journal if a file cannot be
+        // written.
         journal.discard()?;
         if !self.json {
             warn(&tradeoff.warnings);
@@ -126,7 +131,7 @@ impl Tradeoff {
         show(&TradeoffReport { tradeoff, output: &self.output }, self.json)
     }
 
-    /// Returns the requested models, each with all the ways in which it was found.
+    /// Returns the requested models, each in all forms that were found (built in, native, WASM).
     fn models(&self) -> Result<Vec<Model>> {
         let registry = self.plugins.registry_quietly()?;
         let mut models: Vec<Model> = Vec::new();
@@ -135,7 +140,7 @@ impl Tradeoff {
             found.sort_by_key(|model| way(model.origin()).0);
             let ways = found.into_iter().map(|m| (way(m.origin()).1.to_owned(), m.clone()));
             let mut ways: Vec<(String, LoadedModel)> = ways.collect();
-            // They are sorted by way, so equal ways are neighbours. The one that was found first
+            // The forms are sorted, so equal ones are neighbours. The one that was found first
             // stays.
             ways.dedup_by(|b, a| a.0 == b.0);
             models.push(Model { ways });
@@ -166,7 +171,7 @@ impl Tradeoff {
         let mut subjects: Vec<Subject> = Vec::new();
         for take in &takes {
             let mut subject = Subject::new(take, &options, self.reading.strict())?;
-            // Several folders contain files of the same name.
+            // Recordings in several folders may have the same file name.
             let same = |s: &&Subject| s.name.split(" #").next() == Some(&subject.name);
             let before = subjects.iter().filter(same).count();
             if before > 0 {
@@ -191,7 +196,7 @@ fn simulated() -> Result<Vec<Take>> {
     Surface::ALL.into_iter().map(take).collect()
 }
 
-/// A trade-off as it is printed.
+/// A trade-off, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct TradeoffReport<'a> {

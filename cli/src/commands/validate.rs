@@ -22,31 +22,36 @@ use crate::wasm_limits::WasmLimit;
 
 /// Check files against their formats
 ///
-/// Checks assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes
-/// (*.toml) and recordings against their formats and JSON Schemas. Exit status 1 if one is invalid.
+/// Checks assets, libraries, scenes, descriptors of models and devices, recipes and recordings
+/// against their formats and JSON Schemas. The exit status is 1 if a file is invalid.
 ///
-/// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer into the
-/// document or the recording. If a JSON Schema has the same rule, the finding names it. If this
-/// program has the model, the model's fields are compared with it. For a recipe, the keys, files,
-/// plugins, options and gates are checked. A file is read as a recording if it is not called
-/// *.htex, *.htexlib, *.json or *.toml and does not begin as a ZIP archive or a library.
+/// Each finding has a stable code (`htex explain CODE`), a severity, and a JSON pointer to its
+/// place in the document or the recording. If a JSON Schema contains the same rule, the finding
+/// names the schema's rule. If this program has a model that an asset uses, htex also compares the
+/// asset's fields with the model's. In a recipe, htex checks the keys, files, plugins, options and
+/// gates.
+///
+/// The name of a file says what it is: *.htex an asset, *.htexlib a library, *.json a scene or a
+/// descriptor, *.toml a recipe. A file with another name is an asset if it begins like a ZIP
+/// archive, a library if it begins like a library, and otherwise a recording.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
     #[arg(required = true, value_parser = located::RECORDING)]
     files: Vec<PathBuf>,
 
-    /// Validate the extension with this name against a JSON Schema (draft 2020-12), without
-    /// downloading anything. May be given several times
+    /// Check the extension with this name against the JSON Schema in FILE (draft 2020-12). htex
+    /// downloads nothing for it. May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models embedded in assets and in the assets of scenes, in their sandbox, and
-    /// compare them with the asset's fields. Without this, nothing embedded in an asset is run
+    /// Also load the models that are embedded in assets (also in the assets of scenes), in a
+    /// sandbox, and compare them with the assets' fields. Without this, htex runs nothing that is
+    /// embedded in an asset
     #[arg(long)]
     embedded_plugins: bool,
 
-    /// What a WASM model may use, as for other commands
+    /// A limit on what WASM models may use; `htex fit --help` lists the names
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse, requires = "embedded_plugins")]
     wasm_limit: Vec<WasmLimit>,
 
@@ -94,7 +99,7 @@ impl Validate {
 
     fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report> {
         let mut report = validate_asset(path, schemas)?;
-        // An invalid asset may not open.
+        // An invalid asset may be impossible to open.
         if self.embedded_plugins && report.valid {
             check_plugins(path, &WasmLimit::all(&self.wasm_limit), &mut report)?;
         }
@@ -103,7 +108,8 @@ impl Validate {
 
     fn validate_json(&self, path: &Path) -> Result<Report> {
         let bytes = read_asset(path)?;
-        // What is not JSON goes on as a scene, whose reader reports the place.
+        // A file that is not JSON counts as a scene here. The reader of scenes reports where the
+        // JSON is wrong.
         let document = htex_format::parse_json(&bytes).unwrap_or_default();
         let text = || String::from_utf8_lossy(&bytes);
         let has = |key: &str| document.get(key).is_some();
@@ -182,7 +188,7 @@ pub(crate) fn refuse_library(path: &Path) -> Result<()> {
     )))
 }
 
-/// Says what to do with additional assets, for a command that takes only one.
+/// Refuses additional assets for a command that takes only one, and says what to do.
 pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<()> {
     let Some(second) = more.first() else {
         return Ok(());
@@ -193,7 +199,8 @@ pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<()> {
     )))
 }
 
-/// Prints reports as they come, or all of them as JSON. The exit status is 1 if one is not valid.
+/// Prints each report as soon as it is there, or all reports together as JSON. The exit status is 1
+/// if a report is not valid.
 pub(crate) fn show_reports<'a>(
     reports: impl Iterator<Item = Result<(&'a Path, Report)>>,
     is_json: bool,
@@ -263,7 +270,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report>
     Ok(report)
 }
 
-/// Loads the embedded models of an asset. A model that cannot be loaded is a finding.
+/// Loads the embedded models of an asset. Adds a finding for each model that cannot be loaded.
 fn check_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<()> {
     let data = htex_format::Asset::open(path).map_err(for_file(path))?;
     let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
@@ -279,17 +286,18 @@ fn check_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Resul
     Ok(())
 }
 
-/// Whether the document has this version, so that the rules of this version apply.
+/// Whether the version under `key` is 1.x, so that the rules of version 1 apply.
 fn is_of_major_1(document: &Value, key: &str) -> bool {
     let version = document.get(key).and_then(Value::as_str);
     version.is_some_and(|version| version.starts_with("1."))
 }
 
-/// Maximum size of a TOML file whose kind is detected, bytes; it is the maximum size of a recipe.
+/// Maximum size of a TOML file that is read to find out whether it is a study, bytes. It is the
+/// maximum size of a recipe.
 #[cfg(feature = "build")]
 const MOST_TOML_BYTES: u64 = 1 << 20;
 
-/// Validates a recipe. Its first fault becomes a finding.
+/// Validates a recipe. Its first error becomes a finding.
 #[cfg(feature = "build")]
 fn validate_recipe(path: &Path) -> Result<Report> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
@@ -325,7 +333,8 @@ fn validate_recipe(path: &Path) -> Result<Report> {
     Err(Failure::Usage(format!("{file}: {words}")))
 }
 
-/// Validates a scene or a descriptor. Their keys tell them apart.
+/// Returns the report on a descriptor, from the problem that its reader found and from its JSON
+/// Schema.
 fn descriptor(document: &Value, problem: Option<String>, schema: SchemaFile) -> Result<Report> {
     let mut findings = Findings::default();
     if let Some(problem) = problem {

@@ -14,7 +14,7 @@ use crate::programs::{program, run};
 /// takes up the rest.
 const SMALL: u64 = 2_500_000;
 
-/// Largest size of the static libraries, small and whole, bytes.
+/// Largest sizes of the small and the whole static library, bytes.
 const STATIC: u64 = 25_000_000;
 const WHOLE_STATIC: u64 = 45_000_000;
 
@@ -23,14 +23,15 @@ const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_
                      foreach(library htex static whole whole_static)\n    add_executable(app_${library} main.c)\n    \
                      target_link_libraries(app_${library} PRIVATE htex::${library} m)\nendforeach()\n";
 
-/// How users build a player of assets: its name, and the end of the compiler's command line.
+/// The ways in which users build a player of assets: the player's name, and the end of the
+/// compiler's command line.
 const LINES: [(&str, &str); 7] = [
     ("small", "main.c $(pkg-config --cflags --libs htex) -lm"),
     ("whole", "main.c $(pkg-config --cflags --libs htex-whole) -lm"),
     ("static", "main.c -static $(pkg-config --static --cflags --libs htex)"),
     ("whole-static", "main.c -static $(pkg-config --static --cflags --libs htex-whole)"),
     ("two", "two.c libother.a -static $(pkg-config --static --cflags --libs htex)"),
-    // If both libraries contain something, the linker takes it from the first one.
+    // If both libraries contain the same name, the linker takes it from the first library.
     ("two-after", "two.c -I prefix/include prefix/lib/libhtex.a libother.a -lpthread -ldl -lm"),
     (
         "two-whole-after",
@@ -53,7 +54,8 @@ int main(int argc, char **argv)
 }
 ";
 
-/// A Rust library without htex. It catches its own panic if it gets no numbers.
+/// The source of a Rust library without htex. It panics if it gets no numbers, and catches this
+/// panic.
 const OTHER: &str = "\
 #[unsafe(no_mangle)]
 pub extern \"C\" fn other_sum(numbers: *const f64, count: usize) -> f64 {
@@ -111,7 +113,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     sizes(&installed.prefix.join("lib"))
 }
 
-/// Builds the other library.
+/// Builds the library [`OTHER`].
 fn other(folder: &Path) -> Result<()> {
     fs_err::write(folder.join("other.rs"), OTHER)?;
     let rustc = Path::new(&cargo()).with_file_name("rustc");
@@ -119,7 +121,8 @@ fn other(folder: &Path) -> Result<()> {
     run(program(rustc, folder).args(["--crate-type", "staticlib", "-O", "other.rs"]))
 }
 
-/// The installed library allocates nothing in real-time calls, and SDL 2 plays it.
+/// Tests that the installed library allocates nothing in real-time calls, and plays its samples
+/// with SDL 2.
 fn examples(installed: &Installation, capi: &Path) -> Result<()> {
     let real_time = capi.join("tests/hosts/real_time.c");
     let flags = "$(pkg-config --cflags --libs htex-whole) -lm";
@@ -139,8 +142,8 @@ fn examples(installed: &Installation, capi: &Path) -> Result<()> {
     run(play.env("SDL_AUDIODRIVER", "dummy"))
 }
 
-/// The FMOD plugin contains the static library and exports only its own names. The host of its
-/// tests, which stands in for FMOD, plays it.
+/// Tests that the FMOD plugin contains the static library and exports only its own names. A test
+/// host that stands in for FMOD plays the plugin.
 fn fmod(installed: &Installation, capi: &Path) -> Result<()> {
     let tests = capi.join("tests");
     let (prefix, headers) = (installed.prefix.display(), tests.join("fmod"));
@@ -162,8 +165,8 @@ fn fmod(installed: &Installation, capi: &Path) -> Result<()> {
     run(&mut installed.shell(names))
 }
 
-/// The libraries export only the names in the header. In the shared libraries, these names have a
-/// version.
+/// Tests that the libraries export only the names in the header, and that these names have a
+/// version in the shared libraries.
 fn names(installed: &Installation) -> Result<()> {
     for folder in ["lib", "lib/whole"] {
         let lib = installed.prefix.join(folder);
@@ -186,7 +189,7 @@ fn names(installed: &Installation) -> Result<()> {
     Ok(())
 }
 
-/// A program that links the static libraries has no executable stack.
+/// Tests that a program that links the static libraries has no executable stack.
 fn stacks(lib: &Path) -> Result<()> {
     for file in ["libhtex.a", "whole/libhtex.a"] {
         let mut sections = program("readelf", lib);
@@ -197,7 +200,7 @@ fn stacks(lib: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Prints how large the libraries are.
+/// Prints the sizes of the libraries, and tests that they are within the limits.
 fn sizes(lib: &Path) -> Result<()> {
     let most = [
         ("libhtex.so", SMALL),

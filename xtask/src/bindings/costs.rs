@@ -1,5 +1,5 @@
-//! Measures what a sample costs in each language, compared with Rust in blocks of the same length.
-//! All languages take turns in one run.
+//! Measures the time per sample in each language, relative to Rust with blocks of the same length.
+//! Rust and the other language take turns.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -22,8 +22,8 @@ const BLOCK: usize = 64;
 /// Samples in a second, which scripts request at once.
 const SECOND: usize = 20_000;
 
-/// A language, the program that prints its time, the number of samples per call, and the largest
-/// allowed cost.
+/// A language, the program that prints its time per sample, the number of samples per call, and the
+/// largest allowed ratio to Rust's time.
 struct Cost {
     language: &'static str,
     command: Vec<OsString>,
@@ -40,7 +40,8 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         for cost in &all {
             let mut ratios = Vec::new();
             let mut least_ns = f64::INFINITY;
-            // They take turns, because the processor's clock changes from second to second.
+            // Both programs take turns, because the processor's clock changes from second to
+            // second.
             for _ in 0..ROUNDS {
                 let rust_ns = time_ns(&rust, cost.samples, model, &asset, &folder)?;
                 let ns = time_ns(&cost.command, cost.samples, model, &asset, &folder)?;
@@ -79,7 +80,7 @@ fn time_ns(
     time.with_context(|| format!("{command:?}: {printed}{errors}"))
 }
 
-/// Builds the programs: the command in Rust, and the programs in other languages.
+/// Builds the programs: an example in Rust, and the programs in other languages.
 fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>)> {
     let mut build = Command::new(cargo());
     build.args([

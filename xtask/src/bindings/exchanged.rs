@@ -1,5 +1,5 @@
 //! Files of other haptic formats that the command writes from a texture, and the textures that it
-//! makes from them again.
+//! makes from these files.
 
 use std::path::Path;
 
@@ -8,9 +8,10 @@ use anyhow::Result;
 use super::copy;
 use crate::places::workspace;
 
-/// A model file of the Penn Haptic Texture Toolkit. Nothing can write this format.
+/// A model file of the Penn Haptic Texture Toolkit. It is stored in the repository, because nothing
+/// can write this format.
 const HATT: &str = "sdk/make/exchange/tests/felt.xml";
-/// Settings that no signal states.
+/// Settings that no file of a signal states.
 const GIVEN: [&str; 6] = ["--full-scale", "0.2", "--speed", "80", "--force", "0.4"];
 
 /// The imported files, each with its settings.
@@ -45,7 +46,7 @@ pub(super) fn copy_model_file(folder: &Path) -> Result<()> {
     copy(&workspace().join(HATT), &folder.join("felt.xml"))
 }
 
-/// Writes files from `vinyl.htex`, and the texture that the command makes from each:
+/// Writes files from `vinyl.htex`, and the texture that the command makes from each file, e.g.
 /// `imported/taps.htex` from `taps.ahap`.
 pub(super) fn write(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     copy_model_file(folder)?;

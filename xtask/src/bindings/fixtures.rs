@@ -11,14 +11,15 @@ use crate::platform::Build;
 use crate::programs::{program, run};
 use crate::{c_module, plugins};
 
-/// Length, rate and seed of the samples, and their motion, which is exact in single precision.
+/// Length, rate and seed of the samples, and the motion at which they are played. Speed and force
+/// are exact in single precision.
 const SECONDS: &str = "2";
 const RATE: &str = "48000";
 const SEED: &str = "7";
 const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
-/// Returns the installed `htex` command. libhtex and the Python package are built together with it.
+/// Builds the `htex` command together with libhtex, and returns its path.
 pub(crate) fn command() -> Result<PathBuf> {
     let build = Build::here()?;
     run(&mut build.cargo_of_both())?;
@@ -29,14 +30,19 @@ pub(crate) fn command() -> Result<PathBuf> {
 /// Scenes from examples/scenes that are rendered and planned.
 const SCENES: [&str; 2] = ["two-swatches", "electrovibration"];
 
-/// Additional textures in the library, more than a page of its index holds.
+/// Number of additional textures in the library: more than one page of its index can hold.
 const COPIES: usize = 999;
 
-/// Writes the fixtures: an asset with six models (`vinyl.htex`), a mesh that carries it
-/// (`vinyl.glb`), an asset with an embedded model (`bursts.htex`), their samples at 48 kHz, the
-/// spectrum of Bands, the command's output about the asset, a library (`many.htexlib`) and its
-/// list, scenes with their samples and plans, the models as modules, a module that does not return,
-/// and files of other haptic formats with the textures imported from them.
+/// Writes the fixtures:
+///
+/// - an asset with six models (`vinyl.htex`), a mesh that carries it (`vinyl.glb`), and an asset
+///   with an embedded model (`bursts.htex`);
+/// - the samples of these assets at 48 kHz, the spectrum of Bands, and the command's output about
+///   the asset;
+/// - a library (`many.htexlib`) and its list;
+/// - scenes with their samples and plans;
+/// - the models as modules, and a module that does not return;
+/// - files of other haptic formats, with the textures imported from them.
 pub(super) fn write(folder: &Path) -> Result<()> {
     fs_err::create_dir_all(folder)?;
     let command = command()?;
@@ -109,9 +115,9 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     printed(&["lib", "ls", "many.htexlib", "--json"], "many.json")
 }
 
-/// Writes what the npm package's author module also makes: textures from part of a recording, from
-/// samples, by hand, mixed and edited; baked blocks; a library of two; and what is read from a
-/// recording (`process.json`).
+/// Writes the files that the author module of the npm package can also make. They are textures
+/// (from part of a recording, from samples, by hand, mixed, edited), baked blocks, a library of two
+/// textures, and the spectrum of a recording (`process.json`).
 fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     for name in ["pcm16.flac", "pcm16.wav"] {
         let source = workspace().join("sdk/make/recording/tests/lab").join(name);
@@ -166,7 +172,7 @@ fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Resul
             bail!("vinyl.csv: six columns are expected in {row:?}");
         };
         sensors += &format!("{t_s},{fx},{fy},{fz}\n");
-        // 20,000 rows a second become 60, at a rate that does not divide the recording's.
+        // Of 20,000 rows per second, 60 remain: a rate that does not divide the recording's rate.
         if i % 333 == 0 {
             tracker += &format!("{},{x},{y}\n", t_s.parse::<f64>()? * 1000.0);
         }

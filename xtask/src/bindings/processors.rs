@@ -1,4 +1,5 @@
-//! Runs the command on other, emulated processors: it writes the same files, byte for byte.
+//! Runs the command on emulated processors, and tests that it writes the same files as here, byte
+//! for byte.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,7 +16,7 @@ use crate::programs::{program, run};
 /// Another architecture for which the command is built.
 const AARCH64: &str = "aarch64-unknown-linux-musl";
 
-/// Emulated processors of this machine's architecture: with AVX2, with AVX, and without either.
+/// Emulated x86-64 processors: one with AVX2, one with only AVX, and one without both.
 const X86: [&str; 3] = ["Haswell-noTSX", "SandyBridge", "Nehalem"];
 
 const SURFACES: [&str; 3] = ["vinyl", "corrugated-paper", "coarse-fabric"];
@@ -104,7 +105,8 @@ fn written(
             )?;
         }
     }
-    // Another sample rate, whose segments have a prime length, and a fit to signals.
+    // A recording at another sample rate, whose segments have a prime length, and a fit to its
+    // signals.
     htex(&["simulate", "--surface", "sandpaper", "--rate", "10015", "-o", "sandpaper.csv"], None)?;
     let burg = ["fit", "sandpaper.csv", "--model", "ar", "--option", "ar.method=burg"];
     htex(&[&burg[..], &["-o", "sandpaper.htex"]].concat(), None)?;

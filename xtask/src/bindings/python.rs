@@ -23,7 +23,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
 }
 
 /// Builds the wheel and installs it, with an extra's dependencies, into an empty environment.
-/// Returns its interpreter.
+/// Returns the environment's interpreter.
 pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     let venv = folder.join("venv");
     run(program("python3", folder).args(["-m", "venv"]).arg(&venv))?;
@@ -33,7 +33,7 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
         pip.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
         pip
     };
-    // Reuses what building the command and libhtex has already built.
+    // Reuses the crates that were already built for the command and libhtex.
     let built = std::path::absolute(target())?;
     run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
         .arg(package()?)
@@ -45,7 +45,7 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     Ok(python)
 }
 
-/// The folder of the sources.
+/// Returns the folder of the package's sources.
 fn package() -> Result<PathBuf> {
     Ok(fs_err::canonicalize(workspace().join("sdk/bindings/python"))?)
 }

@@ -1,4 +1,4 @@
-//! The studio, in Chromium and in Firefox.
+//! Tests the studio in Chromium and in Firefox.
 
 use std::path::Path;
 

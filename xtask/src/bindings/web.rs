@@ -1,4 +1,4 @@
-//! The npm package, in Node.js, in Chromium and in bundlers.
+//! Tests the npm package in Node.js, in Chromium and in bundlers.
 
 use std::path::Path;
 

@@ -8,7 +8,8 @@ use fs_err as fs;
 
 use crate::markdown::is_address;
 
-/// Checks every link, and that nothing is loaded from a network. Returns the number of links.
+/// Checks every link, and checks that no page loads anything from a network. Returns the number of
+/// links.
 pub(super) fn follow(html: &Path) -> Result<usize> {
     let mut pages = BTreeMap::new();
     collect(html, &mut pages)?;
@@ -37,7 +38,7 @@ pub(super) fn follow(html: &Path) -> Result<usize> {
     Ok(followed)
 }
 
-/// Collects the pages in a folder and its subfolders, with their texts.
+/// Collects the HTML pages in a folder and its subfolders, with their texts.
 fn collect(folder: &Path, pages: &mut BTreeMap<PathBuf, String>) -> Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -76,7 +77,7 @@ fn values<'a>(text: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
     ends.into_iter().filter_map(|at| Some(text[at..].split_once('"')?.0))
 }
 
-/// Returns what a page loads: scripts, pictures, style sheets.
+/// Returns the addresses of the scripts, pictures and style sheets that a page loads.
 fn loaded(text: &str) -> impl Iterator<Item = &str> {
     let sheets = text.split("<link ").skip(1).filter_map(|rest| rest.split_once('>'));
     values(text, "src").chain(sheets.flat_map(|(tag, _)| {

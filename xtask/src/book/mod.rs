@@ -1,8 +1,8 @@
 //! `cargo xtask book`: makes an HTML book from the pages of the repository.
 //!
-//! The pages are copied together with the repository's folders, so that their links work as they do
-//! on the web. Every page that a page links to becomes part of the book; other linked files are
-//! copied unchanged. mdBook makes the HTML, and then every link in it is checked.
+//! Copies the pages into the same folders as in the repository, so that their links work as on the
+//! web. A page that another page links to becomes part of the book. Other linked files are copied
+//! unchanged. mdBook makes the HTML. Then every link in the HTML is checked.
 
 mod links;
 mod pages;
@@ -16,7 +16,7 @@ use fs_err as fs;
 use crate::places::{target, version};
 use crate::programs::run;
 
-/// How to install mdBook, with the version that the book was made with.
+/// How to install mdBook, in the version with which the book was tested.
 const INSTALL: &str = "cargo install mdbook --version 0.5.4 --locked --root target/release-tools";
 
 /// mdBook's settings. Pages have no `{{#include}}`. A README keeps its name, because links use it.
@@ -60,11 +60,11 @@ const TOP: &str = r#"<!DOCTYPE html>
 /// Makes the book in a folder: `source` contains its pages, `html` the result.
 ///
 /// # Errors
-/// When mdBook is not installed or fails, or when a link is broken; the message names the page and
-/// the link.
+/// If mdBook is not installed or fails, or if a link is broken. The message names the page and the
+/// link.
 pub fn book(out: &Path) -> Result<()> {
     let out = std::path::absolute(out)?;
-    // Only these two, because the folder may contain other files.
+    // Only these two folders, because `out` may contain other files.
     for part in ["source", "html"] {
         if out.join(part).exists() {
             fs::remove_dir_all(out.join(part))?;

@@ -1,4 +1,4 @@
-//! The pages of the book: those listed in `docs/SUMMARY.md`, and the pages that they link to.
+//! The pages of the book: the pages in `docs/SUMMARY.md`, and the pages to which they link.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Component, Path, PathBuf};
@@ -12,8 +12,8 @@ use crate::places::workspace;
 /// The file that defines the order of the pages.
 const SUMMARY: &str = "docs/SUMMARY.md";
 
-/// Copies the pages and the files that they link to into a folder, with the repository's paths.
-/// Returns the number of pages.
+/// Copies the pages, and the files to which they link, into a folder. They keep their paths in the
+/// repository. Returns the number of pages.
 pub(super) fn assemble(source: &Path) -> Result<usize> {
     let root = fs::canonicalize(workspace())?;
     let summary = fs::read_to_string(root.join(SUMMARY))?;
@@ -30,7 +30,7 @@ pub(super) fn assemble(source: &Path) -> Result<usize> {
     Ok(assembly.pages.len())
 }
 
-/// What has been found so far. Paths are relative to the repository.
+/// The pages that were found so far. Paths are relative to the repository.
 struct Assembly {
     root: PathBuf,
     source: PathBuf,
@@ -38,7 +38,7 @@ struct Assembly {
     pages: Vec<PathBuf>,
     /// Pages that have not been copied yet.
     waiting: VecDeque<PathBuf>,
-    /// Folders without a page of their own. Each gets a list of its files.
+    /// Linked folders that have no page. Each gets a page that lists its files.
     folders: BTreeSet<PathBuf>,
 }
 
@@ -56,8 +56,8 @@ impl Assembly {
         self.write(page, text.as_bytes())
     }
 
-    /// Adds the files that a page links to. Returns the page twice: with links relative to the top
-    /// of the book, and with links relative to its own folder.
+    /// Adds the files to which a page links. Returns the text of the page twice: with links
+    /// relative to the top of the book, and with links relative to the page's own folder.
     fn with_links(&mut self, page: &Path, text: &str) -> Result<(String, String)> {
         let mut found = Vec::new();
         for range in links(text) {
@@ -69,7 +69,7 @@ impl Assembly {
             }
         }
         let (mut from_top, mut in_folder) = (text.to_owned(), text.to_owned());
-        // From the end, so that the ranges before stay valid.
+        // Replaced from the end, so that the ranges before the replaced one stay valid.
         for (range, linked) in found.into_iter().rev() {
             from_top.replace_range(range.clone(), &linked.display().to_string());
             let path = text[range.clone()].trim_end_matches('/');

@@ -2,9 +2,9 @@
 //!
 //! Cargo's static library exports the names of Rust's standard library and of all dependencies. Two
 //! such libraries cannot be linked in one program ("multiple definition of rust_eh_personality").
-//! Therefore its objects are linked into one, everything that no function of the header reaches is
-//! dropped, and all other names are made local. The shared library is linked from the same objects,
-//! and its names get a version.
+//! Therefore this module links the library's objects into one object, drops everything that no
+//! function of the header needs, and makes all other names local. It links the shared library from
+//! the same objects, and gives its names a version.
 
 use std::path::Path;
 
@@ -16,13 +16,13 @@ use crate::places::workspace;
 use crate::platform::{Build, System};
 use crate::programs::run;
 
-/// The version of the interface, `HTEX_API_VERSION`. Its major number is the shared library's
-/// version; both numbers are the version of its names.
+/// The version of the interface, `HTEX_API_VERSION`: its major number, which is the version of the
+/// shared library, and both numbers, which are the version of the library's names.
 const API: (&str, &str) = ("1", "1.0");
 
 /// Puts the libraries from a build folder into `lib`. With `is_merged`, the static library has a
-/// single section of each kind. That halves its size if there are a hundred thousand functions, but
-/// a program then links either all of it or nothing.
+/// single section of each kind. This halves the size of a library with a hundred thousand
+/// functions, but a program then links either the whole library or nothing.
 pub(super) fn put(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Result<()> {
     fs::create_dir_all(lib)?;
     match build.platform().system {
@@ -57,16 +57,16 @@ fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Resul
         run(link.args(["-r", "-T"]).arg(script).arg(&object).arg("-o").arg(&merged))?;
         fs::rename(merged, &object)?;
     }
-    // Removes what a compiler embeds for link-time optimisation, if it has not been dropped
-    // already.
+    // Also removes the bitcode that a compiler embeds for link-time optimisation, if the linker has
+    // not dropped it already.
     let mut localise = build.utility("objcopy");
     localise.args(["--wildcard", "--keep-global-symbol=htex_*"]);
     localise.args(["--strip-debug", "-R", ".llvmbc", "-R", ".llvmcmd"]);
     run(localise.args(["-R", ".comment"]).arg(&object))?;
-    // After the names were made local, because global names are kept.
+    // Run after the names were made local, because `--strip-unneeded` keeps global names.
     run(build.utility("objcopy").arg("--strip-unneeded").arg(&object))?;
     let archive = lib.join("libhtex.a");
-    // `ar` would add to it.
+    // `ar` would add to an existing archive.
     if archive.exists() {
         fs::remove_file(&archive)?;
     }
@@ -89,7 +89,7 @@ SECTIONS {
 }
 ";
 
-/// Makes the shared library under its full name, and links with the shorter names.
+/// Makes the shared library under its full name, and symbolic links with the shorter names.
 fn put_shared(build: &Build, built: &Path, lib: &Path) -> Result<()> {
     let (major, api) = API;
     let map = built.join("htex.map");
@@ -118,8 +118,7 @@ fn put_dylib(built: &Path, lib: &Path) -> Result<()> {
     link_to(&short, &lib.join("libhtex.dylib"))
 }
 
-/// Puts the Windows library next to the programs that load it, and the import library for
-/// compilers.
+/// Puts the Windows DLL where programs find it, and the import library where compilers find it.
 fn put_dll(build: &Build, built: &Path, lib: &Path) -> Result<()> {
     copy(&built.join("htex_c.dll"), &lib.join("htex.dll"))?;
     let definitions = built.join("htex.def");
@@ -129,7 +128,7 @@ fn put_dll(build: &Build, built: &Path, lib: &Path) -> Result<()> {
     run(import.arg("-l").arg(lib.join("htex.lib")))
 }
 
-/// The functions of the header.
+/// Returns the names of the functions in the header, sorted.
 fn functions() -> Result<Vec<String>> {
     let header = fs::read_to_string(workspace().join("sdk/bindings/capi/include/htex.h"))?;
     let mut names: Vec<String> = header.lines().filter_map(function).map(str::to_owned).collect();

@@ -2,7 +2,7 @@
 //!
 //! The library in `lib` is small: it has no scenes, no libraries of textures and no WASM engine.
 //! `lib/whole` has the library with all of these, under the same names. Both have the same
-//! functions; those that the small one does not support return an error that says so.
+//! functions. A function that the small library does not support returns an error that says so.
 
 mod links;
 mod packages;
@@ -17,9 +17,9 @@ use crate::places::{version, workspace};
 use crate::platform::{Build, System};
 use crate::programs::run;
 
-/// What is installed, and where.
+/// What to install, and where.
 pub struct Dist {
-    /// The folder that gets `lib`, `include` and `share`.
+    /// The folder to which `lib`, `include` and `share` are written.
     pub prefix: PathBuf,
     /// Whether to install the whole library next to the small one.
     pub whole: bool,
@@ -32,7 +32,7 @@ const HEADERS: [&str; 2] = ["htex.h", "htex.hpp"];
 /// Builds and installs.
 ///
 /// # Errors
-/// A message with the file or the program.
+/// The error names the file or the program.
 pub fn dist(options: &Dist) -> Result<()> {
     let Dist { prefix, build, .. } = options;
     let lib = prefix.join("lib");
@@ -62,9 +62,9 @@ fn build_small(build: &Build) -> Result<PathBuf> {
 
 /// Builds the whole library, and returns the folder of its files.
 ///
-/// It is built together with the command and therefore has the command's features, so that shared
-/// dependencies are built only once. The readers of recordings are also built, but they are not
-/// linked because nothing in the library calls them.
+/// Builds the library together with the command and with the command's features, so that shared
+/// dependencies are built only once. The readers of recordings are therefore also built, but not
+/// linked, because nothing in the library calls them.
 fn build_whole(build: &Build) -> Result<PathBuf> {
     run(build.cargo_of_both().args(of_command(build)))?;
     Ok(build.built())
@@ -84,7 +84,7 @@ pub(crate) fn of_command(build: &Build) -> &'static [&'static str] {
     }
 }
 
-/// Copies a file into a folder, which is created.
+/// Copies a file. Creates the folder of the copy.
 pub(crate) fn copy(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to.parent().context("a file has a folder")?)?;
     fs::copy(from, to)?;

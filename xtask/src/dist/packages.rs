@@ -7,7 +7,7 @@ use fs_err as fs;
 
 use crate::platform::System;
 
-/// Writes the files for both into `lib`.
+/// Writes the files for pkg-config and for CMake into `lib`.
 pub(super) fn write(lib: &Path, version: &str, system: System, whole: bool) -> Result<()> {
     let (pkg_config, cmake) = (lib.join("pkgconfig"), lib.join("cmake/htex"));
     fs::create_dir_all(&pkg_config)?;
@@ -28,7 +28,8 @@ pub(super) fn write(lib: &Path, version: &str, system: System, whole: bool) -> R
     Ok(())
 }
 
-/// Returns the compatible version prefix: for 0.2.1 it is 0.2, for 1.2.3 it is 1.
+/// Returns the part of a version that all compatible versions share: 0.2 for 0.2.1, and 1 for
+/// 1.2.3.
 fn line(version: &str) -> String {
     let parts: Vec<&str> = version.split('.').collect();
     let length = if parts[0] == "0" { 2 } else { 1 };
@@ -42,7 +43,8 @@ fn htex_pc(name: &str, folder: &str, version: &str) -> String {
     )
 }
 
-/// Returns the shared target and, if available, the static one.
+/// Returns the CMake target of the shared library and, if there is one, the target of the static
+/// library.
 fn cmake_targets(shared: &str, fixed: &str, folder: &str, system: System) -> String {
     let location = match system {
         System::Linux => "IMPORTED_LOCATION \"${htex_prefix}/lib@/libhtex.so\"",

@@ -1,4 +1,4 @@
-//! Makes the Unity package, with all libraries that have been built.
+//! Makes the Unity package, with the libraries of several platforms.
 
 use std::path::{Path, PathBuf};
 
@@ -9,12 +9,12 @@ use super::{copy, copy_folder};
 use crate::places::workspace;
 use crate::platform::{Platform, System};
 
-/// The folder whose contents Unity imports as libraries. A folder that Unity ignores holds the
-/// import settings of libraries that are not there.
+/// The folder from which Unity imports libraries, and a folder that Unity ignores. The second one
+/// holds the import settings of libraries that are not in the package.
 const PLUGINS: &str = "Plugins";
 const SET_ASIDE: &str = "Plugins~";
 
-/// Writes the package into a folder, with the libraries of platforms from their `lib` folders.
+/// Writes the package into a folder. Takes each platform's library from its `lib` folder.
 pub(crate) fn package(libraries: &[(Platform, PathBuf)], to: &Path) -> Result<()> {
     copy_folder(&workspace().join("sdk/bindings/capi/unity"), to)?;
     let plugins = to.join(PLUGINS);
@@ -37,12 +37,12 @@ fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Moves each `NAME.meta` whose NAME does not exist, because Unity would report it as missing.
-/// Removes empty folders.
+/// Moves each `NAME.meta` for which there is no NAME to the folder [`SET_ASIDE`], because Unity
+/// would report NAME as missing. Removes empty folders.
 fn set_aside(folder: &Path, package: &Path) -> Result<()> {
     for folder in entries(folder)?.iter().filter(|entry| entry.is_dir()) {
         set_aside(folder, package)?;
-        // Only now, because moving the files below may have emptied it.
+        // Checked only now, because moving its files may have emptied the folder.
         if entries(folder)?.is_empty() {
             fs::remove_dir(folder)?;
         }

@@ -9,7 +9,7 @@ use crate::programs::run;
 
 use super::{Options, folder};
 
-/// Coverage counters, the same as in cargo-fuzz.
+/// Flags for coverage counters, the same as in cargo-fuzz.
 const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
     -Cllvm-args=-sanitizer-coverage-pc-table \
@@ -25,7 +25,7 @@ pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     };
     let place = target_folder().join(place);
     let mut cargo = cargo(options.address);
-    // `--target` keeps these flags away from build scripts and macros.
+    // With `--target`, these flags do not apply to build scripts and macros.
     cargo
         .args(["build", "--release", "--locked", "--target", &host])
         .args(targets.iter().flat_map(|target| ["--bin", target]))
@@ -42,12 +42,11 @@ pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     Ok(place.join(host).join("release"))
 }
 
-/// Returns the cargo that runs this task, or the nightly one.
+/// Returns the cargo that runs this task, or the cargo of the nightly toolchain.
 fn cargo(nightly: bool) -> Command {
     if nightly {
         let mut cargo = Command::new("cargo");
-        // Variables that the current toolchain has set would override the choice of another
-        // toolchain.
+        // Otherwise the variables that the current toolchain has set would override `+nightly`.
         cargo.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").env_remove("RUSTC");
         cargo.arg("+nightly");
         return cargo;
@@ -55,7 +54,7 @@ fn cargo(nightly: bool) -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// A separate folder, because `cargo fuzz` uses other flags.
+/// Returns the folder for the builds. It is not the folder of `cargo fuzz`, which uses other flags.
 fn target_folder() -> PathBuf {
     match std::env::var_os("CARGO_TARGET_DIR") {
         Some(place) => PathBuf::from(place).join("fuzz"),
@@ -63,7 +62,7 @@ fn target_folder() -> PathBuf {
     }
 }
 
-/// The triple of this machine.
+/// Returns the target triple of this machine.
 fn host() -> Result<String> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc).arg("-vV").output().context("cannot run rustc")?;

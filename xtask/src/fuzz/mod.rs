@@ -1,11 +1,11 @@
-//! `cargo xtask fuzz`: builds the fuzz targets and runs each for a time.
+//! `cargo xtask fuzz`: builds the fuzz targets and runs each for a limited time.
 //!
-//! The programs are built as `cargo fuzz build --sanitizer none` builds them, but with the
-//! installed toolchain: neither a nightly toolchain nor cargo-fuzz is needed. The address sanitizer
-//! does need a nightly toolchain.
+//! Builds the programs in the same way as `cargo fuzz build --sanitizer none`, but with the
+//! installed toolchain. Needs neither a nightly toolchain nor cargo-fuzz. Only the address
+//! sanitizer needs a nightly toolchain.
 //!
-//! The sanitizer is optional, because only the shims of the ABIs contain unsafe code. Coverage
-//! counters are a pass of the stable compiler.
+//! The sanitizer is optional, because only the shims of the ABIs contain unsafe code. The coverage
+//! counters need no sanitizer: they are a pass of the stable compiler.
 
 mod compilation;
 mod options;
@@ -20,7 +20,7 @@ pub use options::Options;
 use crate::jobs::at_a_time;
 use report::Outcome;
 
-/// Default time of a target, seconds.
+/// Default time limit of a target, seconds.
 const SECONDS: u64 = 60;
 
 /// Builds and runs the chosen targets.
@@ -50,7 +50,8 @@ fn folder() -> PathBuf {
     here.parent().unwrap_or(here).join("fuzz")
 }
 
-/// Returns the targets with these names, or all: the files in `fuzz/fuzz_targets`.
+/// Returns the targets with these names, or all targets if there are no names. Targets are the
+/// files in `fuzz/fuzz_targets`.
 fn chosen(wanted: &[String]) -> Result<Vec<String>> {
     let files = fs_err::read_dir(folder().join("fuzz_targets"))?;
     let name = |path: PathBuf| Some(path.file_stem()?.to_str()?.to_owned());

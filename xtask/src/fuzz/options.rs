@@ -3,18 +3,18 @@
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-/// Targets and time.
+/// The targets, and how long to run them.
 #[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct Options {
-    /// Targets of fuzz/fuzz_targets [default: all]
+    /// Targets to fuzz: file names in fuzz/fuzz_targets without .rs [default: all]
     pub targets: Vec<String>,
-    /// Longest time for a target, seconds [default: 60 without --executions]
+    /// Time limit for each target, seconds [default: 60 without --executions]
     #[arg(long, value_name = "N", value_parser = positive())]
     pub seconds: Option<u64>,
-    /// Most executions of a target
+    /// Maximum number of executions of each target
     #[arg(long, value_name = "N", value_parser = positive())]
     pub executions: Option<u64>,
-    /// Targets that run at the same time
+    /// Number of targets that run at the same time
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     pub jobs: u8,
     /// Run under the address sanitizer, which needs a nightly toolchain; see fuzz/README.md
@@ -23,7 +23,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns the same options. If neither time nor executions are given, the time is `seconds`.
+    /// Returns these options. If they limit neither time nor executions, limits the time to
+    /// `seconds`.
     pub(crate) fn bounded(&self, seconds: u64) -> Self {
         let is_bounded = self.seconds.is_some() || self.executions.is_some();
         let seconds = self.seconds.or((!is_bounded).then_some(seconds));

@@ -9,13 +9,13 @@ const TOLD: usize = 12;
 pub(super) const HEAD: &str =
     "target            executions  per second  coverage    corpus  findings";
 
-/// The result of a run of a target.
+/// The result of running a target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outcome {
     target: String,
     executions: u64,
     per_second: u64,
-    /// Number of edges of the program that were reached.
+    /// Number of edges in the program's control flow that were reached.
     coverage: u64,
     corpus: u64,
     /// The failing input, or the log if there is none.
@@ -33,7 +33,8 @@ impl Outcome {
         let tail: Vec<&str> = log.lines().skip(first).take(TOLD).collect();
         Self {
             target: target.to_owned(),
-            // A run that was cut off has no `stat::` lines, and the last status has the numbers.
+            // The log of a run that was cut off has no `stat::` lines. The last status line then
+            // has the numbers.
             executions: after(log, "stat::number_of_executed_units:")
                 .or_else(|| number(status.trim_start_matches('#')))
                 .unwrap_or(0),

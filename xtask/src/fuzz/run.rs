@@ -9,7 +9,7 @@ use fs_err::{self as fs, File};
 use super::report::Outcome;
 use super::{Options, folder};
 
-/// Longest input, bytes. It is short, so that mutations are likely to reach parsed fields.
+/// Longest input, bytes. Inputs are short, so that mutations are likely to hit parsed fields.
 const LONGEST: u32 = 4096;
 /// Longest time for one input, seconds.
 const TIMEOUT_S: u32 = 10;
@@ -24,7 +24,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
     for place in [&corpus, &artifacts, &folder().join("logs")] {
         fs::create_dir_all(place)?;
     }
-    // What an earlier run has found is no finding of this one.
+    // Findings of an earlier run do not count for this run.
     let before = found(&artifacts);
     let mut program = Command::new(programs.join(target));
     program
@@ -50,7 +50,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
         .with_context(|| target.to_owned())?;
     let text = String::from_utf8_lossy(&fs::read(&log)?).into_owned();
     let new = found(&artifacts).into_iter().find(|file| !before.contains(file));
-    // A run that fails without an input, e.g. at its start, is shown by its log.
+    // If a run fails without an input, e.g. at its start, the finding is its log.
     let finding = (!status.success()).then(|| new.unwrap_or(log));
     Ok(Outcome::read(target, &text, finding))
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask prove`: proofs that take too long for each run of continuous integration, which
-//! runs samples of them.
+//! `cargo xtask prove`: proofs that take too long for continuous integration. Its tests run only
+//! samples of them.
 
 mod outputs;
 mod released;
@@ -18,74 +18,84 @@ use crate::{bindings, fuzz, places};
 /// A proof and its options.
 #[derive(Debug, Subcommand)]
 pub enum Proof {
-    /// Print hashes of what the command writes and prints, to compare two builds by `diff`
+    /// Print hashes of all files and texts that the command writes, to compare two builds with
+    /// `diff`
     Outputs(outputs::Options),
-    /// No target of fuzz/fuzz_targets finds anything, each in ten minutes
+    /// Fuzz each target in fuzz/fuzz_targets for ten minutes; any finding is a failure
     Fuzz(fuzz::Options),
-    /// libhtex compiles for Android, iOS and macOS, small and with scenes and libraries of textures
+    /// Compile libhtex for Android, iOS and macOS, small and with scenes and libraries of textures
     ///
-    /// `rustup target add` brings the targets.
+    /// `rustup target add` installs the targets.
     Targets,
-    /// No reader fails for any extreme value, cell or byte of the seeds; tests take one of eleven
+    /// Run the fuzz targets on their seeds with every extreme value, cell and byte; tests take one
+    /// input in eleven
     Edges,
-    /// Every model passes the checker, native and as a module, with four more seeds
+    /// Check every model, native and as a WASM module; checks of sounds run with four more seeds
     ///
-    /// Each fault of a model fails one check of all.
+    /// Also shows, for each known fault of a model, that exactly one check fails.
     Models,
-    /// Errors between the conditions of a free motion, of all models on all surfaces
+    /// Measure the errors between the conditions of a free motion, for all models on all surfaces
     ///
-    /// Tests take Bands on one surface.
+    /// Tests take only the model Bands on one surface.
     Grids,
-    /// Stored, copied and baked textures keep their level and their spectrum
+    /// Show that stored, copied and baked textures keep their level and their spectrum
     ///
-    /// Takes all surfaces, also at recorded motions; tests take two surfaces and one motion.
+    /// Takes all five surfaces, and plays at a recorded motion and between recorded motions. Tests
+    /// take two surfaces, and play only between recorded motions.
     Levels,
-    /// The planned chain has the samples of the full one in 2,000 scenes; tests take 250
+    /// Show that the planned chain of stages gives the samples of the full chain, in 2,000 scenes;
+    /// tests take 100
     Scenes,
-    /// 10,000 random recipes and tables touch nothing outside their folder of results
+    /// Build 10,000 random recipes and tables, which must touch nothing outside their folder of
+    /// results
     ///
-    /// They lie in a folder with traps. They request nothing, and each takes at most 512 MiB and 30
-    /// s. Tests take 300.
+    /// The recipes are in a folder with traps. They must request nothing from a network, and each
+    /// may take at most 512 MiB and 30 s. Tests take 300.
     Recipes,
-    /// 1,000 random scenes and studies, and 1,000 hostile programs at a page, harm no finger
+    /// Show that 1,000 random scenes and studies, and 1,000 hostile programs at a page, harm no
+    /// finger
     ///
-    /// At most 1 V of direct voltage and the limit reach a display, and zero within half a second.
-    /// The page loses no answer and delays no press. Tests take 20 and 60.
+    /// The voltage at the display stays within its limit, with at most 1 V of direct voltage, and
+    /// reaches zero within half a second. The page of a study loses no answer and delays no press.
+    /// Tests take 20 scenes and studies, and 60 programs.
     Fingers,
-    /// Any two failures leave zero at a display, or a sentence every second
+    /// Show that after any two failures a display is at zero, or a warning is printed every second
     ///
-    /// Player, guardian, helpers, driver and card fail at any moments, with Ctrl-C at any other.
-    /// The display is at zero 0.5 s after the detection, or the sentence to switch the amplifier
-    /// off is printed every second. Tests take one failure.
+    /// Player, guardian, helper processes, driver and card fail at any time, and Ctrl-C comes at
+    /// any time. Half a second after the failure is detected, either the display is at zero, or the
+    /// player says every second to switch the amplifier off. Tests take one failure.
     Zero,
-    /// Voices of a day keep their power and phase, and do not repeat; tests take an hour
+    /// Show that voices keep their power and phase over a day, and do not repeat; tests take an
+    /// hour
     Days {
         #[arg(long, value_name = "N")]
         hours: Option<f64>,
     },
-    /// The command writes the same bytes on four emulated processors
+    /// Show that the command writes the same bytes on four emulated processors
     ///
-    /// Tests take one surface of three.
+    /// Tests take one of three surfaces.
     Processors,
-    /// The released archive and wheel for Linux work in an empty root of Debian
+    /// Test the released archive and wheel for Linux in an empty root of Debian
     ///
-    /// The root has no compilers. Programs in C find the libraries; another processor is emulated.
+    /// The root has no compilers. Programs in C must find the libraries. QEMU emulates the
+    /// processor if it is not this machine's.
     Bare(released::Bare),
     /// Make the empty root of Debian that `bare` uses; proves nothing
     BareRoot,
-    /// The released command and library for Windows work under Wine
+    /// Test the released command and library for Windows under Wine
     ///
-    /// They have the samples of this machine, and programs in C find the libraries.
+    /// They must write the same samples as on this machine, and programs in C must find the
+    /// libraries.
     Wine(released::Folder),
-    /// Every command of the pages in docs/ways runs on a released archive and wheel
+    /// Run every command of the pages in docs/ways on a released archive and wheel
     ///
-    /// It prints what the page says, each page within ten minutes.
+    /// Each command must print what its page says, and each page may take at most ten minutes.
     Ways(ways::Options),
-    /// Print what a sample costs in each language, against Rust
+    /// Print the time per sample in each language, relative to Rust
     Costs,
 }
 
-/// Without the rest of the workspace, so that it takes only minutes.
+/// Builds without the rest of the workspace, so that it takes only minutes.
 const ZERO: [&str; 9] = [
     "test",
     "--locked",
@@ -109,7 +119,7 @@ const DAYS: [&str; 8] = [
     "--",
 ];
 
-/// With this variable, tests that take a sample take everything.
+/// If this variable is set, tests that otherwise take a sample take everything.
 const WHOLE: &str = "HTEX_WHOLE";
 
 /// Whether tests take everything instead of a sample.
@@ -121,7 +131,7 @@ impl Proof {
     /// Runs the proof.
     ///
     /// # Errors
-    /// Which property does not hold.
+    /// The error says which property does not hold.
     pub fn run(&self) -> Result<()> {
         match self {
             Self::Outputs(options) => outputs::prove(options),

@@ -1,4 +1,5 @@
-//! Hashes of what the command writes and prints, one per line, always from the same inputs.
+//! Prints hashes of all files and texts that the command writes, one per line. The inputs are
+//! always the same.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,7 +11,8 @@ use fs_err as fs;
 use crate::places::{cargo, target, workspace};
 use crate::programs::{program, run};
 
-/// Command lines, in order. `{WORD}` stands for each of several words.
+/// The command lines, in order. A word in braces, such as `{COMMAND}`, stands for several words:
+/// the line runs with each of them.
 const LINES: &str = include_str!("outputs.txt");
 
 /// Folders and files of the workspace that the commands read.
@@ -25,13 +27,13 @@ const INPUTS: [&str; 8] = [
     "xtask/src/prove/study.toml",
 ];
 
-/// Endings of the keys of measured times, which differ between runs.
+/// Endings of JSON keys with measured times, which differ between runs.
 const TIMED: [&str; 6] =
     ["_ms\":", "_us\":", "ns_per_sample\":", "seconds\":", "spread\":", "on_time_front\":"];
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// The command [default: this workspace's, which is built]
+    /// The command to run [default: the command of this workspace, which is then built]
     #[arg(long, value_name = "PATH")]
     htex: Option<PathBuf>,
 }
@@ -52,7 +54,7 @@ pub(super) fn prove(options: &Options) -> Result<()> {
     hash(&folder)
 }
 
-/// Returns the installed command.
+/// Builds the command, and returns its path.
 fn built() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build.args(["build", "--release", "--locked", "--package", "htex-cli"]);
@@ -60,7 +62,7 @@ fn built() -> Result<PathBuf> {
     Ok(std::path::absolute(target().join("release/htex"))?)
 }
 
-/// Makes an empty folder with the inputs, and a folder for printed output.
+/// Makes an empty folder that contains the inputs and a folder for printed output.
 fn prepare(folder: &Path) -> Result<()> {
     crate::places::emptied(folder)?;
     fs::create_dir_all(folder.join("printed"))?;
@@ -86,7 +88,7 @@ fn print(command: &Path, folder: &Path, line: &str) -> Result<()> {
     Ok(fs::write(&file, text)?)
 }
 
-/// Removes measured times from a text, and what they determine in a sweep.
+/// Removes measured times from a text, and the results of a sweep that depend on the times.
 fn without_times(text: &str) -> String {
     let decided = text.split("\"knees\"").next().unwrap_or(text);
     let timed = |value: &&str| TIMED.iter().any(|key| value.contains(key));
@@ -108,7 +110,7 @@ fn hash(folder: &Path) -> Result<()> {
     let found = find.output().context("find")?;
     let found = String::from_utf8_lossy(&found.stdout).into_owned();
     let mut files: Vec<&str> = found.lines().collect();
-    // `find` lists files in the order of the folders, which differs between machines.
+    // `find` lists files in the order of the file system, which differs between machines.
     files.sort_unstable();
     // The length of a command line is limited.
     for some in files.chunks(500) {
@@ -117,7 +119,7 @@ fn hash(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The values for the words in braces.
+/// The words in braces, and the words for which each stands.
 struct Texts(Vec<(&'static str, Vec<String>)>);
 
 impl Texts {
@@ -142,7 +144,7 @@ impl Texts {
         ]))
     }
 
-    /// Returns the line with every combination of words.
+    /// Returns the line once for every combination of words.
     fn expand(&self, line: &str) -> Vec<String> {
         let mut lines = vec![line.to_owned()];
         for (place, words) in &self.0 {
@@ -157,8 +159,8 @@ impl Texts {
     }
 }
 
-/// Returns the first word of each line that the command prints. From its help it takes only the
-/// commands, which are indented under the headings of their groups.
+/// Returns the first word of each line that the command prints. From the command's help, takes only
+/// the subcommands, which are indented under the headings of their groups.
 fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>> {
     let printed = htex(command, folder, line)?.stdout;
     let printed = String::from_utf8_lossy(&printed);

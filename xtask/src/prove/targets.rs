@@ -1,5 +1,4 @@
-//! Checks libhtex for systems whose linkers are not available here: the code is compiled, not
-//! linked.
+//! Checks that libhtex compiles for systems whose linkers are not available here. Does not link it.
 
 use std::process::Command;
 
@@ -15,10 +14,10 @@ const TARGETS: [&str; 4] = [
     "aarch64-apple-darwin",
 ];
 
-/// Features of the small library, and of one with scenes and libraries of textures.
+/// Features of the small library, and of a library with scenes and libraries of textures.
 const FEATURES: [&str; 2] = ["", "library,scene"];
 
-/// Checks each set of features for each system.
+/// Compiles libhtex for each system with each set of features.
 pub(super) fn prove() -> Result<()> {
     for target in TARGETS {
         for features in FEATURES {

@@ -1,11 +1,17 @@
 //! Runs every command in `docs/ways` as a reader would, with the files of a release, and compares
-//! the output with what the page says.
+//! its output with the page.
 //!
-//! A page's blocks are processed in order. `sh` blocks run in one folder, and variables that they
-//! export last. A `text` block is the output of the block before it; `…` stands for any lines, and
-//! within a line for any text. A block in another language begins with a comment that names the
-//! file to which it is saved. `js` blocks are examples of the npm package, whose tests run them.
-//! Pictures in `docs/figures/ways` are made by the commands.
+//! The blocks of a page are processed in order:
+//!
+//! - All `sh` blocks run in one folder. Variables that a block exports keep their values in later
+//!   blocks.
+//! - A `text` block is the expected output of the block before it. In it, `…` stands for any lines,
+//!   or within a line for any text.
+//! - A block in another language begins with a comment that names the file to which the block is
+//!   saved.
+//! - A `js` block is an example of the npm package, whose tests run it.
+//!
+//! The commands make the pictures in `docs/figures/ways`.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -21,13 +27,13 @@ use crate::places::{files, target, workspace};
 /// Longest time that a page may take a reader.
 const MOST_SECONDS: f64 = 600.0;
 
-/// How links to pictures of these pages begin.
+/// The beginning of the links to pictures in these pages.
 const PICTURES: &str = "../figures/ways/";
 
 /// Parts of the names of files for other machines. A reader ignores those files.
 const OTHERS: [&str; 4] = ["aarch64", "arm64", "win", "macos"];
 
-/// A page, and whether it uses the sources of htex.
+/// The pages, and whether each uses the sources of htex.
 const WAYS: [(&str, bool); 4] =
     [("recordings", false), ("models", true), ("apps", false), ("lab", false)];
 
@@ -36,10 +42,10 @@ pub struct Options {
     /// The folder to which `cargo xtask release --out DIR` wrote
     #[arg(long, value_name = "DIR")]
     release: PathBuf,
-    /// One page: recordings, models, apps or lab [default: all]
+    /// Run only this page: recordings, models, apps or lab [default: all]
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
-    /// Write what is printed into the pages
+    /// Replace the output in the pages by what the commands print
     #[arg(long)]
     write: bool,
 }
@@ -147,9 +153,8 @@ fn is_example_of_npm(block: &Block) -> Result<bool> {
     Ok(blocks(&readme).iter().any(|example| example.language == "js" && example.text == block.text))
 }
 
-/// Compares a page's pictures with those that its commands made in their folder. The bytes of
-/// pictures that Python made, in subfolders, depend on the version of matplotlib, so those only
-/// have to exist.
+/// Compares a page's pictures with the pictures that its commands made. The pictures in subfolders
+/// come from Python. Their bytes depend on the version of matplotlib, so they only have to exist.
 fn pictures(name: &str, folder: &Path, write: bool) -> Result<()> {
     let text = fs::read_to_string(workspace().join(format!("docs/ways/{name}.md")))?;
     let shown = links(&text).into_iter().filter_map(|link| text[link].strip_prefix(PICTURES));
@@ -180,8 +185,8 @@ fn saved_as(block: &Block) -> Option<&str> {
     (is_file && name.len() < line.len()).then_some(name)
 }
 
-/// Runs the commands of a block in a shell, which stops at the first failure, and returns what they
-/// print.
+/// Runs the commands of a block in a shell, and returns what they print. The shell stops at the
+/// first failure.
 fn run(block: &Block, folder: &Path) -> Result<String> {
     let exported = folder.with_file_name("exported");
     let exported = exported.display();
@@ -193,7 +198,8 @@ fn run(block: &Block, folder: &Path) -> Result<String> {
     shell.stdout(out.try_clone()?).stderr(out);
     let home = folder.with_file_name("home");
     fs::create_dir_all(&home)?;
-    // No models, devices or settings of the person who runs this; cargo's and pip's folders stay.
+    // The commands must not find models, devices or settings of the user. The folders of cargo and
+    // pip stay the same.
     shell.env("HTEX_CONFIG_DIR", &home).env("XDG_DATA_HOME", &home);
     shell.env("LC_ALL", "C.UTF-8").env("MPLCONFIGDIR", &home);
     for name in ["HTEX_PLUGIN_PATH", "HTEX_DEVICE_PATH", "CARGO_TARGET_DIR"] {
@@ -215,8 +221,8 @@ fn difference(expected: &str, printed: &str) -> Option<usize> {
     (!is_same).then_some(furthest)
 }
 
-/// Whether the lines agree. A line `…` stands for any lines. `at` is the number of lines so far,
-/// and `furthest` the largest number that agreed.
+/// Whether the printed lines are the expected ones. An expected line `…` stands for any lines. `at`
+/// is the number of expected lines that agree so far, and `furthest` the largest such number.
 fn agree(expected: &[&str], printed: &[&str], at: usize, furthest: &mut usize) -> bool {
     *furthest = at.max(*furthest);
     match (expected.split_first(), printed.split_first()) {

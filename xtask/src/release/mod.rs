@@ -1,10 +1,10 @@
 //! Makes the files of a release: archives for each platform, wheels, the npm package, lists of
 //! their parts, and checksums.
 //!
-//! zig builds everything against the C library of each platform (mingw-w64 for Windows), so that
-//! one machine builds all. The same sources must give the same bytes: file times are the commit's
-//! time, and no path of this machine is in the result (`Build::cargo`; `tree` searches for such
-//! paths).
+//! One machine builds for all platforms: zig builds everything against the C library of each
+//! platform (for Windows, mingw-w64 does). The same sources must give the same bytes. Therefore
+//! file times are the commit's time, and the result contains no path of this machine (see
+//! `Build::cargo`; the module `tree` searches for such paths).
 
 mod packages;
 mod parts;
@@ -22,16 +22,17 @@ use crate::places::workspace;
 use crate::platform::{Build, PLATFORMS, Platform};
 use crate::programs::{output, program, run};
 
-/// What is written, and where.
+/// What to write, and where.
 #[derive(Debug, Args)]
 pub struct Release {
     /// The folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// linux-x86_64, linux-aarch64, windows-x86_64, macos, npm or sdist [default: all]
+    /// Parts to build: linux-x86_64, linux-aarch64, windows-x86_64, macos, npm or sdist [default:
+    /// all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     only: Vec<String>,
-    /// Build for this machine, by its own tools, without the lists of licences and parts
+    /// Build for this machine, with its own tools, and without the lists of licences and parts
     #[arg(long)]
     trial: bool,
 }
@@ -54,7 +55,7 @@ impl Release {
 /// Builds and writes the release.
 ///
 /// # Errors
-/// A message with the file or the program, or what is missing and how to install it.
+/// The error names the file or the program, or says what is missing and how to install it.
 pub fn release(release: &Release) -> Result<()> {
     let platforms = release.platforms()?;
     let here = Platform::here()?;

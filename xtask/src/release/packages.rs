@@ -31,7 +31,7 @@ const TOOLS: [(&str, &str); 5] = [
 const PYTHON_TOOLS: &str = "python3 -m venv target/release-tools && target/release-tools/bin/pip install -r xtask/src/release/requirements.txt";
 
 /// # Errors
-/// What is missing, with how to install it. A trial needs only maturin.
+/// The error says which tool is missing and how to install it. A trial needs only maturin.
 pub(super) fn check_tools(is_trial: bool) -> Result<()> {
     for (name, how) in TOOLS.iter().filter(|(name, _)| !is_trial || *name == "maturin") {
         let there = tools().join(name).is_file();
@@ -77,7 +77,7 @@ pub(super) fn zip(folder: &Path, out: &Path, commit: &Commit) -> Result<()> {
         .arg(&commit.seconds))
 }
 
-/// Writes a folder as a zip file, with sorted names and the commit's time.
+/// A Python program that writes a folder as a zip file, with sorted names and the commit's time.
 const ZIP: &str = "\
 import pathlib, sys, time, zipfile
 to, name, seconds = sys.argv[1:]
@@ -109,16 +109,17 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
     let Some(notices) = notices else {
         return run(maturin.arg("--out").arg(out));
     };
-    // Next to the Python modules, because that folder is packed as it is.
+    // The licences go next to the Python modules, because maturin packs that folder as it is.
     let package = workspace().join("sdk/bindings/python/python/htex");
     put_notices(notices, &package)?;
     let folder = anew("wheel")?;
     let built = run(maturin.arg("--out").arg(&folder));
-    // Also after a failed build, because it is among the sources.
+    // Removed even after a failed build, because the file is among the sources.
     fs::remove_file(package.join(notices.file_name().unwrap_or_default()))?;
     built?;
     for wheel in crate::places::files(&folder)? {
-        // A wheel is compressed, so paths in it show only when it is unpacked.
+        // A wheel is compressed, so its files have to be unpacked before paths can be found in
+        // them.
         let unpacked = anew("wheel-unpacked")?;
         run(program("python3", &unpacked).args(["-m", "zipfile", "-e"]).arg(&wheel).arg("."))?;
         tree::check_paths(&unpacked)?;
@@ -127,17 +128,17 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
     Ok(())
 }
 
-/// Makes an empty folder, with a name, for intermediate files.
+/// Makes an empty folder of this name for intermediate files.
 fn anew(name: &str) -> Result<PathBuf> {
     let folder = release_trees().join(name);
     emptied(&folder)?;
     Ok(fs::canonicalize(folder)?)
 }
 
-/// Writes the sources of the Python package. pip builds them where no wheel is available.
+/// Writes the sources of the Python package, which pip builds if there is no wheel for a platform.
 ///
-/// Maturin leaves out packages of the workspace, but not their lines in `Cargo.lock`, and a
-/// `--locked` build refuses those lines. Cargo removes them here.
+/// Maturin leaves out some packages of the workspace, but not their lines in `Cargo.lock`. A build
+/// with `--locked` refuses these lines, so cargo removes them here.
 pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let trees = release_trees();
     let (folder, packed) = (anew(&format!("htex-{version}"))?, anew("sdist")?);

@@ -14,8 +14,8 @@ use crate::programs::{program, run};
 /// Name of the file with third-party licences.
 const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
 
-/// Writes the licences, with their texts, of all packages in any part of the release, and returns
-/// the file. All parts share one file, because finding the texts takes minutes.
+/// Writes a file with the licences of all packages in the release, and their texts. Returns the
+/// file. All parts of the release share it, because finding the texts takes minutes.
 pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     let release = workspace().join("xtask/src/release");
     let to = std::path::absolute(release_trees().join(NOTICES))?;
@@ -42,7 +42,7 @@ pub(super) fn put_notices(notices: &Path, folder: &Path) -> Result<()> {
 }
 
 /// Writes the bills of materials for the command and for the wheel, in CycloneDX format. The tool
-/// writes next to the manifests, so it works on a copy of the sources.
+/// writes its files next to the manifests, so it gets a copy of the sources.
 pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let sources = sources()?;
     let mut billed = vec![("cli", "")];

@@ -1,4 +1,4 @@
-//! Lays out the folder of an archive: the command, libhtex, models as plugins, texts.
+//! Makes the folder of an archive: the command, libhtex, the models as plugins, and texts.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,7 +13,7 @@ use crate::platform::{Build, Platform, System};
 use crate::plugins::models;
 use crate::programs::{output, run};
 
-/// Files of the workspace that are in every archive, and where they go.
+/// Files of the workspace that every archive contains, and their paths in the archive.
 const TEXTS: [(&str, &str); 4] = [
     ("LICENSE-MIT", "share/doc/htex/LICENSE-MIT"),
     ("LICENSE-APACHE", "share/doc/htex/LICENSE-APACHE"),
@@ -79,15 +79,15 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
     let to = folder.join("lib/htex/plugins");
     let modules = crate::plugins::wasm()?;
     for model in models()? {
-        // They have the same settings as the command, so that shared code of the models is built
-        // once. Each module contains one model.
+        // The models are built with the same settings as the command, so that their shared code is
+        // built only once. Each module contains one model.
         let mut cargo = build.cargo("rustc");
         cargo.args(["--quiet", "--locked", "--lib", "--package", &format!("htex-{model}")]);
         cargo.args(build.profile());
         cargo.args(["--features", "plugin", "--crate-type", "cdylib"]);
         let native = format!("{prefix}htex_{model}.{suffix}");
         if build.platform().system == System::MacOs {
-            // Otherwise the library's name would be the path where it was built.
+            // Otherwise the library's install name would be the path at which it was built.
             let name = format!("-Clink-arg=-Wl,-install_name,@rpath/{native}");
             cargo.args(["--", &name]);
         }
@@ -99,8 +99,8 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Adds manual pages and completions, which the command writes. If the command cannot run here,
-/// this machine's command writes them, because it has the same arguments.
+/// Adds the manual pages and completions that the command writes. If the built command cannot run
+/// on this machine, this machine's own command writes them; it has the same arguments.
 fn help(platform: &Platform, folder: &Path) -> Result<()> {
     let own = folder.join("bin").join(executable(platform.system));
     let htex = |words: &[&str]| {

@@ -10,11 +10,11 @@ use crate::devices::OneDeviceArgs;
 use crate::failure::{Exit, Failure, Result};
 use crate::output::{command_line, print_json};
 
-/// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
+/// Check a device against the rules of the device ABI; exit status 1 if it breaks one.
 ///
 /// Each check runs in its own process, so that a crash or an endless loop ends only that check. The
-/// checks drive an output at a hundredth of its limit, and offer it samples beyond the limit, which
-/// it must refuse. Do not touch what is connected.
+/// checks drive an output at a hundredth of its limit. They also send it samples beyond the limit,
+/// which it must refuse. Do not touch the connected hardware during the checks.
 #[derive(Args)]
 pub(crate) struct Check {
     #[command(flatten)]
@@ -24,7 +24,7 @@ pub(crate) struct Check {
     checking: CheckArgs,
 }
 
-/// Run one check and print its finding as JSON: what `check` starts.
+/// Run one check and print its finding as JSON (internal; `check` starts it).
 #[derive(Args)]
 pub(crate) struct CheckOne {
     #[command(flatten)]
@@ -38,8 +38,8 @@ impl Check {
         if let Some(name) = &checking.reproduce {
             return checking.print_one(name, &finding(&device, name)?);
         }
-        // A wrong setting is reported once, and not by each check. The same holds for a wrong name,
-        // which names nothing to check.
+        // Read here, so that a wrong setting is reported once and not by each check. The same holds
+        // for the name of a device that does not exist.
         device.settings.given()?;
         let subject = subject(&device)?;
         let mut arguments = vec!["device".into(), "check-one".into()];
@@ -61,8 +61,8 @@ impl CheckOne {
     }
 }
 
-/// Finds the device. Unlike [`OneDeviceArgs::load`], does not load the library of a file that is
-/// named, because that may crash.
+/// Finds the device. If the user named a library file, does not load it, because loading may crash.
+/// ([`OneDeviceArgs::load`] loads it.)
 fn subject(device: &OneDeviceArgs) -> Result<Subject> {
     if let Some(file) = device.file() {
         return Ok(Subject::Library(file.to_owned()));

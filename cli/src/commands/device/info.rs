@@ -8,10 +8,11 @@ use crate::output::{print, print_json, tamed};
 
 use super::list::descriptor_text;
 
-/// Show a device's settings and profiles, and what it can do with these settings: the capabilities
-/// of an output, or the rate and the channels of an input.
+/// Show a device's settings, profiles and capabilities.
 ///
-/// An input is opened to read its rate and channels. It does not sample.
+/// For an output, prints what the device can do with the given settings, e.g. its sample rates and
+/// its limit. For an input, prints its rate and its channels. The command opens the input to read
+/// them, but takes no samples.
 #[derive(Args)]
 pub(crate) struct Info {
     #[command(flatten)]

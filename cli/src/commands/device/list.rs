@@ -8,11 +8,14 @@ use crate::failure::{Exit, Failure};
 use crate::invocation;
 use crate::output::{print, print_json, tamed};
 
-/// List all devices, outputs and inputs: their adapters, what is connected, and what was found but
-/// is not used.
+/// List all output and input devices.
 ///
-/// Search order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the user's folder,
-/// built in. If two outputs or two inputs have the same id, the first one found is used.
+/// Prints each adapter (the code for one kind of device), its settings, and the devices of this
+/// kind that are connected. Notes at the end name adapters that were found but are not used.
+///
+/// htex searches for adapters in this order: --device-file, --device-dir, the folders in
+/// HTEX_DEVICE_PATH, the user's folder, this program. If two outputs or two inputs have the same
+/// id, htex uses the first one.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]
@@ -23,8 +26,8 @@ pub(crate) struct List {
     json: bool,
 }
 
-/// The environment variable that sets how much the OpenXR loader prints. Without it, the loader
-/// prints its own errors on a machine without a runtime.
+/// The environment variable that sets how much the OpenXR loader prints. If the variable is not
+/// set, the loader prints errors on a machine without an OpenXR runtime.
 const LOADER_PRINTS: &str = "XR_LOADER_DEBUG";
 
 impl List {
@@ -58,9 +61,9 @@ impl List {
     }
 }
 
-/// Lists in a second process in which the OpenXR loader prints nothing, because a process cannot
-/// safely change its own environment. `None` if the user has set what it prints, or in the second
-/// process.
+/// Runs the command in a second process, in which the OpenXR loader prints nothing. (A process
+/// cannot safely change its own environment.) Returns `None` if the variable [`LOADER_PRINTS`] is
+/// already set, by the user or in the second process, or if no second process can be started.
 fn listed_quietly() -> Option<Exit> {
     if std::env::var_os(LOADER_PRINTS).is_some() {
         return None;
@@ -75,8 +78,8 @@ fn listed_quietly() -> Option<Exit> {
     })
 }
 
-/// Describes an adapter and the connected devices as JSON. A missing driver is reported with the
-/// adapter and is not an error.
+/// Describes an adapter and the connected devices as JSON. A missing driver is no error: the
+/// description of the adapter states the problem.
 fn listed_json(entry: &AdapterEntry) -> Value {
     let descriptor = entry.descriptor();
     let (endpoints, problem) = match entry.adapter.endpoints() {
@@ -104,7 +107,8 @@ fn listed_json(entry: &AdapterEntry) -> Value {
 
 /// Describes an adapter as text: settings and connected devices.
 fn listed_text(entry: &AdapterEntry) -> String {
-    // `print` keeps line breaks, so a text of a native library could add lines of its own.
+    // `print` keeps line breaks, so without this a text from a native library could add lines to
+    // the output.
     let descriptor = &tamed(entry.descriptor());
     let (name, version) = (descriptor.short_name(), &descriptor.version);
     let mut text = format!("  {name:8} {version:8} {:20} {}\n", descriptor.id, entry.origin);

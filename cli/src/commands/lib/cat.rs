@@ -9,7 +9,7 @@ use crate::located;
 use crate::output::{write_bytes, write_file};
 use crate::outputs::check_outputs;
 
-/// Take one texture out of a library: its .htex file, byte for byte.
+/// Extract one texture from a library, as its .htex file, byte for byte.
 #[derive(Args)]
 pub(crate) struct Cat {
     /// Path or URI of the library

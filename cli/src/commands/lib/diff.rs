@@ -10,13 +10,16 @@ use crate::failure::{Exit, Result, for_file};
 use crate::output::show;
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
+///
+/// Prints `-` before a texture that only the first library has, `+` before one that only the second
+/// has, and `~` before one that differs.
 #[derive(Args)]
 pub(crate) struct Diff {
     /// Path or URI of a library
     #[arg(value_parser = LibraryArg::parser())]
     a: LibraryArg,
 
-    /// Another library
+    /// Path or URI of the other library
     #[arg(value_parser = LibraryArg::parser())]
     b: LibraryArg,
 
@@ -33,7 +36,7 @@ struct Differences {
     changed: Vec<String>,
 }
 
-/// An iterator over a library's entries that knows the next one.
+/// An iterator over a library's entries that also shows the next entry before it is taken.
 struct Walk<'a> {
     library: &'a LibraryArg,
     entries: htex_format::library::Entries<'a, LibraryFile>,
@@ -63,7 +66,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Walks through both libraries in the order of the names.
+/// Compares two libraries by walking through both in the order of the names.
 fn compare(mut a: Walk<'_>, mut b: Walk<'_>) -> Result<Differences> {
     let mut differences = Differences::default();
     loop {

@@ -6,7 +6,7 @@ use super::listing::Listing;
 use crate::failure::{Exit, Result, for_file};
 use crate::output::note;
 
-/// Search a library; all that is asked for must hold.
+/// List the textures of a library that match all given words and options.
 #[derive(Args)]
 pub(crate) struct Find {
     /// Path or URI of the library
@@ -20,15 +20,15 @@ pub(crate) struct Find {
     #[arg(long)]
     tag: Vec<String>,
 
-    /// A speed at which the texture was recorded, or between two such speeds, mm/s
+    /// A speed within the range of speeds at which the texture was recorded, mm/s
     #[arg(long, value_name = "MM_S", value_parser = not_negative)]
     speed: Option<f64>,
 
-    /// A force at which the texture was recorded, or between two such forces, newtons
+    /// A normal force within the range of forces at which the texture was recorded, newtons
     #[arg(long, value_name = "N", value_parser = not_negative)]
     force: Option<f64>,
 
-    /// A model that describes the texture: its id, or the id's last part
+    /// A model that the texture has, by the model's id or the last part of the id
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 

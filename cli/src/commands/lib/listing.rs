@@ -49,7 +49,7 @@ impl Listing {
 
     fn flush(&mut self) -> Result<()> {
         let text = std::mem::take(&mut self.text);
-        // `print` would escape with `\u{…}`, which is not JSON.
+        // `print` escapes control characters as `\u{…}`, which is not valid JSON.
         if self.is_json { write(&text) } else { print(&text) }
     }
 }
@@ -69,8 +69,8 @@ fn row(entry: &Entry) -> String {
     )
 }
 
-/// Formats the law as exponents: of frequencies over the speed, and of the level over speed and
-/// force.
+/// Formats the law as three exponents: frequencies over speed (`f`), level over speed (`v`), and
+/// level over force (`F`).
 fn law(law: &Law) -> String {
     let [a, b, c] = [law.frequency_speed, law.level_speed, law.level_force]
         .map(|exponent| number(exponent.exponent));

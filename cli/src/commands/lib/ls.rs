@@ -7,8 +7,9 @@ use crate::output::note;
 
 /// List the textures of a library: name, bytes, recorded speeds and forces, law, models, tags.
 ///
-/// The law is three exponents, e.g. `f^1 v^0 F^1`: of frequencies over the speed, of the level over
-/// the speed, and of the level over the force. Only the index is read.
+/// The law is printed as three exponents, e.g. `f^1 v^0 F^1`. They say how the frequencies follow
+/// the speed (f), how the level follows the speed (v), and how the level follows the force (F). The
+/// command reads only the index of the library.
 #[derive(Args)]
 pub(crate) struct Ls {
     /// Path or URI of the library

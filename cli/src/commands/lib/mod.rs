@@ -25,8 +25,9 @@ use crate::failure::{Result, for_file};
 ///
 /// A library is one file (.htexlib) with any number of textures.
 ///
-/// Textures are read one at a time, also over a network (https://, s3://, gs://, az://), where only
-/// the needed parts of the file are downloaded. Parts that textures have in common are stored once.
+/// htex reads textures one at a time. If the library is on a network (https://, s3://, gs://,
+/// az://), htex downloads only the parts of the file that it needs. Parts that several textures
+/// have in common are stored once.
 #[derive(Args)]
 pub(crate) struct Lib {
     #[command(subcommand)]
@@ -51,7 +52,8 @@ impl Lib {
     }
 }
 
-/// A library argument: a path, or a URI from which only the needed ranges are read.
+/// An argument that names a library: a path or a URI. Of a file at a URI, htex reads only the
+/// ranges that it needs.
 #[derive(Clone, Debug)]
 struct LibraryArg(Location);
 

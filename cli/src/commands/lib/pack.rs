@@ -18,8 +18,8 @@ use crate::outputs::check_outputs;
 ///
 /// A texture is named after its file, without `.htex`. A texture in a folder is named after its
 /// path in that folder, e.g. wood/oak. The same textures give the same file, in any order and on
-/// any machine. Each texture must state a licence (`htex edit --license`), because a library is
-/// passed on.
+/// any machine. Each texture must state a licence (`htex edit --license`), because libraries are
+/// made to be passed on.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
@@ -30,7 +30,7 @@ pub(crate) struct Pack {
     #[arg(required = true, value_name = "FILE|DIR", value_parser = located::ASSET)]
     inputs: Vec<PathBuf>,
 
-    /// Name of the library [default: the file's]
+    /// Name of the library [default: the file's name]
     #[arg(long)]
     name: Option<String>,
 
@@ -73,7 +73,7 @@ impl Pack {
         show(&PackReport { file: &self.output, name: &name, packed }, self.json)
     }
 
-    /// Converts an error of writing, and says what to do here.
+    /// Converts an error of the writer. If a licence is missing, says which flags help.
     fn failure(&self, error: LibraryError, sources: &BTreeMap<String, PathBuf>) -> Failure {
         match &error {
             LibraryError::Unlicensed { name, .. } => {
@@ -85,7 +85,7 @@ impl Pack {
     }
 }
 
-/// A library that was written.
+/// The report on a library that was written.
 struct PackReport<'a> {
     file: &'a Path,
     name: &'a str,
@@ -126,8 +126,9 @@ impl Display for PackReport<'_> {
     }
 }
 
-/// Returns the `.htex` files of the inputs by their names in the library. A file is named after
-/// itself, and a file in a folder after its path in the folder, both without `.htex`.
+/// Returns the `.htex` files of the inputs, each with its name in the library. An input file keeps
+/// its file name. A file in an input folder gets its path in this folder. Names do not include
+/// `.htex`.
 fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>> {
     let mut found = BTreeMap::new();
     for input in inputs {

@@ -10,7 +10,7 @@ use crate::output::{bar, print, shown};
 
 /// Write the textures of a library as files: NAME.htex in a folder.
 ///
-/// An existing file is kept and is an error, unless --force is given.
+/// If one of the files exists already, the command keeps it and fails, unless you give --force.
 #[derive(Args)]
 pub(crate) struct Unpack {
     /// Path or URI of the library
@@ -20,7 +20,7 @@ pub(crate) struct Unpack {
     /// Names of textures [default: all]
     names: Vec<String>,
 
-    /// The folder; it is created if it does not exist
+    /// Folder to write to; created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
 
@@ -63,15 +63,16 @@ impl Unpack {
                 || Failure::from(LibraryError::Absent { name: name.clone() }).in_file(&file);
             write(entry.ok_or_else(absent)?)?;
         }
-        // After an error before this, files that are not in their places yet are removed.
+        // If an error occurred before this line, the files that are not in their final places yet
+        // are removed.
         batch.finish().writing(&self.output)?;
         bar.finish_and_clear();
         print(&format!("{}: {count} files\n", shown(&self.output)))?;
         Ok(Exit::SUCCESS)
     }
 
-    /// Writes a texture. The reader has checked its name, so it leads to a file inside the folder,
-    /// where no link is followed.
+    /// Writes a texture. The reader has checked its name, so the file is inside the folder. Links
+    /// in the folder are not followed.
     fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<()> {
         let (own, inside) = (OwnFolder::new(&self.output), PathBuf::from(format!("{name}.htex")));
         let path = self.output.join(&inside);
@@ -95,8 +96,8 @@ impl Unpack {
     }
 }
 
-/// Refuses a name that would be the same file as an earlier one on some system, so that neither is
-/// lost.
+/// Refuses a name that would be the same file as an earlier name on some system (e.g. because only
+/// the case differs), so that neither texture is lost.
 fn check_alike(names: &mut Names, name: &str) -> Result<()> {
     if names.insert(name) {
         Ok(())

@@ -7,7 +7,7 @@ use crate::commands::validate::show_reports;
 use crate::failure::{Result, for_file};
 use crate::located;
 
-/// Check every page and every texture of libraries; exit status 1 if one is not valid.
+/// Check the index and every texture of libraries; exit status 1 if a library is not valid.
 ///
 /// Each finding has a stable code (`htex explain CODE`).
 #[derive(Args)]

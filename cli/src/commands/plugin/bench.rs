@@ -10,11 +10,11 @@ use crate::failure::{Failure, Result};
 use crate::output::show;
 use crate::plugins::{PluginArgs, way};
 
-/// Measure what models cost: nanoseconds a sample, built in, as native plugins and as WASM.
+/// Measure how long models take per sample, built in, as native plugins and as WASM.
 ///
-/// Each model is timed in every way in which it can be loaded, at its own rate. All runs are
-/// interleaved, so that other load on the machine affects all of them equally. WASM modules are
-/// timed twice: with the default limits, which use deadlines, and with counted instructions.
+/// Times each model in all forms in which it was found, at the model's own sample rate. All runs
+/// are interleaved, so that other load on the machine affects all of them equally. A WASM module is
+/// timed twice: with the default limits, which are limits of time, and with counted instructions.
 #[derive(Args)]
 pub(crate) struct Bench {
     /// Models by short name, id or file [default: all built-in models]
@@ -77,7 +77,7 @@ fn add(subjects: &mut Vec<Subject>, loaded: &LoadedModel, limits: &WasmLimits) -
     Ok(())
 }
 
-/// What models cost.
+/// The times of models.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct CostTable(Vec<Cost>);

@@ -10,7 +10,7 @@ use crate::checking::CheckArgs;
 use crate::failure::{Exit, Failure, Result};
 use crate::output::{command_line, print_json};
 
-/// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
+/// Check a model against the rules of the model ABI; exit status 1 if it breaks one.
 ///
 /// Each check runs in its own process, so that a crash or an endless loop ends only that check.
 /// `spec/model-checks.md` explains the checks.
@@ -22,24 +22,26 @@ pub(crate) struct Check {
     #[command(flatten)]
     checking: CheckArgs,
 
-    /// Seed of the voices, of random parameters, and of the first sequence of `fuzz`
+    /// Seed of the voices, of random parameters, and of the first sequence in the check `fuzz`
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
 
-    /// Duration of the check `fuzz`, s [default: 16 sequences]
+    /// Duration of the check `fuzz`, which plays random sequences of calls, s [default: 16
+    /// sequences]
     #[arg(long, value_name = "SECONDS", value_parser = fuzz_time)]
     fuzz: Option<Duration>,
 
-    /// Names of checks to run, comma-separated; checks that they need run too [default: all]
+    /// Names of checks to run, comma-separated. Checks on which they depend also run [default: all]
     #[arg(long, value_delimiter = ',', value_name = "NAME,…", conflicts_with = "reproduce")]
     only: Option<Vec<String>>,
 
-    /// The same model as a file of the other kind [default: the one next to it, if it exists]
+    /// Compare with the same model in the other form: a WASM module for a native library, or the
+    /// reverse [default: the file next to the model, if there is one]
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
 }
 
-/// Run one check and print its finding as JSON: what `check` starts.
+/// Run one check and print its finding as JSON (internal; `check` starts it).
 #[derive(Args)]
 pub(crate) struct CheckOne {
     file: PathBuf,
@@ -62,8 +64,8 @@ fn fuzz_time(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Converts an error. A file that cannot be read is a reading error, and an unknown check is wrong
-/// usage.
+/// Converts an error: of reading, if a file cannot be read, else of wrong usage, such as an unknown
+/// check.
 fn failed(error: CheckError) -> Failure {
     match error {
         CheckError::File { path, error } => FileError::reading(path, error).into(),
@@ -71,7 +73,8 @@ fn failed(error: CheckError) -> Failure {
     }
 }
 
-/// Returns the seed that fails. For a sequence, it is the sequence's own seed.
+/// Returns the seed with which the check failed. If the check played sequences, this is the seed of
+/// the failed sequence, else the seed of the run.
 fn seed_of(report: &Report, name: &str) -> u64 {
     let failed = report.checks.iter().find(|check| check.check == name);
     let own = failed.and_then(|check| check.finding.numbers.get("seed"));

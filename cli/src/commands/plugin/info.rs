@@ -29,7 +29,7 @@ impl Info {
     }
 }
 
-/// A model's descriptor as it is printed.
+/// A model's descriptor, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct ModelInfo(Descriptor);

@@ -10,11 +10,14 @@ use crate::failure::Result;
 use crate::output::show;
 use crate::plugins::PluginArgs;
 
-/// List all models found, and what was found but is not used.
+/// List all models, and the plugins that were found but are not used.
 ///
-/// Search order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH, the user's folder, built
-/// in. If two models have the same id, the first one given by --plugin is used, else the newest of
-/// its major version, else the first one found.
+/// htex searches for models in this order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH,
+/// the user's folder, this program.
+///
+/// If several models have the same id, htex uses the first one that --plugin names. If --plugin
+/// names none of them, the first place that has the model decides the major version. htex then uses
+/// the newest version with this major version, wherever it was found.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]

@@ -11,7 +11,7 @@ use crate::output::print;
 /// The folder `sdk` of the sources from which this program was built; `None` in a released program.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
 
-/// Write the project of a new model, which builds with one command and passes `check`.
+/// Write the project of a new model, which builds with one command and passes `htex plugin check`.
 #[derive(Args)]
 pub(crate) struct New {
     /// Name of the model: lower-case letters, digits and hyphens
@@ -21,12 +21,12 @@ pub(crate) struct New {
     #[arg(long, value_enum)]
     lang: Lang,
 
-    /// Folder to write it to; it must not exist [default: the name]
+    /// Folder to write to; it must not exist yet [default: the model's name]
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 
-    /// For --lang rust: the folder `sdk` of the htex sources [default: of the sources this program
-    /// was built from; a released program has no default]
+    /// For --lang rust: the folder `sdk` in the sources of htex [default: the sources from which
+    /// this program was built; a released program has no default]
     #[arg(long, value_name = "DIR")]
     sdk: Option<PathBuf>,
 }

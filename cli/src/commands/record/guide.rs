@@ -14,12 +14,12 @@ use crate::signals;
 /// Polling interval for the start request of the page.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What the guidance shows and where.
+/// Where the guidance is shown, and what it shows.
 #[derive(Args)]
 #[command(next_help_heading = "Guidance")]
 pub(super) struct GuideArgs {
-    /// Guide on a web page of this machine instead of the terminal; its address is printed, and the
-    /// session starts there
+    /// Show the guidance on a web page of this machine instead of the terminal. The command prints
+    /// the address of the page, on which you start the session
     #[arg(long)]
     page: bool,
 
@@ -33,13 +33,13 @@ pub(super) struct GuideArgs {
     )]
     port: u16,
 
-    /// Length of the strokes in the guidance
+    /// Length of a stroke in the guidance, mm
     #[arg(long, value_name = "MM", default_value_t = 80.0)]
     stroke: f64,
 }
 
 impl GuideArgs {
-    /// Returns the target to show.
+    /// Returns the motion that the guidance shows as the target.
     pub(super) fn guidance(&self, setup: &Setup) -> Result<Guidance> {
         if !(self.stroke > 0.0 && self.stroke <= 1e4) {
             let sentence = format!("--stroke {}: above 0 and at most 10,000 mm", self.stroke);
@@ -75,7 +75,7 @@ pub(super) enum Guide {
 }
 
 impl Guide {
-    /// Waits until the session is started on the page.
+    /// Waits until the user starts the session on the page. In a terminal, does not wait.
     pub(super) fn wait_for_start(&self) -> Next {
         let Self::Page(page) = self else {
             return Next::Go;

@@ -25,13 +25,13 @@ use guide::{Guide, GuideArgs};
 
 /// Record a finger on a surface, with guidance
 ///
-/// A take is set aside and repeated if it leaves the target speed or force, or if the finger slides
-/// too little.
+/// Records one take (a recording of --seconds). If the take leaves the target speed or force, or if
+/// the finger slides too little, htex sets it aside and records another one.
 ///
-/// Takes are stored as DIR/NAME-001.csv and so on, with all settings in a JSON file next to each,
-/// and the tracker's rows in DIR/tracker. Takes that left their target are in DIR/rejected, and
-/// incomplete ones in DIR/incomplete. Each second is written to disk before the next, so a take
-/// that a crash interrupted is recovered when the command runs again.
+/// htex stores takes as DIR/NAME-001.csv and so on. A JSON file next to each take contains all
+/// settings, and DIR/tracker contains the rows of the tracker. Takes that were set aside are in
+/// DIR/rejected, and incomplete takes in DIR/incomplete. htex writes each second of a take to disk
+/// before the next one. If a crash interrupts a take, the next run of the command recovers it.
 #[derive(Args)]
 pub(crate) struct Record {
     /// Source of the signals: a recording to replay (file:rec.csv), analog inputs of a National
@@ -42,7 +42,7 @@ pub(crate) struct Record {
     #[command(flatten)]
     settings: SettingArgs,
 
-    /// Replay files without waiting
+    /// Replay a file as fast as possible, without waiting
     #[arg(long, help_heading = "Source")]
     fast: bool,
 
@@ -52,20 +52,22 @@ pub(crate) struct Record {
     #[command(flatten)]
     input: InputArgs,
 
-    /// Name of the takes
+    /// Name of the takes; their file names begin with it
     #[arg(long, value_name = "NAME", default_value = "take")]
     take: String,
 
-    /// Duration of a take
+    /// Duration of a take, s
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     seconds: f64,
 
-    /// Time before each take, to get into the motion [default: 3, with --fast 0]
+    /// Time before each take in which the finger gets into its motion, s [default: 3, or 0 with
+    /// --fast]
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract the mean forces of one second without a finger on the surface, measured before the
-    /// first take or before each take
+    /// Subtract from each signal its mean without a finger on the surface (not from positions and
+    /// speeds). htex measures the means for one second, before the first take (once) or before each
+    /// take (each)
     #[arg(
         long,
         value_enum,
@@ -75,39 +77,40 @@ pub(crate) struct Record {
     )]
     tare: Option<TareArg>,
 
-    /// Target speed, mm/s; needs the finger's motion
+    /// Target speed, mm/s; needs a source or tracker that measures the finger's motion
     #[arg(long, value_name = "MM_S")]
     target_speed: Option<f64>,
 
-    /// Target normal force
+    /// Target normal force, N
     #[arg(long, value_name = "N")]
     target_force: Option<f64>,
 
-    /// How far mean, minimum and maximum of a sweep's speed and force may be from the target, as a
-    /// fraction of the target
+    /// Tolerance of the targets, as a fraction of the target. In the sweeps, mean, minimum and
+    /// maximum of speed and force may differ from the target by this much
     #[arg(long, value_name = "PART", default_value_t = 0.1)]
     tolerance: f64,
 
-    /// Minimum fraction of a take in which the finger slides; with targets, at half of the target
-    /// speed or more and with the target force. A take below it is recorded again; 0 disables the
-    /// test. The rest of the time the finger turns between sweeps
+    /// Minimum fraction of a take in which the finger slides on target: with the target force, and
+    /// with a speed from half of the target to the tolerance above it. Without a target, any
+    /// sliding counts. htex records a take below this minimum again; 0 disables the test. The
+    /// fraction is never 1, because the finger turns between sweeps
     #[arg(long, value_name = "PART", default_value_t = Requirements::USUAL_ON_TARGET)]
     min_on_target: f64,
 
-    /// Minimum number of complete sweeps in a take; a take with fewer is recorded again, and 0
-    /// disables the test [default: half of the strokes that the target makes in a take without the
-    /// first and the last one, such as 4 for 10 s at 80 mm/s; 0 if there is no target speed]
+    /// Minimum number of complete sweeps in a take. htex records a take with fewer sweeps again; 0
+    /// disables the test [default: half of the strokes that the target makes in a take, not
+    /// counting the first and the last one, e.g. 4 for 10 s at 80 mm/s; 0 without a target speed]
     #[arg(long, value_name = "N")]
     min_sweeps: Option<u32>,
 
-    /// Maximum number of takes until one keeps to its target
+    /// Give up after this many takes
     #[arg(long, value_name = "N", default_value_t = 10)]
     attempts: u32,
 
     #[command(flatten)]
     guide: GuideArgs,
 
-    /// The folder for the takes
+    /// Folder for the takes
     #[arg(short, long, value_name = "DIR", default_value = "recordings")]
     output: PathBuf,
 
@@ -143,7 +146,7 @@ impl Record {
         let mut takes = Vec::new();
         let recorded = record(&mut session, &mut guide, &mut takes);
         guide.end(&recorded);
-        // Also after an error, because the complete takes are on disk.
+        // Printed even after an error, because the complete takes are on disk.
         if self.json {
             print_json(&json!({
                 "recovered": recovered,
@@ -196,7 +199,8 @@ impl Record {
     }
 }
 
-/// Records with guidance until a take is accepted. `takes` collects all complete ones.
+/// Records with guidance until a take is accepted. Adds each recorded take to `takes`, also a
+/// rejected one.
 fn record(
     session: &mut Session,
     guide: &mut Guide,
@@ -205,7 +209,7 @@ fn record(
     if guide.wait_for_start() == Next::Stop {
         return Err(LabError::Left { kept: None });
     }
-    // Both closures show something, and the session holds both at the same time.
+    // Both closures use the guide, and the session holds both closures at the same time.
     let guide = RefCell::new(guide);
     let mut watch = |moment: &Moment<'_>| guide.borrow_mut().show(moment);
     session.record(&mut watch, &mut |take| {

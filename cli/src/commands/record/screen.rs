@@ -1,5 +1,6 @@
-//! Guidance in a terminal. Two squares show the target and the finger, whose colour shows the
-//! force. The bell is a metronome. Bars show the spectrum of the recording.
+//! Guidance in a terminal. One square shows the target, another one the finger. The colour of the
+//! finger's square shows the force. The bell rings when the target turns. Bars show the spectrum of
+//! the recording.
 
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -13,14 +14,15 @@ use crate::output::tell;
 const WAY: usize = 24;
 /// Shortest time between two drawings.
 const PERIOD: Duration = Duration::from_millis(33);
-/// The heights of a band's bar. Each is one step of [`STEP_DB`].
+/// The heights of a band's bar, in steps of [`STEP_DB`].
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 /// Difference of level between two heights of a bar, decibels.
 const STEP_DB: f64 = 6.0;
 /// Width of a band's bar, characters.
 const BAR_WIDTH: usize = 2;
 
-/// Draws on standard error if that is a terminal. Otherwise prints only what begins.
+/// Draws on standard error if it is a terminal. Otherwise only prints a line when a phase begins,
+/// such as a countdown or a take.
 pub(super) struct Screen {
     guidance: Guidance,
     required: Requirements,
@@ -79,7 +81,7 @@ impl Screen {
         self.has_lines = true;
     }
 
-    /// Leaves the lines that are redrawn.
+    /// Moves the cursor below the lines that are redrawn.
     pub(super) fn end(&mut self) {
         if std::mem::take(&mut self.has_lines) {
             // Two line ends, because the cursor is in the first of two lines.

@@ -1,4 +1,4 @@
-//! How participants are asked, and the source of their finger's motion.
+//! How a session asks its participant, and the source of the finger's motion.
 
 use clap::Args;
 use htex_lab::study::{Asker, Key, Page, PageOptions, Study, View};
@@ -14,9 +14,10 @@ const CSS_PIXEL_MM: &str = "0.2646";
 
 /// How a session asks, and the source of the motion if the study's motion is live.
 #[derive(Args)]
-#[command(next_help_heading = "SessionInput")]
+#[command(next_help_heading = "Session")]
 pub(super) struct AskingArgs {
-    /// Ask on a web page of this machine instead of the terminal; its address is printed
+    /// Ask on a web page of this machine instead of the terminal. The command prints the address of
+    /// the page
     #[arg(long)]
     page: bool,
 
@@ -35,16 +36,18 @@ pub(super) struct AskingArgs {
     #[arg(long, value_name = "SOURCE", value_parser = ["-", "page"])]
     motion: Option<String>,
 
-    /// Width of a pixel of the page, mm, for --motion page: measure 1000 pixels on your screen
+    /// Width of one pixel of the page, mm, for --motion page. Measure the width of 1000 pixels on
+    /// your screen and divide it by 1000
     #[arg(long, value_name = "MM", default_value = CSS_PIXEL_MM, value_parser = positive)]
     touch_mm_per_px: f64,
 
-    /// Normal force of a finger on the page, N, for --motion page; a page cannot measure it
+    /// Normal force to assume for a finger on the page, N, for --motion page; a page cannot measure
+    /// the force
     #[arg(long, value_name = "N", default_value = "0.4", value_parser = positive)]
     touch_force: f64,
 }
 
-/// The asker and the queue of live motions.
+/// The object that asks the questions, and the source of live motions.
 pub(super) struct SessionInput {
     pub(super) asker: Box<dyn Asker>,
     pub(super) motions: Option<Motions>,
@@ -87,7 +90,7 @@ impl AskingArgs {
         self.motion.as_deref() == Some("-") || !(self.page || is_simulated)
     }
 
-    /// Asks nobody, for a simulated participant.
+    /// Returns the input for a simulated participant, who is not asked anything.
     pub(super) fn nobody(&self) -> SessionInput {
         SessionInput {
             asker: Box::new(Nobody),
@@ -95,7 +98,7 @@ impl AskingArgs {
         }
     }
 
-    /// Asks a real participant.
+    /// Opens the terminal or the page that asks a real participant.
     pub(super) fn open(&self, study: &Study, participant: &str) -> Result<SessionInput> {
         if !self.page {
             return Ok(SessionInput { asker: Box::new(Terminal::new()), motions: None });

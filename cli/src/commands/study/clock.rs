@@ -4,9 +4,9 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use htex_lab::study::{Clock, utc};
 
-/// Milliseconds since 1970: the system's time when it was created, continued by the monotonic
-/// clock. The system's clock may be set while a participant answers. A response would then take
-/// less than no time, or a rest an hour.
+/// A clock in milliseconds since 1970. It reads the system's clock once, when it is created, and
+/// then continues with the monotonic clock. If it always read the system's clock, a change of that
+/// clock during a session could make a response time negative, or a rest an hour long.
 pub(super) struct WallClock {
     made_ms: u64,
     made: Instant,
@@ -42,7 +42,7 @@ impl Clock for WallClock {
         Some(utc(system_ms()))
     }
 
-    /// Continues at a time, because the system's clock may have been set back since the last
+    /// Continues at `ms` or later, because the system's clock may have been set back since the last
     /// answer.
     fn go_on_at(&mut self, ms: u64) {
         let now = self.now_ms().max(ms);
@@ -50,7 +50,7 @@ impl Clock for WallClock {
     }
 }
 
-/// A simulated clock that does not wait. Its times depend only on what was done.
+/// A simulated clock that does not wait. Its time advances only when the session waits or plays.
 #[derive(Default)]
 pub(super) struct FastClock {
     now: Duration,
@@ -82,7 +82,8 @@ impl Clock for FastClock {
 mod tests {
     use super::*;
 
-    /// A session that was left at three o'clock continues correctly after the clock was set to two.
+    /// A session that was left at three o'clock continues correctly after the clock was set back to
+    /// two.
     #[test]
     fn time_never_goes_back() {
         let hour_ms = 3_600_000;

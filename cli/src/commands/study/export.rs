@@ -11,22 +11,24 @@ use crate::failure::Result;
 use crate::located;
 use crate::output::{show, shown, warn, write_file};
 
-/// Write the ratings of all participants as a table, and the spectra of what they felt as another.
+/// Write the ratings of all participants as a table, and the spectra that they felt as another
+/// table.
 ///
-/// The columns of the table are participant, texture, model, repetition, rating, attribute,
-/// hidden_reference, response_ms, gain_db, simulated and off_target (whether speed or force left
-/// the study's target by more than 10 %; empty if neither was measured). The columns of the spectra
-/// are participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
+/// The table of ratings has the columns participant, texture, model, repetition, rating, attribute,
+/// hidden_reference, response_ms, gain_db, simulated and off_target. The column off_target says
+/// whether speed or force left the study's target by more than 10 %; it is empty if neither was
+/// measured. The table of spectra has the columns participant, texture, model, and a magnitude for
+/// 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The folder of answers, written by `htex study run`
+    /// Folder with the answers, as written by `htex study run`
     folder: PathBuf,
 
-    /// The table to write, CSV
+    /// The table of ratings to write, CSV
     #[arg(short, long, value_name = "CSV", value_parser = located::OUTPUT)]
     output: PathBuf,
 
-    /// The attribute whose ratings are written, if there are several
+    /// Write the ratings of this attribute; needed if the study has several attributes
     #[arg(long, value_name = "NAME")]
     attribute: Option<String>,
 

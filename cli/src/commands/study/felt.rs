@@ -1,4 +1,4 @@
-//! Records what is felt during the trials of a study.
+//! Records with a sensor what participants feel during the trials of a study.
 
 use std::path::Path;
 
@@ -15,12 +15,12 @@ use crate::inputs::{InputArgs, paced};
 use crate::invocation::tool;
 use crate::output::warn;
 
-/// The source of what is felt.
+/// The source that records what participants feel.
 #[derive(Args)]
 pub(super) struct FeltArgs {
-    /// Record what is felt during each trial: from analog inputs of a National Instruments card
-    /// (daq:Dev1/ai0:5), from a recording that is replayed in each trial (file:rec.csv), or from
-    /// another source in `htex device list`
+    /// Record what the finger feels during each trial. The source is analog inputs of a National
+    /// Instruments card (daq:Dev1/ai0:5), a recording that is replayed in each trial
+    /// (file:rec.csv), or another source in `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
     source: Option<String>,
 
@@ -65,7 +65,7 @@ impl FeltArgs {
         let asked = pairs("--source-set", &self.source_settings)?;
         let given = paced(&name, asked.clone(), is_fast);
         let devices = devices.devices_quietly()?;
-        // Opened once now, so that a wrong source or map is found before the session.
+        // Opened here once, so that a wrong source or map is found before the session.
         let source = devices.open_input(&name, None, &given)?;
         let signals = self.input.signals(&name, &*source)?;
         warn(signals.warnings());
@@ -90,7 +90,7 @@ impl FeltArgs {
     }
 }
 
-/// Returns the study's speed and force if its motion has only one of each.
+/// Returns the study's speed and force if its motion is constant.
 pub(super) fn target(study: &Study) -> Exploration {
     match &study.motion {
         Motion::Constant(motion) => {

@@ -28,7 +28,8 @@ pub(super) enum Press {
 }
 
 impl Press {
-    /// Returns the line that has the same meaning in a view; `None` if the key has no meaning.
+    /// Returns the input line that has the same meaning as this key in a view; `None` if the key
+    /// has no meaning.
     pub(super) fn line(self, view: &View) -> Option<String> {
         let is_matching = matches!(view, View::Matching { .. });
         Some(match self {
@@ -44,7 +45,7 @@ impl Press {
         })
     }
 
-    /// Returns its name for messages.
+    /// Returns the name of the key for messages.
     pub(super) fn name(self) -> String {
         match self {
             Self::Char(key) => key.to_string(),
@@ -57,8 +58,8 @@ impl Press {
     }
 }
 
-/// The keys of the terminal on standard input. Dropping it restores the terminal's settings. Ctrl-C
-/// stays a signal.
+/// Reads single keys from the terminal on standard input. Dropping this value restores the
+/// terminal's settings. Ctrl-C is still a signal.
 pub(super) struct Keys {
     before: Termios,
     presses: Receiver<Press>,
@@ -73,7 +74,7 @@ impl Keys {
         let before = tcgetattr(stdin()).ok()?;
         let mut single = before.clone();
         single.local_modes -= LocalModes::ICANON | LocalModes::ECHO;
-        // A read returns as soon as there is one byte, with all bytes that are there by then.
+        // A read returns as soon as there is at least one byte, with all bytes that are there.
         single.special_codes[SpecialCodeIndex::VMIN] = 1;
         single.special_codes[SpecialCodeIndex::VTIME] = 0;
         tcsetattr(stdin(), OptionalActions::Now, &single).ok()?;
@@ -95,7 +96,7 @@ impl Keys {
         Some(Self { before, presses, last: None, shown: Instant::now() })
     }
 
-    /// Discards the keys pressed before something is shown.
+    /// Discards the keys that were pressed before a new view is shown.
     pub(super) fn forget(&mut self) {
         while let Some(press) = self.pressed() {
             if press == Press::End {
@@ -107,13 +108,14 @@ impl Keys {
         self.shown = Instant::now();
     }
 
-    /// Returns the next key that is not a held one.
+    /// Returns the next key. Skips a key that is held down, and keys that come too soon after the
+    /// view was shown.
     pub(super) fn next(&mut self, view: &View) -> Option<Press> {
         if matches!(self.last, Some((Press::End, _))) {
             return Some(Press::End);
         }
         loop {
-            // `pressed` replaces it.
+            // Read first, because `pressed` replaces `self.last`.
             let before = self.last;
             let press = self.pressed()?;
             let is_held = before.is_some_and(|(own, at)| own == press && at.elapsed() < HELD);

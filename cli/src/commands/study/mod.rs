@@ -26,8 +26,8 @@ use crate::failure::{Failure, Result};
 
 /// Plan, run and analyse rating studies
 ///
-/// study.toml describes a study (its JSON Schema: `htex schema study`). The defaults come from
-/// the paper's study.
+/// A file such as study.toml describes a study; `htex schema study` prints its JSON Schema. The
+/// defaults come from the study in the paper.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]
@@ -40,10 +40,10 @@ subcommands! {
         Plan(plan::Plan),
         Run(Box<run::Run>),
         Export(export::Export),
-        /// Analyse the ratings of a study, and what was felt; by the Python package
+        /// Analyse the ratings of a study and what participants felt; needs the Python package
         /// (`pip install htex[lab]`)
         Analyse(PythonCommand),
-        /// Find out how many participants a study needs; by the Python package
+        /// Find out how many participants a study needs; needs the Python package
         /// (`pip install htex[lab]`)
         Power(PythonCommand),
     }
@@ -55,11 +55,11 @@ impl Study {
     }
 }
 
-/// A subcommand that is implemented in the `htex` command of the Python package.
+/// A subcommand that only the `htex` command of the Python package implements. Here it is an error.
 #[derive(Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct PythonCommand {
-    /// Parsed only so that any arguments lead to the error.
+    /// Accepts any arguments, so that all of them lead to the same error.
     #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
     _arguments: Vec<OsString>,
 }

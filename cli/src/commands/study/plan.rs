@@ -11,16 +11,16 @@ use crate::located;
 use crate::output::{show, shown, write_file};
 use crate::outputs::check_outputs;
 
-/// Write the order of every participant.
+/// Write the order of trials for every participant.
 ///
 /// The order depends only on the study: the same seed gives the same order on every machine.
-/// `htex study run` follows it.
+/// `htex study run` follows this order.
 #[derive(Args)]
 pub(crate) struct Plan {
     /// The study: study.toml
     study: PathBuf,
 
-    /// Write the plan as JSON
+    /// Write the plan to this file, as JSON
     #[arg(short, long, value_name = "JSON", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
@@ -45,7 +45,7 @@ impl Plan {
     }
 }
 
-/// A plan as it is printed.
+/// A plan, in the form in which the command prints it.
 #[derive(Serialize)]
 #[serde(transparent)]
 struct PlanReport<'a> {

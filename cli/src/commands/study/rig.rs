@@ -32,11 +32,11 @@ pub(super) struct StudyRig<'a> {
     pub(super) path: PathBuf,
     pub(super) loader: Loader,
     pub(super) device: DeviceOverride,
-    /// Format of the files, if trials are played to files.
+    /// Format of the files that are written, if the device is a file.
     pub(super) format: String,
     /// Folder of these files, inside the folder of answers.
     pub(super) folder: PathBuf,
-    /// The folder of answers, if a trial is played to a file.
+    /// The folder of answers, if the device is a file.
     pub(super) answers: Option<OwnFolder>,
     /// The finger's motion, if it is live.
     pub(super) motions: Option<Motions>,
@@ -45,7 +45,7 @@ pub(super) struct StudyRig<'a> {
     pub(super) told: RefCell<BTreeSet<String>>,
     pub(super) errors_db: RefCell<BTreeMap<(String, String), Option<f64>>>,
     pub(super) ended: bool,
-    /// Records what is felt.
+    /// Records what the participant feels; `None` without a source.
     pub(super) felt: Option<Felt>,
     /// Drive of a display (volts) and levels of the current or last trial; `None` before a device
     /// is opened.
@@ -79,8 +79,8 @@ impl StudyRig<'_> {
             let mut settings = descriptor.settings.iter();
             settings.any(|setting| setting.name == name && setting.kind == SettingKind::Path)
         };
-        // How long samples wait is felt only as the delay of a live motion. Otherwise the buffer
-        // may be made longer during a session, e.g. if it ran dry.
+        // Only with live motion does a participant notice how long samples wait. In other studies,
+        // the buffer may be made longer during a session, e.g. after it ran dry.
         let is_live = matches!(self.study.motion, Motion::Live);
         let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
         let settings = ready.scene.settings.iter().filter(|(name, _)| !is_unfelt(name));
@@ -101,7 +101,7 @@ impl StudyRig<'_> {
         Ok(settings.iter().any(|s| s.kind == SettingKind::Path))
     }
 
-    /// Refuses a trial that would be played through a link in the folder of answers.
+    /// Refuses a trial whose file would be written through a link in the folder of answers.
     fn check_file(&self, stimulus: &Stimulus) -> Result<()> {
         let Some(answers) = &self.answers else {
             return Ok(());
@@ -189,13 +189,13 @@ impl StudyRig<'_> {
         let plan = ready.plan(&costs())?;
         let mut renderer = Renderer::new(&ready.scene, &plan).map_err(for_file(&self.path))?;
         if ready.scene.file.motion == Motion::Live {
-            // Without a reading yet, there is no contact.
+            // Until the first reading, the finger does not touch the surface.
             renderer.set_motion(htex::Motion::AWAY).map_err(for_file(&self.path))?;
         }
         let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
         if let Some((felt, name)) = recorded {
             let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
-            // Before the device plays, so that the beginning of the trial is recorded.
+            // Starts before the device plays, so that the beginning of the trial is recorded.
             felt.begin(name, seconds).map_err(LabError::felt)?;
         }
         let mut output = Output::open(&ready, &plan)?;

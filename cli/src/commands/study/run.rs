@@ -23,28 +23,30 @@ use crate::output::{print, print_json, shown, tell};
 use crate::scenes::{ChoiceArgs, SceneArgs};
 use crate::signals;
 
-/// Run the session of a participant: play each trial on the device, ask, and keep each answer.
+/// Run the session of a participant: play each trial on the device, ask, and store the answer.
 ///
-/// Answers are lines of DIR/PARTICIPANT.jsonl. Each is written to disk before the next trial. If a
-/// session was left (q, Ctrl-C) or killed, the same command continues it. Answers to different
-/// versions of a study, its assets or its device are not mixed.
+/// Each answer is a line of DIR/PARTICIPANT.jsonl, which is on disk before the next trial begins.
+/// If a session was left (q, Ctrl-C) or killed, run the same command again to continue it. htex
+/// does not mix answers to different versions of a study, its assets or its device: if one of them
+/// has changed, it refuses to continue.
 #[derive(Args)]
 pub(crate) struct Run {
     /// The study: study.toml
     study: PathBuf,
 
-    /// The participant; with --simulated, all of them by default
+    /// Name of the participant [default with --simulated: all participants]
     #[arg(long, value_name = "NAME", required_unless_present = "simulated")]
     participant: Option<String>,
 
-    /// The folder for the answers
+    /// Folder for the answers
     #[arg(short, long, value_name = "DIR", default_value = "answers")]
     output: PathBuf,
 
     #[command(flatten)]
     asking: AskingArgs,
 
-    /// Let a simulated participant with this seed answer; every file says so
+    /// Let a simulated participant with this seed answer. Every file states that its answers are
+    /// simulated
     #[arg(long, value_name = "SEED")]
     simulated: Option<u64>,
 
@@ -97,7 +99,7 @@ impl Run {
     /// Refuses a study that would fail in the middle of a session.
     fn check_files(&self, study: &Study) -> Result<()> {
         let mut findings = Vec::new();
-        // Stands for the files of the trials, whose names are not known yet.
+        // Stands in for the files of the trials, whose names are not known yet.
         let device = self.choice.to_override(Some(&self.output.join("trial.wav")), false)?;
         let loader = self.with.loader()?;
         check_files(study, &self.study, &loader.around(), &device, &mut findings);
@@ -140,7 +142,7 @@ impl Run {
             ..Header::new(study, &self.study, own, device, tool())?
         };
         let mut session = Session::open(study, own, &self.output, &header)?;
-        // The page is opened only once the session is known to be the right one.
+        // The page opens only after `Session::open` has accepted the session.
         let mut asking = match self.simulated {
             Some(_) => self.asking.nobody(),
             None => self.asking.open(study, participant)?,

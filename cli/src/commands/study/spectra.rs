@@ -1,4 +1,4 @@
-//! The table of the spectra that were felt.
+//! The table of the spectra that participants felt.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,32 +13,33 @@ use crate::failure::{Failure, Result};
 use crate::located;
 use crate::recordings::RecordingArgs;
 
-/// What was felt, and the real textures to compare it with.
+/// Options for the spectra that participants felt, and for the real textures to compare them with.
 #[derive(Args)]
 #[command(next_help_heading = "Spectra")]
 pub(super) struct SpectraArgs {
-    /// The table of spectra to write, CSV: what each participant felt of each texture and model,
-    /// averaged over the trials, and the spectrum of each real texture; for
-    /// `htex study analyse --spectra`
+    /// The table of spectra to write, CSV, for `htex study analyse --spectra`. For each texture and
+    /// model it contains the spectrum that each participant felt, averaged over the trials. It also
+    /// contains the spectrum of each real texture
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     spectra: Option<PathBuf>,
 
-    /// The study, whose assets contain the spectra of the real textures
+    /// The study. Its assets contain the spectra of the real textures
     #[arg(long, value_name = "FILE", requires = "spectra")]
     study: Option<PathBuf>,
 
     /// What to do with recordings of trials whose speed or force left the study's target by more
-    /// than 10 %; the limit is a rule for recordings of textures, not for participants
+    /// than 10 %. This limit comes from the recording of textures; participants do not have to keep
+    /// to it
     #[arg(long, value_enum, value_name = "WHAT", requires = "spectra", default_value = "keep")]
     off_target: OffTarget,
 
-    /// Response of the sensor during the study, which is divided out of what was felt: a CSV as for
-    /// --frf
+    /// Frequency response of the sensor that recorded the trials: a CSV as for --frf. htex divides
+    /// the spectra of the trials by it
     #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
     felt_frf: Option<PathBuf>,
 
-    /// The recording of a real texture, instead of the asset's spectrum; may be given several
-    /// times. The options for reading recordings apply to these
+    /// Use this recording of a real texture instead of the spectrum in its asset; may be given
+    /// several times. The options for reading recordings apply to these recordings
     #[arg(long, value_name = "TEXTURE=FILE", requires = "spectra")]
     recorded: Vec<String>,
 

@@ -129,7 +129,7 @@ fn key(line: &str, view: &View) -> Option<Key> {
     })
 }
 
-/// Returns the question, and which keys or lines answer it.
+/// Returns the text of the question, with the keys or lines that answer it.
 fn text(view: &View, is_line: bool) -> String {
     match view {
         View::Ready { texture, .. } => format!("{texture}: Enter to begin, q to leave"),

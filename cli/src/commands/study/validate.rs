@@ -9,7 +9,8 @@ use crate::commands::validate::show_reports;
 use crate::failure::Result;
 use crate::scenes::{ChoiceArgs, SceneArgs};
 
-/// Check a study, the assets that it names, and its device; exit status 1 if it cannot be run.
+/// Check a study, the assets that it names, and its device; exit status 1 if the study cannot be
+/// run.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
 /// study.

@@ -1,5 +1,5 @@
-//! Tests a release in a Debian root without compilers, on this machine's processor or one that QEMU
-//! emulates.
+//! Tests a release in a Debian root without compilers, on this machine's processor or on a
+//! processor that QEMU emulates.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -48,7 +48,7 @@ const PROCESSORS: [Processor; 2] = [
     },
 ];
 
-/// What runs in the root. It first checks for what must not be there.
+/// The script that runs in the root. It first checks that the root has no compilers.
 const SCRIPT: &str = "\
 set -eu
 for compiler in cc gcc clang rustc cargo; do
@@ -83,7 +83,7 @@ begin files
 sha256sum rec.csv vinyl.htex built-in.wav play_pkg_config.f32
 ";
 
-/// A page for Python users.
+/// The commands of a page for Python users.
 const PAGE: &str = "\
 import htex
 fit = htex.fit('rec.csv', name='Vinyl', license='CC0-1.0')
@@ -103,7 +103,7 @@ const MANYLINUX: [&str; 4] = ["2_31", "2_28", "2_27", "2_17"];
 pub struct Bare {
     #[command(flatten)]
     folder: Folder,
-    /// x86_64 or aarch64, which is emulated
+    /// The processor: x86_64, or aarch64, which QEMU emulates
     #[arg(long, value_name = "NAME", default_value = "x86_64")]
     processor: String,
 }
@@ -149,7 +149,7 @@ fn wheels(released: &Path, processor: &Processor, work: &Path) -> Result<()> {
     run(pip.args(["--dest", "wheels"]).arg(wheel))
 }
 
-/// Makes the root.
+/// Makes the root for this machine's processor.
 pub(in crate::prove) fn bare_root() -> Result<()> {
     root(&PROCESSORS[0]).map(drop)
 }
@@ -169,7 +169,7 @@ fn root(processor: &Processor) -> Result<PathBuf> {
         run(debootstrap.arg(&root).arg("http://deb.debian.org/debian")).context(
             "as root, with the package debootstrap; another processor also needs qemu-user-static and binfmt-support",
         )?;
-        // Last, so that an interrupted root does not count as made.
+        // Written last, so that a root whose making was interrupted does not count as made.
         fs::write(is_made, "")?;
     }
     Ok(root)

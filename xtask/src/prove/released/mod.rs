@@ -1,4 +1,4 @@
-//! Tests a release where no Rust is installed: in an empty Debian root, and under Wine.
+//! Tests a release without an installed Rust: in an empty Debian root, and under Wine.
 
 mod bare;
 mod wine;
@@ -29,7 +29,7 @@ impl Folder {
     }
 }
 
-/// Returns the file in a folder that has an ending, and its name without the ending.
+/// Returns the file in a folder whose name has this ending, and the name without the ending.
 fn archive(folder: &Path, ending: &str) -> Result<(PathBuf, String)> {
     for file in crate::places::files(folder)? {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -43,7 +43,7 @@ fn archive(folder: &Path, ending: &str) -> Result<(PathBuf, String)> {
     )
 }
 
-/// A C compiler, and CMake's name for its system.
+/// A C compiler, and CMake's names for its system and processor.
 struct Compiler {
     gcc: &'static str,
     /// Debian's package.
@@ -65,8 +65,8 @@ endforeach()
 ";
 
 impl Compiler {
-    /// Builds the C player against the unpacked archive, with pkg-config and with CMake, into a
-    /// folder.
+    /// Builds the C player with the libraries of the unpacked archive, once with pkg-config and
+    /// once with CMake.
     fn players(&self, prefix: &Path, work: &Path) -> Result<()> {
         let source = workspace().join("sdk/bindings/capi/examples/play.c");
         let build = work.join("built");

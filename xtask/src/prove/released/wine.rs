@@ -18,7 +18,8 @@ const COMPILER: Compiler = Compiler {
     libraries: "htex whole",
 };
 
-/// A library that Wine 8 lacks. Rust's standard library gets random bytes from it.
+/// The source of a library that Wine 8 lacks. Rust's standard library gets random bytes from this
+/// library.
 const PRIMITIVES: &str = "\
 #include <windows.h>
 #include <ntsecapi.h>
@@ -28,18 +29,18 @@ __declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE bytes, SIZE_T count)
 }
 ";
 
-/// Command lines that write the same files under Wine and here.
+/// Command lines that must write the same files under Wine and on this machine.
 const SAME: [&str; 3] = [
     "simulate --surface vinyl --seconds 4 -o rec.csv",
     "fit rec.csv -o vinyl.htex --name Vinyl --license CC0-1.0",
     "synth vinyl.htex --seconds 1 -o built-in.wav",
 ];
 
-/// The C players, and the folder of the library that each finds next to it.
+/// The C players, and the folder from which each player's library is copied next to it.
 const PLAYERS: [(&str, &str); 3] =
     [("play_pkg_config", "lib"), ("play_htex", "lib"), ("play_whole", "lib/whole")];
 
-/// Uses the Windows release under Wine.
+/// Tests the Windows release under Wine.
 pub(in crate::prove) fn wine(options: &Folder) -> Result<()> {
     let released = options.released()?;
     let (archive, stem) = archive(&released, "-x86_64-windows.zip")?;
@@ -47,7 +48,7 @@ pub(in crate::prove) fn wine(options: &Folder) -> Result<()> {
     emptied(&work)?;
     run(program("python3", &work).args(["-m", "zipfile", "-e"]).arg(archive).arg("."))?;
     let prefix = work.join(format!("{stem}-x86_64-windows"));
-    // In the working folder, where Windows also looks for libraries.
+    // Built in the working folder, where Windows also looks for libraries.
     fs::write(work.join("primitives.c"), PRIMITIVES)?;
     run(program(COMPILER.gcc, &work).args([
         "-shared",
@@ -97,7 +98,7 @@ fn wine_runs(work: &Path, exe: &Path, line: &str) -> Result<()> {
         .context("the package wine64")
 }
 
-/// This machine's command writes the same recording, asset and samples.
+/// Tests that this machine's command writes the same recording, asset and samples.
 fn same_here(work: &Path) -> Result<()> {
     let here = work.join("here");
     fs::create_dir_all(&here)?;

@@ -26,8 +26,8 @@ impl<T: Copy + PartialEq> GuardedBuffer<T> {
         Self::before(len, GUARDS, guard)
     }
 
-    /// Creates a buffer with at least `guards` guard values. They absorb the writes of a call that
-    /// ignores the length.
+    /// Creates a buffer with at least `guards` guard values. The guard values absorb what a call
+    /// writes if it ignores the length.
     fn before(len: usize, guards: usize, guard: T) -> Self {
         let all = vec![guard; len + guards.max(GUARDS)];
         Self { all, len, guard }
@@ -49,8 +49,9 @@ impl<T: Copy + PartialEq> GuardedBuffer<T> {
 }
 
 impl NativeAdapter {
-    /// Returns the status and the text with which `open` refuses these lines, rate and block. If it
-    /// opens a device instead, closes it and returns `None`. For an input, rate and block are 0.
+    /// Calls `open` with these settings, rate and block size, and returns the code and the text of
+    /// its refusal. If `open` succeeds instead, closes the device and returns `None`. For an input,
+    /// `rate_hz` and `block_frames` are 0.
     pub fn refusal_of_open(
         &self,
         lines: &str,
@@ -72,7 +73,7 @@ impl NativeAdapter {
     /// length. For an input, the numbers of `format` are 0.
     ///
     /// # Errors
-    /// Names the call that is at fault, and how.
+    /// Says which call is faulty, and what it did wrong.
     pub fn check_arrays(
         &self,
         settings: &Settings,

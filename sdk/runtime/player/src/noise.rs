@@ -50,7 +50,7 @@ impl Noise {
     }
 
     /// Starts a glide over `samples` samples to the filter of a motion; with 0 samples the filter
-    /// is set at once. Returns the level that is reached.
+    /// is set at once. Returns the level at the end of the glide.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         if samples == 0 {
             self.silence();
@@ -67,8 +67,8 @@ impl Noise {
                 }
                 *weight *= block.filter_scale(filter);
             }
-            // A filter with weight 0 does not change any bit, so incomplete groups are filled with
-            // one.
+            // An incomplete group is filled up with a filter of weight 0, which does not change any
+            // bit.
             let filters: [usize; AT_ONCE] =
                 core::array::from_fn(|i| (first + i).min(block.filters() - 1));
             let filters = filters.map(|filter| block.filter(filter));
@@ -146,8 +146,8 @@ impl Noise {
         }
     }
 
-    /// Returns the next sample. `is_gliding`: advances the glide first. `becomes_silent`: this step
-    /// ends a glide to silence.
+    /// Returns the next sample. If `is_gliding`, advances the glide first. `becomes_silent` means
+    /// that this step ends a glide to silence.
     pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
         if is_gliding {
             self.glide();

@@ -105,7 +105,7 @@ impl Scene {
     /// Opens a scene file and the files it names, for a device or with other models.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn open_with(
         path: &Path,
         around: &Surroundings<'_>,
@@ -118,7 +118,7 @@ impl Scene {
     /// it is not opened.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn from_bytes(
         path: &Path,
         bytes: &[u8],
@@ -132,7 +132,7 @@ impl Scene {
     /// Opens a scene in memory whose files the program supplies. Its `folder` is empty.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn from_files(
         bytes: &[u8],
         files: &dyn FileSource,

@@ -4,8 +4,8 @@
 //! ratio, and a constant level factor part of the level. Linear effects of a texture run at the
 //! model's rate, before the resampling. Only frequency scaling reads its input at a changing ratio.
 //!
-//! A scene may force an effect on that is not needed. Such an effect is neutral: it changes samples
-//! by at most 1e-6 of full scale, and most effects change no bit
+//! A scene may force an effect on that is not needed. Such an effect is neutral: it changes no bit
+//! of the samples, or it changes them by at most 1e-6 of full scale
 //! (`sdk/runtime/scene/tests/it/equivalence.rs`). So leaving it out is only an optimisation.
 
 mod carrier;

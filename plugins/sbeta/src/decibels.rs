@@ -14,7 +14,8 @@ use crate::Profile;
 /// Lower limit for points and for densities that are compared in decibels, relative to the largest
 /// point or the largest density.
 const FAINTEST: f64 = 1e-6;
-/// If the two axes differ by less than this part of their squares, they count as equal.
+/// If one minus the squared correlation of `ln u` and `ln(1 - u)` is at most this, the two count as
+/// equal.
 const SAME: f64 = 1e-9;
 
 /// Returns the alpha and beta between the bounds with the least squared difference in decibels.

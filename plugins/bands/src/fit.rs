@@ -7,17 +7,18 @@
 //! two cases: if no spectrum has the wanted energies, or if the knots of the only such spectrum
 //! differ by hundreds of decibels, as happens next to a line.
 //!
-//! Of all spectra with the recording's energies, the solution is the one with the largest entropy.
-//! It is found with the method of Levenberg and Marquardt. Files store the curve, not the energies,
-//! so a player does not have to solve equations. Only the fit has to deal with energies that no
-//! spectrum has. (Rounding can cause such energies, because bands share bins.) The measuring window
-//! blurs a spectrum, so the voice's spectrum is sharpened until it measures as stated.
+//! The solution is the spectrum with the largest entropy among all spectra with the recording's
+//! energies. It is found with the method of Levenberg and Marquardt. Files store the curve, not the
+//! energies, so a player does not have to solve equations. Only the fit has to deal with energies
+//! that no spectrum has. (Rounding can cause such energies, because bands share bins.) The
+//! measuring window blurs a spectrum, so the voice's spectrum is sharpened until it measures as
+//! stated.
 //!
 //! We compared this fit with a maximum-likelihood fit to the bins (Whittle: minimises the sum of
 //! `ln S + P / S`), computed in Python. Both were tested on held-out data: 32 third-party
-//! recordings were cut into pieces of 0.2 s. Every other piece was used for the fit, and the rest
-//! for the test, then the other way round. Knots were in steps of 1 dB. Roughness is a penalty on
-//! second differences of the logarithm of power.
+//! recordings were cut into pieces of 0.2 s. The first, third, ... pieces were used for the fit and
+//! the other pieces for the test, then the reverse. Knots were in steps of 1 dB. Roughness is a
+//! penalty on second differences of the logarithm of power.
 //!
 //! | fit, knots | third octaves, dB | log-spectral distance, dB |
 //! |---|---|---|

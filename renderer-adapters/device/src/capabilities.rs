@@ -78,7 +78,8 @@ impl Capabilities {
         None
     }
 
-    /// Returns the lowest rate that can represent the carrier, hertz; 0 without a carrier.
+    /// Returns the lowest rate that can represent the carrier, hertz. Returns 0 if there is no
+    /// carrier.
     pub(crate) fn lowest_with_carrier_hz(&self) -> f64 {
         self.carrier_hz.map_or(0.0, |hz| RATE_PER_CARRIER * hz)
     }

@@ -81,11 +81,11 @@ pub struct Setting {
     pub name: String,
     /// The values that are allowed.
     pub kind: SettingKind,
-    /// Default value; absent: the user must give a value.
+    /// Default value. If absent, the user must give a value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
-    /// Default value when the motion is live, i.e. read from a sensor during playback. For example,
-    /// a shorter buffer.
+    /// Default value when the motion is live, i.e. read from a sensor during playback. A live
+    /// motion may need a shorter buffer, for example.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub live_default: Option<String>,
     /// How a scene, which may be untrusted, may change the setting.
@@ -119,7 +119,7 @@ impl FromScene {
     }
 }
 
-/// The allowed values of a setting. Values are text; numbers are written as in JSON.
+/// The allowed values of a setting. Values are text. Numbers are written as in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -153,7 +153,7 @@ impl SettingKind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Profile {
-    /// The name by which the user chooses it.
+    /// Name with which the user chooses the profile.
     pub name: String,
     /// What the profile is for.
     pub summary: String,

@@ -19,7 +19,7 @@
 //!
 //! An output checks all samples of a call against its limits before it plays any of them. The host
 //! refuses a display voltage without a limit. After an error the output is at zero and stays there.
-//! The mean voltage of a display is limited as well ([`DirectVoltage`]).
+//! The mean voltage of a display is also limited ([`DirectVoltage`]).
 #![warn(missing_docs)]
 
 pub mod abi;

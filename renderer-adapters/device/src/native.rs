@@ -1,8 +1,8 @@
 //! Adapters and devices from native libraries: loads the libraries, calls their C functions safely
 //! and checks the results.
 //!
-//! A native library runs with all the rights of this program, so the user decides which ones to
-//! load. No library is ever unloaded, because open devices point into it.
+//! A native library runs with all the rights of this program, so the user decides which libraries
+//! to load. No library is ever unloaded, because open devices point into it.
 
 use std::fmt;
 use std::path::Path;
@@ -24,7 +24,7 @@ use crate::{
 const ENTRY: &str = "htex_device_adapter";
 /// Size of the buffer for the first attempt to read a text, bytes.
 const USUAL_TEXT: usize = 16_384;
-/// Maximum number of calls for a text whose length changes from call to call.
+/// Maximum number of attempts to read a text whose length changes from call to call.
 const TRIES: usize = 8;
 
 /// An adapter from a native library. Cheap to clone.
@@ -442,7 +442,7 @@ impl NativeOutput {
     /// Returns the status as [`Output::status`] does, but reports an invalid result as an error.
     ///
     /// # Errors
-    /// When the device returns too few numbers, or one that is negative or not finite.
+    /// When the device returns too few numbers, or a number that is negative or not finite.
     pub fn checked_status(&self) -> Result<Status, DeviceError> {
         let library = &self.opened.library;
         let status = function!(library, status);
@@ -577,7 +577,7 @@ impl NativeInput {
         self.opened.handle
     }
 
-    /// Checks the answer to a read of at most `frames` frames.
+    /// Checks the result of a read of at most `frames` frames.
     fn frames_read(
         &mut self,
         answer: i64,

@@ -6,7 +6,7 @@ use crate::abi::{Code, STATUS_NUMBERS};
 use crate::native::{NativeAdapter, OpenHandle, function};
 use crate::{DeviceError, Direction, Input, Settings, StreamFormat};
 
-/// Minimum number of guard values behind a buffer.
+/// Minimum number of guard values after a buffer, which show writes beyond its end.
 const GUARDS: usize = 64;
 /// Number of values in a buffer of samples.
 const SAMPLES: usize = 8;
@@ -14,7 +14,7 @@ const SAMPLES: usize = 8;
 const UNUSUAL: f64 = -1234.5;
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
-/// A buffer of `len` values with guard values behind it.
+/// A buffer of `len` values, followed by guard values.
 struct GuardedBuffer<T> {
     all: Vec<T>,
     len: usize,
@@ -33,7 +33,8 @@ impl<T: Copy + PartialEq> GuardedBuffer<T> {
         Self { all, len, guard }
     }
 
-    /// Returns the address of the buffer. The guard values behind it may be overwritten as well.
+    /// Returns the address of the buffer. A faulty call may also overwrite the guard values after
+    /// it.
     fn pointer(&mut self) -> *mut T {
         self.all.as_mut_ptr()
     }

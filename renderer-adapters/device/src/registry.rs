@@ -96,10 +96,10 @@ impl std::fmt::Debug for AdapterEntry {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Two adapters of one direction have the same id; the one found first is used.
+    /// Two adapters of one direction have the same id. The adapter found first is used.
     Shadowed { direction: Direction, id: String, used: Origin, shadowed: Origin },
     /// Two adapters of one direction with different ids have the same short name. The short name
-    /// means the one found first.
+    /// means the adapter found first.
     SameName {
         direction: Direction,
         name: String,

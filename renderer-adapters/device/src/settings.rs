@@ -111,12 +111,12 @@ impl Settings {
         Ok((Self(values), ignored))
     }
 
-    /// Returns the value of a setting; empty if the adapter has no setting of this name.
+    /// Returns the value of a setting. Empty if the adapter has no setting of this name.
     pub fn text(&self, name: &str) -> &str {
         self.0.get(name).map_or("", String::as_str)
     }
 
-    /// Returns the value of a setting as a number; NaN if it is not a number.
+    /// Returns the value of a setting as a number, or NaN if it is not a number.
     pub fn number(&self, name: &str) -> f64 {
         self.text(name).parse().unwrap_or(f64::NAN)
     }

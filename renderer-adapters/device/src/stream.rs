@@ -24,7 +24,7 @@ pub struct InputStream {
 pub struct Channel {
     /// Name. It is the same each time the input is opened with the same settings.
     pub name: String,
-    /// Symbol of the unit, such as `V`; empty if the device does not know it.
+    /// Symbol of the unit, such as `V`. Empty if the device does not know the unit.
     #[serde(default)]
     pub unit: String,
 }

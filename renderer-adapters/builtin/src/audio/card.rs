@@ -173,7 +173,7 @@ pub(crate) fn endpoints(direction: Direction) -> Result<Vec<Endpoint>, DeviceErr
     Ok(default.into_iter().chain(named).collect())
 }
 
-/// Returns the name of a card; empty if the system gives none.
+/// Returns the name of a card. Empty if the system gives the card no name.
 fn id(device: &cpal::Device) -> String {
     device.id().map(|id| id.to_string()).unwrap_or_default()
 }

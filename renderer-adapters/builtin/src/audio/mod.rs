@@ -9,9 +9,8 @@
 //! If the ring buffer is empty, the thread counts an underrun and fades to silence. Playback
 //! continues with the next samples.
 //!
-//! An input works the other way round (`listener.rs`): the card's thread puts samples into a ring
-//! buffer of `buffer_s`. A full ring buffer is an overrun. After an overrun, the input delivers
-//! nothing more.
+//! For an input, the card's thread puts samples into a ring buffer of `buffer_s` (`listener.rs`). A
+//! full ring buffer is an overrun. After an overrun, the input delivers nothing more.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "audio")]

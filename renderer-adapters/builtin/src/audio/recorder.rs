@@ -83,8 +83,8 @@ impl Recorder {
         frames
     }
 
-    /// Returns the error because of which no more samples will follow those in the ring buffer, if
-    /// there is one.
+    /// Returns the error that stopped the input, if there is one. No samples follow those in the
+    /// ring buffer then.
     fn fault(&mut self) -> Option<DeviceError> {
         if let Some(what) = self.failure.peek() {
             return Some(failed(&self.name, what));

@@ -1,5 +1,5 @@
-//! Outputs with several channels, of which selected ones play the texture. The interleaved frames
-//! go to a sound card, to a WAV file, or nowhere.
+//! Outputs with several channels. Selected channels play the texture. The interleaved frames go to
+//! a sound card, to a WAV file, or nowhere.
 //!
 //! A DualSense controller connected by a cable is a sound card of four channels. The first two
 //! channels are its loudspeaker and headset, the other two its left and right actuator. The

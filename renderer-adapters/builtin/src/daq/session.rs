@@ -36,7 +36,7 @@ pub(crate) struct Session {
     capacity: usize,
     /// `None` before the first sample and after the session has ended.
     task: Option<Task>,
-    /// An error that the next call returns and thereby clears.
+    /// An error for the next call. The call returns the error and clears this field.
     error: Option<DeviceError>,
     closed: bool,
     /// Whether the output could not be set to zero at the end.

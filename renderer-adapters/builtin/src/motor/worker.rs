@@ -31,7 +31,7 @@ pub(crate) struct State {
     /// Number of frames in the blocks that have been played.
     pub(crate) played: u64,
     pub(crate) underruns: u64,
-    /// An error that the next call returns and thereby clears.
+    /// An error for the next call. The call returns the error and clears this field.
     pub(crate) error: Option<DeviceError>,
     /// Whether the motor is at rest for good.
     pub(crate) ended: bool,

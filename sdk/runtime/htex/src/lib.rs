@@ -12,8 +12,8 @@
 //!
 //! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread. A
 //! [`Voice`] is [`Send`], so another thread can make it. Call [`Voice::set_motion`] once per block
-//! of 1 to 10 ms. Longer blocks lag behind the finger. Shorter ones only cost time, because a voice
-//! takes 10 ms to reach a new spectrum and level.
+//! of 1 to 10 ms. Longer blocks lag behind the finger. Shorter blocks only cost time, because a
+//! voice takes 10 ms to reach a new spectrum and level.
 //!
 //! # On a sound card
 //!

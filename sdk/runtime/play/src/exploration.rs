@@ -6,7 +6,7 @@ use htex_format::{AtCondition, Condition, Law};
 
 use crate::Motion;
 
-/// Lowest speed at which the finger slides, mm/s; below it the texture is silent.
+/// Lowest speed at which the finger slides, mm/s. Below this speed, the texture is silent.
 pub const MIN_SLIDING_MM_S: f64 = 0.5;
 /// Lowest ratio of the playback speed to the recorded speed.
 pub const MIN_RATIO: f64 = 1.0 / 16.0;
@@ -296,7 +296,7 @@ pub enum Reach {
     /// The value was recorded, or lies between recorded values, within the tolerance
     /// [`htex_format::SAME_CONDITION`].
     Inside,
-    /// The asset does not state the recorded value; the speed or force has no effect.
+    /// The asset does not state the recorded value, so the speed or force has no effect.
     Unknown,
     /// The model follows the motion itself ([`crate::Voice::follows_motion`]).
     Followed,

@@ -1,6 +1,5 @@
 //! Opens and plays texture assets. Apps should depend on the crate `htex`, which re-exports this
-//! crate. The other crates of the project, such as the one that plays scenes, use this crate
-//! directly.
+//! crate. The other crates of the project, such as `htex-scene`, use this crate directly.
 //!
 //! ```no_run
 //! use htex::{Motion, Texture, VoiceOptions};

@@ -18,11 +18,12 @@ pub struct Motion {
     /// Scanning speed, mm/s, finite. A voice of a texture expects a magnitude and refuses a
     /// negative speed. In a scene, the speed is negative on the back stroke.
     pub speed_mm_s: f64,
-    /// Normal force, newtons; finite and not negative.
+    /// Normal force, newtons. It must be finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm; finite, of either sign. `None` if unknown.
+    /// Position along the path, mm. It must be finite and may have either sign. `None` if unknown.
     pub position_mm: Option<f64>,
-    /// Place on the surface, x and y, mm; finite, of either sign. `None` if unknown.
+    /// Place on the surface, x and y, mm. Both must be finite and may have either sign. `None` if
+    /// unknown.
     pub place_mm: Option<[f64; 2]>,
 }
 
@@ -71,8 +72,8 @@ impl Motion {
     /// Returns the motion if its numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`]
-    /// if the position is not finite, and [`Error::Place`] if the place is not.
+    /// [`Error::Motion`] if the speed or the force is negative or not finite. [`Error::Position`]
+    /// if the position is not finite. [`Error::Place`] if the place is not finite.
     ///
     /// ```
     /// use htex::Motion;

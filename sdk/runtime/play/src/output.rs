@@ -18,8 +18,8 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Makes a gain whose changes take `ramp` samples, and a limiter that keeps samples within
-    /// `limit`.
+    /// Makes a gain and a limiter. A change of the gain takes `ramp` samples. The limiter keeps
+    /// samples within `limit`.
     ///
     /// # Errors
     /// When the gain is negative or not finite, or the limit is not above 0.
@@ -62,7 +62,7 @@ impl Output {
         }
     }
 
-    /// Ends all ramps at once; the samples are zero, so no jump is audible.
+    /// Ends all ramps at once. The samples are zero, so no jump is audible.
     pub(crate) fn rest(&mut self) {
         self.gain.finish();
         if let Some(limiter) = &mut self.limiter {

@@ -122,7 +122,7 @@ impl<'a> Representation<'a> {
         })
     }
 
-    /// Makes the pre-rendered sound of a voice; `None` if the voice is streamed.
+    /// Makes the pre-rendered sound of a voice, or returns `None` if the voice is streamed.
     fn still(&self, options: &VoiceOptions) -> Result<Option<StillSound>, Error> {
         if options.synthesis == Synthesis::Streamed {
             return Ok(None);

@@ -138,7 +138,7 @@ impl Texture {
         self.data.manifest.quantity
     }
 
-    /// Returns the models that can play the asset, without the embedded ones.
+    /// Returns the models that can play the asset, except embedded models.
     pub fn registry(&self) -> &Registry {
         &self.registry
     }
@@ -227,8 +227,8 @@ impl Texture {
         ranked
     }
 
-    /// Returns the indices of the representations: first the ones with a measured error, by that
-    /// error, then the others.
+    /// Returns the indices of the representations. Representations with a measured error come
+    /// first, ordered by this error, then the others.
     fn by_error(&self, measure: ErrorMeasure) -> Vec<usize> {
         let all = &self.data.manifest.representations;
         let mut sorted: Vec<_> =
@@ -265,7 +265,7 @@ impl Texture {
         Ok(kept.get_or_init(|| model).clone())
     }
 
-    /// Returns whether the embedded model with this id may run; always false in a program without a
+    /// Returns whether the embedded model with this id may run. Always false in a program without a
     /// sandbox.
     fn may_run_embedded(&self, id: &str) -> bool {
         RUNS_WASM && self.embedded && self.embeds(id)

@@ -64,7 +64,7 @@ impl Travel {
         self.frames += frames as u64;
     }
 
-    /// Sets a checked motion; returns the motion for the model if it has changed.
+    /// Sets a checked motion. If the motion has changed, returns the motion to pass to the model.
     ///
     /// The finger moves backward if the position is less than the last one given, and forward if it
     /// is greater. If the position is equal or unknown, the direction stays the same. A place

@@ -120,11 +120,11 @@ impl Voice {
     ///
     /// Outside the recorded conditions, frequencies and level follow the asset's scaling law
     /// ([`Law`](htex_format::Law)), starting from the nearest motion within them. Frequencies are
-    /// at least 1/16 and at most 8 times the recorded ones, and never exceed half the sample rate.
-    /// The level is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded
-    /// level. The voice is silent while the finger does not slide (below 0.5 mm/s or at 0 N). Each
-    /// of these effects can be switched off ([`Effects`](crate::Effects)). [`Self::coverage`]
-    /// reports how they apply to a motion.
+    /// at least 1/16 and at most 8 times the recorded frequencies, and never exceed half the sample
+    /// rate. The level is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest
+    /// recorded level. The voice is silent while the finger does not slide (below 0.5 mm/s or at 0
+    /// N). Each of these effects can be switched off ([`Effects`](crate::Effects)).
+    /// [`Self::coverage`] reports how they apply to a motion.
     ///
     /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
     /// voice then holds the last valid motion for at most 100 ms. After that, it is silent until
@@ -222,7 +222,7 @@ impl Voice {
     /// Sets the gain, which changes gradually (10 ms). Does not allocate.
     ///
     /// # Errors
-    /// When the gain is negative or not finite; it then keeps its old value.
+    /// When the gain is negative or not finite. The gain then keeps its old value.
     pub fn set_gain(&mut self, gain: f64) -> Result<(), Error> {
         self.output.set_gain(gain, self.follow.rests())
     }

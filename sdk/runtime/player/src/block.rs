@@ -358,7 +358,7 @@ impl<'a> Block<'a> {
         self.rows.part(phase * self.row, self.row)
     }
 
-    /// Returns the duration of a change of motion, samples at the internal rate.
+    /// Returns the duration of a glide to another motion, samples at the internal rate.
     pub(crate) fn glide(&self) -> u32 {
         self.glide
     }

@@ -11,7 +11,7 @@ const FORCE_RATIO: (f32, f32) = (1.0 / 1_048_576.0, 1_048_576.0);
 
 /// The exponents of the law that a texture follows beyond its grid. From the nearest motion (v0,
 /// F0) of the grid to a motion (v, F), frequencies change by `(v / v0)^a`, and the level changes by
-/// `(v / v0)^b (F / F0)^c`. Only sinusoids change in frequency; filters cannot.
+/// `(v / v0)^b (F / F0)^c`. Only sinusoids change in frequency, because filters cannot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
     /// Exponent a: how frequencies depend on the speed.

@@ -36,7 +36,8 @@ impl Noise {
         next: 0,
     };
 
-    /// Starts the noise; all numbers must be zero before. The first sample is already stationary.
+    /// Starts the noise. All numbers must be zero before the call. The first sample is already
+    /// stationary.
     pub(crate) fn start(&mut self, half: usize, seed: u32) {
         (self.half, self.random) = (half, Random::new(seed));
         for _ in 0..self.taps() {
@@ -49,8 +50,8 @@ impl Noise {
         2 * self.half + 1
     }
 
-    /// Starts a glide over `samples` samples to the filter of a motion; with 0 samples the filter
-    /// is set at once. Returns the level at the end of the glide.
+    /// Starts a glide over `samples` samples to the filter of a motion. If `samples` is 0, sets the
+    /// filter at once. Returns the level at the end of the glide.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         if samples == 0 {
             self.silence();
@@ -106,7 +107,8 @@ impl Noise {
         level
     }
 
-    /// Starts a glide over `samples` samples to silence; with 0 samples it is silent at once.
+    /// Starts a glide over `samples` samples to silence. If `samples` is 0, the noise is silent at
+    /// once.
     pub(crate) fn fade(&mut self, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
         self.centre_step = -self.centre * part;

@@ -72,7 +72,7 @@ impl<'a> Player<'a> {
         player
     }
 
-    /// Starts to play; all numbers of the state must be zero before.
+    /// Starts to play. All numbers of the state must be zero before the call.
     fn start(&mut self, seed: u32) {
         match self.block.kind() {
             BlockKind::Noise { half, .. } => self.memory.noise.start(half, seed),
@@ -96,12 +96,12 @@ impl<'a> Player<'a> {
     /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Returns false,
     /// without a change, if a number is not finite.
     ///
-    /// Spectrum and level glide to the motion; before the first sample they are set at once. Beyond
-    /// the grid, the level and the frequencies of sinusoids follow the law of the block, starting
-    /// from the nearest motion of the grid. While the finger does not slide (below 0.5 mm/s, or
-    /// without force), the player is silent. A reading above 1000 mm/s or 20 N is not plausible:
-    /// the player holds the last motion for 0.1 s, and is then silent until the next plausible
-    /// reading.
+    /// Spectrum and level glide to the motion. Before the first sample, they are set at once.
+    /// Beyond the grid, the level and the frequencies of sinusoids follow the law of the block,
+    /// starting from the nearest motion of the grid. While the finger does not slide (below 0.5
+    /// mm/s, or without force), the player is silent. A reading above 1000 mm/s or 20 N is not
+    /// plausible: the player holds the last motion for 0.1 s, and is then silent until the next
+    /// plausible reading.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;

@@ -50,8 +50,8 @@ impl Tones {
         self.tones.get_mut(..self.count).unwrap_or(&mut [])
     }
 
-    /// Starts a glide over `samples` samples to the sinusoids of a motion; with 0 samples they are
-    /// set at once. Returns the level at the end of the glide.
+    /// Starts a glide over `samples` samples to the sinusoids of a motion. If `samples` is 0, sets
+    /// the sinusoids at once. Returns the level at the end of the glide.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         let part = 1.0 / samples.max(1) as f32;
         let (mut power, mut highest) = (0.0, 0.0f32);
@@ -89,8 +89,8 @@ impl Tones {
         level
     }
 
-    /// Starts a glide over `samples` samples to silence, without a change of frequencies; with 0
-    /// samples it is silent at once.
+    /// Starts a glide over `samples` samples to silence, without a change of frequencies. If
+    /// `samples` is 0, the sinusoids are silent at once.
     pub(crate) fn fade(&mut self, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
         for tone in self.sounding() {

@@ -56,7 +56,7 @@ impl Costs {
         serde_json::from_str(include_str!("costs.json")).unwrap_or_else(|_| Self::nothing())
     }
 
-    /// Reads stored costs; `None` if the file is missing or has another version.
+    /// Reads stored costs. Returns `None` if the file is missing or has another version.
     pub fn load(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }

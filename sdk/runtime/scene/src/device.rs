@@ -24,7 +24,8 @@ use crate::rules as rule;
 /// come from untrusted sources.
 const DRIVER: &str = "driver";
 
-/// Device options from the program that loads a scene. They take precedence over the scene's.
+/// Device options from the program that loads a scene. They take precedence over the scene's
+/// options.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
     /// Adapter to use instead of the scene's adapter. If given, the whole `device` of the scene is

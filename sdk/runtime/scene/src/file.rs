@@ -29,7 +29,8 @@ pub struct SceneFile {
     /// The output device. Default: the adapter `file`, which writes newtons.
     #[serde(default)]
     pub device: DeviceChoice,
-    /// Duration, seconds. Default: the duration of the trace; other motions are endless.
+    /// Duration, seconds. By default, a trace determines the duration, and other motions are
+    /// endless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
     pub duration_s: Option<f64>,
@@ -50,7 +51,7 @@ pub struct SceneFile {
 pub struct Surface {
     /// Path of the asset. Relative paths start at the scene's folder.
     pub asset: PathBuf,
-    /// Region of the surface; default: everywhere.
+    /// Region of the surface. Default: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
     /// Layer. Where surfaces overlap, the finger feels the surface on the highest layer.
@@ -157,7 +158,7 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
     pub drive_v: Option<f64>,
-    /// RMS level of a preview by ear, decibels relative to full scale (at most 0); default: -18.
+    /// RMS level of a preview by ear, decibels relative to full scale (at most 0). Default: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,

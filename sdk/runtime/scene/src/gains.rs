@@ -39,7 +39,7 @@ pub struct GainKey {
     pub texture: String,
     /// Id of the device's adapter.
     pub device: String,
-    /// The device's profile; empty if there is none.
+    /// The device's profile. Empty if there is none.
     pub profile: String,
 }
 
@@ -63,8 +63,7 @@ pub struct Gain {
     /// Names of the texture's recordings. They distinguish textures with the same name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<String>,
-    /// BLAKE3 hash of the asset or scene, hexadecimal. Only legacy entries have it, as their
-    /// identifier.
+    /// BLAKE3 hash of the asset or scene, hexadecimal. Legacy entries use it as their identifier.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blake3: Option<String>,
 }

@@ -30,7 +30,8 @@ pub(crate) struct Readings {
 }
 
 impl Readings {
-    /// Makes a filter for one reading in each control block, whose duration is given in seconds.
+    /// Makes a filter for one reading in each control block. `control_s` is the duration of a
+    /// control block, seconds.
     pub(crate) fn new(control_s: f64) -> Self {
         Self { last: Motion::AWAY, most: (HOLD_S / control_s) as u64, held: 0 }
     }

@@ -34,7 +34,7 @@ pub struct Plan {
     pub rate_hz: f64,
     /// Frames in a control block, the interval at which the motion is read.
     pub block_frames: usize,
-    /// Length in frames; `None` if endless.
+    /// Length of the scene, frames. `None` if it is endless.
     pub frames: Option<u64>,
     /// Where the costs come from.
     pub costs: String,

@@ -176,7 +176,7 @@ impl Renderer {
         self.timing.frames = Some(self.timing.frames.map_or(end, |frames| frames.min(end)));
     }
 
-    /// Frames until the end; `None` if endless.
+    /// Returns the number of frames until the end, or `None` if the scene is endless.
     pub fn frames_left(&self) -> Option<u64> {
         self.timing.frames.map(|frames| frames.saturating_sub(self.frame))
     }

@@ -45,7 +45,7 @@ impl Span {
         self.low >= self.high - SAME * self.high.abs()
     }
 
-    /// Returns the value of a span with a single value; 1 if the span is empty.
+    /// Returns the value of a span with a single value, or 1 if the span is empty.
     pub(crate) fn only(&self) -> f64 {
         if self.low <= self.high { self.low } else { 1.0 }
     }

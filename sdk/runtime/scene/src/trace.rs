@@ -156,7 +156,7 @@ fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> 
     (0..t_s.len()).map(row).collect()
 }
 
-/// Returns the values of these rows; zero for `None`.
+/// Returns the values of these rows. For a row that is `None`, the value is zero.
 fn taken<T: Copy + Default>(rows: &[Option<usize>], values: &[T]) -> Vec<T> {
     let value = |row: &Option<usize>| row.and_then(|row| values.get(row).copied());
     rows.iter().map(|row| value(row).unwrap_or_default()).collect()

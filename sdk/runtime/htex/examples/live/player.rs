@@ -11,7 +11,8 @@ use rtrb::{Consumer, Producer, RingBuffer};
 const LEVEL: f64 = 0.1;
 /// Duration of a fade, seconds.
 const FADE_S: f32 = 0.02;
-/// Maximum number of voices that sound at the same time: the current one and those fading out.
+/// Maximum number of voices that sound at the same time: the current voice and the voices fading
+/// out.
 const MOST_TRACKS: usize = 4;
 const BLOCK: usize = 64;
 

@@ -31,8 +31,8 @@ const MORE_LEFT_OUT_DB: f64 = 0.1;
 /// Target size of a block, bytes. To reach this size, the accuracy is reduced, but only if it
 /// cannot meet the tolerance anyway.
 const WANTED_BYTES: usize = 16 * 1024;
-/// Maximum number of conditions, including the conditions that were inserted between the requested
-/// ones.
+/// Maximum number of conditions, including the conditions inserted between the requested
+/// conditions.
 const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter, in the order in which they are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
@@ -178,7 +178,7 @@ impl Designs {
         Self { designer: None, lengths, length: 0, is_best: false }
     }
 
-    /// Returns the designer for a design; makes a new one if the design has changed.
+    /// Returns the designer for a design. Makes a new designer if the design has changed.
     fn designer(&mut self, design: Design, texture: &Moments<'_>) -> Rc<Designer> {
         match &self.designer {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),

@@ -87,8 +87,9 @@ impl Grid {
         forces.flat_map(move |&force| self.speeds_mm_s.iter().map(at(force)))
     }
 
-    /// Returns a grid with the speeds and forces of the motions whose error exceeds `within_db`
-    /// added. An axis stays unchanged if it would get more than 32 values.
+    /// Adds speeds and forces to the grid, and returns the new grid. They are the speeds and forces
+    /// of the motions whose error exceeds `within_db`. An axis stays unchanged if it would get more
+    /// than 32 values.
     pub(crate) fn refined(&self, errors: &[(Motion, f64)], within_db: f64) -> Self {
         let worst = || errors.iter().filter(|(_, error)| *error > within_db);
         let axis = |own: &[f64], more: Vec<f64>| {

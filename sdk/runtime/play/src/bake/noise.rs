@@ -81,8 +81,9 @@ impl Designer {
         self.bins(ratio).read(&response)
     }
 
-    /// Finds at most `most` common filters of which the conditions' filters are weighted sums.
-    /// `slowest` and `fastest` are the smallest and the largest factor of the band's frequencies.
+    /// Finds at most `most` common filters, so that each condition's filter is a weighted sum of
+    /// them. `slowest` and `fastest` are the smallest and the largest factor of the band's
+    /// frequencies.
     pub(crate) fn factors(
         &self,
         conditions: &[&[f64]],

@@ -1,4 +1,4 @@
-//! Finds the sinusoids of a model whose samples are a sum of sinusoids.
+//! Finds the sinusoids of a model that renders a sum of sinusoids.
 
 use std::rc::Rc;
 

@@ -99,7 +99,7 @@ fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
     sin.abs() <= -ON_CIRCLE * cos
 }
 
-/// Returns the fan of a cell; `None` if one of its triangles would be turned over.
+/// Returns the fan of a cell, or `None` if one of the fan's triangles would be turned over.
 fn fan(cell: impl Iterator<Item = Corners>, places: &[[f64; 2]]) -> Option<Vec<Corners>> {
     let all: Vec<[usize; 2]> = cell.flat_map(edges).collect();
     let mut inner: Vec<[usize; 2]> = all.iter().map(|[a, b]| [*b, *a]).collect();

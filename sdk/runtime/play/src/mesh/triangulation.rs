@@ -112,7 +112,7 @@ fn scattered(i: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Returns the triangles and the edges of the hull; `None` if the points do not span a triangle.
+/// Returns the triangles and the edges of the hull, or `None` if the points do not span a triangle.
 fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     let mut mesh = Delaunay::new();
     let mut index = Vec::new();

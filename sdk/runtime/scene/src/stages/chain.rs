@@ -27,7 +27,7 @@ pub struct StageRun {
     pub surface: Option<usize>,
     /// Number of blocks that the stage processed.
     pub blocks: u64,
-    /// Run time, nanoseconds per sample of the device; `None` if not measured.
+    /// Run time, nanoseconds per sample of the device. `None` if not measured.
     pub ns_per_sample: Option<f64>,
 }
 

@@ -1,8 +1,8 @@
 //! Estimation of the filter coefficients.
 //!
-//! No resonance is narrower than a bin, because the spectrum cannot show one. Yule–Walker finds
-//! such a resonance for a tone. It would take hours to reach its level, and the bins would misread
-//! it by tens of decibels.
+//! The fit has no resonance narrower than a bin, because the spectrum cannot show such a resonance.
+//! For a tone, Yule–Walker finds one. Its voice would take hours to reach its level, and the bins
+//! would misread it by tens of decibels.
 
 use alloc::vec::Vec;
 
@@ -42,7 +42,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     }
 }
 
-/// Yule–Walker on the power spectrum. The prediction error determines the level.
+/// Fits the coefficients by Yule–Walker on the power spectrum. The prediction error determines the
+/// level.
 fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit, Error> {
     // Relative to the largest bin, so that no power overflows or underflows.
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
@@ -54,8 +55,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     let filter = Filter { coefficients: &coefficients, rate_hz };
     let level = filter.level(input.band)?;
     if coefficients != model.coefficients {
-        // The prediction error belongs to the filter before it was changed, so it cannot give the
-        // level.
+        // The prediction error belongs to the unchanged filter, so it cannot give the level.
         return Ok(Fit {
             parameters: flat(&coefficients, rate_hz),
             level_rms: recorded_level(input),
@@ -66,7 +66,8 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: largest * gain * level })
 }
 
-/// Autocorrelation at `lag_s` seconds, from the power in the bins below the Nyquist frequency.
+/// Returns the autocorrelation at `lag_s` seconds, from the power in the bins up to the Nyquist
+/// frequency.
 fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64) -> f64 {
     let bins = input.frequency_hz.iter().zip(input.magnitude);
     bins.filter(|(f, _)| **f <= 0.5 * rate_hz)
@@ -77,8 +78,8 @@ fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64)
         .sum()
 }
 
-/// Estimates the coefficients from the signal at the model rate. The level is the recording's in
-/// the band, because overlap-adding windowed segments changes their power.
+/// Estimates the coefficients from the signal at the model rate. The level is the RMS of the
+/// recording in the band, because overlap-adding the windowed segments changes their power.
 fn from_signal(
     input: &FitInput<'_>,
     rate_hz: f64,
@@ -100,7 +101,7 @@ fn from_signal(
     Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: recorded_level(input) })
 }
 
-/// RMS of the recording in the band.
+/// Returns the RMS of the recording in the band.
 fn recorded_level(input: &FitInput<'_>) -> f64 {
     // Relative to the largest bin, so that no power overflows or underflows.
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));

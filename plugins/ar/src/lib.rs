@@ -1,5 +1,5 @@
-//! Autoregressive model (`org.htex.ar`): white noise filtered by an all-pole filter (paper,
-//! Auto-regression; after Culbertson et al. 2014).
+//! Autoregressive model (`org.htex.ar`): white noise filtered by an all-pole filter (section
+//! "Auto-regression" of the paper, after Culbertson et al. 2014).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -56,7 +56,7 @@ impl Model for Autoregression {
             "A_1 to A_p of x[t] = sum A_i x[t-i] + e[t], at the model rate.",
         )
         .stored(Store::F64)
-        // The fits to 15 simulated recordings of five surfaces have -3.4 to 3.3.
+        // The fits to 15 simulated recordings of five surfaces have values from -3.4 to 3.3.
         .usual(UsualRange::linear(-4.0, 4.0)),
         StaticField::scalar("model_rate_hz", "Hz", (50.0, 1e6), "Rate at which the filter runs.")
             .usual(UsualRange::linear(2000.0, 4000.0)),
@@ -116,14 +116,14 @@ impl Model for Autoregression {
             return Err(Error::argument("filters of different model rates cannot be mixed"));
         }
         let order = sets.iter().map(|s| s.list(COEFFICIENTS).len()).max().unwrap_or(0);
-        // On the stack, because hosts may interpolate on the render thread.
+        // This memory is on the stack, because hosts may interpolate on the render thread.
         let mut all = [[0.0; MAX_ORDER]; 4];
         let [mixed, padded, lines, coefficients] = all.each_mut().map(|all| &mut all[..order]);
         for (set, &weight) in sets.iter().zip(weights) {
             let own = set.list(COEFFICIENTS);
             padded.fill(0.0);
-            // Zero coefficients change no filter, but all filters then have the same number of
-            // lines.
+            // Appended zero coefficients do not change a filter, but give all filters the same
+            // number of lines.
             padded[..own.len()].copy_from_slice(own);
             if !write_lines(padded, lines) {
                 return Err(unstable());
@@ -175,7 +175,7 @@ impl<'a> Filter<'a> {
         if is_stable(filter.coefficients) { Ok(filter) } else { Err(unstable()) }
     }
 
-    /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
+    /// Returns the magnitude `|H|`. It is zero above the Nyquist frequency of the model rate.
     pub(crate) fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         if frequency_hz > 0.5 * self.rate_hz {
             return 0.0;

@@ -1,7 +1,8 @@
 //! A cache of the line spectral frequencies of filters.
 //!
-//! Computing them takes about ten times as long as the rest of a parameter change, and a motion
-//! between conditions interpolates the same few filters again and again.
+//! Computing these frequencies takes about ten times as long as the rest of a parameter change. A
+//! motion between conditions interpolates the same few filters again and again, so a cache pays
+//! off.
 
 use htex_dsp::line_spectrum::lines_of_reflection;
 use htex_dsp::linear_prediction::step_down_in_place;
@@ -11,14 +12,14 @@ use crate::MAX_ORDER;
 
 /// Highest order of a filter that is cached.
 const KEPT_ORDER: usize = 32;
-/// Number of buckets of a few cached filters each.
+/// Number of buckets. A bucket holds [`PLACES`] cached filters.
 const HASHES: usize = 16;
 const PLACES: usize = 4;
 
 static CACHE: Lock<LineCache> = Lock::new(LineCache::NONE);
 
-/// The filters of one bucket, with their line spectral frequencies. The next filter replaces the
-/// oldest one.
+/// The cached filters with their line spectral frequencies, bucket by bucket. A new filter replaces
+/// the oldest filter in its bucket.
 struct LineCache {
     filters: [[Filter; PLACES]; HASHES],
     oldest: [u8; HASHES],
@@ -39,8 +40,8 @@ impl LineCache {
 }
 
 /// Writes the line spectral frequencies of a filter, radians, one for each coefficient. Returns
-/// false if the filter is not stable. The result does not depend on whether it was cached. Does not
-/// allocate or wait.
+/// false if the filter is not stable. The result does not depend on whether the filter was cached.
+/// Does not allocate or wait.
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
     // The render thread must not wait for the lock. Computing the lines again gives the same bits.
@@ -79,7 +80,7 @@ fn find_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     true
 }
 
-/// Hash of the bits of all coefficients.
+/// Returns a hash of the bits of all coefficients.
 fn hash(coefficients: &[f64]) -> usize {
     let mix = |hash: u64, a: &f64| {
         (hash.rotate_left(5) ^ a.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15)

@@ -1,4 +1,4 @@
-//! Rendering of four voices side by side.
+//! Renders four voices side by side, which is faster than one after another.
 //!
 //! The operations and their order are the same as for one voice, so the samples are bit-identical.
 
@@ -15,7 +15,7 @@ const BLOCK: usize = 64;
 /// Smallest number of groups for which rendering side by side is faster.
 const LEAST: usize = 16;
 
-/// Fills one row for each of four voices.
+/// Renders four voices, each into its own row.
 pub(crate) fn render(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOICES]) {
     let frames = rows[0].len();
     let [first, others @ ..] = &*voices;
@@ -57,7 +57,7 @@ fn groups(
     let filters =
         [&mut a.filter.poles, &mut b.filter.poles, &mut c.filter.poles, &mut d.filter.poles];
     let edges = [&mut a.edges, &mut b.edges, &mut c.edges, &mut d.edges];
-    // Before any noise is drawn, so that a refusal has no effect.
+    // This comes before any noise is drawn, so that returning false has no effect on the voices.
     let (Some(mut filters), Some(mut edges)) = (AllPoles::new(filters), Pipelines::new(edges))
     else {
         return false;

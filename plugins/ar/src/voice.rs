@@ -9,8 +9,9 @@ use htex_model::{Error, Values, Voice};
 
 use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, together};
 
-/// An all-pole filter whose reflection coefficients move linearly to the target's coefficients. All
-/// coefficients between two stable filters also lie inside (-1, 1), so the filter stays stable.
+/// An all-pole filter whose reflection coefficients move linearly to target values. A filter is
+/// stable if all its reflection coefficients are inside (-1, 1). So if both filters are stable,
+/// every filter on the way is also stable.
 pub struct MovingPoles {
     pub(crate) poles: AllPole,
     target: [f64; MAX_ORDER],
@@ -25,8 +26,8 @@ impl MovingFilter for MovingPoles {
         band: Band,
         passed: &PassedPower,
     ) -> Result<(Self, f64), Error> {
-        // Checked without the band's edges, because a filter without energy in the band may have
-        // some just outside it.
+        // The level is checked without the filters at the band's edges, because a filter without
+        // energy in the band may have energy just outside it.
         Filter::new(parameters)?.level(band)?;
         let (target, level) = target(parameters, passed)?;
         let poles = AllPole::with_max_order(parameters.list(COEFFICIENTS), MAX_ORDER);
@@ -78,7 +79,8 @@ impl MovingFilter for MovingPoles {
     }
 }
 
-/// Returns the reflection coefficients of a parameter set, and its level behind the band's edges.
+/// Returns the reflection coefficients of a parameter set, and the level after the filters at the
+/// band's edges.
 fn target(parameters: &Values<'_>, passed: &PassedPower) -> Result<([f64; MAX_ORDER], f64), Error> {
     let coefficients = parameters.list(COEFFICIENTS);
     let mut reflection = [0.0; MAX_ORDER];

@@ -31,7 +31,8 @@ struct Polynomial {
 impl Polynomial {
     const ONE: Self = Self { coefficients: [0.0; MAX_ORDER], cosines: [0.0; MAX_ORDER], order: 0 };
 
-    /// Sets the polynomial from its line spectral frequencies. Returns false if there are too many.
+    /// Sets the polynomial from its line spectral frequencies. Returns false if there are too many
+    /// lines.
     fn set(&mut self, lines: &[f64]) -> bool {
         let order = lines.len();
         let Some(cosines) = self.cosines.get_mut(..order) else {
@@ -76,8 +77,8 @@ impl Filter {
         Ok(filter)
     }
 
-    /// Sets the filter from parameters with the same rate. Works in place, because voices call it
-    /// for each motion. After an error the filter is unusable.
+    /// Sets the filter from parameters with the same rate. Works in place, because voices call this
+    /// function for each motion. After an error, the filter is unusable.
     pub(crate) fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.set_lines(parameters.list(POLE_LINES), parameters.list(ZERO_LINES))
     }
@@ -97,39 +98,40 @@ impl Filter {
             return Err(descending());
         }
         let (own, beyond) = self.reflection.split_at_mut(poles.len());
-        // Lines that ascend should give a stable filter, but if they are very close, rounding can
-        // make it unstable. So this is checked again.
+        // Ascending lines should give a stable filter. But if lines are very close, rounding can
+        // make the filter unstable, so the stability is checked here.
         own.copy_from_slice(self.poles.coefficients());
         beyond.fill(0.0);
         if step_down_in_place(own) { Ok(()) } else { Err(unstable()) }
     }
 
-    /// Prediction coefficients of the denominator, `A_1` to `A_p`.
+    /// Returns the prediction coefficients of the denominator, `A_1` to `A_p`.
     pub(crate) fn poles(&self) -> &[f64] {
         self.poles.coefficients()
     }
 
-    /// Coefficients of the numerator, `B_1` to `B_q`.
+    /// Returns the coefficients of the numerator, `B_1` to `B_q`.
     pub(crate) fn zeros(&self) -> &[f64] {
         self.zeros.coefficients()
     }
 
-    /// As [`Self::zeros`], followed by zeros up to the highest order.
+    /// Returns the coefficients of [`Self::zeros`], followed by zeros up to the highest order.
     pub(crate) fn zeros_of_any_order(&self) -> &[f64; MAX_ORDER] {
         &self.zeros.coefficients
     }
 
-    /// Reflection coefficients of the denominator, followed by zeros up to the highest order.
+    /// Returns the reflection coefficients of the denominator, followed by zeros up to the highest
+    /// order.
     pub(crate) fn reflection(&self) -> &[f64; MAX_ORDER] {
         &self.reflection
     }
 
-    /// RMS of white noise behind this filter and the filters at the band's edges.
+    /// Returns the RMS of white noise after this filter and the filters at the band's edges.
     pub(crate) fn passed_level(&self, passed: &PassedPower) -> Result<f64, Error> {
         finite_level(passed.rational_level_rms(self.zeros.cosines(), self.poles.cosines()))
     }
 
-    /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
+    /// Returns the magnitude `|H|`. It is zero above the Nyquist frequency of the model rate.
     pub(crate) fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         if frequency_hz > 0.5 * self.rate_hz {
             return 0.0;

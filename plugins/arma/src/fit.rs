@@ -3,9 +3,9 @@
 //! Poles and zeros depend on each other, so they are estimated in turns. The poles are found by
 //! Yule–Walker, from the spectrum divided by the spectrum of the zeros. The zeros are found in the
 //! same way, as poles of the inverse spectrum multiplied by the spectrum of the poles. The result
-//! is the round that makes the spectrum most likely, if it is a spectrum of Gaussian noise (the
-//! Itakura–Saito distance, at whatever level). As in AR, no resonance is narrower than a bin,
-//! because the spectrum cannot show one.
+//! is the round with the smallest Itakura–Saito distance at the best level. This is the round that
+//! makes the spectrum most likely as a spectrum of Gaussian noise. As in AR, no resonance is
+//! narrower than a bin, because the spectrum cannot show such a resonance.
 
 use alloc::vec::Vec;
 
@@ -25,8 +25,8 @@ const RATE: usize = 2;
 const NARROWEST_HZ: f64 = GRID_HZ;
 /// Number of rounds in which poles and zeros are estimated.
 const ROUNDS: usize = 12;
-/// Smallest power of a bin, relative to the largest. Otherwise an empty bin would dominate the
-/// inverse spectrum.
+/// Smallest power of a bin, relative to the largest bin. Without this limit, an empty bin would
+/// dominate the inverse spectrum.
 const FLOOR: f64 = 1e-8;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -54,7 +54,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     Ok(Fit { parameters, level_rms: largest * level_rms(&relative) })
 }
 
-/// Line spectral frequencies of a stable polynomial, rounded as in a file.
+/// Returns the line spectral frequencies of a stable polynomial, rounded as files store them.
 fn stored_lines(coefficients: &[f64]) -> Result<Vec<f64>, Error> {
     let mut reflection = coefficients.to_vec();
     if !step_down_in_place(&mut reflection) {
@@ -71,7 +71,7 @@ fn too_close() -> Error {
 }
 
 /// Power of the bins up to the Nyquist frequency, relative to the largest bin. Bins below the band
-/// get the power of its first bin: if they were empty, they would attract zeros.
+/// get the power of the band's first bin, because empty bins would attract zeros.
 struct Spectrum {
     frequency_hz: Vec<f64>,
     power: Vec<f64>,
@@ -110,7 +110,7 @@ impl Spectrum {
             let denominator = self.inverse_power(&below);
             above = self.poles_of(|i| denominator[i] / self.power[i], zeros);
             let distance = self.distance(&denominator, &self.inverse_power(&above));
-            // The first round is taken even if its distance is NaN, so that there is always a
+            // The first round is kept even if its distance is NaN, so that there is always a
             // result.
             if distance < best.0 || best.0 == f64::INFINITY {
                 best = (distance, below, above.clone());
@@ -142,9 +142,9 @@ impl Spectrum {
         within_radius(&levinson_durbin(&lags, order).coefficients, radius)
     }
 
-    /// Itakura–Saito distance of the spectrum from the spectrum of a filter at its best level, up
-    /// to a constant. From the ratios of both powers it is the logarithm of their mean, minus the
-    /// mean of their logarithms.
+    /// Returns the Itakura–Saito distance of the spectrum from the spectrum of a filter at its best
+    /// level, up to a constant. It is computed from the ratios of both powers: the logarithm of the
+    /// mean ratio, minus the mean of the logarithms.
     fn distance(&self, denominator: &[f64], numerator: &[f64]) -> f64 {
         let filter = denominator.iter().zip(numerator).map(|(d, n)| d / n);
         let ratios: Vec<f64> = self.power.iter().zip(filter).map(|(p, h)| p / h).collect();

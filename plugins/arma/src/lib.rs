@@ -1,9 +1,10 @@
 //! ARMA model: white noise filtered by a filter with poles and zeros, as in the Penn Haptic Texture
 //! Toolkit (Culbertson et al. 2014).
 //!
-//! Both polynomials are stored as line spectral frequencies, because every weighted mean of these
-//! is again a stable filter. The parameters cannot have zeros outside the unit circle, and need
-//! not: noise has the same spectrum if these zeros are replaced by their mirror images inside.
+//! Both polynomials are stored as line spectral frequencies, because every weighted mean of line
+//! spectral frequencies is again a stable filter. This form cannot store zeros outside the unit
+//! circle. It does not have to: noise has the same spectrum if such zeros are replaced by their
+//! mirror images inside the circle.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -74,7 +75,7 @@ impl Model for PolesAndZeros {
             (50.0, 1e6),
             "Rate at which the filter runs.",
         )
-        // From the rate of the Penn Haptic Texture Toolkit (1 kHz) to the highest one of the
+        // From the rate of the Penn Haptic Texture Toolkit (1 kHz) to the highest rate of the
         // sweep.
         .usual(UsualRange::linear(1000.0, 4000.0)),
     ])

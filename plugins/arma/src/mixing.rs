@@ -1,4 +1,4 @@
-//! Interpolation of parameter sets: the weighted mean of each line spectral frequency.
+//! Interpolates parameter sets: computes the weighted mean of each line spectral frequency.
 
 use htex_dsp::line_spectrum::{coefficients_of_lines, lines_of_reflection, zeros_of_lines};
 use htex_dsp::linear_prediction::step_down_in_place;
@@ -31,8 +31,8 @@ pub(crate) fn mix(
     Ok(())
 }
 
-/// Writes the weighted mean of the lines of a field. Each mean is limited to the range of the sets,
-/// because the weights can have rounding errors.
+/// Writes the weighted means of the lines in a field. Each mean is limited to the range of the
+/// sets' values, because the weights can have rounding errors.
 fn mean(
     sets: &[Values<'_>],
     weights: &[f64],
@@ -56,8 +56,7 @@ fn mean(
     Ok(())
 }
 
-/// Returns the lines of a polynomial after it was padded with zero coefficients to the length of
-/// `room`.
+/// Pads a polynomial with zero coefficients to the length of `room`, and returns its lines.
 fn padded<'a>(own: &'a [f64], field: usize, room: &'a mut [f64]) -> Result<&'a [f64], Error> {
     if own.len() == room.len() {
         return Ok(own);

@@ -20,8 +20,8 @@ pub struct MovingZerosAndPoles {
     zeros: AllZero,
     poles: AllPole,
     target: Box<Filter>,
-    /// Working memory in which the next target is made. It replaces the target if the parameters
-    /// are valid.
+    /// Working memory in which the next target is made. If the parameters are valid, it replaces
+    /// the target.
     spare: Box<Filter>,
     zeros_step: [f64; MAX_ORDER],
     reflection_step: [f64; MAX_ORDER],
@@ -36,8 +36,8 @@ impl MovingFilter for MovingZerosAndPoles {
         passed: &PassedPower,
     ) -> Result<(Self, f64), Error> {
         let filter = Filter::new(parameters)?;
-        // Checked without the band's edges, because a filter without energy in the band may have
-        // some just outside it.
+        // The level is checked without the filters at the band's edges, because a filter without
+        // energy in the band may have energy just outside it.
         filter.level(band)?;
         let level = filter.passed_level(passed)?;
         let moving = Self {

@@ -1,4 +1,4 @@
-//! Positions of the knots, and linear interpolation between them.
+//! The positions of the knots on the frequency axis, and linear interpolation between knots.
 
 use alloc::sync::Arc;
 
@@ -6,10 +6,11 @@ use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
 use htex_dsp::shared::Shared;
 
-/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Below this frequency the knots are
-/// nearly equally spaced in hertz, above it in octaves. So 30 knots over 20 to 1000 Hz are 4.9 Hz
-/// apart at 20 Hz, where the bins are 5 Hz apart. Of the values from 0 to 60 Hz, those around 20 Hz
-/// gave the smallest third-octave error.
+/// Frequency that is added to all frequencies on the axis of [`Layout::Edges`], hertz. Below this
+/// frequency, the knots are nearly equally spaced in hertz; above it, they are nearly equally
+/// spaced in octaves. For example, 30 knots over 20 to 1000 Hz are 4.9 Hz apart at 20 Hz, and the
+/// bins are 5 Hz apart. We tried values from 0 to 60 Hz: values around 20 Hz gave the smallest
+/// third-octave error.
 const CORNER_HZ: f64 = 20.0;
 /// From this number of bands on, the default layout is [`Layout::Edges`].
 const EDGES_FROM: usize = 20;
@@ -18,8 +19,8 @@ const EDGES_FROM: usize = 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
     /// Equally spaced in the logarithm of the frequency, inside the band. The knots are the apexes
-    /// of half-overlapping triangles; the outermost triangles end at the edges of the band (paper,
-    /// Linear regression).
+    /// of half-overlapping triangles. The outermost triangles end at the edges of the band (section
+    /// "Linear regression" of the paper).
     Within,
     /// From edge to edge, equally spaced in `ln(f + 20 Hz)`.
     Edges,
@@ -39,8 +40,8 @@ impl Layout {
         }
     }
 
-    /// Returns the layout of a parameter value. Interpolation between conditions gives values in
-    /// between; these select the nearer layout.
+    /// Returns the layout of a parameter value. Interpolation between conditions may give a value
+    /// between 0 and 1, which selects the nearer layout.
     pub(crate) fn from_number(number: f64) -> Self {
         if number < 0.5 { Self::Within } else { Self::Edges }
     }
@@ -55,7 +56,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Position on the axis of a frequency in the band.
+    /// Returns the position of a frequency on the axis. The frequency must be in the band.
     fn place(&self, frequency_hz: f64) -> f64 {
         match self.layout {
             Layout::Within => log_unit(frequency_hz, self.band) * (self.knots + 1) as f64 - 1.0,
@@ -69,14 +70,14 @@ impl Axis {
         }
     }
 
-    /// Interpolation weights of the band's bins. Voices with the same axis share them.
+    /// Returns the interpolation weights of the band's bins. Voices with the same axis share them.
     pub(crate) fn grid_points(&self) -> Arc<[Point]> {
         static POINTS: Shared<Axis, [Point]> = Shared::new();
         let points = || self.band.grid_hz().iter().map(|&f| self.point(f)).collect();
         POINTS.get(*self, points)
     }
 
-    /// Interpolation weights of a frequency in the band.
+    /// Returns the interpolation weights of a frequency in the band.
     pub(crate) fn point(&self, frequency_hz: f64) -> Point {
         let (place, last) = (self.place(frequency_hz), (self.knots - 1) as f64);
         let inside = place.clamp(0.0, last);
@@ -90,21 +91,21 @@ impl Axis {
     }
 }
 
-/// Interpolation weights at a frequency: `share` for the knot `knot`, and the rest for the knot
+/// Interpolation weights at a frequency: `share` for the knot `knot`, and `1 - share` for the knot
 /// `next`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Point {
     pub(crate) knot: usize,
     pub(crate) next: usize,
     pub(crate) share: f64,
-    /// Sum of the triangles' weights. It is below 1 outside the outermost knots, and 0 at the edges
-    /// of a band with [`Layout::Within`].
+    /// Sum of the triangles' weights. It is below 1 outside the outermost knots. With
+    /// [`Layout::Within`], it is 0 at the edges of the band.
     pub(crate) weight: f64,
 }
 
 impl Point {
-    /// Value at this frequency of a curve that is linear between the knots and constant outside the
-    /// outermost ones.
+    /// Returns the value of a curve at this frequency. The curve is linear between the knots, and
+    /// constant outside the outermost knots.
     pub(crate) fn between(&self, knots: &[f64]) -> f64 {
         self.share * knots[self.knot] + (1.0 - self.share) * knots[self.next]
     }

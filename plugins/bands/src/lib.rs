@@ -1,19 +1,27 @@
-//! Band energies (`org.htex.bands`): the energy of a spectrum in log-spaced bands, with three to
-//! six bits per band.
+//! Band-energy model (`org.htex.bands`): the energy of a spectrum in log-spaced bands, with three
+//! to six bits per band.
 //!
 //! This model is not from the paper, and was not evaluated in perception experiments. The paper
-//! regresses ratings on energy differences; its r², which the paper calls low, levels off at nine
-//! such bands (Linear regression). Thirty bands keep a spectrum within about 0.3 dB of the
-//! recording in third-octave bands. Files store the piecewise linear curve that has these energies.
-//! It is linear in decibels, over the axis on which the bands are equally spaced, and its knots are
-//! at the bands' apexes.
+//! regresses ratings on energy differences in such bands (section "Linear regression"). Its r²,
+//! which the paper calls low, no longer grows above nine bands. Thirty bands keep a spectrum within
+//! about 0.3 dB of the recording in third-octave bands. Files store the piecewise linear curve that
+//! has these energies. The curve is linear in decibels, on the axis on which the bands are equally
+//! spaced. Its knots are at the bands' apexes.
 //!
-//! The default is thirty knots from edge to edge, in steps of 1 dB, packed. Medians of the
-//! third-octave error over 15 simulated recordings, all with one byte per band: 9 bands in 11 bytes
-//! 3.7 dB, 19 in 21 bytes 1.4 dB, 22 from edge to edge 0.8 dB, and 22 on the axis ln(f + 20 Hz),
-//! which keeps low knots at least one bin apart, 0.5 dB. Stored as differences in a Rice code, a
-//! band needs only two thirds of a byte, and 30 bands have 0.3 dB in 21 bytes. Entropy codes with
-//! longer tails need one byte more, and steps of 0.5 dB two or three more.
+//! The default is thirty knots from edge to edge, in steps of 1 dB, stored as differences in a Rice
+//! code. Medians over 15 simulated recordings:
+//!
+//! | knots | storage | third-octave error |
+//! |---|---|---|
+//! | 9 inside the band | one byte per band, 11 bytes in all | 3.7 dB |
+//! | 19 inside the band | one byte per band, 21 bytes in all | 1.4 dB |
+//! | 22 from edge to edge | one byte per band | 0.8 dB |
+//! | 22 from edge to edge, on the axis ln(f + 20 Hz) | one byte per band | 0.5 dB |
+//! | 30 from edge to edge, on the axis ln(f + 20 Hz) | Rice code, 21 bytes in all | 0.3 dB |
+//!
+//! The axis ln(f + 20 Hz) keeps low knots at least one bin apart. In the Rice code, a band needs
+//! only two thirds of a byte. Entropy codes with longer tails need one byte more, and steps of
+//! 0.5 dB need two or three bytes more.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -49,20 +57,20 @@ const BANDS_OPTION: usize = 0;
 const STEP_OPTION: usize = 1;
 const LAYOUT_OPTION: usize = 2;
 
-/// For 15 simulated recordings, thirty bands in steps of 1 dB took 21 bytes, at most 23, with a
-/// median third-octave error of 0.33 dB. With 9 bands the error is 3.7 dB; with 64 bands it is 0.18
-/// dB, in 35 bytes.
+/// Default number of bands. For 15 simulated recordings, thirty bands in steps of 1 dB took 21
+/// bytes (median; at most 23), with a median third-octave error of 0.33 dB. With 9 bands the error
+/// is 3.7 dB. With 64 bands it is 0.18 dB, in 35 bytes.
 const DEFAULT_BANDS: u32 = 30;
 const DEFAULT_STEP_DB: f64 = 1.0;
 const MAX_BANDS: u32 = 64;
-/// Largest number of steps below the highest knot: the range of a byte.
+/// Largest number of steps from the highest knot down to another knot: the range of a byte.
 const MAX_STEPS: f64 = 255.0;
 /// Resolution with which files store the step, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// Largest distance between a band and the loudest one, and between a knot and the highest one, dB.
-/// A band without energy is at this distance. It is the same as in the measure of band errors,
-/// which adds 1e-12 of the largest energy.
+/// Largest distance between a band and the loudest band, and between a knot and the highest knot,
+/// dB. A band without energy is at this distance. The measure of band errors has the same limit,
+/// because it adds 1e-12 of the largest energy.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {
@@ -96,8 +104,8 @@ impl ShapedModel for BandEnergies {
             offset: 0.0,
             log: false,
         })
-        // In the fits to 15 simulated recordings of five surfaces, nine tenths of the knots are
-        // at most 42 dB below the highest one, and all but a few at most 60 dB.
+        // In the fits to 15 simulated recordings of five surfaces, nine tenths of the knots are at
+        // most 42 dB below the highest knot, and nearly all knots at most 60 dB.
         .usual(UsualRange::linear(0.0, 60.0)),
         StaticField::scalar("step_db", "dB", STEP_RANGE_DB, "The step.").stored(steps(STEP_UNIT_DB))
         .usual(UsualRange::log(0.25, 3.0)),
@@ -208,8 +216,8 @@ impl ShapedModel for BandEnergies {
     }
 }
 
-/// Returns the wanted step, rounded to the resolution of files, or, if it is larger, the smallest
-/// step that reaches the quietest band.
+/// Returns the wanted step, rounded to the resolution of files. If this step is too small to reach
+/// the quietest band, returns the smallest step that reaches it.
 fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
     let reach_db = below_db.iter().copied().fold(0.0, f64::max);
     let least = libm::ceil(reach_db / (MAX_STEPS * STEP_UNIT_DB) - 1e-9);
@@ -223,12 +231,12 @@ pub struct Spectrum {
     /// The parameters: the numbers of steps below the highest knot, and the step.
     below: Vec<f64>,
     step_db: f64,
-    /// Logarithms of magnitude; 0 is the largest possible value.
+    /// Logarithms of magnitude. The largest possible value is 0.
     knots: Vec<f64>,
     magnitude: Vec<f64>,
     power: Vec<f64>,
-    /// Power spectrum of the voice. It is sharpened so that, measured through the window as
-    /// recordings are, it equals `magnitude`.
+    /// Power spectrum of the voice. It is sharpened such that it equals `magnitude` when it is
+    /// measured through the window, as recordings are.
     played: Vec<f64>,
     /// Working memory: `played` before a step of sharpening.
     before: Vec<f64>,
@@ -321,7 +329,7 @@ impl Curve for Spectrum {
         Ok(())
     }
 
-    /// Linear interpolation between bins.
+    /// Interpolates linearly between bins.
     fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let last = self.played.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);

@@ -24,7 +24,7 @@ fn fit(magnitude: &[f64], band: Band, options: [f64; 3]) -> Result<Fit, Error> {
     })
 }
 
-/// The shape's magnitude on the grid.
+/// Returns the shape's magnitude on the grid.
 fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
     let descriptor = BandEnergies::DESCRIPTOR;
     let values = Values::read(&descriptor, parameters).unwrap();
@@ -34,19 +34,19 @@ fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
     magnitude
 }
 
-/// Magnitude on the grid of the shape times the level.
+/// Returns the magnitude of the shape on the grid, multiplied by the level.
 fn played(fit: &Fit, band: Band) -> Vec<f64> {
     let shape = shape(&fit.parameters, band);
     shape.iter().map(|m| m * fit.level_rms).collect()
 }
 
-/// Errors of the energies in log-spaced triangles within the band, dB.
+/// Returns the errors of the energies in log-spaced triangles within the band, dB.
 fn errors_db(magnitude: &[f64], fit: &Fit, band: Band, bands: usize) -> Vec<f64> {
     let bank = BandBank::new(bands, band, &band.grid_hz());
     band_error_db(&bank.energies(magnitude), &bank.energies(&played(fit, band)))
 }
 
-/// Magnitudes of averaged noise with a piecewise linear envelope, as in recordings.
+/// Makes magnitudes of averaged noise with a piecewise linear envelope, similar to recordings.
 fn noisy(band: Band) -> impl Strategy<Value = Vec<f64>> {
     let bins = proptest::collection::vec(0.3..2.0, band.bins());
     (bins, -2.0..2.0).prop_map(move |(bins, slope): (Vec<f64>, f64)| {
@@ -73,8 +73,8 @@ proptest! {
         }
     }
 
-    /// In the two lowest of nine bands, below 45 Hz, a band has few bins. If these differ by 16 dB,
-    /// a curve that is linear in decibels cannot match all energies.
+    /// The two lowest of nine bands, below 45 Hz, have few bins. If these bins differ by 16 dB, a
+    /// curve that is linear in decibels cannot match all energies.
     #[test]
     fn many_bands_keep_nine_energies_and_the_level(magnitude in noisy(Band::TACTILE), bands in 20usize..=64) {
         let fit = fit(&magnitude, Band::TACTILE, [bands as f64, 0.5, 0.0]).unwrap();
@@ -114,7 +114,8 @@ proptest! {
     }
 }
 
-/// Linear in decibels over ln f within the band, and over ln(f + 20 Hz) from edge to edge.
+/// The curve is linear in decibels: over ln f for knots within the band, and over ln(f + 20 Hz) for
+/// knots from edge to edge.
 #[test]
 fn knots_are_at_the_positions_of_the_layout() {
     let band = Band::TACTILE;
@@ -168,8 +169,8 @@ fn lines_over_noise_nearly_keep_the_energies_of_nine_bands() {
     assert!(median < 0.3 && most < 4.0, "{median} dB, {most} dB");
 }
 
-/// The window measures two thirds of the noise power of a bin in the bin, and a sixth in each
-/// neighbour.
+/// The window measures two thirds of a bin's noise power in the bin itself, and a sixth in each
+/// neighbouring bin.
 #[test]
 fn the_voice_measures_as_the_stated_magnitude() {
     let (band, descriptor) = (Band::TACTILE, BandEnergies::DESCRIPTOR);

@@ -1,4 +1,5 @@
-//! Fit of a map with one row: its waves give the spectrum at the speed of the recording.
+//! Fits a map with one row. At the speed of the recording, the waves in this row have the
+//! recording's spectrum.
 
 use alloc::vec::Vec;
 
@@ -19,7 +20,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         return Err(Error::cannot_fit("the spectrum is silent: there is nothing to fit"));
     }
     let known = input.condition.speed_mm_s.filter(|speed| *speed > 0.0);
-    // Rounded to 32 bits, as assets store it: a line may be exactly on an edge of the band.
+    // Rounded to 32 bits, as assets store it, because a line may be exactly on an edge of the band.
     let speed_mm_s = known.unwrap_or(USUAL_SPEED_MM_S).clamp(SPEED_MM_S.0, SPEED_MM_S.1);
     let speed_mm_s = f64::from(speed_mm_s as f32);
     let force_n = input.condition.force_n.unwrap_or(0.0).clamp(FORCE_N.0, FORCE_N.1);
@@ -44,8 +45,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     Ok(Fit { parameters, level_rms: level_rms(input.magnitude) })
 }
 
-/// Heights of a row with waves in the band. Each wave gets the power of the bins that are nearest
-/// to it. The phases are the same every time.
+/// Returns the heights of a row with waves in the band. Each wave gets the power of the bins
+/// nearest to it. The phases are random, but the same in every fit.
 fn heights(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> {
     let mut phases = Uniform::new(1);
     let mut heights = vec![0.0; MOST_SIDE];
@@ -60,8 +61,8 @@ fn heights(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> 
     heights
 }
 
-/// Powers of the waves with 0, 1, … periods in the row, from magnitudes relative to the largest. A
-/// bin is assigned to the nearest wave in the band.
+/// Returns the powers of the waves with 0, 1, … periods in the row, relative to the square of the
+/// largest magnitude. Each bin is assigned to the nearest wave in the band.
 fn powers(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> {
     let first = libm::ceil(input.band.low_hz / fundamental_hz).max(1.0);
     let last = libm::floor(input.band.high_hz / fundamental_hz).min((MOST_SIDE / 2) as f64);

@@ -1,12 +1,13 @@
 //! Friction map: grey values over a surface, where 0 is the lowest and 255 the highest friction.
 //! Displays with electroadhesion take such maps (TanvasTouch: 8-bit PNG).
 //!
-//! Neighbouring pixels are `pitch_mm` apart, rows follow each other from the top, and the map
-//! repeats beyond its edges. Between pixels the friction is a cubic (Catmull and Rom), so that
-//! there is no step when a finger crosses them. The voice follows the finger's place
-//! (`htex.motion/1`). It renders the friction at that place without its mean, limited to the band.
-//! Without motion input, it scans the map row by row at the speed of the parameters. Spectra and
-//! levels also refer to this scan.
+//! Neighbouring pixels are `pitch_mm` apart. The first row is at the top. The map repeats beyond
+//! its edges. Between pixels, the friction is interpolated by a cubic (Catmull and Rom), so that a
+//! finger feels no steps.
+//!
+//! The voice follows the finger's place (`htex.motion/1`). It renders the friction at this place
+//! without the mean, limited to the band. Without motion input, it scans the map row by row at the
+//! speed of the parameters. The model's spectra and levels also refer to this scan.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -56,7 +57,7 @@ htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 /// and within the band.
 ///
 /// # Errors
-/// If the number of grey values is not a multiple of the width, or if the map has nothing in the
+/// If the number of grey values is not a multiple of the width, or if the map has no energy in the
 /// band.
 pub fn rms(
     width: usize,
@@ -137,7 +138,8 @@ impl Model for FrictionMap {
         Ok(())
     }
 
-    /// Returns the set with the largest weight; of equal weights, the first. Maps are not mixed.
+    /// Writes the parameter set with the largest weight, or the first one if weights are equal.
+    /// Maps are not mixed.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],

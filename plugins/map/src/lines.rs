@@ -1,4 +1,5 @@
-//! The spectrum along the rows of a map: one line for each whole number of waves in its width.
+//! The spectrum along the rows of a map. It has one line for each integer number of waves in the
+//! width of the map.
 
 use alloc::vec::Vec;
 
@@ -8,11 +9,11 @@ use htex_model::{Error, text};
 
 use crate::map::Map;
 
-/// Smallest RMS, in grey values. A map without differences has a smaller one, by rounding; a map in
-/// which one pixel differs by one has a larger one.
+/// Smallest valid RMS, in grey values. In a map without differences, rounding gives a smaller RMS.
+/// A map in which one pixel differs by one has a larger RMS.
 const LEAST: f64 = 1e-9;
-/// Largest difference between the stated RMS and the RMS of the grey values, relative to the
-/// latter. Assets store 32-bit floats.
+/// Largest relative difference between the stated RMS and the RMS of the grey values. It is not
+/// zero because assets store 32-bit floats.
 const TOLERANCE: f64 = 1e-6;
 /// Half the width of the window's main lobe, hertz.
 const LOBE_HZ: f64 = 2.0 * GRID_HZ;
@@ -20,8 +21,8 @@ const LOBE_HZ: f64 = 2.0 * GRID_HZ;
 /// Mean squares of the lines in the band, averaged over all rows.
 pub(crate) struct Lines {
     fundamental_hz: f64,
-    /// Mean squares of the lines with one wave in the width, two, and so on, as the voice plays
-    /// them; 0 outside the band.
+    /// Mean squares of the lines with one wave in the width, two waves, and so on, as the voice
+    /// plays them. 0 outside the band.
     power: Vec<f64>,
     /// RMS of all lines in the band, as the Hann window measures it.
     pub(crate) rms: f64,
@@ -31,7 +32,7 @@ impl Lines {
     /// Returns the lines of a map, and checks the RMS that the map states.
     ///
     /// # Errors
-    /// As in [`Self::new`], and if the stated RMS differs from the RMS of the grey values.
+    /// The errors of [`Self::new`]. Also if the stated RMS differs from the RMS of the grey values.
     pub(crate) fn stated(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let lines = Self::new(map, band)?;
         if (map.rms - lines.rms).abs() <= TOLERANCE * lines.rms {
@@ -83,8 +84,8 @@ impl Lines {
         ]))
     }
 
-    /// RMS of the lines behind a filter, divided by the RMS before it. `passed` returns the part of
-    /// the power that passes at a frequency in hertz.
+    /// Returns the RMS of the lines after a filter, divided by the RMS before the filter. `passed`
+    /// returns the part of the power that the filter passes at a frequency in hertz.
     pub(crate) fn rms_behind(&self, passed: impl Fn(f64) -> f64) -> f64 {
         let behind =
             |(i, power): (usize, &f64)| power * passed((i + 1) as f64 * self.fundamental_hz);
@@ -92,7 +93,8 @@ impl Lines {
         libm::sqrt(self.power.iter().enumerate().map(behind).sum::<f64>() / all)
     }
 
-    /// Magnitude at unit RMS, as the Hann window measures it; powers of lines are added.
+    /// Returns the magnitude at unit RMS, as the Hann window measures it. The powers of lines are
+    /// added.
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
         // Only lines in the window's main lobe contribute.
         let first = libm::ceil((frequency_hz - LOBE_HZ) / self.fundamental_hz).max(1.0);
@@ -109,7 +111,8 @@ impl Lines {
     }
 }
 
-/// Mean square of the wave with this number of periods in the width, averaged over all rows.
+/// Returns the mean square of the wave with this number of periods in the width, averaged over all
+/// rows.
 fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
     let width = map.width;
     let rows = map.grey.chunks_exact(width);
@@ -121,7 +124,7 @@ fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
                 let (cos, sin) = turns[turn];
                 re += grey * cos;
                 im += grey * sin;
-                // The phase is counted in whole numbers, so it is exact at the end of a row.
+                // The phase is an integer, so it is exact at the end of a row.
                 turn += waves;
                 turn -= if turn < width { 0 } else { width };
             }
@@ -133,8 +136,8 @@ fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
     sides * power / (count * (width * width) as f64)
 }
 
-/// Part of the power of a wave, given in cycles per pixel, that the cubic between pixels passes
-/// (Keys 1981, equation 18 with a = -1/2).
+/// Returns the part of a wave's power that the cubic interpolation between pixels passes (Keys
+/// 1981, equation 18 with a = -1/2). `cycles` is the frequency of the wave in cycles per pixel.
 fn passed(cycles: f64) -> f64 {
     let sinc = |x: f64| {
         let a = core::f64::consts::PI * x;

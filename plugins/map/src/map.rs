@@ -4,7 +4,7 @@ use htex_model::{Error, Values, text};
 
 use crate::{FORCE, GREY, MOST_SIDE, PITCH, RMS, SPEED, WIDTH};
 
-/// A map as its parameters describe it.
+/// A friction map, as the parameters describe it.
 pub(crate) struct Map<'a> {
     pub(crate) width: usize,
     pub(crate) pitch_mm: f64,
@@ -45,14 +45,14 @@ impl<'a> Map<'a> {
         Ok(self)
     }
 
-    /// Frequency of the slowest wave along a row at the stated speed, hertz.
+    /// Returns the frequency of the slowest wave along a row at the stated speed, hertz.
     pub(crate) fn fundamental_hz(&self) -> f64 {
         self.speed_mm_s / (self.width as f64 * self.pitch_mm)
     }
 }
 
-/// Interpolation weights of the four pixels around a place, which is `part` of the way from the
-/// second to the third pixel.
+/// Returns the interpolation weights of the four pixels around a place. The place is between the
+/// second and the third pixel: `part` is its distance from the second pixel, in pixels.
 pub(crate) fn cubic(part: f64) -> [f64; 4] {
     let (t, u) = (part, 1.0 - part);
     [

@@ -1,26 +1,28 @@
-//! The finger's place at each sample, on a smooth curve to the places that the host sets.
+//! Computes the finger's place at each sample, on a smooth curve through the places that the host
+//! sets.
 
 use htex_model::Motion;
 
 /// Duration of the transition from one motion to another, seconds.
 const BLEND_S: f64 = 0.010;
-/// Distance between a new place and the current one, mm, above which the finger has jumped.
+/// If a new place is farther than this from the current place, mm, the finger has jumped.
 const JUMP_MM: f64 = 1.0;
-/// Distance between a new place and the expected one, mm, below which they count as equal.
+/// If a new place is nearer than this to the expected place, mm, the places count as equal.
 const EXPECTED_MM: f64 = 1e-6;
-/// If two places are farther apart in time than this, in blends, they do not determine a direction.
+/// If two places are set farther apart in time than this number of blends, they do not determine a
+/// direction.
 const FORGOTTEN: f64 = 10.0;
 
 /// The finger on the surface: x and y in mm.
 pub(crate) struct Path {
-    /// Number of samples in a blend.
+    /// Number of samples in a blend, i.e. in the transition to another motion.
     blend: f64,
     rate_hz: f64,
     at: [f64; 2],
     /// Movement per sample, mm.
     step: [f64; 2],
-    /// Distance to the place that was set, mm, and the number of samples in which the rest of it is
-    /// covered.
+    /// Distance to the place that was set, mm, and the number of samples in which the path covers
+    /// the rest of this distance.
     off: [f64; 2],
     off_left: f64,
     /// The last place that was set, and the number of samples since then.
@@ -33,7 +35,7 @@ pub(crate) struct Path {
 pub(crate) enum Transition {
     /// Start at the place.
     Start,
-    /// Nothing: the path reaches the place smoothly.
+    /// Do nothing: the path reaches the place smoothly.
     Smooth,
     /// Fade out before jumping to the place.
     Jump,
@@ -54,13 +56,14 @@ impl Path {
         }
     }
 
-    /// Number of samples in a blend.
+    /// Returns the number of samples in a blend.
     pub(crate) fn blend(&self) -> f64 {
         self.blend
     }
 
-    /// Sets the place `ahead` samples before the next one, and the speed from there on. The
-    /// direction is the one in which the place has moved; if that is unknown, it is along x.
+    /// Sets the finger's place at the sample that is `ahead` samples before the next sample, and
+    /// the speed from there on. The direction is the direction from the previous place to this one.
+    /// If it is unknown, the finger moves along x.
     pub(crate) fn tell(&mut self, motion: Motion, ahead: f64) -> Transition {
         let place = [motion.x_mm, motion.y_mm];
         let per_sample = motion.speed_mm_s.abs() / self.rate_hz;
@@ -84,7 +87,7 @@ impl Path {
             self.at = now;
             return Transition::Start;
         }
-        // If the place is the expected one, the way to it stays unchanged.
+        // If the finger is at the expected place, its path stays unchanged.
         let left = self.off_left.max(0.0) / self.blend;
         let is_expected = |axis: usize| (off[axis] - left * self.off[axis]).abs() < EXPECTED_MM;
         if is_expected(0) && is_expected(1) {
@@ -102,7 +105,7 @@ impl Path {
         libm::sqrt(self.step[0] * self.step[0] + self.step[1] * self.step[1])
     }
 
-    /// Moves at once to the place that was set, advanced by the time since then.
+    /// Moves at once to the place that was set, plus the movement since then.
     pub(crate) fn leap(&mut self) {
         if let Some(told) = self.told {
             self.at = self.now(told);

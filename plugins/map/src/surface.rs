@@ -1,4 +1,4 @@
-//! A map in the form in which a voice renders it, and the friction between its pixels.
+//! A map in the form that a voice renders, with the friction between its pixels.
 
 use alloc::vec::Vec;
 
@@ -16,7 +16,7 @@ pub(crate) struct Surface {
     pub(crate) speed_mm_s: f64,
     pub(crate) force_n: f64,
     mean: f64,
-    /// Factor from a grey value to a sample.
+    /// Factor that converts a grey value to a sample.
     scale: f64,
 }
 
@@ -34,8 +34,8 @@ impl Surface {
         }
     }
 
-    /// Replaces the surface by a map. `passed` is the part of the map's RMS that the filters pass.
-    /// Does not allocate.
+    /// Replaces the surface with a map. `passed` is the part of the map's RMS that the filters
+    /// pass. Does not allocate.
     ///
     /// # Errors
     /// If the stated RMS of the map is 0.
@@ -56,7 +56,7 @@ impl Surface {
         Ok(())
     }
 
-    /// Friction at a place, which is given in pixels, without its mean.
+    /// Returns the friction at a place, without the map's mean. The place is in pixels.
     pub(crate) fn friction_at(&self, x: f64, y: f64) -> f64 {
         let rows = self.grey.len() / self.width;
         let (x, columns) = around(x, self.width);
@@ -75,12 +75,12 @@ impl Surface {
     }
 }
 
-/// Returns the part of the way from one pixel to the next, and the four pixels around, of a row or
-/// column of `count` pixels that repeats.
+/// Finds a position in a row or column of `count` pixels, which repeats. Returns the position's
+/// distance from the pixel before it, from 0 to 1, and the four surrounding pixels.
 fn around(at: f64, count: usize) -> (f64, [usize; 4]) {
     let whole = libm::floor(at);
     let count = count as f64;
-    // The remainder `%` would be negative for places left of the map or above it.
+    // The operator `%` would give a negative remainder for places left of the map or above it.
     let first = whole - 1.0 - count * libm::floor((whole - 1.0) / count);
     let pixel = |i: usize| {
         let next = first + i as f64;

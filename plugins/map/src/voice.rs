@@ -1,4 +1,4 @@
-//! The voice: the friction under the finger, without its mean, limited to the band.
+//! The voice: renders the friction under the finger without the mean, limited to the band.
 
 use htex_dsp::band_limit::{band_limit, band_limit_power};
 use htex_dsp::grid::Band;
@@ -13,13 +13,14 @@ use crate::surface::Surface;
 
 /// Largest gain of a force.
 const MOST_GAIN: f64 = 16.0;
-/// Part of a row's width in which a voice without motion input moves on to the next row.
+/// Part of a row's width over which a voice without motion input moves to the next row.
 const TURN: f64 = 0.1;
-/// Number of samples that are filtered at a time. A motion takes effect when the next block begins.
+/// Number of samples that are filtered at a time. A new motion takes effect when the next block
+/// begins.
 const BLOCK: usize = 2;
-/// Number of places on the surface per sample. A fast finger, and the images of pixels, give
-/// frequencies above the band. With oversampling they are filtered out before they could be aliased
-/// to lower frequencies.
+/// Number of places on the surface per sample. A fast finger and the images of pixels cause
+/// frequencies above the band. Oversampling allows these frequencies to be filtered out before they
+/// alias to lower frequencies.
 const OVERSAMPLING: usize = 4;
 
 /// A surface, and a finger that moves over it.
@@ -27,10 +28,10 @@ pub struct MapVoice {
     /// Number of places per second.
     place_hz: f64,
     surface: Surface,
-    /// The surface that follows when the finger is silent, if `is_changing` is set.
+    /// If `is_changing` is set, the surface that replaces `surface` once the voice is silent.
     next: Surface,
     is_changing: bool,
-    /// Part of the RMS that the filters at the band's edges passed for the first map.
+    /// Part of the first map's RMS that the filters at the band's edges pass.
     passed: f64,
     edges: Pipeline,
     path: Path,
@@ -38,7 +39,7 @@ pub struct MapVoice {
     told: Option<Motion>,
     ahead: usize,
     moved: bool,
-    /// Way along the rows of a voice without motion input, pixels.
+    /// For a voice without motion input: the distance covered along the rows, pixels.
     way: f64,
     gain: Ramp,
     contact: Ramp,
@@ -148,7 +149,7 @@ impl MapVoice {
         self.taken = 0;
     }
 
-    /// Makes the changes that wait for silence, and ends the silence.
+    /// Makes the changes that had to wait for silence, and ends the silence.
     fn change(&mut self) {
         if self.is_changing {
             core::mem::swap(&mut self.surface, &mut self.next);
@@ -161,7 +162,7 @@ impl MapVoice {
         self.contact.set(1.0, self.path.blend());
     }
 
-    /// Gain for the force of a motion.
+    /// Returns the gain for the force of a motion.
     fn gain_of(&self, motion: Motion) -> f64 {
         if self.surface.force_n > 0.0 {
             (motion.force_n / self.surface.force_n).min(MOST_GAIN)
@@ -204,8 +205,8 @@ impl Voice for MapVoice {
         }
     }
 
-    /// Another map begins after a fade. Its level is corrected for the filters by the same factor
-    /// as the first map's.
+    /// Changes to another map, which begins after a fade. Its level is corrected for the filters
+    /// with the factor of the first map.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.next.set_map(&Map::new(parameters)?, self.passed)?;
         self.is_changing = self.next != self.surface;
@@ -238,7 +239,7 @@ mod tests {
 
     const RATE_HZ: f64 = 4_000.0;
 
-    /// Parameters of a map whose grey value is a function of x and y in pixels.
+    /// Returns the parameters of a map whose grey value is a function of x and y in pixels.
     fn parameters(width: usize, rows: usize, grey: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let pixels = (0..rows).flat_map(|y| (0..width).map(move |x| (x as f64, y as f64)));
         let grey: Vec<f64> = pixels.map(|(x, y)| grey(x, y).round()).collect();
@@ -261,7 +262,7 @@ mod tests {
         Motion { speed_mm_s, force_n: 0.5, position_mm: 0.0, x_mm, y_mm }
     }
 
-    /// Samples of a straight stroke, with a new motion every 5 ms.
+    /// Returns the samples of a straight stroke, with a new motion every 5 ms.
     fn stroke(voice: &mut MapVoice, [dx, dy]: [f64; 2], seconds: f64) -> Vec<f32> {
         let (speed, block) = ((dx * dx + dy * dy).sqrt(), 20);
         let mut samples = Vec::new();

@@ -1,4 +1,4 @@
-//! Conversion of band energies to a spectrum.
+//! Converts band energies to a spectrum.
 
 use alloc::vec::Vec;
 
@@ -13,8 +13,8 @@ use htex_model::{Lock, Values};
 
 use crate::{BANDS, INVERSE, whole};
 
-/// Number of inverses that are cached, because computing one takes longer than creating a voice
-/// with it.
+/// Number of cached inverses. They are cached because computing an inverse takes longer than
+/// creating a voice with it.
 const KEPT: usize = 8;
 const NNLS: u8 = 1;
 const INTERPOLATE: u8 = 2;
@@ -31,14 +31,14 @@ pub(crate) struct Inverse {
 }
 
 enum Solver {
-    /// The power is matrix · energies, clipped at 0. There is one row per band, with the band's
-    /// power in all bins.
+    /// The power is the energies times this matrix, clipped at 0. The matrix has one row per band,
+    /// with the band's power in all bins.
     Matrix(Vec<f64>),
     NonNegative(NonNegative),
 }
 
 impl Inverse {
-    /// Returns a cached inverse, or computes it.
+    /// Returns an inverse from the cache, or computes it.
     pub(crate) fn shared(bands: usize, kind: u8, band: Band) -> Arc<Self> {
         let Some(mut cache) = CACHE.lock() else {
             return Arc::new(Self::new(bands, kind, band));
@@ -47,7 +47,8 @@ impl Inverse {
         if let Some(found) = cache.iter().position(same) {
             return Arc::clone(&cache[found]);
         }
-        // Made while the lock is held: another voice that needs the same inverse waits for it.
+        // The inverse is computed while the lock is held, so another voice that needs the same
+        // inverse waits for it.
         let made = Arc::new(Self::new(bands, kind, band));
         if cache.len() == KEPT {
             cache.remove(0);
@@ -66,7 +67,8 @@ impl Inverse {
         Self { bands, kind, band, cosines: InverseDct::new(bands), way }
     }
 
-    /// For each band, row by row: the power in all bins for one unit of energy in the band.
+    /// Returns a matrix with one row per band: the power in all bins for one unit of energy in the
+    /// band.
     fn matrix(bank: &MelBank, kind: u8, bands: usize, bins: usize) -> Vec<f64> {
         let pseudo = (kind != INTERPOLATE)
             .then(|| PseudoInverse::new(&bank.filters().to_dense(), bands, bins));

@@ -1,6 +1,6 @@
-//! MFCC model (`org.htex.mfcc`): mel-frequency cepstral coefficients. These are the logarithms of
-//! the energies in mel bands, smoothed by truncating their cosine transform (paper, Mel Frequency
-//! Cepstral Coefficients).
+//! MFCC model (`org.htex.mfcc`): mel-frequency cepstral coefficients. They describe the logarithms
+//! of the energies in mel bands, smoothed by truncating their cosine transform (section "Mel
+//! Frequency Cepstral Coefficients" of the paper).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -60,8 +60,8 @@ impl ShapedModel for MelCepstrum {
             MAX_BANDS,
             "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
         )
-        // The fits to 15 simulated recordings of five surfaces have -80 to 18. The first
-        // coefficient, a sum of logarithms, is by far the lowest.
+        // The fits to 15 simulated recordings of five surfaces have values from -80 to 18. The
+        // first coefficient, a sum of logarithms, is by far the lowest.
         .usual(UsualRange::linear(-80.0, 20.0)),
         StaticField::scalar("bands", "1", (2.0, MAX_BANDS as f64), "Number of mel bands.")
             .stored(WHOLE)
@@ -213,7 +213,7 @@ impl Curve for Spectrum {
         Ok(())
     }
 
-    /// Linear interpolation between bins.
+    /// Interpolates linearly between bins.
     fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let last = self.magnitude.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.band.first_bin() as f64).clamp(0.0, last as f64);
@@ -228,7 +228,7 @@ impl Curve for Spectrum {
     }
 
     fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
-        // So that `set`, on the render thread, never allocates.
+        // Reserved here, so that `set` never allocates on the render thread.
         self.cepstrum.reserve(self.inverse.bands());
         self.places = Some(Places::shared(frequency_hz, key, self.band));
     }

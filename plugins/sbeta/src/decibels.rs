@@ -1,10 +1,9 @@
-//! Distance between a density and points in decibels, and the density that is nearest to the
-//! points, in closed form.
+//! The distance in decibels between a density and points, and the nearest density to the points, in
+//! closed form.
 //!
 //! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns. So the
-//! nearest density is a least-squares solution with two bounded unknowns. If a density is so faint
-//! at some point that its decibels are cut off, this is no longer true, and a search is used
-//! instead.
+//! nearest density is a least-squares solution with two bounded unknowns. This no longer holds if a
+//! density is so faint at some point that its decibels are cut off. A search is used in this case.
 
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
@@ -12,15 +11,16 @@ use htex_dsp::peaks::Peak;
 
 use crate::Profile;
 
-/// Lower limit for points and densities that are compared in decibels, relative to the largest one.
+/// Lower limit for points and for densities that are compared in decibels, relative to the largest
+/// point or the largest density.
 const FAINTEST: f64 = 1e-6;
-/// If the part of the squares that differs between the two axes is below this, the axes count as
+/// If one minus the squared correlation of `ln u` and `ln(1 - u)` is at most this, the two count as
 /// equal.
 const SAME: f64 = 1e-9;
 
-/// Returns the alpha and beta between the bounds that have the least squared difference in
-/// decibels. `None` if the points do not determine them, or if the difference at some point is cut
-/// off.
+/// Returns the alpha and beta between the bounds with the least squared difference in decibels.
+/// Returns `None` if the points do not determine alpha and beta, or if the difference at some point
+/// is cut off.
 pub(crate) fn nearest(points: &[Peak], band: Band, [low, high]: [f64; 2]) -> Option<(f64, f64)> {
     let squares = Squares::new(points, band)?;
     let [low, high] = [low - 1.0, high - 1.0];
@@ -43,8 +43,8 @@ struct Squares {
 }
 
 impl Squares {
-    /// Computes the sums. `None` if there are fewer points than unknowns, or if they are at too few
-    /// places.
+    /// Computes the sums. Returns `None` if there are fewer points than unknowns, or if the points
+    /// have too few different frequencies.
     fn new(points: &[Peak], band: Band) -> Option<Self> {
         let faintest = FAINTEST * inside(points, band).map(|p| p.magnitude).fold(0.0, f64::max);
         let row = |point: &Peak| {
@@ -70,8 +70,8 @@ impl Squares {
         (count >= 3.0 && determined && (all.xz + all.yz).is_finite()).then_some(all)
     }
 
-    /// Returns the two factors between the bounds with the least squares. If the minimum itself is
-    /// outside the bounds, this is the best point on the four sides.
+    /// Returns the two factors between the bounds with the least squares. If the minimum is outside
+    /// the bounds, returns the best point on the four sides of the allowed square.
     fn least(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         let determinant = self.xx * self.yy - self.xy * self.xy;
         let free = [
@@ -92,22 +92,23 @@ impl Squares {
         sides.min_by(nearer).unwrap_or(free)
     }
 
-    /// Remaining sum of squares, up to a constant.
+    /// Returns the remaining sum of squares, up to a constant.
     fn cost(&self, [a, b]: [f64; 2]) -> f64 {
         a * a * self.xx + 2.0 * a * b * self.xy + b * b * self.yy
             - 2.0 * (a * self.xz + b * self.yz)
     }
 }
 
-/// The points inside the band. Points at its edges are excluded, because a density may be 0 there
-/// however well it fits elsewhere.
+/// Returns the points inside the band. Points at the edges of the band are excluded, because a
+/// density may be 0 at an edge however well it fits elsewhere.
 fn inside(points: &[Peak], band: Band) -> impl Iterator<Item = &Peak> {
     let Band { low_hz, high_hz } = band;
     let inside = move |p: &&Peak| low_hz < p.frequency_hz && p.frequency_hz < high_hz;
     points.iter().filter(inside)
 }
 
-/// Best scale and mean squared difference of natural logarithms, for the points inside the band.
+/// Returns the best scale, and the mean squared difference of natural logarithms at this scale, for
+/// the points inside the band.
 pub(crate) fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let points = || inside(points, profile.band);
     let density = |point: &Peak| profile.density_at(point.frequency_hz);

@@ -1,12 +1,12 @@
-//! Fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks; the cost function is
-//! not stated) and to bins spread over the band. It minimises squared differences of decibels or of
-//! magnitudes.
+//! Fits the density to the spectrum's peaks and to bins spread over the band. The fit minimises
+//! squared differences of decibels or of magnitudes. (The paper uses fminsearch on ten peaks and
+//! does not state the cost function.)
 //!
-//! The paper's method is `error=magnitude`, `lower_bound=1`, `bins=0`. Squared magnitudes follow
-//! only the strongest peaks, and peaks say nothing about the frequencies between them. The table
-//! has nine-band and third-octave errors in dB, as median, mean and worst, of 32 third-party
-//! recordings (20 to 1000 Hz, at most half the rate; eight of them 60 to 1000 Hz) and of 15
-//! simulated ones (five surfaces, three seeds):
+//! The paper's method corresponds to `error=magnitude`, `lower_bound=1`, `bins=0`. Squared
+//! magnitudes follow only the strongest peaks, and peaks say nothing about the frequencies between
+//! them. The table has nine-band and third-octave errors in dB, as median, mean and worst. They are
+//! from 32 third-party recordings (20 to 1000 Hz, at most half the rate; eight of them 60 to 1000
+//! Hz) and from 15 simulated recordings (five surfaces, three seeds):
 //!
 //! | options | recordings, nine bands | third octaves | simulated, nine bands | third octaves |
 //! |---|---|---|---|---|
@@ -18,14 +18,14 @@
 //! | `decibel`, bound 0.2, 20 bins | 2.3, 3.0, 10.6 | 4.1, 9.6, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //! | the default: `decibel`, bound 0.5, 20 bins | 2.3, 2.8, 7.9 | 4.1, 9.4, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //!
-//! If all peaks are on one side, the density that fits them best has a spike where there is no
-//! peak, many decibels too high. So if a fit to peaks is higher than twice the largest bin, a
-//! second fit is made to peaks and bins. Of both fits, the one that is nearer to peaks and bins in
-//! decibels is kept; for this comparison each has its best scale.
+//! If all peaks are on one side of the band, the density that fits them best has a spike where
+//! there is no peak, many decibels too high. So if a fit to peaks is higher than twice the largest
+//! bin, a second fit is made to peaks and bins. The fit that is nearer to peaks and bins in
+//! decibels is kept. In this comparison, each fit has its best scale.
 //!
-//! With `decibel` the fit has a closed form ([`crate::decibels`]), and the level is chosen so that
-//! the density has the energy of the points. If the density is then still higher than twice the
-//! largest bin, its level is reduced until it is as high as that bin.
+//! With `decibel`, the fit has a closed form ([`crate::decibels`]), and the level is chosen such
+//! that the density has the energy of the points. If the density is still higher than twice the
+//! largest bin, its level is reduced until its maximum equals the largest bin.
 
 use alloc::vec::Vec;
 
@@ -47,18 +47,19 @@ const BINS: usize = 4;
 const STARTS: [(f64, f64); 4] = [(2.0, 2.0), (1.5, 3.0), (3.0, 1.5), (4.0, 4.0)];
 /// Smallest parameter the descriptor allows.
 const SMALLEST: f64 = 1e-3;
-/// Largest parameter of the search. Above it the density is narrower than a bin.
+/// Largest parameter of the search. With a larger parameter, the density would be narrower than a
+/// bin.
 const LARGEST: f64 = 1e4;
-/// Smallest number of peaks: the fit has three unknowns, two shapes and a scale.
+/// Smallest number of peaks. The fit has three unknowns: two shape parameters and a scale.
 const FEWEST_PEAKS: usize = 3;
-/// Largest maximum of a fit, relative to the spectrum's largest bin. A fit with a higher maximum
-/// has its energy where no point constrains it.
+/// Largest allowed maximum of a fit, relative to the spectrum's largest bin. A fit with a higher
+/// maximum has its energy at frequencies where no point constrains it.
 const HIGHEST: f64 = 2.0;
 /// Residual, as a part of the points' squared magnitude, above which a density counts as not
 /// matching the points.
 const NOTHING_EXPLAINED: f64 = 0.99;
 
-/// What is minimised at the points, relative to their own size.
+/// The cost that the fit minimises at the points. It does not depend on the scale of the points.
 #[derive(Clone, Copy)]
 enum Distance {
     /// Squared differences of magnitudes.
@@ -95,7 +96,8 @@ fn to_peaks_and_bins(
     DensityFit::to(&points, input)
 }
 
-/// Fits only the peaks. If these leave the fit undetermined or too high, also fits as many bins.
+/// Fits only the peaks. If the peaks leave the fit undetermined or too high, also fits the same
+/// number of bins.
 fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> DensityFit {
     let bins = spread_bins(input.options[POINTS] as usize, input, relative);
     if peaks.len() < FEWEST_PEAKS {
@@ -111,8 +113,8 @@ fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> Density
     if distance(&first) < distance(&second) { first } else { second }
 }
 
-/// A fitted density, with the RMS of its magnitude and its maximum over the bins, both relative to
-/// the spectrum's largest bin.
+/// A fitted density, with the RMS of its magnitude (`level`) and its maximum over the bins
+/// (`highest`). Both are relative to the spectrum's largest bin.
 struct DensityFit {
     alpha: f64,
     beta: f64,
@@ -150,8 +152,8 @@ impl DensityFit {
     }
 }
 
-/// Returns `count` bins that are evenly spaced in log frequency, and the largest bin, which may be
-/// the only nonzero one. Bins may occur twice.
+/// Returns `count` bins that are evenly spaced in log frequency, and the largest bin, because it
+/// may be the only nonzero bin. Bins may occur twice.
 fn spread_bins(count: usize, input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     let band: Band = input.band;
     let ratio = band.high_hz / band.low_hz;
@@ -181,7 +183,7 @@ fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f
     closed.unwrap_or_else(|| search_points(points, band, bound, distance))
 }
 
-/// As [`fit_points`], by a search from several starts.
+/// Does the same as [`fit_points`], with a search from several starting points.
 fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f64, f64) {
     let shape = |x: f64| (bound + x * x).min(LARGEST);
     let profile = |x: &[f64; 2]| Profile::new(shape(x[0]), shape(x[1]), band);
@@ -204,8 +206,8 @@ fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) ->
 }
 
 impl Distance {
-    /// Best scale in closed form, and the distance at this scale. The distance is NaN, which the
-    /// search rejects, if the density is not finite or is zero at all points.
+    /// Returns the best scale in closed form, and the distance at this scale. If the density is not
+    /// finite, or zero at all points, the distance is NaN, which the search rejects.
     fn best_scale(self, points: &[Peak], profile: &Profile) -> (f64, f64) {
         match self {
             Self::Magnitude => least_squares(points, profile),
@@ -213,8 +215,8 @@ impl Distance {
         }
     }
 
-    /// Scale that determines the level. With `decibel` it is not the best scale: next to a line,
-    /// that one is determined by the faint points, whereas the energy of the points is the line's.
+    /// Returns the scale that determines the level. With `decibel`, it is not the best scale: next
+    /// to a line, faint points determine the best scale, but the energy is the line's.
     fn level_scale(self, points: &[Peak], profile: &Profile) -> f64 {
         match self {
             Self::Magnitude => least_squares(points, profile).0,
@@ -223,7 +225,7 @@ impl Distance {
     }
 }
 
-/// Scale at which a density has the energy of the points.
+/// Returns the scale at which a density has the energy of the points.
 fn equal_energy(points: &[Peak], profile: &Profile) -> f64 {
     let density = |point: &Peak| profile.density_at(point.frequency_hz);
     let fitted: f64 = points.iter().map(density).map(|p| p * p).sum();
@@ -231,7 +233,8 @@ fn equal_energy(points: &[Peak], profile: &Profile) -> f64 {
     htex_dsp::root::sqrt(wanted / fitted)
 }
 
-/// Best scale and squared differences of magnitudes, relative to the sum of the points' squares.
+/// Returns the best scale, and the squared differences of magnitudes relative to the sum of the
+/// points' squares.
 fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {

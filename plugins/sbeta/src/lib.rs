@@ -1,5 +1,5 @@
 //! sBeta model (`org.htex.sbeta`): the envelope of the spectrum as a beta density on the normalised
-//! logarithmic frequency axis. It has two parameters (paper, Spectral beta).
+//! logarithmic frequency axis. It has two parameters (section "Spectral beta" of the paper).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -39,9 +39,9 @@ impl ShapedModel for SpectralBeta {
     )
     .fields(&[
         StaticField::scalar("alpha", "1", (1e-3, 1e6), "First shape parameter: the rise from the low edge.")
-        // The fits to 15 simulated recordings of five surfaces have 0.8 to 2.3, and 2.1 to 3.4
-        // for beta. Below 1 the density rises without bound towards its edge; at 20 it is a
-        // peak half an octave wide.
+        // The fits to 15 simulated recordings of five surfaces have an alpha of 0.8 to 2.3 and a
+        // beta of 2.1 to 3.4. Below 1, the density rises without bound towards the edge. At 20, it
+        // is a peak half an octave wide.
         .usual(UsualRange::log(0.5, 20.0)),
         StaticField::scalar("beta", "1", (1e-3, 1e6), "Second shape parameter: the fall to the high edge.")
         .usual(UsualRange::log(0.5, 20.0)),
@@ -102,14 +102,14 @@ pub struct Shape {
     logs: Option<Arc<Logs>>,
 }
 
-/// Logarithms of `u` and of `1 - u`, where `u` are the positions of a voice's frequencies on the
-/// axis.
+/// Logarithms of `u` and of `1 - u` for a voice's frequencies. `u` is the position of a frequency
+/// on the axis.
 struct Logs {
     log: Vec<f64>,
     log_rest: Vec<f64>,
 }
 
-/// Finite substitute for the logarithm of 0. Multiplied by any exponent other than 0, it is outside
+/// Finite substitute for the logarithm of 0. Its product with any exponent other than 0 is outside
 /// the range of exponentials.
 const LOG_ZERO: f64 = -1e300;
 
@@ -178,9 +178,9 @@ impl Curve for Shape {
     }
 }
 
-/// The beta density at the frequencies of a band. At an edge with a parameter below 1, where it is
-/// infinite, it is replaced by its value a quarter of a bin inside. This is close to what a bin of
-/// that width measures.
+/// The beta density at the frequencies of a band. If a parameter is below 1, the density is
+/// infinite at the parameter's edge. There it is replaced by the density a quarter of a bin inside
+/// the band, which is close to what a bin of this width measures.
 #[derive(Clone, Copy)]
 pub(crate) struct Profile {
     density: BetaDensity,

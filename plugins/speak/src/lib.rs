@@ -1,12 +1,12 @@
 //! sPeak model (`org.htex.speak`): the spectrum as a few sinusoids, whose frequencies are at least
-//! a just-noticeable difference apart (paper, Spectral peak, eq. for y_sp).
+//! a just-noticeable difference apart (section "Spectral peak" of the paper, equation for y_sp).
 //!
 //! By default the frequency of a sinusoid is interpolated between the bins
 //! ([`htex_dsp::interpolated_peaks`]). A tone at any multiple of 0.5 Hz from 60 to 900 Hz is then
-//! stored with an error of less than 0.001 Hz and 0.001 dB; at other frequencies, files round to
-//! 1/32 Hz. With `frequency=bin`, as in the paper, a sinusoid is at a bin. The errors are then up
-//! to 2.5 Hz and 1.4 dB, and because all lines are on the grid of 5 Hz the sound repeats every 0.2
-//! s.
+//! stored with an error of less than 0.001 Hz and 0.001 dB. Other frequencies are rounded to 1/32
+//! Hz in files. With `frequency=bin`, as in the paper, each sinusoid is at a bin. The errors are
+//! then up to 2.5 Hz and 1.4 dB. The sound repeats every 0.2 s, because all lines are on the grid
+//! of 5 Hz.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -35,13 +35,13 @@ const FREQUENCY_OPTION: usize = 3;
 
 /// Maximum number of sinusoids in one parameter set.
 const MAX_PEAKS: usize = 64;
-/// Peaks below this, relative to the largest bin, are ignored. They are imperceptible, cannot be
-/// stored, and may be rounding errors next to a tone at the band's edge.
+/// Peaks below this magnitude, relative to the largest bin, are ignored. They are imperceptible,
+/// cannot be stored, and may be rounding errors next to a tone at the band's edge.
 const FAINTEST: f64 = 1e-7;
 
-/// Frequencies in steps of 1/32 Hz, which contain the 5 Hz grid exactly.
+/// Frequencies are stored in steps of 1/32 Hz, which represent the 5 Hz grid exactly.
 const HERTZ: Store = Store::U16 { scale: 0.03125, offset: 0.0, log: false };
-/// Amplitudes in steps of 0.003 dB.
+/// Amplitudes are stored in steps of 0.003 dB.
 const RATIO: Store = Store::U16 { scale: 0.0003, offset: -18.0, log: true };
 
 pub(crate) struct SpectralPeak;
@@ -77,8 +77,8 @@ impl Model for SpectralPeak {
              the band's bins read (1 inside, 5/6 at an edge), sum to one.",
         )
         .stored(RATIO)
-        // A single sinusoid has the square root of 2, because half the squares of the
-        // amplitudes add up to one.
+        // A single sinusoid has the amplitude √2, because half the squares of all amplitudes add up
+        // to one.
         .usual(UsualRange::linear(0.0, 1.42)),
         StaticField::scalar(
             "random_phase",
@@ -156,8 +156,8 @@ impl Model for SpectralPeak {
         Ok(())
     }
 
-    /// Between sets with the same number of lines, each line glides. Otherwise the lines cross-fade
-    /// at constant power.
+    /// If all sets have the same number of lines, interpolates the frequency and the amplitude of
+    /// each line. Otherwise cross-fades the lines at constant power.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -218,7 +218,7 @@ fn selected_peaks(input: &FitInput<'_>) -> Vec<Peak> {
     select(input.frequency_hz, input.magnitude, count, jnd)
 }
 
-/// Value of the field `random_phase`.
+/// Returns the value of the field `random_phase`.
 fn random_phase(input: &FitInput<'_>) -> f64 {
     match input.options[PHASE_OPTION] as u32 {
         0 => 1.0,
@@ -246,7 +246,7 @@ pub struct SpectralPeakVoice {
 }
 
 impl SpectralPeakVoice {
-    /// Sets the lines; returns their number.
+    /// Sets the lines, and returns their number.
     fn set(&mut self, lines: &Lines<'_>) -> usize {
         let count = lines.frequency_hz.len().min(MAX_PEAKS);
         for i in 0..count {
@@ -273,8 +273,7 @@ impl Voice for SpectralPeakVoice {
     }
 }
 
-/// The sinusoids of a parameter set, and the RMS of the sinusoids in the band, as the bins measure
-/// it.
+/// The sinusoids of a parameter set, and their RMS in the band, as the bins measure it.
 struct Lines<'a> {
     frequency_hz: &'a [f64],
     amplitude: &'a [f64],
@@ -312,15 +311,15 @@ impl<'a> Lines<'a> {
         ]))
     }
 
-    /// Amplitude with which a line is played. It is 0 outside the band, where textures have no
-    /// magnitude.
+    /// Returns the amplitude with which a line is played. It is 0 outside the band, where textures
+    /// have no magnitude.
     fn played(&self, line: usize) -> f64 {
         let inside = self.band.low_hz..=self.band.high_hz;
         if inside.contains(&self.frequency_hz[line]) { self.amplitude[line] } else { 0.0 }
     }
 
-    /// Magnitude at unit RMS as the Hann window measures it: A on a line, and A/2 one bin away.
-    /// Powers of lines are added.
+    /// Returns the magnitude at unit RMS, as the Hann window measures it: A on a line, and A/2 one
+    /// bin away from the line. The powers of lines are added.
     fn seen_at(&self, frequency_hz: f64) -> f64 {
         let lines = self.frequency_hz.iter().enumerate();
         let power: f64 = lines
@@ -331,7 +330,8 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// RMS of lines, given by frequency and amplitude, as the bins of the band measure it.
+/// Returns the RMS of lines, as the bins of the band measure it. A line is a frequency and an
+/// amplitude.
 fn level(band: Band, lines: impl Iterator<Item = (f64, f64)>) -> f64 {
     let power = |(hz, a): (f64, f64)| 0.5 * a * a * read_part(band, hz);
     htex_dsp::root::sqrt(lines.map(power).sum())

@@ -1,5 +1,5 @@
-//! Slopes on both sides of the dominant peak, in decibels per decade (paper: from 20 Hz to the
-//! peak, and from the peak to 1 kHz).
+//! Fits the slopes on both sides of the dominant peak, in decibels per decade. In the paper, they
+//! reach from 20 Hz to the peak, and from the peak to 1 kHz.
 
 use alloc::vec::Vec;
 
@@ -10,7 +10,7 @@ use crate::{MAX_ORDER, ORDER_STEP, Shape};
 
 const ROUNDING: usize = 0;
 const METHOD: usize = 1;
-/// Slope of one filter order, decibels per decade.
+/// Slope of a filter of order 1, decibels per decade.
 const DB_PER_ORDER: f64 = 20.0;
 /// Level of bins without energy, relative to the peak. It keeps the slopes finite.
 const FLOOR_DB: f64 = -400.0;
@@ -29,7 +29,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         .zip(input.magnitude)
         .map(|(&f, &m)| (libm::log10(f), decibels(m / top)))
         .collect();
-    // A peak at an edge of the band has no slope on that side. It gets the lowest order.
+    // A peak at an edge of the band has no slope on that side. This side gets the lowest order.
     let order = |slope: Option<f64>| round_order(slope.unwrap_or(0.0), input.options[ROUNDING]);
     let slope = |points: &[(f64, f64)], peak: usize| match input.options[METHOD] as u32 {
         0 => least_squares(points),
@@ -42,7 +42,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let shape = Shape::with_orders(peak_hz, orders, input.band)?;
     Ok(Fit {
         parameters: vec![peak_hz, orders.0, orders.1],
-        // Chosen so that shape times level has the recording's magnitude at the peak.
+        // The level is chosen such that shape times level equals the recording's magnitude at the
+        // peak.
         level_rms: top * (shape.level() / shape.magnitude_at(peak_hz)),
     })
 }
@@ -51,15 +52,15 @@ fn decibels(ratio: f64) -> f64 {
     if ratio > 0.0 { (20.0 * libm::log10(ratio)).max(FLOOR_DB) } else { FLOOR_DB }
 }
 
-/// Returns the order for a slope, rounded half away from zero to whole steps, at least one, and
-/// then to the resolution of files.
+/// Returns the filter order for a slope. The slope is rounded to a multiple of the step (half away
+/// from zero), at least one step, and then to the resolution of files.
 fn round_order(slope_db_per_decade: f64, step_db_per_decade: f64) -> f64 {
     let steps = libm::round(slope_db_per_decade / step_db_per_decade).max(1.0);
     let order = (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER);
     ORDER_STEP * libm::round(order / ORDER_STEP)
 }
 
-/// Slope of the least-squares line. `None` if there are fewer than two points.
+/// Returns the slope of the least-squares line, or `None` if there are fewer than two points.
 fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let mean_x = points.iter().map(|p| p.0).sum::<f64>() / n;
@@ -76,7 +77,7 @@ fn anchored(points: &[(f64, f64)], peak: usize) -> Option<f64> {
     through(points, *points.get(peak)?)
 }
 
-/// Least-squares slope of a line through a given point.
+/// Returns the least-squares slope of a line through a given point.
 fn through(points: &[(f64, f64)], (x0, y0): (f64, f64)) -> Option<f64> {
     let xy: f64 = points.iter().map(|(x, y)| (x - x0) * (y - y0)).sum();
     let xx: f64 = points.iter().map(|(x, _)| (x - x0) * (x - x0)).sum();

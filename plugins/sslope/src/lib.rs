@@ -1,10 +1,10 @@
 //! sSlope model (`org.htex.sslope`): an asymmetric band-pass around the dominant peak, with three
-//! parameters (paper, Spectral slope).
+//! parameters (section "Spectral slope" of the paper).
 //!
-//! With the paper's rounding to 20 dB per decade the filter orders are integers. With finer
-//! rounding, or between two conditions, they can be fractional. A recursive filter has an integer
-//! order. So white noise is shaped in the frequency domain, by the Butterworth magnitude, which is
-//! defined for every order.
+//! With the paper's rounding to 20 dB per decade, the filter orders are integers. With finer
+//! rounding, or between two conditions, orders can be fractional, but a recursive filter must have
+//! an integer order. So white noise is shaped in the frequency domain with the Butterworth
+//! magnitude, which is defined for every order.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -69,7 +69,7 @@ impl ShapedModel for SpectralSlope {
             "Order r_a of the Butterworth high-pass.",
         )
         .stored(steps(ORDER_STEP))
-        // The fits to 15 simulated recordings of five surfaces have orders around 1 to 5.
+        // The fits to 15 simulated recordings of five surfaces have orders of about 1 to 5.
         .usual(UsualRange::linear(0.5, 6.0)),
         StaticField::scalar(
             "order_low_pass",
@@ -159,7 +159,7 @@ impl Curve for Shape {
         Ok(())
     }
 
-    /// The value at the peak is one half.
+    /// Returns the magnitude at a frequency. At the peak, it is one half.
     fn magnitude_at(&self, frequency_hz: f64) -> f64 {
         let above = frequency_hz / self.peak_hz;
         analog_low_pass_magnitude(above, self.low_pass)

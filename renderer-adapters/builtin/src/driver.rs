@@ -1,5 +1,5 @@
-//! What adapters of native drivers share: finding the driver's library, the table of its functions,
-//! and reserving what it drives.
+//! What adapters of native drivers have in common: finding the driver's library, the table of its
+//! functions, and reserving the hardware that the driver controls.
 #![allow(unsafe_code, reason = "a loader: the user asked to run the driver's initialisers")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,20 +13,20 @@ use htex_device::DeviceError;
 pub(crate) struct DriverLibrary {
     /// Names of the installed library, which are tried in turn.
     pub(crate) names: &'static [&'static str],
-    /// What a library that is named is loaded as.
+    /// For messages: what a library named by the user is loaded as.
     pub(crate) loaded_as: &'static str,
     /// The setting that names a library.
     pub(crate) setting: &'static str,
-    /// The sentence that none is installed.
+    /// The sentence that no library is installed.
     pub(crate) absent: &'static str,
-    /// The sentence that says what to do about it.
+    /// The sentence that says what to do if no library is installed.
     pub(crate) remedy: &'static str,
 }
 
 impl DriverLibrary {
     /// Loads the library that a setting names: a path or a bare name. A bare name means a file in
-    /// the current folder, else a library of the system. An empty text means the installed library.
-    /// `table` looks up its functions.
+    /// the current folder or, if there is none, a library of the system. An empty text means the
+    /// installed library. `table` looks up the library's functions.
     pub(crate) fn load<T, E: Display>(
         &self,
         path: &str,
@@ -50,8 +50,8 @@ impl DriverLibrary {
     }
 }
 
-/// Drivers by the setting that named them. They are never unloaded, because a driver may have
-/// threads of its own.
+/// The loaded drivers. The key is the setting that named the driver. Drivers are never unloaded,
+/// because a driver may have its own threads.
 pub(crate) struct DriverCache<T: 'static>(Mutex<BTreeMap<String, &'static T>>);
 
 impl<T> DriverCache<T> {
@@ -76,9 +76,9 @@ impl<T> DriverCache<T> {
     }
 }
 
-/// Defines `Table`, a function pointer for each symbol of a C library, and
-/// `Table::from_library`, which looks them up. The header of the library states the types. `hint`
-/// follows the message that a function is missing.
+/// Defines the struct `Table` with a function pointer for each given symbol of a C library, and
+/// `Table::from_library`, which looks up the symbols. The types must match the library's header.
+/// `hint` is appended to the message that a function is missing.
 macro_rules! driver_table {
     (
         extern $abi:tt, hint: $hint:literal;
@@ -106,18 +106,21 @@ macro_rules! driver_table {
 }
 pub(crate) use driver_table;
 
-/// What open devices have reserved: the adapter, the driver, and the thing.
+/// What open devices have reserved. A key is the adapter, the driver, and the name of the reserved
+/// hardware.
 static CLAIMED: Mutex<BTreeSet<[String; 3]>> = Mutex::new(BTreeSet::new());
 
-/// A reservation of what an open device uses exclusively, such as an output. Drivers themselves
-/// reserve it late or not at all. Dropping it releases it.
+/// A reservation of hardware that an open device uses exclusively, such as an output. It is needed
+/// because drivers reserve hardware late or not at all. Dropping the reservation releases the
+/// hardware.
 pub(crate) struct Claim([String; 3]);
 
 impl Claim {
-    /// Reserves a thing of an adapter's driver. `name` is what messages call it.
+    /// Reserves hardware. `key` is the adapter, the driver, and the name of the hardware. `name` is
+    /// its name in messages.
     ///
     /// # Errors
-    /// When another device has reserved it.
+    /// When another device has reserved the same hardware.
     pub(crate) fn reserve(key: [&str; 3], name: &str) -> Result<Self, DeviceError> {
         let key = key.map(str::to_owned);
         let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);

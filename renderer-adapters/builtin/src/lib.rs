@@ -1,7 +1,8 @@
 //! The built-in devices, one per module. An adapter that is added to [`devices`] becomes available
 //! in the command, in Python and in C.
 //!
-//! [`motor`] is what outputs share that receive a level and a frequency per block.
+//! [`motor`] is the common part of outputs that receive a level and a frequency per block instead
+//! of samples.
 //!
 //! ```
 //! use htex_device::Devices;
@@ -21,7 +22,7 @@ pub mod daq;
 #[cfg(not(target_family = "wasm"))]
 mod driver;
 pub mod file;
-// A page has neither libraries to load nor threads that keep a clock.
+// In a web page, there are neither libraries to load nor threads that keep a clock.
 #[cfg(not(target_family = "wasm"))]
 pub mod motor;
 #[cfg(not(target_family = "wasm"))]
@@ -54,16 +55,16 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
-/// An output, and an input of the same name, that are built in only with a Cargo feature.
+/// A device that is built in only with a Cargo feature: an output, and an input of the same name.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
     pub id: &'static str,
-    /// The output it provides, in one word.
+    /// What the output plays, in one word.
     pub what: &'static str,
     pub feature: &'static str,
-    /// The package it is built against on Linux.
+    /// The package that is needed to build it on Linux.
     pub package: &'static str,
-    /// Whether this program was built with it.
+    /// Whether this program was built with the feature.
     pub is_built: bool,
 }
 
@@ -77,7 +78,7 @@ pub const SOUND: Optional = Optional {
 };
 
 impl Optional {
-    /// Returns the optional device called `name` (short name or id), if this program was built
+    /// Returns the optional device with this name (short name or id) if this program was built
     /// without it.
     pub fn left_out(name: &str) -> Option<Self> {
         let named = |one: &Self| [one.id, one.short_name()].contains(&name);

@@ -113,7 +113,7 @@ fn open(name: &str, buffer_ms: &str) -> Result<Box<dyn Output>, DeviceError> {
     Audio.open_output(&settings(&format!("alsa:{name}"), buffer_ms), &format)
 }
 
-/// Returns both channels of what a device recorded.
+/// Returns the two channels that a device recorded.
 fn recorded(name: &str) -> [Vec<f32>; 2] {
     let bytes = fs::read(folder().join(name)).unwrap();
     let samples: Vec<f32> = match name {

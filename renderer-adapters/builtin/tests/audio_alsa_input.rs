@@ -39,7 +39,8 @@ fn what_is_read_is_what_the_card_delivers() {
     assert!(matches!(source.start(), Err(DeviceError::Closed(_))));
 }
 
-/// This card delivers as fast as it can. If nobody reads, the buffer soon overflows.
+/// This card delivers samples as fast as it can. If the test does not read, the buffer soon
+/// overflows.
 #[test]
 fn an_overrun_ends_the_source_behind_what_came_before_it() {
     let mut source = open("float", &[("buffer_s", "0.1")]).unwrap();

@@ -1,24 +1,31 @@
-//! The frozen device ABI: the numbers and signatures between a host and a native device, which is
-//! an output or an input.
+//! The frozen device ABI: the constants and function signatures that a host and a native device (an
+//! output or an input) share.
 //!
-//! A library exports one function, [`EntryFn`], which returns its [`DeviceTable`]. Only scalars and
-//! pointer + length cross the calls of the table. A function that returns a text writes to the
-//! caller's buffer and returns the length needed. If the buffer is too small, the caller calls
-//! again. Negative results are [`Code`]s. Settings cross as UTF-8 lines, each `name=value` and a
-//! line end, in the order of the descriptor. The host passes all of them, with profiles and
-//! defaults already resolved. Samples of an output are `f32`. Samples of an input are `f64` and
-//! interleaved: frame after frame, and within a frame one sample of each channel.
+//! A library exports one function, [`EntryFn`], which returns its [`DeviceTable`]. The functions
+//! take and return only scalars, and buffers as a pointer and a length. Negative results are
+//! [`Code`]s.
+//!
+//! A function that returns a text writes as much of it as fits into the caller's buffer, and
+//! returns the length of the whole text in bytes. If the buffer was too small, the caller calls
+//! again with a larger one.
+//!
+//! The host passes settings as UTF-8 lines `name=value`, each with a line end, in the order of the
+//! descriptor. It passes every setting, with the profile and the defaults already applied.
+//!
+//! Samples of an output are `f32`. Samples of an input are `f64` and interleaved: frame after
+//! frame, and within a frame one sample of each channel.
 
 /// Major version: a host loads only devices of its own major version.
 pub const ABI_MAJOR: u32 = 1;
-/// Minor version: grows with further functions at the end of the table.
+/// Minor version: increases when functions are added at the end of the table.
 pub const ABI_MINOR: u32 = 0;
-/// The marker of a table: a fixed upper half, then one byte each for major and minor version.
+/// The marker of a table: 0x4844 in the upper 16 bits, then one byte each for the major and the
+/// minor version.
 pub const ABI_MARKER: u32 = 0x4844_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
 
 /// Maximum length of any text in either direction, bytes.
 pub const MAX_TEXT_BYTES: usize = 1_048_576;
-/// Maximum number of settings in a descriptor, and of profiles.
+/// Maximum number of settings in a descriptor, and maximum number of profiles.
 pub const MAX_SETTINGS: usize = 64;
 /// Lowest rate of an output, hertz.
 pub const MIN_RATE_HZ: f64 = 1.0;
@@ -26,35 +33,38 @@ pub const MIN_RATE_HZ: f64 = 1.0;
 pub const MIN_INPUT_RATE_HZ: f64 = 0.001;
 /// Highest rate of a device, hertz.
 pub const MAX_RATE_HZ: f64 = 10_000_000.0;
-/// Maximum number of frames in a block that an output asks for or is opened for. The minimum is one.
+/// Maximum block size of an output, frames: the size that it prefers, and the size that the host
+/// opens it with. The minimum is one.
 pub const MAX_BLOCK_FRAMES: u32 = 1_048_576;
 /// Maximum number of channels of an input. The minimum is one.
 pub const MAX_CHANNELS: usize = 1_024;
 /// Maximum length of a channel's name or unit, bytes.
 pub const MAX_NAME_BYTES: usize = 256;
 
-/// Index of the status number: frames that the device took since it was opened.
+/// Index in the status numbers: frames that the output has accepted since it was opened.
 pub const STATUS_FRAMES_WRITTEN: usize = 0;
-/// Index of the status number: frames that were output.
+/// Index in the status numbers: frames that have been played.
 pub const STATUS_FRAMES_PLAYED: usize = 1;
-/// Index of the status number: how often the device ran dry.
+/// Index in the status numbers: underruns, i.e. how often the output ran out of samples.
 pub const STATUS_UNDERRUNS: usize = 2;
-/// Index of the status number: time from writing a sample to its output, seconds.
+/// Index in the status numbers: latency from writing a sample to playing it, seconds.
 pub const STATUS_LATENCY_S: usize = 3;
-/// Index of the status number: largest magnitude that the device took, in the quantity's unit.
+/// Index in the status numbers: largest magnitude of a sample that the output has accepted, in the
+/// quantity's unit.
 pub const STATUS_PEAK: usize = 4;
-/// Number of status numbers. Every device has all of them.
+/// Number of status numbers. Every output reports all of them.
 pub const STATUS_NUMBERS: usize = 5;
 
-/// Negative results of calls. The numbers are frozen, because they are part of the ABI.
+/// Result codes of calls; errors are negative. The numbers are frozen, because they are part of the
+/// ABI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Code {
     /// The call succeeded.
     Ok = 0,
-    /// A pointer, length or block size is not usable, or a text is not UTF-8.
+    /// A pointer, length or block size is invalid, or a text is not UTF-8.
     InvalidArgument = -1,
-    /// A setting is not known, missing, or not usable; the text begins with `NAME: `.
+    /// A setting is unknown, missing or invalid; the text begins with `NAME: `.
     InvalidSetting = -2,
     /// The device does not run at this rate.
     InvalidRate = -3,
@@ -64,7 +74,7 @@ pub enum Code {
     Busy = -5,
     /// A sample is over the limit or not a number; the output is at zero.
     OverLimit = -6,
-    /// The device ran dry; the output is at zero. The text says what to do.
+    /// The output ran out of samples and is at zero. The text says what to do.
     Underflow = -7,
     /// The call came before `start`, after `finish` or after an error.
     Closed = -8,
@@ -78,12 +88,12 @@ pub enum Code {
     Failed = -12,
     /// Frames of an input were lost because they were read too late. The text says what to do.
     Overrun = -13,
-    /// An input has ended, as a file does; there are no more frames.
+    /// An input has ended (e.g. at the end of a file); there are no more frames.
     End = -14,
 }
 
 impl Code {
-    /// Converts a number that crossed the ABI to its code. Unknown negative numbers are `Failed`.
+    /// Converts the result of a call to its code. Unknown negative numbers are `Failed`.
     pub(crate) fn from_answer(answer: i64) -> Self {
         match answer {
             0.. => Self::Ok,
@@ -105,8 +115,8 @@ impl Code {
     }
 }
 
-/// The function that a library exports under the name `htex_device_adapter`: returns its table, which lives as long as the library.
-/// `[any thread]`
+/// The function that a library exports under the name `htex_device_adapter`. Returns the library's
+/// table, which lives as long as the library. `[any thread]`
 pub type EntryFn = extern "C" fn() -> *const DeviceTable;
 /// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`. Returns the length, which is the same
 /// at each call. `[any thread]`
@@ -116,39 +126,41 @@ pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Writes a JSON array of the devices that are connected now. Returns the length, which may change.
 /// `[any thread; may wait]`
 pub type EndpointsJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Opens a device and returns its handle, greater than zero. An output is opened for blocks of
-/// `block_frames`, silent and at zero. An input does not sample yet, and both numbers are 0.
-/// `[any thread; may wait]`
+/// Opens a device and returns its handle, which is greater than 0. A newly opened output is silent
+/// and at zero, and expects blocks of `block_frames`. An input does not sample yet; for an input,
+/// `rate_hz` and `block_frames` are 0. `[any thread; may wait]`
 pub type OpenFn = unsafe extern "C" fn(
     settings: *const u8,
     settings_len: usize,
     rate_hz: f64,
     block_frames: u32,
 ) -> i64;
-/// Ends the stream; returns 0. An output plays all written samples, goes to zero and keeps the
-/// result. An input stops sampling for good, also when it had stopped before.
-/// `[one thread at a time for one device; may wait]`
+/// Ends the stream; returns 0. An output plays all written samples, goes to zero and keeps its
+/// result, such as a file. An input stops sampling for good, even if it has already stopped. `[one
+/// thread at a time for one device; may wait]`
 pub type FinishFn = extern "C" fn(device: i64) -> i64;
-/// Closes a device; returns 0. Without [`FinishFn`] before, an output aborts: it goes to zero at
-/// once, and an unfinished file is removed. `[one thread at a time for one device]`
+/// Closes a device; returns 0. An output that was not finished with [`FinishFn`] aborts: it goes to
+/// zero at once, and an unfinished file is removed. `[one thread at a time for one device]`
 pub type CloseFn = extern "C" fn(device: i64) -> i64;
 /// Returns 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
 /// present, else 0. `[any thread]`
 pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
-/// Writes as JSON what an output with these settings can do. Returns the length. Opens nothing.
-/// `[any thread; may wait]`
+/// Writes the capabilities of an output with these settings as JSON. Returns the length. Does not
+/// open the output. `[any thread; may wait]`
 pub type CapabilitiesJson = unsafe extern "C" fn(
     settings: *const u8,
     settings_len: usize,
     out: *mut u8,
     capacity: usize,
 ) -> i64;
-/// Takes as many samples as fit within `timeout_ms` (0: those that fit now) and returns their
-/// number. The first samples start the output. `[one thread at a time for one device; may wait]`
+/// Passes samples to an output. The output takes as many as fit within `timeout_ms` (0: as many as
+/// fit now) and returns their number. The first samples start the output. `[one thread at a time
+/// for one device; may wait]`
 pub type WriteFn =
     unsafe extern "C" fn(device: i64, samples: *const f32, frames: usize, timeout_ms: u32) -> i64;
-/// Writes the status numbers of an output at the indices `STATUS_…`, at most `capacity` of them.
-/// Returns how many the device has. `[one thread at a time for one device]`
+/// Writes up to `capacity` status numbers of an output to `out`, in the order of the indices
+/// `STATUS_…`. Returns how many status numbers the output has. `[one thread at a time for one
+/// device]`
 pub type StatusFn = unsafe extern "C" fn(device: i64, out: *mut f64, capacity: usize) -> i64;
 /// Writes the rate and the channels of an open input as JSON. Returns the length, which is the
 /// same at each call. `[one thread at a time for one device]`
@@ -161,7 +173,7 @@ pub type StartFn = extern "C" fn(device: i64) -> i64;
 pub type ReadFn =
     unsafe extern "C" fn(device: i64, samples: *mut f64, len: usize, timeout_ms: u32) -> i64;
 
-/// The table of a device's functions. Those of the other direction may be null.
+/// The table of a device's functions. The functions of the other direction may be null.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // Each type says what its function does.
@@ -177,11 +189,11 @@ pub struct DeviceTable {
     pub finish: Option<FinishFn>,
     pub close: Option<CloseFn>,
     pub extension: Option<ExtensionFn>,
-    /// Output only, as the next two.
+    /// Only for outputs, like the next two functions.
     pub capabilities: Option<CapabilitiesJson>,
     pub write: Option<WriteFn>,
     pub status: Option<StatusFn>,
-    /// Input only, as the next two.
+    /// Only for inputs, like the next two functions.
     pub stream: Option<StreamJson>,
     pub start: Option<StartFn>,
     pub read: Option<ReadFn>,

@@ -1,4 +1,4 @@
-//! The traits of devices.
+//! The traits that a device implements.
 
 use std::time::Duration;
 
@@ -33,8 +33,8 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// The [`Settings`] are complete when they arrive: profile and defaults are applied, and each value
 /// is allowed by its [`SettingKind`](crate::SettingKind). An adapter checks only what depends on
-/// several settings or on the hardware. `NAME:TARGET` on the command line (e.g. `daq:Dev1/ai0`)
-/// gives the setting that [`Descriptor::target`] names the value `TARGET`.
+/// several settings or on the hardware. On the command line, `NAME:TARGET` (e.g. `daq:Dev1/ai0`)
+/// selects one device: `TARGET` becomes the value of the setting that [`Descriptor::target`] names.
 ///
 /// To build a native library from an adapter, derive `Default` and call
 /// [`export_device!`](crate::export_device). The macro turns errors into status codes and catches
@@ -42,7 +42,7 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// # Example: an output
 ///
-/// A meter that plays nothing and keeps the largest force:
+/// A meter that plays nothing and remembers the largest force:
 ///
 /// ```
 /// use std::collections::BTreeMap;
@@ -238,18 +238,18 @@ use crate::{Capabilities, Descriptor, DeviceError, Direction, Endpoint, InputStr
 ///
 /// # Limits
 ///
-/// - An output has one stream of samples of one quantity at one rate. Devices with several channels
-///   choose what each channel plays by a setting of their own.
+/// - An output has one stream of samples of one quantity at one rate. A device with several
+///   channels needs its own setting for what each channel plays.
 /// - A paced output of display voltage must keep its mean voltage within
 ///   [`DirectVoltage`](crate::DirectVoltage). The host checks this for native libraries; a built-in
 ///   adapter checks it itself.
 /// - The host checks the rate, channels, counts and samples of an input from a native library
 ///   ([`NativeInput`](crate::NativeInput)). It trusts a built-in input.
-/// - Everything else is checked by the adapter: `htex device check` tests each guarantee of the ABI
-///   on a native library or a built-in adapter.
+/// - The adapter must check everything else. `htex device check` tests each guarantee of the ABI on
+///   a native library or a built-in adapter.
 pub trait Adapter: Send + Sync {
-    /// Describes the adapter: id, name, direction, settings and profiles. Returns the same at each
-    /// call. `[any thread]`
+    /// Describes the adapter: id, name, direction, settings and profiles. Every call returns the
+    /// same descriptor. `[any thread]`
     fn descriptor(&self) -> &Descriptor;
 
     /// Lists the devices that are connected now. An empty list is not an error. `[any thread]`
@@ -298,12 +298,12 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 
 /// An open output, which takes samples and plays them.
 ///
-/// The host calls [`Self::write`] in a loop, usually with blocks of [`StreamFormat::block_frames`],
-/// and offers the rest again when the device takes only a part. It calls [`Self::finish`] at the
-/// end. Calls never overlap, but they may come from different threads.
+/// The host calls [`Self::write`] in a loop, usually with blocks of [`StreamFormat::block_frames`].
+/// If the output takes only a part of a block, the host offers the rest again. It calls
+/// [`Self::finish`] at the end. Calls never overlap, but they may come from different threads.
 ///
-/// Dropping an output without [`Self::finish`] aborts: it goes to zero at once, and an unfinished
-/// file is removed. The drop may happen at any time, also after an error.
+/// An output that is dropped without [`Self::finish`] aborts: it goes to zero at once, and an
+/// unfinished file is removed. The drop may happen at any time, even after an error.
 ///
 /// An output with a clock needs a thread or a driver of its own, because it must go to zero even if
 /// the host hangs and writes no more samples.
@@ -313,7 +313,7 @@ fn is_not(descriptor: &Descriptor, wanted: Direction) -> DeviceError {
 /// - [`Status::latency_s`] is the device's own estimate. The host does not measure it.
 /// - A display that runs dry must return [`DeviceError::Underflow`] and stay at zero. Other outputs
 ///   may continue, as the built-in sound card does: it fades to silence and counts an underrun. A
-///   host learns of it only from [`Status::underruns`].
+///   host sees this underrun only in [`Status::underruns`].
 ///
 /// [`Adapter`] has a complete example.
 pub trait Output: Send {
@@ -322,8 +322,8 @@ pub trait Output: Send {
     /// including none. The first samples start the output. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// When a sample is over the limit or not a number, and when the device ran dry or is gone. The
-    /// output is then at zero, and stays there.
+    /// When a sample is over the limit or not a number, when the output ran out of samples, or when
+    /// the device is gone. After an error the output is at zero and stays there.
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError>;
 
     /// Returns the counts since the device was opened. Works after an error.
@@ -340,10 +340,9 @@ pub trait Output: Send {
 
 /// An open input, which delivers frames of samples. Dropping it stops it.
 ///
-/// The host asks for the [`Self::stream`] and calls [`Self::start`] once. It then calls
-/// [`Self::read`] in a loop until it has enough or gets [`InputFrames::End`], and calls
-/// [`Self::finish`] or drops the input. Calls never overlap, but they may come from different
-/// threads.
+/// The host reads [`Self::stream`] and calls [`Self::start`] once. It then calls [`Self::read`] in
+/// a loop until it has enough or gets [`InputFrames::End`], and calls [`Self::finish`] or drops the
+/// input. Calls never overlap, but they may come from different threads.
 ///
 /// [`Adapter`] has a complete example.
 pub trait Input: Send {
@@ -363,11 +362,12 @@ pub trait Input: Send {
     ///
     /// # Errors
     /// [`DeviceError::Overrun`] when frames were lost because they were read too late. Also when
-    /// the device is gone, was not started, or has been finished. After an error it delivers
+    /// the device is gone, was not started, or has been finished. After an error the input delivers
     /// nothing more.
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError>;
 
-    /// Stops sampling for good, also when it had stopped before. `[one thread at a time; may wait]`
+    /// Stops sampling for good. The input may already have stopped. `[one thread at a time; may
+    /// wait]`
     ///
     /// # Errors
     /// When stopping failed. The input delivers nothing more even then.
@@ -379,36 +379,36 @@ pub trait Input: Send {
 pub enum InputFrames {
     /// The number of frames written to the buffer; 0 if none arrived within the timeout.
     Count(usize),
-    /// The input has ended, as a file does; there are no more frames.
+    /// The input has ended (e.g. at the end of a file); there are no more frames.
     End,
 }
 
-/// The format of the stream that an output is opened for. It has one channel: a device with several
-/// channels plays it on all of them.
+/// The sample rate and block size with which an output is opened. The stream has one channel. A
+/// device with several channels plays it on all of them, unless its settings say otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamFormat {
     /// Sample rate, hertz.
     pub rate_hz: f64,
-    /// Block size of the writes to come, frames.
+    /// Usual number of frames in a write.
     pub block_frames: u32,
 }
 
 /// Counts since an output was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Status {
-    /// Number of frames the device took.
+    /// Number of frames that the output has accepted.
     pub frames_written: u64,
-    /// Number of frames that were output.
+    /// Number of frames that have been played.
     pub frames_played: u64,
-    /// How often the device ran dry.
+    /// Number of underruns, i.e. how often the output ran out of samples.
     pub underruns: u64,
-    /// Time from writing a sample to its output, seconds.
+    /// Latency from writing a sample to playing it, seconds.
     pub latency_s: f64,
     /// Largest magnitude written, in the device's unit.
     pub peak: f64,
 }
 
-/// The status as the numbers of the ABI. Counts are exact below 2⁵³.
+/// Converts a status to the numbers of the ABI. Counts are exact below 2⁵³.
 impl From<Status> for [f64; STATUS_NUMBERS] {
     fn from(status: Status) -> Self {
         let mut numbers = [0.0; STATUS_NUMBERS];

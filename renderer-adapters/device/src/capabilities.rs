@@ -6,26 +6,27 @@ use crate::DeviceError;
 use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 
 /// Lowest sample rate of a display, as a multiple of its carrier frequency. At a lower rate, the
-/// carrier would become a slow or direct voltage.
+/// carrier could alias to a slow or direct voltage.
 pub const RATE_PER_CARRIER: f64 = 2.5;
 
 /// Capabilities of an output. They cross the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Capabilities {
-    /// The quantity of its samples.
+    /// The physical quantity of the samples.
     pub quantity: Quantity,
-    /// The sample rates it supports.
+    /// The supported sample rates.
     pub rates: Rates,
     /// Default sample rate, hertz.
     #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
     pub default_rate_hz: f64,
-    /// Largest magnitude that it accepts, in the quantity's unit; absent: no limit. A voltage
-    /// always has a limit.
+    /// Largest magnitude of a sample that the output accepts, in the quantity's unit. If absent,
+    /// there is no limit. A display voltage must have a limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub limit: Option<f64>,
-    /// Difference between two neighbouring output values, in the quantity's unit; absent: floats.
+    /// Step between two adjacent output values, in the quantity's unit. If absent, the output takes
+    /// floating-point values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
@@ -33,8 +34,8 @@ pub struct Capabilities {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub carrier_hz: Option<f64>,
-    /// Whether a clock takes the samples. Otherwise (e.g. a file) they are taken as fast as they
-    /// are generated.
+    /// Whether the output takes samples at the pace of a clock. If not (e.g. a file), it takes them
+    /// as fast as they are generated.
     pub paced: bool,
     /// Preferred block size, frames.
     #[cfg_attr(feature = "schemars", schemars(range(min = 1, max = MAX_BLOCK_FRAMES)))]
@@ -77,17 +78,19 @@ impl Capabilities {
         None
     }
 
-    /// Returns the lowest rate that can represent the carrier, hertz; 0 without a carrier.
+    /// Returns the lowest rate that can represent the carrier, hertz. Returns 0 if there is no
+    /// carrier.
     pub(crate) fn lowest_with_carrier_hz(&self) -> f64 {
         self.carrier_hz.map_or(0.0, |hz| RATE_PER_CARRIER * hz)
     }
 
-    /// Whether the device supports a rate, and the rate can represent the carrier.
+    /// Whether the device supports this rate and the rate is high enough for the carrier.
     pub fn has_rate(&self, rate_hz: f64) -> bool {
         self.rates.has(rate_hz) && rate_hz >= self.lowest_with_carrier_hz()
     }
 
-    /// Formats the rates as text, including the lowest rate that the carrier allows.
+    /// Returns the supported rates as text for a message, including the lowest rate that the
+    /// carrier allows.
     pub fn rates_text(&self) -> String {
         match self.carrier_hz {
             Some(hz) => format!(
@@ -98,8 +101,9 @@ impl Capabilities {
         }
     }
 
-    /// Checks that each sample is a number within the limit. The limit is compared as the nearest
-    /// `f32`. `first_frame` is the index of the first of `samples` since the device was opened.
+    /// Checks that each sample is a number within the limit. The limit is first rounded to the
+    /// nearest `f32`. `first_frame` is the index of the first of `samples` since the device was
+    /// opened.
     ///
     /// # Errors
     /// [`DeviceError::OverLimit`] for the first sample that is over the limit or not a number.
@@ -169,8 +173,8 @@ impl Quantity {
         }
     }
 
-    /// Whether the samples are a mechanical quantity in an SI unit. If so, a texture's levels are
-    /// played as they are.
+    /// Whether the samples are a mechanical quantity in an SI unit. If so, textures are played at
+    /// their own level, without scaling.
     pub fn is_physical(self) -> bool {
         !matches!(self, Self::DisplayVoltage | Self::Sound)
     }

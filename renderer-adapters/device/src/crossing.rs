@@ -1,4 +1,4 @@
-//! Errors across the ABI: an error becomes a code and a text, and the other way round.
+//! Converts errors to the codes and texts of the ABI, and back.
 
 use std::time::Duration;
 
@@ -11,8 +11,8 @@ const MAX_WAIT_MS: u32 = 86_400_000;
 /// Converts an error to its code and its last-error text.
 pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     use DeviceError as E;
-    // Where `incoming` builds the same error again, only the part that the host does not know
-    // crosses.
+    // For errors that `incoming` rebuilds, only the part that the host does not know crosses the
+    // ABI.
     let text = match error {
         E::Setting { name, what } => format!("{name}: {what}"),
         E::Underflow { advice, .. } | E::Overrun { advice, .. } => advice.clone(),
@@ -52,7 +52,7 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
             let (path, what) = parted(text);
             DeviceError::File { path, what }
         }
-        // A sentence with the rates that there are.
+        // The text is a complete sentence, which lists the supported rates.
         Code::InvalidRate => DeviceError::Message(text),
         Code::Missing => DeviceError::Missing(text),
         Code::Busy => DeviceError::Busy(text),

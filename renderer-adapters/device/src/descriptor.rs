@@ -19,7 +19,7 @@ pub struct Descriptor {
     pub version: String,
     /// One sentence that says what the adapter drives or reads.
     pub summary: String,
-    /// Whether its devices play or record.
+    /// Whether the adapter's devices play or record.
     pub direction: Direction,
     /// Name of the setting that selects one of the adapter's devices. On a command line,
     /// `NAME:TARGET` gives that setting the value `TARGET`. An input must have one.
@@ -30,13 +30,13 @@ pub struct Descriptor {
     /// Named groups of settings, e.g. for one rig.
     #[serde(default)]
     pub profiles: Vec<Profile>,
-    /// How an output transforms the samples and what is lost. Absent: it plays the samples
-    /// themselves.
+    /// How an output transforms the samples and what is lost. If absent, the output plays the
+    /// samples themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mapping: Option<Mapping>,
 }
 
-/// Whether a device takes samples or delivers them.
+/// Whether a device is an output, which takes samples, or an input, which delivers them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -57,11 +57,11 @@ impl std::fmt::Display for Direction {
     }
 }
 
-/// How a device that cannot play samples transforms them.
+/// How a device that cannot play the samples themselves transforms them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Mapping {
-    /// What it plays, e.g. the level and mean frequency of each block.
+    /// What the device plays instead, e.g. the level and mean frequency of each block.
     pub plays: String,
     /// What is lost in the transformation.
     pub loses: String,
@@ -81,10 +81,11 @@ pub struct Setting {
     pub name: String,
     /// The values that are allowed.
     pub kind: SettingKind,
-    /// Default value; absent: the user must give a value.
+    /// Default value. If absent, the user must give a value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
-    /// Default value for a live motion, e.g. a shorter buffer.
+    /// Default value when the motion is live, i.e. read from a sensor during playback. A live
+    /// motion may need a shorter buffer, for example.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub live_default: Option<String>,
     /// How a scene, which may be untrusted, may change the setting.
@@ -94,8 +95,8 @@ pub struct Setting {
     pub description: String,
 }
 
-/// How a scene may change a setting. Only the user gives settings that describe the hardware, one
-/// by one or by choosing a profile.
+/// How a scene may change a setting. Only the user may give the settings that describe the
+/// hardware, one by one or by choosing a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -104,7 +105,7 @@ pub enum FromScene {
     #[default]
     Any,
     /// The scene may lower the user's value or the default, e.g. of a limit or a buffer. The
-    /// smallest number given applies.
+    /// smallest of the given numbers applies.
     Less,
     /// The scene may raise the user's value or the default, e.g. of a ramp.
     More,
@@ -118,7 +119,7 @@ impl FromScene {
     }
 }
 
-/// The allowed values of a setting. Values are text; numbers are written as in JSON.
+/// The allowed values of a setting. Values are text. Numbers are written as in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -135,7 +136,7 @@ pub enum SettingKind {
         /// The values.
         values: Vec<String>,
     },
-    /// A file to write or read.
+    /// The path of a file to write or read.
     Path,
     /// Any text without line ends.
     Text,
@@ -152,11 +153,12 @@ impl SettingKind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Profile {
-    /// The name by which the user chooses it.
+    /// Name with which the user chooses the profile.
     pub name: String,
-    /// Its purpose.
+    /// What the profile is for.
     pub summary: String,
-    /// The settings it fixes. Settings given in addition to a profile take precedence.
+    /// The settings that the profile gives, by name. The user's own values take precedence, except
+    /// that they can only lower a limit (`from_scene` is `less`).
     pub settings: BTreeMap<String, String>,
 }
 
@@ -164,9 +166,9 @@ pub struct Profile {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Endpoint {
-    /// The value of the setting that selects it.
+    /// Name of the device, which is also the value of the setting that selects it.
     pub name: String,
-    /// The name of the setting that selects it.
+    /// Name of the setting that selects the device.
     pub setting: String,
     /// Description for the user.
     pub summary: String,
@@ -223,7 +225,7 @@ impl Descriptor {
         })
     }
 
-    /// Finds a value of a profile that is not allowed.
+    /// Returns a message about the first value of a profile that is not allowed.
     fn profile_fault(&self, profile: &Profile) -> Option<String> {
         let mut values = profile.settings.iter();
         let error = values.find_map(|(name, value)| {
@@ -233,8 +235,9 @@ impl Descriptor {
         Some(format!("profile `{}`: {error}", profile.name))
     }
 
-    /// Returns the settings with a profile, or without one. `None` if some setting has no default
-    /// and must be given.
+    /// Returns the settings that follow from a profile and the defaults, or from the defaults
+    /// alone. `None` if a setting has no default and the profile does not give it, or if there is
+    /// no such profile.
     pub fn settings(&self, profile: Option<&str>) -> Option<Settings> {
         Settings::resolve(self, profile, &BTreeMap::new()).ok()
     }

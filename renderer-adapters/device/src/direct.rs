@@ -1,16 +1,17 @@
 //! Direct voltage at a display: the mean of the written voltage over any 100 ms.
 //!
 //! A carrier protects a finger from charge and direct voltage. The carrier may be lost in many
-//! ways: by a wrong rate, an effect, a clipped sample, a fault of the program. The mean shows every
-//! one of them, so the last stage before a device limits it: for NI cards the session, for native
-//! libraries the host. Samples over the limit are refused and the output goes to zero. They are not
-//! corrected, because a filter that removes the mean would hide the fault and change every sample.
+//! ways: by a wrong rate, an effect, a clipped sample, a fault of the program. The mean voltage
+//! reveals all of these faults, so the last stage before the device limits it. This stage is the
+//! session for NI cards, and the host for native libraries. Samples over the limit are refused and
+//! the output goes to zero. They are not corrected, because a filter that removes the mean would
+//! hide the fault and change every sample.
 
 use crate::Settings;
 
 /// Length of the window whose mean is the direct voltage, seconds.
 const DIRECT_WINDOW_S: f64 = 0.1;
-/// Limit of the direct voltage for a display that states none, volts.
+/// Default limit of the direct voltage, for a display whose settings state none, volts.
 pub const DIRECT_LIMIT_V: f64 = 1.0;
 /// Name of the setting in which a display states its limit.
 pub const DIRECT_SETTING: &str = "dc_limit_v";
@@ -37,7 +38,7 @@ pub struct Excess {
 }
 
 impl DirectVoltage {
-    /// Starts with a voltage of zero. If the limit is NaN, it is [`DIRECT_LIMIT_V`].
+    /// Starts with 100 ms of zero volts. If `limit_v` is NaN, [`DIRECT_LIMIT_V`] applies.
     pub fn new(limit_v: f64, rate_hz: f64) -> Self {
         let frames = (DIRECT_WINDOW_S * rate_hz).round().max(1.0) as usize;
         Self {
@@ -53,8 +54,8 @@ impl DirectVoltage {
         Self::new(settings.number(DIRECT_SETTING), rate_hz)
     }
 
-    /// Finds the first of these samples at which the mean would exceed the limit, if they were
-    /// output next.
+    /// Returns the first of these samples at which the mean would exceed the limit if the device
+    /// played them next.
     pub fn excess<T: Copy + Into<f64>>(&self, samples: &[T]) -> Option<Excess> {
         let frames = self.last_v.len();
         let most_v = self.limit_v * (1.0 + ROUNDING) * frames as f64;
@@ -74,7 +75,7 @@ impl DirectVoltage {
         None
     }
 
-    /// Records samples that the device took.
+    /// Adds samples that the device has accepted to the window.
     pub fn push<T: Copy + Into<f64>>(&mut self, samples: &[T]) {
         for sample in samples {
             let sample: f64 = (*sample).into();
@@ -94,8 +95,8 @@ impl DirectVoltage {
         self.sum_v / self.last_v.len() as f64
     }
 
-    /// Returns the last 100 ms mirrored at the newest sample: the sample before it, the one before
-    /// that, and so on, back and forth without end.
+    /// Iterates backwards over the last 100 ms, beginning with the sample before the newest one.
+    /// The direction reverses at both ends of the window, so the iterator never ends.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();
         // Plus one window, so that the index below is never negative.

@@ -7,7 +7,7 @@ use crate::Direction;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviceError {
-    /// A setting is not known, missing, or not usable.
+    /// A setting is unknown, missing or invalid.
     #[error("setting `{name}`: {what}")]
     Setting {
         name: String,
@@ -50,7 +50,7 @@ pub enum DeviceError {
     #[error("{device} ran dry after {frames} frames; {advice}")]
     Underflow {
         device: String,
-        /// Frames that were output before.
+        /// Frames that had been played before.
         frames: u64,
         advice: String,
     },
@@ -58,11 +58,11 @@ pub enum DeviceError {
     #[error("{device} lost samples after {frames} frames, which were read too late; {advice}")]
     Overrun {
         device: String,
-        /// Frames that were delivered before.
+        /// Frames that had been delivered before.
         frames: u64,
         advice: String,
     },
-    /// A complete message from a library, or from another process that holds the device.
+    /// A complete message, which a library or the process that holds the device has written.
     #[error("{0}")]
     Message(String),
     /// The device was removed, or its driver failed.
@@ -85,7 +85,7 @@ pub enum DeviceError {
     /// was asked to record.
     #[error("{device} is not an {wanted}; choose another device")]
     Direction { device: String, wanted: Direction },
-    /// A descriptor, capabilities or a stream that an adapter stated is invalid.
+    /// The descriptor, the capabilities or the stream that an adapter returned is invalid.
     #[error("{document}: {what}")]
     Invalid {
         /// `descriptor`, `capabilities` or `stream`.
@@ -97,7 +97,7 @@ pub enum DeviceError {
     Library { library: String, fault: LibraryFault, what: String },
 }
 
-/// How a library fails to be a device of this ABI.
+/// The way in which a library violates the ABI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LibraryFault {
@@ -114,14 +114,14 @@ pub enum LibraryFault {
 }
 
 impl DeviceError {
-    /// Creates the error of a setting that is not known, missing, or not usable. `what` says what
-    /// is wrong, and which values are allowed.
+    /// Creates the error for a setting that is unknown, missing or invalid. `what` says what is
+    /// wrong, and which values are allowed.
     pub fn setting(name: impl Into<String>, what: impl Into<String>) -> Self {
         Self::Setting { name: name.into(), what: what.into() }
     }
 }
 
-/// What a device that is not found is called in a message.
+/// Returns the word for a device in the message that it was not found.
 fn noun(direction: &Direction) -> &'static str {
     match direction {
         Direction::Output => "device",

@@ -1,11 +1,11 @@
 //! The macro that exports an adapter.
 
-/// Generates the C functions of an [`Adapter`](crate::Adapter) that implements `Default`, as the
-/// table `pub static TABLE`.
+/// Generates the C functions of a type that implements [`Adapter`](crate::Adapter) and `Default`,
+/// and the table `pub static TABLE` that lists them.
 ///
-/// With `symbols: "FEATURE"`, the function `htex_device_adapter`, which returns the table, is
-/// exported when the crate is built with that Cargo feature. Use this for a native library, where
-/// one binary holds one adapter. A panic becomes a status code.
+/// With `symbols: "FEATURE"`, building the crate with that Cargo feature also exports the function
+/// `htex_device_adapter`, which returns the table. A host loads a native library through this
+/// function, so a library holds exactly one adapter. A panic in the adapter becomes a status code.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]

@@ -1,25 +1,25 @@
-//! Devices: an output plays samples of one quantity at one rate, an input records samples of several
-//! channels.
+//! Devices: an output plays samples of one quantity at one rate. An input records samples of
+//! several channels.
 //!
-//! An [`Adapter`] stands for a family of devices of one [`Direction`], such as all outputs of sound
-//! cards. [`Adapter::open_output`] returns an open [`Output`], [`Adapter::open_input`] an open
-//! [`Input`]. An output reports its [`Capabilities`] and enforces its limits on every sample. This
-//! crate does not depend on textures.
+//! An [`Adapter`] represents a family of devices with the same [`Direction`], such as the outputs
+//! of all sound cards. [`Adapter::open_output`] returns an open [`Output`], [`Adapter::open_input`]
+//! an open [`Input`]. An output reports its [`Capabilities`] and enforces its limits on every
+//! sample. This crate does not depend on textures.
 //!
-//! An adapter is either built into the program or a native library behind the plain C functions of
-//! [`abi`] ([`NativeAdapter`]). [`Devices`] finds both kinds. To write an adapter in Rust, implement
-//! the traits and call [`export_device!`].
+//! An adapter is either built into the program, or it comes from a native library that exports the
+//! C functions of [`abi`] ([`NativeAdapter`]). [`Devices`] finds both kinds. To write an adapter in
+//! Rust, implement the traits and call [`export_device!`].
 //!
-//! Outputs and inputs have one ABI, whose table holds the functions of both. They differ only in the
-//! calls of an open stream: `write` and `status`, or `start` and `read`.
+//! Outputs and inputs share one ABI with one table of functions. Only outputs have `capabilities`,
+//! `write` and `status`. Only inputs have `stream`, `start` and `read`.
 //!
 //! Models run in a sandbox. Devices do not, for two reasons: a device need not produce the same
 //! bits everywhere, and a WASM sandbox without imports cannot reach any hardware. Built-in adapters
 //! are therefore called directly. Their errors have the same types as the errors of a library.
 //!
-//! An output checks all samples of a call against its limits before it plays any of them. A voltage
-//! that states no limit is not loaded. After an error the output is at zero and stays there. The
-//! mean voltage of a display is limited as well ([`DirectVoltage`]).
+//! An output checks all samples of a call against its limits before it plays any of them. The host
+//! refuses a display voltage without a limit. After an error the output is at zero and stays there.
+//! The mean voltage of a display is also limited ([`DirectVoltage`]).
 #![warn(missing_docs)]
 
 pub mod abi;

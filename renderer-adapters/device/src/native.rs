@@ -1,8 +1,8 @@
-//! Adapters and devices of native libraries: loading, safe calls of the C functions, checked
-//! results.
+//! Adapters and devices from native libraries: loads the libraries, calls their C functions safely
+//! and checks the results.
 //!
-//! A native library runs with all the rights of this program, so the user decides which ones to
-//! load. No library is ever unloaded, because open devices point into it.
+//! A native library runs with all the rights of this program, so the user decides which libraries
+//! to load. No library is ever unloaded, because open devices point into it.
 
 use std::fmt;
 use std::path::Path;
@@ -22,9 +22,9 @@ use crate::{
 
 /// The function that a library exports.
 const ENTRY: &str = "htex_device_adapter";
-/// Size of the buffer in the first call for a text, bytes.
+/// Size of the buffer for the first attempt to read a text, bytes.
 const USUAL_TEXT: usize = 16_384;
-/// Maximum number of calls for a text whose length changes from call to call.
+/// Maximum number of attempts to read a text whose length changes from call to call.
 const TRIES: usize = 8;
 
 /// An adapter from a native library. Cheap to clone.
@@ -33,7 +33,7 @@ pub struct NativeAdapter {
     pub(crate) library: Arc<Library>,
 }
 
-/// A library's functions, and what it says of its adapter.
+/// A library's functions and its descriptor.
 pub(crate) struct Library {
     /// For messages.
     name: String,
@@ -49,8 +49,8 @@ pub(crate) enum CallFailure {
     Answer(String),
 }
 
-/// Returns a function from the library's table. When the library was loaded, the functions of its
-/// direction were checked.
+/// Returns a function from the library's table. Loading the library checked that all functions of
+/// its direction are present.
 macro_rules! function {
     ($library:expr, $name:ident) => {
         $library.table.$name.ok_or_else(|| $library.lacks(stringify!($name)))?
@@ -219,7 +219,7 @@ impl NativeAdapter {
         Err(DeviceError::Direction { device: name.clone(), wanted })
     }
 
-    /// Writes the settings in the form in which they cross the ABI.
+    /// Writes the settings as lines of text, the form that the ABI requires.
     pub(crate) fn lines(&self, settings: &Settings) -> String {
         settings.to_lines(&self.library.descriptor)
     }
@@ -328,7 +328,7 @@ impl Library {
         Err(CallFailure::Answer("a text that grows at each call".to_owned()))
     }
 
-    /// Interprets a result as a count. A negative one is a failure.
+    /// Interprets a result as a count. A negative result is a failure.
     fn count(&self, answer: i64) -> Result<usize, CallFailure> {
         if answer < 0 {
             return Err(CallFailure::Code(Code::from_answer(answer), self.last_error()));
@@ -442,7 +442,7 @@ impl NativeOutput {
     /// Returns the status as [`Output::status`] does, but reports an invalid result as an error.
     ///
     /// # Errors
-    /// When the device returns too few numbers, or one that is negative or not finite.
+    /// When the device returns too few numbers, or a number that is negative or not finite.
     pub fn checked_status(&self) -> Result<Status, DeviceError> {
         let library = &self.opened.library;
         let status = function!(library, status);
@@ -467,7 +467,8 @@ impl NativeOutput {
         self.opened.close()
     }
 
-    /// Closes the device if these samples would make a direct voltage. Its output is then at zero.
+    /// Closes the device if these samples would exceed the limit of the direct voltage. Closing
+    /// sets its output to zero.
     fn check_direct(&mut self, samples: &[f32]) -> Result<(), DeviceError> {
         let Some(direct) = &self.direct else {
             return Ok(());
@@ -476,7 +477,7 @@ impl NativeOutput {
             return Ok(());
         };
         let error = match self.capabilities.check_samples(samples, self.written) {
-            // A library may take what it must refuse, and would then hide later excesses.
+            // Report NaN as such. A library might accept it, and the mean would then stay NaN.
             Err(not_a_number) if excess.mean_v.is_nan() => not_a_number,
             _ => DeviceError::DirectVoltage {
                 frame: self.written + excess.at as u64,
@@ -484,7 +485,7 @@ impl NativeOutput {
                 limit_v: direct.limit_v(),
             },
         };
-        // Closing is what takes the output of a library's device to zero.
+        // Only closing sets the output of a library's device to zero.
         self.opened.close()?;
         Err(error)
     }
@@ -541,8 +542,8 @@ impl Output for NativeOutput {
 
 /// An open input of a native library. Dropping it closes it.
 ///
-/// Every rate, channel, count and sample is checked, because a recording must not be wrong
-/// silently.
+/// The host checks every rate, channel, count and sample, so that a faulty library cannot corrupt a
+/// recording unnoticed.
 pub struct NativeInput {
     opened: OpenHandle,
     stream: InputStream,
@@ -567,7 +568,7 @@ impl NativeInput {
     /// # Errors
     /// The error of the device. A second call must return that the handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
-        // Later reads must reach the library, because it is the one to refuse them.
+        // Later reads must reach the library, because the library must refuse them.
         self.has_failed = false;
         self.opened.close()
     }
@@ -576,7 +577,7 @@ impl NativeInput {
         self.opened.handle
     }
 
-    /// Checks the answer to a read of at most `frames` frames.
+    /// Checks the result of a read of at most `frames` frames.
     fn frames_read(
         &mut self,
         answer: i64,

@@ -6,7 +6,7 @@ use crate::abi::{Code, STATUS_NUMBERS};
 use crate::native::{NativeAdapter, OpenHandle, function};
 use crate::{DeviceError, Direction, Input, Settings, StreamFormat};
 
-/// Minimum number of guard values behind a buffer.
+/// Minimum number of guard values after a buffer, which show writes beyond its end.
 const GUARDS: usize = 64;
 /// Number of values in a buffer of samples.
 const SAMPLES: usize = 8;
@@ -14,7 +14,7 @@ const SAMPLES: usize = 8;
 const UNUSUAL: f64 = -1234.5;
 const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
-/// A buffer of `len` values with guard values behind it.
+/// A buffer of `len` values, followed by guard values.
 struct GuardedBuffer<T> {
     all: Vec<T>,
     len: usize,
@@ -26,14 +26,15 @@ impl<T: Copy + PartialEq> GuardedBuffer<T> {
         Self::before(len, GUARDS, guard)
     }
 
-    /// Creates a buffer with at least `guards` guard values. They absorb the writes of a call that
-    /// ignores the length.
+    /// Creates a buffer with at least `guards` guard values. The guard values absorb what a call
+    /// writes if it ignores the length.
     fn before(len: usize, guards: usize, guard: T) -> Self {
         let all = vec![guard; len + guards.max(GUARDS)];
         Self { all, len, guard }
     }
 
-    /// Returns the address of the buffer. The guard values behind it may be overwritten as well.
+    /// Returns the address of the buffer. A faulty call may also overwrite the guard values after
+    /// it.
     fn pointer(&mut self) -> *mut T {
         self.all.as_mut_ptr()
     }
@@ -49,8 +50,9 @@ impl<T: Copy + PartialEq> GuardedBuffer<T> {
 }
 
 impl NativeAdapter {
-    /// Returns the status and the text with which `open` refuses these lines, rate and block. If it
-    /// opens a device instead, closes it and returns `None`. For an input, rate and block are 0.
+    /// Calls `open` with these settings, rate and block size, and returns the code and the text of
+    /// its refusal. If `open` succeeds instead, closes the device and returns `None`. For an input,
+    /// `rate_hz` and `block_frames` are 0.
     pub fn refusal_of_open(
         &self,
         lines: &str,
@@ -72,7 +74,7 @@ impl NativeAdapter {
     /// length. For an input, the numbers of `format` are 0.
     ///
     /// # Errors
-    /// Names the call that is at fault, and how.
+    /// Says which call is faulty, and what it did wrong.
     pub fn check_arrays(
         &self,
         settings: &Settings,

@@ -1,4 +1,4 @@
-//! The adapters that a program can find.
+//! Finds the adapters that a program can use: built in, or in native libraries.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,8 +13,9 @@ const VARIABLE: &str = "HTEX_DEVICE_PATH";
 /// The user's folder of libraries, relative to the data folder.
 const FOLDER: &str = "htex/devices";
 
-/// Where to search for native libraries of devices. Earlier places take precedence over later ones:
-/// `files`, `dirs`, the environment variable `HTEX_DEVICE_PATH`, the user's folder, built in.
+/// Where to search for native libraries of devices. If two adapters have the same id, the first one
+/// found is used. The order is: `files`, `dirs`, the environment variable `HTEX_DEVICE_PATH`, the
+/// user's folder, the adapters built into the program.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// Library files to load. A file that cannot be loaded is an error.
@@ -30,7 +31,7 @@ pub struct Search {
 }
 
 impl Default for Search {
-    /// All places except `files` and `dirs`.
+    /// Searches the environment variable and the user's folder; `files` and `dirs` are empty.
     fn default() -> Self {
         Self { files: Vec::new(), dirs: Vec::new(), env: true, user_dir: true }
     }
@@ -90,15 +91,15 @@ impl std::fmt::Debug for AdapterEntry {
     }
 }
 
-/// Something found during the search that is not an error.
+/// Something that the user should know about the search, but that is not an error.
 #[allow(missing_docs)] // The variants say what a field is.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Two adapters of one direction have the same id; the one found first is used.
+    /// Two adapters of one direction have the same id. The adapter found first is used.
     Shadowed { direction: Direction, id: String, used: Origin, shadowed: Origin },
     /// Two adapters of one direction with different ids have the same short name. The short name
-    /// means the one found first.
+    /// means the adapter found first.
     SameName {
         direction: Direction,
         name: String,
@@ -126,8 +127,8 @@ impl std::fmt::Display for Note {
     }
 }
 
-/// The adapters of a program. An output and an input may share an id and a short name, e.g. the two
-/// sides of a sound card.
+/// The adapters that a program has found. An output and an input may share an id and a short name,
+/// e.g. the two directions of a sound card.
 #[derive(Debug, Clone, Default)]
 pub struct Devices {
     entries: Vec<AdapterEntry>,
@@ -135,14 +136,14 @@ pub struct Devices {
 }
 
 impl Devices {
-    /// Returns only the adapters linked into a program.
+    /// Creates a collection of the adapters linked into the program, without a search.
     pub fn new(builtin: Vec<Arc<dyn Adapter>>) -> Self {
         let mut devices = Self::default();
         devices.add_builtin(builtin);
         devices
     }
 
-    /// Returns the adapters that a search finds, followed by those linked into the program.
+    /// Searches for adapters, and adds those linked into the program at the end.
     ///
     /// # Errors
     /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
@@ -165,7 +166,7 @@ impl Devices {
         Ok(devices)
     }
 
-    /// Returns all adapters in use, each id once in each direction.
+    /// Returns all adapters in use. No two adapters of the same direction have the same id.
     pub fn all(&self) -> &[AdapterEntry] {
         &self.entries
     }
@@ -176,7 +177,8 @@ impl Devices {
         &self.notes
     }
 
-    /// Finds an output by its id or its short name (`org.htex.file` or `file`, case-insensitive).
+    /// Finds an output by its id (e.g. `org.htex.file`) or by its short name (e.g. `file`). Case
+    /// matters only in the id.
     ///
     /// # Errors
     /// [`DeviceError::Unknown`] with the known names.
@@ -226,7 +228,7 @@ impl Devices {
         })
     }
 
-    /// Returns the adapters in use of a direction.
+    /// Returns the adapters in use that have this direction.
     pub fn of_direction(&self, direction: Direction) -> impl Iterator<Item = &AdapterEntry> {
         self.entries.iter().filter(move |entry| entry.descriptor().direction == direction)
     }

@@ -1,11 +1,11 @@
 //! Settings of a device. Values given by the user override the profile, which overrides the
 //! defaults.
 //!
-//! [`Settings::settle`] is the only place where the requests of a file meet the choices of the
-//! user.
+//! Only [`Settings::settle`] combines the user's choices with the settings that a scene file asks
+//! for.
 //!
-//! Settings cross the ABI as lines of text, all of them, with defaults applied, so that an author
-//! in C needs no JSON parser.
+//! The host passes settings to a library as lines of text: every setting, with defaults applied. So
+//! a device written in C needs no JSON parser.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::{Descriptor, DeviceError, FromScene, Setting, SettingKind};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings(BTreeMap<String, String>);
 
-/// Requested settings of a device, grouped by who states them.
+/// The settings requested for a device, grouped by who requests them.
 #[derive(Debug, Clone, Copy)]
 pub struct SettingRequests<'a> {
     /// Name of the profile that the user chose.
@@ -24,11 +24,12 @@ pub struct SettingRequests<'a> {
     pub given: &'a BTreeMap<String, String>,
     /// Settings that a scene asks for. [`FromScene`] decides which of them take effect.
     pub asked: &'a BTreeMap<String, String>,
-    /// Whether the motion is live. If so, [`Setting::live_default`] replaces the default.
+    /// Whether the motion is live, i.e. read from a sensor during playback. If so,
+    /// [`Setting::live_default`] replaces the default.
     pub live: bool,
 }
 
-/// A setting that a scene asked for without success.
+/// A setting that a scene asks for and that takes no effect.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IgnoredSetting {
     /// Name of a setting of the descriptor.
@@ -39,8 +40,8 @@ pub struct IgnoredSetting {
 
 impl Settings {
     /// Combines the settings: `given` overrides `profile` (a name), which overrides the
-    /// descriptor's defaults. If both state the same limit ([`FromScene::Less`]), the smaller value
-    /// holds.
+    /// descriptor's defaults. If `given` and the profile both set a limit ([`FromScene::Less`]),
+    /// the smaller value applies.
     ///
     /// # Errors
     /// When the profile or a setting is unknown, a setting is missing, or a value is not allowed.
@@ -53,8 +54,8 @@ impl Settings {
         Ok(Self::settle(descriptor, &requests)?.0)
     }
 
-    /// Combines the settings as [`Self::resolve`] does, and adds the settings of a scene. Returns
-    /// the scene's settings that take no effect.
+    /// Combines the settings as [`Self::resolve`] does, and applies the settings of a scene. Also
+    /// returns the scene's settings that take no effect.
     ///
     /// # Errors
     /// The errors of [`Self::resolve`].
@@ -83,7 +84,8 @@ impl Settings {
                 values.insert(setting.name.clone(), default.clone());
             }
         }
-        // After the defaults, because a scene may only lower or raise what holds without it.
+        // After the defaults, because a scene may only lower or raise the value that applies
+        // without it.
         let mut ignored = Vec::new();
         for (name, value) in requests.asked {
             let setting = find(descriptor, name)?;
@@ -109,12 +111,12 @@ impl Settings {
         Ok((Self(values), ignored))
     }
 
-    /// Returns the value of a setting; empty if the adapter has no setting of this name.
+    /// Returns the value of a setting. Empty if the adapter has no setting of this name.
     pub fn text(&self, name: &str) -> &str {
         self.0.get(name).map_or("", String::as_str)
     }
 
-    /// Returns the value of a setting as a number; NaN if it is not a number.
+    /// Returns the value of a setting as a number, or NaN if it is not a number.
     pub fn number(&self, name: &str) -> f64 {
         self.text(name).parse().unwrap_or(f64::NAN)
     }
@@ -125,7 +127,7 @@ impl Settings {
     }
 }
 
-/// The settings in the form in which they cross the ABI.
+/// Converts the settings to lines of text, the form in which they cross the ABI, and back.
 impl Settings {
     /// Writes one line for each setting, `name=value`, in the order of the descriptor.
     pub fn to_lines(&self, descriptor: &Descriptor) -> String {
@@ -180,7 +182,7 @@ fn number(text: &str) -> f64 {
 /// What happens to a setting that a scene asks for.
 enum SceneRequest {
     Used,
-    /// The user gave another value, which holds.
+    /// The user gave a value, which applies instead.
     Given,
     /// It is not used, for this reason.
     Ignored(String),

@@ -1,6 +1,8 @@
-//! Implements the C functions by the device traits: checks arguments and catches panics.
+//! Implements the C functions of the ABI with the device traits. Checks arguments and catches
+//! panics.
 //!
-//! The code that [`export_device!`](crate::export_device) generates uses it. Do not use it by hand.
+//! The code that [`export_device!`](crate::export_device) generates uses this module. Do not use it
+//! directly.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -55,7 +57,7 @@ impl<A: Export> Default for State<A> {
 }
 
 impl<A: Export> State<A> {
-    /// Creates a state without an adapter and with nothing open.
+    /// Creates a state with no open devices. The first call creates the adapter.
     pub const fn new() -> Self {
         Self { adapter: OnceLock::new(), devices: Handles::new() }
     }

@@ -22,9 +22,9 @@ pub struct InputStream {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Channel {
-    /// Name, the same at each opening with the same settings.
+    /// Name. It is the same each time the input is opened with the same settings.
     pub name: String,
-    /// Symbol of the unit, such as `V`; empty if the device does not know it.
+    /// Symbol of the unit, such as `V`. Empty if the device does not know the unit.
     #[serde(default)]
     pub unit: String,
 }

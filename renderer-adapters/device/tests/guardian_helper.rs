@@ -1,4 +1,5 @@
-//! An app with its own helper program. This one program is the test, the app, and the helper.
+//! Tests an app with its own helper program. This program is at the same time the test, the app,
+//! and the helper.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::fs::OpenOptions;
@@ -171,8 +172,8 @@ fn errors_of_the_helper_are_those_of_the_app(log: &Path) {
     assert_eq!(lines(log), ["opened at zero"]);
 }
 
-/// A helper that does not answer is killed. A second one opens the device, which sets its output to
-/// zero.
+/// A helper that does not answer is killed. A second helper opens the device, which sets the output
+/// to zero.
 fn a_helper_that_hangs_is_replaced_by_zero(log: &Path) {
     let mut device = guarded(&log.display().to_string(), &FORMAT, "helper").unwrap();
     let begun = Instant::now();

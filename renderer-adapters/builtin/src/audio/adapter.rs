@@ -40,18 +40,18 @@ impl Adapter for Audio {
 
 static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
     let buffer_ms = SettingKind::Number { min: 5.0, max: 10_000.0 };
-    let about = "Samples kept ready for the card, milliseconds: more is safer, less is quicker.";
+    let about = "Samples kept ready for the card, milliseconds. A larger buffer is safer, a smaller one has less latency.";
     Descriptor {
         id: "org.htex.audio".to_owned(),
         name: "Sound".to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        summary: "Sound through a sound card, the same on all its channels.".to_owned(),
+        summary: "Sound through a sound card. All channels play the same.".to_owned(),
         settings: vec![
             Setting::hardware(
                 "device",
                 SettingKind::Text,
                 DEFAULT,
-                "Sound output, as the list of devices names it.",
+                "Name of the sound output in the list of devices.",
             ),
             Setting::hardware("buffer_ms", buffer_ms, "60", about).with_from_scene(FromScene::Less),
         ],

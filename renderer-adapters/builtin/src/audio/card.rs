@@ -1,4 +1,4 @@
-//! Sound cards, their outputs and inputs, and the choice of a configuration for a stream.
+//! Sound cards: finds their outputs and inputs, and chooses a configuration for a stream.
 
 use cpal::traits::{DeviceTrait, HostTrait};
 use cpal::{SampleFormat, StreamConfig, SupportedStreamConfigRange};
@@ -7,11 +7,12 @@ use htex_device::{Capabilities, DeviceError, Direction, Endpoint, Quantity, Rate
 /// Sample formats that a stream may use, best first.
 const FORMATS: [SampleFormat; 4] =
     [SampleFormat::F32, SampleFormat::I32, SampleFormat::I16, SampleFormat::U8];
-/// Preferred rate if the card does not offer the rate that it prefers itself, hertz.
+/// Rate to prefer if the card does not support its own preferred rate, hertz.
 const USUAL_RATE_HZ: f64 = 48_000.0;
 /// Preferred block size, frames.
 const BLOCK_FRAMES: u32 = 256;
-/// Highest rate that is reported, hertz. Without it, ALSA plugins would report unlimited ranges.
+/// Highest rate that this crate reports, hertz. ALSA plugins would otherwise report unlimited
+/// ranges.
 const MAX_RATE_HZ: f64 = 768_000.0;
 /// The name that stands for the system's preferred card.
 pub(crate) const DEFAULT: &str = "default";
@@ -77,8 +78,8 @@ impl Card {
         })
     }
 
-    /// Returns the rate that the card prefers. If the chosen number of channels does not support
-    /// it, returns the highest supported rate up to 48 kHz.
+    /// Returns the rate that the card prefers. If the card does not support this rate with the
+    /// chosen number of channels, returns the highest supported rate up to 48 kHz.
     fn usual_rate_hz(&self) -> Result<f64, DeviceError> {
         let (preferred_hz, rates) = (self.preferred()?.0, self.rates());
         Ok(match &rates {
@@ -97,7 +98,7 @@ impl Card {
         };
         let mut all: Vec<(f64, f64)> = self.configs.iter().map(ends).collect();
         if all.iter().any(|(min, max)| min < max) {
-            // Gaps between the ranges are not reported. `config` refuses a rate in one.
+            // Gaps between the ranges are not reported. `config` refuses a rate in a gap.
             let min_hz = all.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
             let max_hz = all.iter().map(|r| r.1).fold(0.0, f64::max).min(MAX_RATE_HZ);
             return Rates::Range { min_hz, max_hz };
@@ -107,8 +108,8 @@ impl Card {
         Rates::List(all.into_iter().map(|r| r.0).collect())
     }
 
-    /// Chooses the best format at this rate, with the number of channels asked for or the closest
-    /// one.
+    /// Chooses the best format at this rate, with the requested number of channels or the number
+    /// closest to it.
     pub(crate) fn config(
         &self,
         rate_hz: f64,
@@ -116,7 +117,7 @@ impl Card {
     ) -> Result<(StreamConfig, SampleFormat), DeviceError> {
         let fits = |c: &&SupportedStreamConfigRange| {
             let rates = c.min_sample_rate()..=c.max_sample_rate();
-            // cpal has only whole rates.
+            // The library cpal has only whole rates.
             rate_hz.fract() == 0.0 && rates.contains(&(rate_hz as u32))
         };
         let rank = |c: &&SupportedStreamConfigRange| {
@@ -158,7 +159,7 @@ fn cards(direction: Direction) -> Result<Vec<cpal::Device>, DeviceError> {
     cards.map_err(|error| missing(direction, "sound", &error.to_string()))
 }
 
-/// Lists all connected cards of this direction, and the one that the system prefers.
+/// Lists the card that the system prefers, and all connected cards of this direction.
 pub(crate) fn endpoints(direction: Direction) -> Result<Vec<Endpoint>, DeviceError> {
     let endpoint =
         |name: String, summary: String| Endpoint { name, setting: "device".to_owned(), summary };
@@ -172,7 +173,7 @@ pub(crate) fn endpoints(direction: Direction) -> Result<Vec<Endpoint>, DeviceErr
     Ok(default.into_iter().chain(named).collect())
 }
 
-/// Returns the name of a card; empty if the system gives none.
+/// Returns the name of a card. Empty if the system gives the card no name.
 fn id(device: &cpal::Device) -> String {
     device.id().map(|id| id.to_string()).unwrap_or_default()
 }

@@ -1,11 +1,12 @@
-//! Sound cards whose channels play different signals, for devices that assign the channels.
+//! Sound cards whose channels play different signals. The devices of the module `channels` use
+//! them.
 
 use htex_device::{Capabilities, DeviceError, Direction, Endpoint, Output, StreamFormat};
 
 use crate::audio::card::{self, Card};
 use crate::audio::sound::{Channels, Sound};
 
-/// Lists the connected outputs. Each is selected by a setting called `device`.
+/// Lists the connected outputs. The setting `device` selects one of them.
 ///
 /// # Errors
 /// When the system's sound service does not respond.
@@ -21,7 +22,8 @@ pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilit
     Card::find(device, Direction::Output)?.with_channels(channels)?.capabilities()
 }
 
-/// Opens an output with one channel for each factor. A channel plays each sample times its factor.
+/// Opens an output with one channel for each factor. A channel plays each sample multiplied by its
+/// factor.
 ///
 /// # Errors
 /// The errors of [`capabilities_of_channels`], and when the output does not support the rate.

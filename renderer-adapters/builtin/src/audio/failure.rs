@@ -21,8 +21,8 @@ impl Failure {
     }
 }
 
-/// Handles errors of the card's thread. Buffers that ran dry or over go to `xrun`. Errors after
-/// which the card continues are ignored. Other errors are stored.
+/// Handles errors of the card's thread. Calls `xrun` if a buffer ran empty or full. Ignores errors
+/// after which the card continues. Stores all other errors.
 pub(crate) fn reporter(
     failure: Failure,
     mut xrun: impl FnMut() + Send + 'static,

@@ -14,7 +14,7 @@ const MOST_CHANNELS: f64 = 64.0;
 /// Maximum number of samples that may wait to be read (512 MiB).
 const MOST_SAMPLES: f64 = 67_108_864.0;
 
-/// The inputs of sound cards as inputs, where 1 is full scale.
+/// The sound input adapter: records from sound cards. In the samples, 1 is full scale.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct AudioInput;
 
@@ -34,7 +34,8 @@ impl Adapter for AudioInput {
         let channels = Some(settings.number("channels") as u16).filter(|channels| *channels > 0);
         let (rate_hz, wanted) = (rate_hz.unwrap_or(preferred.0), channels.unwrap_or(preferred.1));
         let (config, format) = card.config(rate_hz, wanted)?;
-        // `config` chooses the nearest number of channels, which may not be the one asked for.
+        // `config` chooses the nearest number of channels, which may differ from the requested
+        // number.
         if channels.is_some_and(|channels| channels != config.channels) {
             return Err(DeviceError::setting(
                 "channels",
@@ -68,25 +69,25 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
                 "device",
                 SettingKind::Text,
                 DEFAULT,
-                "Sound input, as the list of devices names it.",
+                "Name of the sound input in the list of devices.",
             ),
             Setting::hardware(
                 "rate_hz",
                 number(0.0, 768_000.0),
                 "0",
-                "Frames a second, hertz; 0: what the card prefers.",
+                "Sample rate, hertz; 0: the rate that the card prefers.",
             ),
             Setting::hardware(
                 "channels",
                 number(0.0, MOST_CHANNELS),
                 "0",
-                "Number of channels; 0: what the card prefers.",
+                "Number of channels; 0: the number that the card prefers.",
             ),
             Setting::hardware(
                 "buffer_s",
                 number(0.1, 60.0),
                 "10",
-                "Samples that may wait to be read, seconds.",
+                "Size of the buffer for samples that wait to be read, seconds.",
             ),
         ],
         ..Descriptor::default()

@@ -8,7 +8,7 @@ use rtrb::Producer;
 /// State shared by the sound card's thread and the reader.
 #[derive(Debug, Default)]
 pub(crate) struct InputState {
-    /// Frames were lost. No frames come after them.
+    /// Whether frames were lost. No frames follow the lost ones.
     pub(crate) lost: AtomicBool,
     /// How often the card has delivered samples.
     pub(crate) calls: AtomicU64,
@@ -25,8 +25,8 @@ impl Listener {
         Self { ring, heard }
     }
 
-    /// Takes all of these interleaved frames. From the first time that they do not fit, takes no
-    /// more.
+    /// Takes all of these interleaved frames. Once frames have not fitted into the ring buffer,
+    /// takes no more frames.
     pub(crate) fn push<T: Copy>(&mut self, samples: &[T], convert: impl Fn(T) -> f64) {
         if self.ring.slots() < samples.len() {
             self.heard.lost.store(true, Ordering::Release);

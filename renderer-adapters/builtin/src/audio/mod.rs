@@ -1,15 +1,16 @@
-//! Sound cards: outputs play texture as sound, inputs are recorded. 1 is
-//! full scale.
+//! Sound cards: outputs play textures as sound, and inputs are recorded. In the samples, 1 is full
+//! scale.
 //!
-//! The adapters need the feature `audio`, which on Linux is built against ALSA (`libasound2-dev`).
-//! Without it a machine without ALSA can build everything else, and test the buffers.
+//! The adapters need the feature `audio`. On Linux, this feature needs ALSA (`libasound2-dev`) to
+//! build. Without the feature, everything else builds without ALSA, and the buffers can be tested.
 //!
-//! Samples wait in a ring buffer of `buffer_ms`. The sound card's own thread takes them from there
-//! (`player.rs`). It takes no lock, does not allocate and does not wait. If the ring is empty, it
-//! counts an underrun and fades to silence. Playback continues with the next samples.
+//! Samples for an output wait in a ring buffer of `buffer_ms`. The sound card's own thread takes
+//! them from there (`player.rs`). This thread takes no lock, does not allocate and does not wait.
+//! If the ring buffer is empty, the thread counts an underrun and fades to silence. Playback
+//! continues with the next samples.
 //!
-//! An input works the other way round (`listener.rs`): the card's thread puts samples into a ring
-//! buffer of `buffer_s`. If the ring is full, that is an overrun, after which nothing is delivered.
+//! For an input, the card's thread puts samples into a ring buffer of `buffer_s` (`listener.rs`). A
+//! full ring buffer is an overrun. After an overrun, the input delivers nothing more.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "audio")]

@@ -8,7 +8,7 @@ use rtrb::Consumer;
 /// Duration of the fade when samples are missing, seconds.
 const FADE_S: f64 = 0.005;
 
-/// What the writer asks the player to do.
+/// A request from the writer to the player.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wish {
     /// Play. A missing sample is an underrun.
@@ -27,9 +27,9 @@ pub(crate) struct Shared {
     pub(crate) taken: AtomicU64,
     /// How often the ring buffer was empty.
     pub(crate) underruns: AtomicU64,
-    /// Latency from taking a frame out of the ring buffer to its output, frames.
+    /// Latency from taking a frame out of the ring buffer to playing it, frames.
     pub(crate) delay: AtomicU64,
-    /// Whether the last sample has been output after [`Wish::Drain`] or [`Wish::Stop`].
+    /// Whether the last sample has been played after [`Wish::Drain`] or [`Wish::Stop`].
     pub(crate) silent: AtomicBool,
     /// How often the card has asked for samples.
     pub(crate) calls: AtomicU64,
@@ -44,7 +44,7 @@ impl Shared {
 /// Plays samples from the ring buffer. Does not allocate or wait.
 pub(crate) struct Player {
     ring: Consumer<f32>,
-    /// The factor of each channel: a channel plays each sample times its factor.
+    /// The factor of each channel. A channel plays each sample multiplied by its factor.
     factors: Vec<f32>,
     shared: Arc<Shared>,
     last: f32,
@@ -74,7 +74,7 @@ impl Player {
         }
     }
 
-    /// Fills interleaved frames. `delay` frames are output before them.
+    /// Fills interleaved frames. The card plays `delay` frames before them.
     pub(crate) fn fill<T: Copy>(&mut self, out: &mut [T], delay: u64, convert: impl Fn(f32) -> T) {
         let wish = self.shared.wish.load(Ordering::Acquire);
         let channels = self.factors.len().max(1);
@@ -93,7 +93,7 @@ impl Player {
 
     fn next(&mut self, wish: u8) -> f32 {
         let wanted = wish != Wish::Stop as u8;
-        // After a stop, samples are discarded, and the last one fades out.
+        // After a stop, samples are discarded, and the last played sample fades out.
         match self.ring.pop().ok().filter(|_| wanted) {
             Some(sample) => {
                 self.shared.taken.fetch_add(1, Ordering::Relaxed);

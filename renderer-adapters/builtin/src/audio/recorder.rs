@@ -16,7 +16,7 @@ use crate::audio::listener::{InputState, Listener};
 
 /// Polling interval for samples.
 const LOOK: Duration = Duration::from_millis(2);
-/// If the card makes no call for this long, it is considered stopped.
+/// If the card's thread makes no call for this long, the card is considered stopped.
 const STILL: Duration = Duration::from_secs(2);
 
 pub(crate) struct Recorder {
@@ -34,7 +34,7 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// Opens a card, which does not sample yet. At most `buffered` samples may wait to be read.
+    /// Opens a card without starting it. At most `buffered` samples may wait to be read.
     pub(crate) fn open(
         card: &Card,
         config: StreamConfig,
@@ -72,7 +72,7 @@ impl Recorder {
         })
     }
 
-    /// Reads the whole frames that are available now.
+    /// Reads the complete frames that are available now.
     fn read_now(&mut self, samples: &mut [f64]) -> usize {
         let width = self.format.channels.len();
         let frames = (self.ring.slots() / width).min(samples.len() / width);
@@ -83,8 +83,8 @@ impl Recorder {
         frames
     }
 
-    /// Returns the reason why no more samples will follow the samples in the ring buffer, if there
-    /// is one.
+    /// Returns the error that stopped the input, if there is one. No samples follow those in the
+    /// ring buffer then.
     fn fault(&mut self) -> Option<DeviceError> {
         if let Some(what) = self.failure.peek() {
             return Some(failed(&self.name, what));
@@ -119,7 +119,7 @@ impl Input for Recorder {
             let played = stream.play();
             played.map_err(|error| failed(&self.name, error.to_string()))?;
             self.is_running = true;
-            // The time since the opening does not count as a standstill.
+            // The time between opening and starting does not count as a standstill.
             self.last_call.1 = Instant::now();
         }
         Ok(())
@@ -139,8 +139,8 @@ impl Input for Recorder {
                 self.delivered += frames as u64;
                 return Ok(InputFrames::Count(frames));
             }
-            // A read of no samples must not end the input, because some may still wait in the
-            // ring.
+            // A read with an empty buffer must not end the input, because samples may still wait in
+            // the ring buffer.
             if let (Some(fault), false) = (fault, samples.is_empty()) {
                 self.stream = None;
                 return Err(fault);

@@ -20,15 +20,16 @@ const CHANNELS: u16 = 2;
 /// How the channels of a card play the samples.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Channels<'a> {
-    /// All channels play the samples, whatever their number.
+    /// All channels of the card play the samples.
     All,
-    /// The card has one channel for each factor. A channel plays the samples times its factor.
+    /// The card has one channel for each factor. A channel plays the samples multiplied by its
+    /// factor.
     Factors(&'a [f32]),
 }
 
 /// Polling interval for free space.
 const LOOK: Duration = Duration::from_millis(2);
-/// If the card makes no call for this long, it is considered stopped.
+/// If the card's thread makes no call for this long, the card is considered stopped.
 const STILL: Duration = Duration::from_secs(2);
 
 pub(crate) struct Sound {
@@ -62,7 +63,7 @@ impl Sound {
             Channels::All => vec![1.0; usize::from(config.channels)],
             Channels::Factors(factors) => factors.to_vec(),
         };
-        // Two blocks at least, so that one can be written while the other plays.
+        // At least two blocks, so that one can be written while the other plays.
         let buffered = (buffer_s * format.rate_hz) as usize;
         let (ring, samples) =
             RingBuffer::new(buffered.max(2 * format.block_frames as usize).max(2));
@@ -120,7 +121,7 @@ impl Sound {
         checked
     }
 
-    /// Ends playback. Closes the card after the last sample has been output.
+    /// Ends playback. Closes the card after it has played the last sample.
     fn end(&mut self, wish: Wish) -> Result<(), DeviceError> {
         self.shared.wish(wish);
         let ended = self.wait_for_silence();
@@ -175,7 +176,7 @@ impl Output for Sound {
             Some(_) => self.shared.delay.load(Ordering::Relaxed),
             None => 0,
         };
-        // Frames that the card took are not output before its delay is over.
+        // The card plays a frame only after its delay.
         Status {
             frames_written: self.written,
             frames_played: taken.saturating_sub(delay),

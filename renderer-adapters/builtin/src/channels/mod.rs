@@ -1,9 +1,9 @@
-//! Multi-channel outputs in which selected channels play the texture. The interleaved frames go to
+//! Outputs with several channels. Selected channels play the texture. The interleaved frames go to
 //! a sound card, to a WAV file, or nowhere.
 //!
-//! A DualSense controller connected by a cable is a sound card of four channels. The first two are
-//! its loudspeaker and headset, the others its left and right actuator. The actuators play samples,
-//! so nothing of a texture is lost.
+//! A DualSense controller connected by a cable is a sound card of four channels. The first two
+//! channels are its loudspeaker and headset, the other two its left and right actuator. The
+//! actuators play samples, so nothing of a texture is lost.
 #![forbid(unsafe_code)]
 
 mod nowhere;
@@ -29,13 +29,13 @@ impl Adapter for Channels {
         &DESCRIPTOR
     }
 
-    /// Lists the outputs. The system names the sound cards. Their number of channels is checked
-    /// only when one is chosen.
+    /// Lists the outputs: `null`, and the sound cards by the names that the system gives them. A
+    /// card's number of channels is checked only when the card is used.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let nothing = Endpoint {
             name: "null".to_owned(),
             setting: "to".to_owned(),
-            summary: "nothing: the frames are taken at the pace of the clock, and forgotten"
+            summary: "nothing: the frames are taken at the pace of the clock, and discarded"
                 .to_owned(),
         };
         Ok([nothing].into_iter().chain(to::cards()).collect())
@@ -73,13 +73,13 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
             "device",
             SettingKind::Text,
             to::DEFAULT_CARD,
-            "Of to=sound: the sound output, as the list of devices names it.",
+            "Only for to=sound: name of the sound output in the list of devices.",
         ),
         Setting::hardware(
             "path",
             SettingKind::Text,
             "",
-            "Of to=file: the file; it appears, or is replaced, when the device is finished.",
+            "Only for to=file: path of the file. The file appears, or replaces an existing one, when the output finishes.",
         ),
         buffer_setting(),
     ];
@@ -91,7 +91,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
         settings,
         mapping: Some(Mapping {
             plays: "the samples, times the factor of each channel".to_owned(),
-            loses: "nothing on the way; an actuator has its own response, and the actuators of a DualSense are one texture, not two".to_owned(),
+            loses: "nothing in the samples; but an actuator has its own frequency response, and both actuators of a DualSense play the same texture".to_owned(),
         }),
         ..Descriptor::default()
     }

@@ -1,4 +1,4 @@
-//! An output that discards the samples in real time, for trying settings without hardware.
+//! An output that takes samples in real time and discards them, to try settings without hardware.
 
 use crate::motor::{Block, Motor, PacedOutput, Plan};
 use htex_device::{Capabilities, DeviceError, Output, StreamFormat};

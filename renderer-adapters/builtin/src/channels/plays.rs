@@ -2,14 +2,14 @@
 
 use htex_device::DeviceError;
 
-/// The channels of a DualSense as a sound card: two for its loudspeaker and headset, and one for
-/// each of its two actuators.
+/// What the channels of a DualSense play: the two channels of its loudspeaker and headset are off,
+/// and its two actuators play the texture.
 pub(crate) const DUALSENSE: &str = "off,off,texture,texture";
 /// Maximum number of channels.
 const MOST: usize = 32;
 
 /// Parses a list such as `off,off,texture,-0.5`, with one item for each channel. Returns the factor
-/// of each channel: a channel plays each sample times its factor.
+/// of each channel, by which the channel multiplies each sample.
 ///
 /// # Errors
 /// When an item is invalid, or no channel plays.

@@ -13,7 +13,7 @@ use crate::channels::nowhere;
 pub(crate) const NAMES: [&str; 3] = ["sound", "file", "null"];
 pub(crate) const DEFAULT_CARD: &str = "default";
 
-/// Rates offered where no sound card decides, hertz. A DualSense uses 48 kHz.
+/// Sample rates for outputs without a sound card, hertz. A DualSense uses 48 kHz.
 const RATES_HZ: [f64; 6] = [8_000.0, 16_000.0, 32_000.0, 44_100.0, 48_000.0, 96_000.0];
 const DEFAULT_RATE_HZ: f64 = 48_000.0;
 const BLOCK_FRAMES: u32 = 480;
@@ -29,12 +29,12 @@ impl To {
     /// Reads the settings.
     ///
     /// # Errors
-    /// When a setting has no effect together with the others.
+    /// When a setting would have no effect in combination with the other settings.
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let to = settings.text("to");
         let (card, path) = (settings.text("device"), settings.text("path"));
-        // Settings do not tell whether the user gave a value, so only other values than the
-        // defaults are refused.
+        // The settings do not show whether the user gave a value. So a value is refused only if it
+        // differs from the default.
         if to != "sound" && card != DEFAULT_CARD {
             return refuse("device", format!("it is for to=sound, and to={to}"));
         }
@@ -80,7 +80,7 @@ impl To {
     }
 }
 
-/// Returns the capabilities where no sound card decides.
+/// Returns the capabilities of an output without a sound card.
 fn free(paced: bool) -> Capabilities {
     Capabilities {
         quantity: Quantity::Sound,
@@ -94,7 +94,7 @@ fn free(paced: bool) -> Capabilities {
     }
 }
 
-/// Lists the connected sound cards; empty in a build without sound.
+/// Lists the connected sound cards. Empty in a build without sound.
 pub(crate) fn cards() -> Vec<Endpoint> {
     sound::cards()
 }

@@ -28,7 +28,7 @@ fn settings() -> Vec<Setting> {
             "device",
             text.clone(),
             "Dev1/ao0",
-            "Analog output, as NI MAX names it.",
+            "Name of the analog output in NI MAX.",
         ),
         Setting::new(
             "amplifier_gain",
@@ -39,14 +39,14 @@ fn settings() -> Vec<Setting> {
         Setting::new(
             "limit_v",
             number(0.0, 1_000.0),
-            "Largest voltage at the display, volts either way; no sample beyond it is put out.",
+            "Largest voltage at the display, positive or negative, volts. A sample beyond it is never output.",
         )
         .with_from_scene(FromScene::Less),
         Setting::hardware(
             "dac_full_scale_v",
             number(0.1, 100.0),
             "10",
-            "Largest voltage of the card's output, volts either way.",
+            "Largest voltage of the card's output, positive or negative, volts.",
         ),
         Setting::hardware(
             "dac_bits",
@@ -58,21 +58,21 @@ fn settings() -> Vec<Setting> {
             "dc_limit_v",
             number(0.01, 1_000.0),
             "1",
-            "Largest direct voltage at the display, volts either way: the mean over any 100 ms. What exceeds it is not put out, \
-             and the output goes to zero.",
+            "Largest direct voltage at the display, i.e. mean over any 100 ms, positive or negative, volts. Samples that would \
+             exceed it are not output, and the output goes to zero.",
         )
         .with_from_scene(FromScene::Less),
         Setting::hardware(
             "carrier_hz",
             number(0.0, 100_000.0),
             "7000",
-            "Carrier that the signal is to have, hertz, at most the rate over 2.5; 0: none, and then `dc_limit_v` is to be said.",
+            "Frequency of the carrier, hertz. At most the sample rate divided by 2.5. 0: no carrier; then also choose `dc_limit_v`.",
         ),
         Setting::hardware(
             "buffer_ms",
             number(10.0, MOST_TO_ZERO_MS),
             "200",
-            "Samples kept ready for the card, milliseconds: more is safer, less is quicker. With the ramp at most 400.",
+            "Samples kept ready for the card, milliseconds. A larger buffer is safer, a smaller one has less latency. At most 400 together with `ramp_ms`.",
         )
         .with_live_default("20")
         .with_from_scene(FromScene::Less),
@@ -80,14 +80,14 @@ fn settings() -> Vec<Setting> {
             "ramp_ms",
             number(1.0, MOST_TO_ZERO_MS),
             "20",
-            "Ramp before a first, and after a last sample that is not zero, milliseconds. With the buffer at most 400.",
+            "Ramp before the first and after the last sample if that sample is not zero, milliseconds. At most 400 together with `buffer_ms`.",
         )
         .with_from_scene(FromScene::More),
         Setting::hardware(
             "driver",
             text,
             "",
-            "File of the NI-DAQmx library; empty: the one that is installed.",
+            "File of the NI-DAQmx library. Empty: the installed library.",
         ),
     ]
 }
@@ -96,8 +96,8 @@ fn paper() -> Profile {
     profile(
         "pcie-6321_tabor-9200a_sct3250",
         "The rig of Balasubramanian & Vardar (2026). From the paper: NI PCIe-6321, Tabor 9200A, 3M \
-         SCT3250, carrier 7 kHz, at most 150 V peak at the display. Of the card: 16 bits, -10 to 10 \
-         V. Assumed, as the paper does not say: an amplifier gain of 50; measure yours.",
+         SCT3250, carrier 7 kHz, at most 150 V peak at the display. From the card: 16 bits, -10 to \
+         10 V. The paper does not state the amplifier's gain: 50 is assumed, so measure yours.",
         &[
             ("amplifier_gain", "50"),
             ("limit_v", "150"),
@@ -111,8 +111,8 @@ fn paper() -> Profile {
 fn generic() -> Profile {
     profile(
         "generic",
-        "A card without an amplifier: volts of its output, -10 to 10 V, no carrier asked for, and so direct voltage up to the \
-         whole 10 V (dc_limit_v): not for a display that a finger touches.",
+        "A card without an amplifier: -10 to 10 V at the card's output, no carrier, and direct voltage up to 10 V \
+         (dc_limit_v). Not for a display that a finger touches.",
         &[("dc_limit_v", "10"), ("amplifier_gain", "1"), ("limit_v", "10"), ("carrier_hz", "0")],
     )
 }

@@ -1,9 +1,9 @@
-//! Errors of NI-DAQmx and the device errors they become. The codes are from `NIDAQmx.h`.
+//! Errors of NI-DAQmx, and their conversion to device errors. The codes are from `NIDAQmx.h`.
 
 use htex_device::DeviceError;
 
-/// Codes for a device that is not available or no longer available: not present (-88705), removed,
-/// absent, powered off, not accessible.
+/// Codes for a device that is not or no longer available: not present (-88705), removed, absent,
+/// powered off or not accessible.
 const GONE: [i32; 8] = [-88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003];
 /// Another task or another program uses the output.
 const RESERVED: i32 = -50103;
@@ -33,7 +33,7 @@ impl Fault {
         OVERRUN.contains(&self.code)
     }
 
-    /// Converts to the error of a device that was running.
+    /// Converts the fault to the error of a device that was running.
     pub(crate) fn failed(&self, device: &str) -> DeviceError {
         DeviceError::Failed {
             device: device.to_owned(),
@@ -41,7 +41,7 @@ impl Fault {
         }
     }
 
-    /// Converts to the error of a device that was running and no longer responds.
+    /// Converts the fault to the error of a device that was running and could not be set to zero.
     pub(crate) fn failed_and_not_zero(&self, device: &str) -> DeviceError {
         DeviceError::Failed {
             device: device.to_owned(),
@@ -49,7 +49,7 @@ impl Fault {
         }
     }
 
-    /// Converts to the error of a device that cannot be opened.
+    /// Converts the fault to the error of a device that cannot be opened.
     pub(crate) fn missing(&self, device: &str) -> DeviceError {
         let Self { code, words } = self;
         match *code {

@@ -1,4 +1,4 @@
-//! The channels and the clock that the settings of an input name.
+//! The channels and the clock of an input, read from its settings.
 
 use htex_device::{DeviceError, Settings};
 
@@ -60,7 +60,7 @@ impl Inputs {
         }
         let card = self.channels[0].split('/').next().unwrap_or_default();
         let rates = driver.input_rates(card).map_err(|fault| fault.missing(&self.given))?;
-        // The inputs of a card share its converter's rate.
+        // All inputs of a card share its converter, so each gets a part of the converter's rate.
         let (min_hz, max_hz) = (rates.0, rates.1 / self.channels.len() as f64);
         if (min_hz..=max_hz).contains(&self.rate_hz) {
             Ok(())
@@ -74,8 +74,8 @@ impl Inputs {
     }
 }
 
-/// Expands a list such as `Dev1/ai0:2, Dev1/ai5` to the full name of each channel. All must be of
-/// one card.
+/// Expands a list such as `Dev1/ai0:2, Dev1/ai5` to the full name of each channel. All channels
+/// must belong to one card.
 fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
     let refuse = |what: String| {
         let form = "it looks like Dev1/ai0:5 or Dev1/ai0,Dev1/ai3, all of one card and each once";

@@ -1,5 +1,5 @@
-//! National Instruments cards: their analog outputs as electrovibration displays behind an
-//! amplifier, and their analog inputs.
+//! National Instruments cards: an analog output drives an electrovibration display through an
+//! amplifier, and analog inputs are recorded.
 //!
 //! Samples are volts *at the display*, including the carrier. This adapter divides them by the
 //! amplifier's gain and streams them through NI-DAQmx, which is loaded at run time and not linked.
@@ -10,13 +10,14 @@
 //! - The output goes to zero before a stream, after it, on every error, and when the device is
 //!   dropped. A thread of the device detects an empty buffer even if no more samples are written.
 //!   It also sets the output to zero if a call of the driver does not return for 0.3 s.
-//! - A mean over 100 ms beyond `dc_limit_v` is never output, whatever caused it.
+//! - Samples whose mean over 100 ms would exceed `dc_limit_v` are never output, whatever caused
+//!   them.
 //! - A stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its first and
-//!   after its last* sample. The ramp mirrors the stream there under a falling weight, so that a
-//!   carrier stays a carrier. The samples themselves are never changed.
+//!   after its last* sample. The ramp is the mirrored stream, multiplied by a weight that falls to
+//!   zero, so that a carrier stays a carrier. The samples themselves are never changed.
 //! - Buffer and ramp together last at most 400 ms.
 //!
-//! [`DaqInput`] works the other way round: it records the analog inputs of a card, in volts.
+//! [`DaqInput`] records the analog inputs of a card, in volts.
 #![deny(unsafe_code)]
 
 mod descriptor;

@@ -6,13 +6,14 @@ use htex_device::{
 
 use crate::daq::driver::Driver;
 
-/// The rate at which the paper records forces, hertz. The paper states no output rate.
+/// Default rate, hertz: the rate at which the paper records forces. The paper states no output
+/// rate.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
-/// Lowest rate, hertz. Textures reach 1000 Hz. A control block of eight frames takes 8 ms at this
-/// rate, and seconds at much lower rates.
+/// Lowest rate, hertz. Frequencies of textures reach 1000 Hz. At this rate, a control block of
+/// eight frames takes 8 ms. At much lower rates it would take seconds.
 const LOWEST_RATE_HZ: f64 = 1_000.0;
-/// Longest total duration of buffer and ramp, milliseconds. It ensures that the output of a killed
-/// player is at zero within half a second.
+/// Maximum duration of buffer and ramp together, milliseconds. This limit ensures that the output
+/// is at zero within half a second after the player is killed.
 pub(crate) const MOST_TO_ZERO_MS: f64 = 400.0;
 /// Preferred block size, frames.
 const BLOCK_FRAMES: u32 = 256;
@@ -24,11 +25,11 @@ pub(crate) struct Rig {
     /// The output, e.g. `Dev1/ao0`.
     pub(crate) device: String,
     pub(crate) driver: String,
-    /// Gain of the amplifier: volts at the display for one volt of the card.
+    /// Gain of the amplifier: volts at the display per volt of the card.
     pub(crate) gain: f64,
     /// Limit at the display, volts.
     pub(crate) limit_v: f64,
-    /// Difference between two neighbouring voltages at the display, volts.
+    /// Step between two adjacent voltages at the display, volts.
     pub(crate) step_v: f64,
     /// Limit of the mean voltage at the display, volts.
     pub(crate) dc_limit_v: f64,
@@ -73,7 +74,7 @@ impl Rig {
         }
     }
 
-    /// Returns the capabilities of card and amplifier together.
+    /// Returns the capabilities of the card and the amplifier together.
     pub(crate) fn capabilities(&self, driver: &Driver) -> Result<Capabilities, DeviceError> {
         let card = self.device.split('/').next().unwrap_or_default();
         let outputs = driver.outputs().map_err(|f| f.failed(&self.device))?;
@@ -115,11 +116,11 @@ impl Rig {
         )
     }
 
-    /// Converts a voltage at the display to a voltage of the card; `None` if it is over the limit
-    /// or not a number.
+    /// Converts a voltage at the display to a voltage of the card. Returns `None` if the voltage is
+    /// over the limit or not a number.
     pub(crate) fn card_v(&self, display_v: f64) -> Option<f64> {
         let within = display_v.abs() <= self.limit_v * (1.0 + ROUNDING);
-        // What the tolerance lets through is still kept within the limit.
+        // A voltage within the tolerance is still clamped to the limit.
         within.then(|| display_v.clamp(-self.limit_v, self.limit_v) / self.gain)
     }
 }

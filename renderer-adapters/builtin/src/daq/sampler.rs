@@ -1,4 +1,4 @@
-//! An open input, which waits for samples in the driver's buffer.
+//! An open input. Samples wait in the driver's buffer until they are read.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -96,7 +96,8 @@ impl Input for Sampler {
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<InputFrames, DeviceError> {
         let since = Instant::now();
         loop {
-            // The time is checked after the read, so a timeout of 0 still takes what is there.
+            // The time is checked after the read, so a read with a timeout of 0 still takes the
+            // available samples.
             match self.read_now(samples)? {
                 Err(fault) => return Err(self.fail(&fault)),
                 Ok(frames) if frames > 0 || since.elapsed() >= timeout => {
@@ -109,7 +110,8 @@ impl Input for Sampler {
     }
 
     fn finish(&mut self) -> Result<(), DeviceError> {
-        // Taken even if it does not run, so that it is cleared and no start can follow.
+        // The task is taken even if it does not run, so that it is cleared and cannot be started
+        // later.
         let Some(task) = self.task.take().filter(|_| self.is_running) else {
             return Ok(());
         };

@@ -1,11 +1,11 @@
-//! The state that the writer and the watchdog of an open device share: the running task, and the
-//! return to zero.
+//! The state that the writer and the watchdog of an open output share: the running task, and how
+//! the output returns to zero.
 //!
-//! The adapter refuses a sample over the limit and a mean over the direct-voltage limit. The
-//! driver's own channel limits repeat the first of these checks. The watchdog detects an underflow,
-//! because a writer that hangs would leave the last voltage at the output. Every way to end a
-//! session ends with an unclocked write of zero. If that write fails, it is repeated, the last time
-//! after a reset of the card.
+//! The adapter refuses a sample over the limit and a mean over the direct-voltage limit. The driver
+//! also checks the limit of a sample, with its own channel limits. The watchdog detects an
+//! underflow, because a writer that hangs would leave the last voltage at the output. Every session
+//! ends with an unclocked write of zero, however it ends. If this write fails, it is repeated, the
+//! last time after a reset of the card.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -18,8 +18,8 @@ use crate::daq::rig::{MOST_TO_ZERO_MS, Rig};
 use crate::daq::zero::{Emergency, Zero};
 use crate::driver::Claim;
 
-/// If nothing is output for this long, the clock is considered stopped. The last voltage would then
-/// stay.
+/// If no frame is output for this long, the clock is considered stopped. The last voltage would
+/// then stay at the output.
 const STILL: Duration = Duration::from_millis(400);
 
 pub(crate) struct Session {
@@ -36,16 +36,16 @@ pub(crate) struct Session {
     capacity: usize,
     /// `None` before the first sample and after the session has ended.
     task: Option<Task>,
-    /// An error that the next call returns and thereby clears.
+    /// An error for the next call. The call returns the error and clears this field.
     error: Option<DeviceError>,
     closed: bool,
     /// Whether the output could not be set to zero at the end.
     not_zero: bool,
-    /// Number of frames before the stream: zeros, and a ramp if there is one.
+    /// Number of frames before the stream (the lead): zeros, and a ramp if there is one.
     lead: u64,
     /// Number of frames given to the driver, including the lead.
     given: u64,
-    /// Number of frames output so far, including the lead.
+    /// Number of frames that were output so far, including the lead.
     generated: u64,
     /// When `generated` last grew.
     moved_at: Instant,
@@ -97,7 +97,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Returns the emergency zero, which works without the session.
+    /// Returns the part that can set the output to zero without the session.
     pub(crate) fn emergency(&self) -> Arc<Emergency> {
         Arc::clone(&self.emergency)
     }
@@ -105,10 +105,10 @@ impl Session {
     /// Takes the samples that fit now and returns their number.
     pub(crate) fn write(&mut self, samples: &[f32]) -> Result<usize, DeviceError> {
         self.usable()?;
-        // All samples of the call, also those for which there is no space: none may be output
-        // before a later one is refused.
+        // All samples of the call are checked, even those for which there is no space now. No
+        // sample may be output if a later one of the same call is refused.
         let mut volts = self.checked(samples)?;
-        // The driver's buffer holds no more, so the rest waits for the next call.
+        // The driver's buffer cannot hold more, so the rest waits for the next call.
         volts.truncate(self.capacity);
         if volts.is_empty() {
             return Ok(0);
@@ -116,7 +116,7 @@ impl Session {
         if self.task.is_none() {
             self.start(&volts)?;
         }
-        // After the start, because the lead also counts for the mean.
+        // Checked after the start, because the lead also counts for the mean.
         self.check_direct(&volts)?;
         let fitting = self.space()?.min(volts.len());
         let taken = self.give(&volts[..fitting])?;
@@ -129,9 +129,10 @@ impl Session {
         Ok(taken)
     }
 
-    /// Returns how many frames of the stream may be given to the driver now. They are counted from
-    /// the frames output so far. The driver's own count is no use: it reports free space as soon as
-    /// samples have moved to the card's memory, which may hold a second of them.
+    /// Returns how many frames of the stream may be given to the driver now. This number follows
+    /// from the frames that were output so far. The driver's own count cannot be used: it reports
+    /// free space as soon as samples have moved to the card's memory, which may hold a second of
+    /// samples.
     fn space(&mut self) -> Result<usize, DeviceError> {
         let generated = self
             .task
@@ -144,9 +145,9 @@ impl Session {
         Ok(self.ahead.saturating_sub(waiting as usize))
     }
 
-    /// Returns the voltages that lead from the stream's last sample to zero: the stream's end
-    /// mirrored, under a falling weight. If that would make a direct voltage, the output goes to
-    /// zero at once.
+    /// Returns the voltages that lead from the stream's last sample to zero: the mirrored end of
+    /// the stream, multiplied by a falling weight. If these voltages would exceed the limit of the
+    /// direct voltage, returns a single zero.
     pub(crate) fn tail(&self) -> Vec<f64> {
         let mut tail = self.ramp(self.last_v, self.direct.mirrored());
         tail.push(0.0);
@@ -156,7 +157,7 @@ impl Session {
         }
     }
 
-    /// Gives the driver as many of these voltages as fit and returns their number.
+    /// Gives the driver as many of these voltages as fit, and returns their number.
     pub(crate) fn give(&mut self, volts: &[f64]) -> Result<usize, DeviceError> {
         self.usable()?;
         let task = self.task.as_ref();
@@ -169,7 +170,8 @@ impl Session {
                 }
             })
             .map_err(|fault| self.fail(&fault))?;
-        // The call may have hung so long that the emergency has written zero in the meantime.
+        // The call may have hung so long that another thread has set the output to zero in the
+        // meantime.
         self.still_holds()?;
         self.given += given as u64;
         self.direct.push(&volts[..given]);
@@ -203,13 +205,14 @@ impl Session {
         }
     }
 
-    /// Returns an error that left a voltage at the display and that no call has returned yet.
+    /// Returns the error after which a voltage may remain at the display, if no call has returned
+    /// this error yet.
     pub(crate) fn untold_danger(&self) -> Option<&DeviceError> {
         self.error.as_ref().filter(|_| self.not_zero)
     }
 
-    /// Returns the frames given to the driver and the frames output so far, both including the
-    /// lead.
+    /// Returns the number of frames given to the driver, and the number of frames that were output
+    /// so far. Both include the lead.
     pub(crate) fn progress(&self) -> (u64, u64) {
         (self.given, self.generated)
     }
@@ -227,7 +230,7 @@ impl Session {
         }
     }
 
-    /// Returns the latency of a sample, seconds. After the session has ended, that is the latency
+    /// Returns the latency of a sample, seconds. After the session has ended, returns the latency
     /// of the last sample.
     fn latency_s(&self) -> f64 {
         match self.task {
@@ -259,7 +262,7 @@ impl Session {
         }
     }
 
-    /// Ends the session if a call took so long that the emergency has set the output to zero.
+    /// Ends the session if a call took so long that another thread has set the output to zero.
     fn still_holds(&mut self) -> Result<(), DeviceError> {
         match self.emergency.error() {
             Some(error) if !self.closed => Err(self
@@ -270,9 +273,9 @@ impl Session {
         }
     }
 
-    /// Starts the clock with a lead of zeros. The lead has half of the frames that are kept ahead,
-    /// so that the first write is not late. If the first sample is not zero, the lead ends in a
-    /// ramp to it, which mirrors the first samples.
+    /// Starts the clock with a lead of zeros. The lead is half as long as `ahead`, so that the
+    /// first write is not late. If the first sample is not zero, the lead ends with a ramp to this
+    /// sample. The ramp mirrors the first samples.
     fn start(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
         let (first, rest) = (volts[0], volts.get(1..).unwrap_or_default());
         let there = if rest.is_empty() { volts } else { rest };
@@ -297,20 +300,21 @@ impl Session {
         let task = Task::new(self.driver, &self.rig.device, limit_v)?;
         let capacity = u32::try_from(self.capacity).unwrap_or(u32::MAX);
         task.set_clock(self.rate_hz, capacity)?;
-        // The lead is in the buffer before the clock starts, or the buffer would run dry at once.
+        // The lead must be in the buffer before the clock starts. Otherwise the buffer would run
+        // dry at once.
         task.write(lead, false)?;
         // Recorded before the start, because the start itself may hang.
         self.emergency.runs(Some(task.stopper()));
         let started = task.start();
-        // The task is cleared on return, and nobody may hold its handle then.
+        // The task is cleared on return, so no other thread may use its handle then.
         if started.is_err() {
             self.emergency.runs(None);
         }
         started.map(|()| task)
     }
 
-    /// Returns a ramp from `from_v` to zero without its two ends: the samples under a falling
-    /// weight. It is empty if `from_v` is zero within the card's step.
+    /// Returns a ramp from `from_v` to zero, without its two ends. The ramp consists of the samples
+    /// multiplied by a falling weight. It is empty if `from_v` is less than one step of the card.
     fn ramp(&self, from_v: f64, samples: impl Iterator<Item = f64>) -> Vec<f64> {
         if from_v.abs() * self.rig.gain < self.rig.step_v {
             return Vec::new();
@@ -321,7 +325,7 @@ impl Session {
         weighted.map(|(i, volts)| volts * weight(i)).collect()
     }
 
-    /// Sets the output to zero if these voltages would make a direct voltage.
+    /// Sets the output to zero if these voltages would exceed the limit of the direct voltage.
     fn check_direct(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
         let Some(Excess { at, mean_v }) = self.direct.excess(volts) else {
             return Ok(());
@@ -337,8 +341,7 @@ impl Session {
         })
     }
 
-    /// Converts samples to voltages of the card, after checking that all of them are within the
-    /// limit.
+    /// Checks that all samples are within the limit, and converts them to voltages of the card.
     fn checked(&mut self, samples: &[f32]) -> Result<Vec<f64>, DeviceError> {
         let mut volts = Vec::with_capacity(samples.len());
         for (i, &sample) in samples.iter().enumerate() {
@@ -386,12 +389,11 @@ impl Session {
     fn end(&mut self) -> Result<(), Fault> {
         self.closed = true;
         if let Some(task) = self.task.take() {
-            // The task is cleared at the end of this block, and the emergency must not stop it
-            // after that.
+            // The task is cleared at the end of this block. No other thread may stop it after that.
             self.emergency.runs(None);
             self.generated = task.generated().unwrap_or(self.generated);
         }
-        // No task reserves the output any more, so a task of its own can write the zero.
+        // No task reserves the output any more, so a separate task can write the zero.
         let zero = self.emergency.zero.put();
         self.not_zero = zero.is_err();
         self.claim = None;

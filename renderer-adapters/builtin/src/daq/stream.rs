@@ -1,4 +1,5 @@
-//! An open device: waits for space in the buffer, and at the end until all samples are output.
+//! An open output. A write waits for space in the buffer, and the end waits until all samples are
+//! output.
 //!
 //! The number of samples in the buffer is counted from the samples that were output. The driver
 //! itself reports free space as soon as samples have moved to the card's memory. The ramp before a
@@ -19,7 +20,7 @@ use crate::daq::zero::Shared;
 
 /// Polling interval for free space.
 const LOOK: Duration = Duration::from_millis(2);
-/// Number of zeros given at a time after the end of a stream.
+/// Number of zeros that are written at a time after the end of a stream.
 const ZEROS: usize = 16_384;
 
 pub(crate) struct Stream {
@@ -35,7 +36,7 @@ impl Stream {
     ) -> Result<Self, DeviceError> {
         let (device, buffer_s) = (rig.device.clone(), rig.buffer_s);
         let shared = Arc::new(Shared::new(Session::open(rig, driver, format)?));
-        // At most 0.1 s: `HANG` counts on it to reach zero within half a second.
+        // At most 0.1 s, so that with `HANG` the output is at zero within half a second.
         let period = Duration::from_secs_f64((buffer_s / 4.0).min(0.1));
         let start = |watches| {
             let started = Watchdog::start(&shared, period, watches);
@@ -52,8 +53,8 @@ impl Stream {
         Ok(self.shared.lock()?)
     }
 
-    /// Gives the driver the tail, and then zeros until the tail has been output. This way, the
-    /// buffer is never empty while the clock runs.
+    /// Gives the driver the tail of the stream, and then zeros until the tail has been output. So
+    /// the buffer is never empty while the clock runs.
     fn drain(&self) -> Result<(), DeviceError> {
         let mut tail = self.session()?.tail();
         let end = self.session()?.progress().0 + tail.len() as u64;
@@ -100,7 +101,8 @@ impl Output for Stream {
         self.session()?.usable()?;
         let running = self.session()?.is_running();
         let drained = if running { self.drain() } else { Ok(()) };
-        // Closed even if the end could not be played. Its error came first and is the one returned.
+        // The session is closed even if the end could not be played. In this case, the error of
+        // playing is returned, because it came first.
         let closed = self.session().and_then(|mut session| session.close());
         drained.and(closed)
     }

@@ -23,8 +23,8 @@ pub(crate) fn say(error: &DeviceError) {
 pub(crate) enum Watches {
     /// Asks the driver whether the output is still running.
     Output,
-    /// Checks only that the session is free from time to time. Makes no call of the driver, because
-    /// that call might also hang.
+    /// Checks only that the session is free from time to time. Does not call the driver, because
+    /// this call might also hang.
     Calls,
 }
 
@@ -49,8 +49,8 @@ impl Watchdog {
             // Nothing is ever sent: the thread ends when the sender is dropped.
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
                 let error = look(&shared, watches);
-                // The watchdog has to print, because a thread whose call hangs, or a writer that
-                // makes no more calls, cannot.
+                // The watchdog prints the error. A thread whose call hangs cannot report it, and
+                // neither can a writer that makes no more calls.
                 if let Some(error) = error.filter(|_| !told) {
                     say(&error);
                     told = true;
@@ -62,7 +62,7 @@ impl Watchdog {
     }
 }
 
-/// Checks once. Returns an error that perhaps nobody else can report.
+/// Checks once. Returns an error that perhaps no other thread can report.
 fn look(shared: &Shared, watches: Watches) -> Option<DeviceError> {
     let mut session = match shared.lock() {
         Ok(session) => session,

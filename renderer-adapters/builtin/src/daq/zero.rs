@@ -1,8 +1,8 @@
-//! Writing zero to the output, even when a call of the driver does not return.
+//! Writes zero to the output, even if a call of the driver does not return.
 //!
-//! A call may hang while it holds the session. Nothing here needs the session. The watchdog or a
-//! caller that waits for the session longer than [`HANG`] sets the output to zero by a task of its
-//! own. The session notices this as soon as its call returns, and ends.
+//! A driver call may hang while it holds the session. So nothing in this module needs the session.
+//! If the watchdog or a caller waits for the session longer than [`HANG`], it sets the output to
+//! zero with a separate task. The session notices this as soon as its call returns, and ends.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -35,7 +35,7 @@ pub(crate) struct Zero {
 }
 
 impl Zero {
-    /// Outputs zero by a separate task without a clock. Retries on failure, the last time after a
+    /// Outputs zero with a separate task without a clock. Retries on failure, the last time after a
     /// reset of the card.
     pub(crate) fn put(&self) -> Result<(), Fault> {
         let mut zero = self.once();
@@ -46,8 +46,8 @@ impl Zero {
             sleep(PAUSE);
             zero = self.once();
         }
-        // A reset ends all tasks of the card and sets its outputs to their power-on state. That
-        // state need not be zero, so zero is written again.
+        // A reset ends all tasks of the card and sets its outputs to their power-on state. This
+        // state may differ from zero, so zero is written again.
         zero.or_else(|fault| {
             self.driver.reset(&self.device).map_err(|_| fault)?;
             self.once()
@@ -65,9 +65,9 @@ impl Zero {
     }
 }
 
-/// Another thread has held the session for longer than [`HANG`].
+/// The error that another thread has held the session for longer than [`HANG`].
 pub(crate) struct Hung {
-    /// Says so, and whether the output was set to zero.
+    /// The error, which also says whether the output was set to zero.
     pub(crate) error: DeviceError,
     /// Whether this thread was the first to notice, and therefore set the output to zero.
     pub(crate) is_first: bool,
@@ -79,10 +79,10 @@ impl From<Hung> for DeviceError {
     }
 }
 
-/// The emergency zero, which works without the session.
+/// Sets the output to zero in an emergency, without the session.
 pub(crate) struct Emergency {
     pub(crate) zero: Zero,
-    /// The task whose clock runs. It holds the output.
+    /// The task whose clock runs. This task holds the output.
     running: Mutex<Option<Stopper>>,
     has_begun: AtomicBool,
     /// The error of the emergency, once it is over.
@@ -99,7 +99,8 @@ impl Emergency {
         }
     }
 
-    /// Records the task whose clock runs from now on; `None` before that task is cleared.
+    /// Records the task whose clock runs from now on. Call it with `None` before that task is
+    /// cleared.
     pub(crate) fn runs(&self, task: Option<Stopper>) {
         *self.running.lock().unwrap_or_else(PoisonError::into_inner) = task;
     }
@@ -117,7 +118,8 @@ impl Emergency {
     /// output is at zero.
     fn begin(&self) -> Hung {
         if self.has_begun.swap(true, Ordering::SeqCst) {
-            // The first emergency may still run, so until it ends the output counts as not at zero.
+            // The first emergency may still be running. Until it ends, the output counts as not at
+            // zero.
             let error = self.error().unwrap_or_else(|| self.hangs(NOT_ZERO));
             let is_first = false;
             return Hung { error, is_first };
@@ -153,7 +155,7 @@ impl Emergency {
 /// The session, shared by callers and the watchdog.
 pub(crate) struct Shared {
     session: Mutex<Session>,
-    /// Counts the uses of the session, to tell one long use (a hang) from many short ones.
+    /// Counts the uses of the session, to distinguish one long use (a hang) from many short uses.
     turn: AtomicU64,
     emergency: Arc<Emergency>,
 }
@@ -170,15 +172,16 @@ impl Shared {
     /// Waits until the session is free and returns it.
     ///
     /// # Errors
-    /// When another thread has held it for longer than [`HANG`]. The output was then set to zero,
-    /// or the error says that this failed.
+    /// When another thread has held the session for longer than [`HANG`]. The error says whether
+    /// the output could be set to zero.
     pub(crate) fn lock(&self) -> Result<MutexGuard<'_, Session>, Hung> {
         let mut turn = self.turn.load(Ordering::SeqCst);
         let mut since = Instant::now();
         loop {
             match self.session.try_lock() {
                 Ok(session) => return Ok(self.taken(session)),
-                // A panic elsewhere must not prevent anybody from setting the output to zero.
+                // A panic in another thread must not prevent this thread from setting the output to
+                // zero.
                 Err(TryLockError::Poisoned(session)) => return Ok(self.taken(session.into_inner())),
                 Err(TryLockError::WouldBlock) => {}
             }

@@ -25,7 +25,7 @@ fn settings() -> Vec<Setting> {
         Setting::new(
             "path",
             SettingKind::Path,
-            "The file; it appears, or is replaced, when the device is finished.",
+            "Path of the file. The file appears, or replaces an existing one, when the output finishes.",
         ),
         setting(
             "format",
@@ -45,26 +45,26 @@ fn settings() -> Vec<Setting> {
             "full_scale",
             number(1e-6, MOST),
             "1",
-            "What the full scale of i24 and i16 stands for, in the quantity's unit; 1 for f32.",
+            "Value at full scale of i24 and i16, in the quantity's unit; must be 1 for f32.",
         ),
         setting(
             "quantity",
             SettingKind::choice(&Quantity::ALL.map(Quantity::name)),
             "lateral_force",
-            "What the samples are: what a finger or tool meets, in N, m/s2, m/s or m; the volts an \
-             electrovibration display is driven with; or sound.",
+            "Quantity of the samples: a mechanical quantity at the finger or tool, in N, m/s2, m/s or m; \
+             the drive voltage of an electrovibration display, in V; or sound.",
         ),
         setting(
             "limit_v",
             number(0.0, MOST),
             "0",
-            "Of a display_voltage, which must have one: the largest magnitude, volts. 0: none.",
+            "Only for display_voltage, which requires it: the largest magnitude, volts. 0: not set.",
         ),
         setting(
             "carrier_hz",
             number(0.0, 500_000.0),
             "0",
-            "Of a display_voltage: the carrier that the display wants, hertz. 0: none.",
+            "Only for display_voltage: the carrier that the display needs, hertz. 0: no carrier.",
         ),
     ]
 }

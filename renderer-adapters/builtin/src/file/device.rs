@@ -27,8 +27,8 @@ impl FileDevice {
         plan.check_rate(rate_hz)?;
         let path = plan.path.display().to_string();
         let created = FileInProgress::create(&plan.path).and_then(|mut file| {
-            // The writer has its own handle. `FileInProgress` keeps the other one until it renames the
-            // file.
+            // The writer has its own file handle. `FileInProgress` keeps another handle until it
+            // renames the file.
             let writer = file.file().try_clone()?;
             Ok((Sink::new(writer, plan, rate_hz)?, file))
         });

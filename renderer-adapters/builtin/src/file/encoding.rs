@@ -5,7 +5,7 @@
 pub(crate) enum Encoding {
     /// The quantity itself, as a 32-bit float.
     F32,
-    /// A whole number of steps, in two's complement.
+    /// An integer number of steps, in two's complement.
     Integer {
         /// 16 or 24.
         bits: u16,
@@ -15,7 +15,7 @@ pub(crate) enum Encoding {
 }
 
 impl Encoding {
-    /// Encodes as integers of `bits` bits, where `full_scale` is 2^(bits-1) steps.
+    /// Makes an encoding as integers of `bits` bits, where `full_scale` is 2^(bits-1) steps.
     pub(crate) fn integer(bits: u16, full_scale: f64) -> Self {
         let steps = f64::from(1_i32 << (bits - 1));
         Self::Integer { bits, step: full_scale / steps }
@@ -34,7 +34,7 @@ impl Encoding {
         match self {
             Self::F32 => None,
             Self::Integer { bits, step } => {
-                // The lowest code has no counterpart of the other sign.
+                // The lowest code has no positive counterpart.
                 let most = (1_i32 << (bits - 1)) - 1;
                 Some((step, f64::from(most) * step))
             }
@@ -42,8 +42,8 @@ impl Encoding {
     }
 }
 
-/// Rounds to the nearest whole number of steps; ties go to the even one. The caller has checked
-/// that the result is within the range of the encoding.
+/// Rounds to the nearest integer number of steps. Ties go to the even number. The caller has
+/// checked that the result is within the range of the encoding.
 pub(crate) fn code(sample: f32, step: f64) -> i32 {
     (f64::from(sample) / step).round_ties_even() as i32
 }

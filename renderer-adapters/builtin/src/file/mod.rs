@@ -2,8 +2,8 @@
 //! display, as WAV, CSV, NPY or raw samples.
 //!
 //! Samples are written as fast as they are generated, through a buffer of fixed size, into a
-//! temporary file next to the named one. Finishing the device renames the temporary file. A device
-//! that is dropped before that leaves no file.
+//! temporary file next to the final file. Finishing the output renames the temporary file. An
+//! output that is dropped before it is finished leaves no file.
 //!
 //! A WAV file larger than 4 GiB is an error. RF64 would allow it, but few programs read RF64.
 #![allow(unsafe_code, reason = "the C functions of the device ABI")]
@@ -51,8 +51,8 @@ impl Adapter for FileAdapter {
     }
 }
 
-/// Opens a WAV file of sound, with 32-bit floats and one channel for each factor. A channel
-/// contains each sample times its factor.
+/// Creates a WAV file of sound with 32-bit floats. It has one channel for each factor. A channel
+/// contains each sample multiplied by its factor.
 ///
 /// # Errors
 /// When a WAV file cannot have this rate, or the file cannot be created.

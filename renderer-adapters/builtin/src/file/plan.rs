@@ -1,4 +1,4 @@
-//! The file that the settings ask for, and whether its format supports them.
+//! The file that the settings ask for. Checks that the file format supports the settings.
 
 use std::path::{Path, PathBuf};
 
@@ -30,8 +30,8 @@ pub(crate) struct Plan {
     pub(crate) form: Form,
     pub(crate) encoding: Encoding,
     pub(crate) quantity: Quantity,
-    /// The factor of each channel: a channel contains each sample times its factor. Only a WAV file
-    /// has several channels.
+    /// The factor of each channel. A channel contains each sample multiplied by its factor. Only a
+    /// WAV file can have several channels.
     pub(crate) factors: Vec<f32>,
     /// Largest magnitude, in the quantity's unit.
     limit: Option<f64>,
@@ -44,7 +44,7 @@ impl Plan {
         let form = form(settings.text("format"), &path)?;
         let named = settings.text("quantity");
         let mut all = Quantity::ALL.into_iter();
-        // The descriptor allows only these names, so the last part is never needed.
+        // The descriptor allows only these names, so the fallback is never used.
         let quantity =
             all.find(|quantity| quantity.name() == named).unwrap_or(Quantity::LateralForce);
         let plan = Self {
@@ -139,7 +139,7 @@ fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
     }
 }
 
-/// Reads a setting that applies only to voltages; 0 means that it is not set.
+/// Reads a setting that applies only to voltages. The value 0 means that it is not set.
 fn of_voltage(
     settings: &Settings,
     quantity: Quantity,

@@ -11,14 +11,16 @@ use crate::file::plan::{Form, Plan};
 
 /// Number of bytes that are buffered before they are written.
 const BUFFER: usize = 1 << 16;
-/// Maximum number of bytes of samples in a WAV file: its sizes have 32 bits, and headers take some.
+/// Maximum number of bytes of samples in a WAV file. Sizes in a WAV file have 32 bits, and the
+/// headers need some bytes.
 const MAX_WAV_BYTES: u64 = u32::MAX as u64 - 128;
 
 /// A writer of a file.
 pub(crate) struct Sink {
     form: Form,
     encoding: Encoding,
-    /// The factor of each channel of a WAV file: a channel contains each sample times its factor.
+    /// The factor of each channel of a WAV file. A channel contains each sample multiplied by its
+    /// factor.
     factors: Vec<f32>,
     rate_hz: f64,
     frames: u64,
@@ -71,7 +73,8 @@ impl Sink {
             }
             Out::Plain(out) if form == Form::Csv => {
                 for (i, sample) in samples.iter().enumerate() {
-                    // Divided anew for each row, so that rounding errors do not add up.
+                    // The time is computed anew for each row, so that rounding errors do not add
+                    // up.
                     let t_s = (self.frames + i as u64) as f64 / rate_hz;
                     writeln!(out, "{t_s},{sample}")?;
                 }
@@ -102,7 +105,7 @@ impl Sink {
 fn wav_spec(encoding: Encoding, channels: u16, rate_hz: f64) -> WavSpec {
     WavSpec {
         channels,
-        // A whole number of at most a million, because `Plan::check_rate` has passed.
+        // `Plan::check_rate` has ensured that the rate is a whole number of at most a million.
         sample_rate: rate_hz as u32,
         bits_per_sample: 8 * encoding.bytes(),
         sample_format: match encoding {
@@ -155,7 +158,8 @@ fn write_bytes(out: &mut impl Write, encoding: Encoding, samples: &[f32]) -> io:
     }
 }
 
-/// Returns the header of an NPY file of `frames` samples. Its 128 bytes are enough for any number.
+/// Returns the header of an NPY file of `frames` samples. The header always has 128 bytes, which
+/// are enough for any number of samples.
 fn npy_header(encoding: Encoding, frames: u64) -> Vec<u8> {
     let kind = match encoding {
         Encoding::F32 => "f4",
@@ -163,8 +167,8 @@ fn npy_header(encoding: Encoding, frames: u64) -> Vec<u8> {
     };
     let dictionary =
         format!("{{'descr': '<{kind}', 'fortran_order': False, 'shape': ({frames}, ), }}");
-    // After 10 bytes of magic, version and length, 118 bytes (0x76) of text make 128. NPY wants a
-    // multiple of 64.
+    // NPY requires a multiple of 64 bytes: 10 bytes of magic, version and length, and 118 bytes
+    // (0x76) of text make 128.
     let text = format!("{dictionary:<117}\n");
     [b"\x93NUMPY\x01\x00\x76\x00", text.as_bytes()].concat()
 }

@@ -1,14 +1,15 @@
 //! Devices that cannot play samples: motors and interfaces that take a strength and a frequency
-//! some hundred times per second.
+//! about a hundred times per second.
 //!
-//! An adapter implements [`Motor`], and [`PacedOutput`] makes an open device from it. The device takes
-//! samples of sound and keeps them in a buffer. Its own thread passes them to the motor in blocks
-//! in real time, each with its level and mean frequency. [`htex_dsp::envelope`] measures them in
-//! the same way as for `Voice::envelope`, so a device needs no model.
+//! An adapter implements [`Motor`], and [`PacedOutput`] makes an open device from it. The device
+//! takes samples of sound and keeps them in a buffer. The device's own thread passes the samples to
+//! the motor in real time, in blocks. Each block comes with its level and mean frequency.
+//! [`htex_dsp::envelope`] measures both as it does for `Voice::envelope`, so a device needs no
+//! model.
 //!
-//! The motor is at rest before the first block, after the last one, after every error, when the
-//! device is dropped, and when samples come too late. The thread stops the motor even if the writer
-//! hangs.
+//! The motor is at rest before the first block and after the last block. The thread also stops it
+//! after every error, when the device is dropped, and when samples come too late. This works even
+//! if the writer hangs.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -25,13 +26,14 @@ use htex_dsp::envelope::Measurement;
 /// A motor or interface that plays blocks. Implement this trait to add a device that cannot play
 /// samples.
 pub trait Motor: Send {
-    /// Starts playing a block. The next block comes when this one is over.
+    /// Starts to play a block. The next call comes when the time of this block is over.
     ///
     /// # Errors
     /// The reason, as a sentence. The motor is then stopped.
     fn play(&mut self, block: &Block<'_>) -> Result<(), String>;
 
-    /// Stops after the last block, whose time is over. Waits until the motor is at rest.
+    /// Stops the motor after the last block. The time of this block is already over. Waits until
+    /// the motor is at rest.
     ///
     /// # Errors
     /// The reason, as a sentence.
@@ -43,7 +45,7 @@ pub trait Motor: Send {
     /// The reason, as a sentence.
     fn stop(&mut self) -> Result<(), String>;
 
-    /// Returns the time from [`Self::play`] until the block is output, seconds.
+    /// Returns the time from the call of [`Self::play`] until the motor plays the block, seconds.
     fn delay_s(&self) -> f64 {
         0.0
     }
@@ -54,6 +56,6 @@ pub trait Motor: Send {
 pub struct Block<'a> {
     /// The samples, at most 1 in magnitude. The last block may be shorter than the others.
     pub samples: &'a [f32],
-    /// Their level and mean frequency.
+    /// The level and the mean frequency of the samples.
     pub measured: Measurement,
 }

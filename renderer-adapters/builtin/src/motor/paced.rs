@@ -1,4 +1,4 @@
-//! An open device: the part that runs in the writer's thread.
+//! An open output for a motor: the part that runs in the writer's thread.
 
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
@@ -9,13 +9,13 @@ use htex_device::{Capabilities, DeviceError, Output, Status, StreamFormat};
 use crate::motor::worker::{Shared, Wish, Worker};
 use crate::motor::{Motor, Plan};
 
-/// A device that passes its samples in blocks to a [`Motor`].
+/// An output that passes its samples in blocks to a [`Motor`], at the pace of a clock.
 pub struct PacedOutput {
     name: String,
     can: Capabilities,
     rate_hz: f64,
     block_frames: usize,
-    /// Number of frames that the motor holds before they are output.
+    /// Number of frames that the motor has received but not played yet.
     delayed: usize,
     capacity: usize,
     shared: Arc<Shared>,
@@ -26,7 +26,7 @@ pub struct PacedOutput {
 }
 
 impl PacedOutput {
-    /// Opens a device called `name` on a motor that is at rest.
+    /// Opens an output called `name` for a motor that is at rest.
     ///
     /// # Errors
     /// When the device does not support the rate, or no thread can be started.
@@ -46,7 +46,8 @@ impl PacedOutput {
         let capacity = ((plan.buffer_s * rate_hz) as usize).max(least);
         let delayed = (motor.delay_s() * rate_hz).round() as usize;
         let shared = Arc::new(Shared::default());
-        // The motor's thread uses the same lock, so a write must not allocate under it.
+        // The motor's thread uses the same lock, so a write must not allocate while it holds the
+        // lock.
         shared.lock().waiting.reserve_exact(capacity);
         let worker = Worker {
             name: name.to_owned(),
@@ -101,14 +102,14 @@ impl PacedOutput {
         let fits = self.capacity.saturating_sub(state.waiting.len());
         let taken = samples.get(..fits).unwrap_or(samples);
         state.waiting.extend(taken);
-        // The thread needs a whole block, or the motor would run dry at once.
+        // The thread needs a whole block. Otherwise the motor would run dry at once.
         let enough = (self.capacity / 2).max(self.block_frames);
         if state.wish == Wish::Wait && state.waiting.len() >= enough {
             state.wish = Wish::Play;
             self.shared.changed();
         }
         drop(state);
-        // The motor's thread can go on until then.
+        // The peak is computed after the lock is released, so that the motor's thread can continue.
         let peak = taken.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
         self.peak = self.peak.max(f64::from(peak));
         self.written += taken.len() as u64;
@@ -133,7 +134,8 @@ impl Output for PacedOutput {
                 return Ok(samples.len() - left.len());
             }
             let state = self.shared.lock();
-            // Space may have appeared in the meantime. Then nothing would end the wait early.
+            // Wait only if there is still no space. If there is space now, nothing would end the
+            // wait early.
             if state.waiting.len() >= self.capacity && !state.ended {
                 drop(self.shared.wait(state, time));
             } else {

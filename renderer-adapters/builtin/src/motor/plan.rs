@@ -1,4 +1,4 @@
-//! The settings that these devices share, and the values derived from them.
+//! The settings that all devices with motors have, and the values derived from them.
 
 use htex_device::{
     Capabilities, DeviceError, FromScene, Quantity, Rates, Setting, SettingKind, Settings,
@@ -7,7 +7,7 @@ use htex_device::{
 /// Lowest and highest sample rate, hertz. Frequencies of textures reach 1 kHz.
 const RATES_HZ: (f64, f64) = (2_000.0, 192_000.0);
 const DEFAULT_RATE_HZ: f64 = 8_000.0;
-/// Defaults of the setting `buffer_ms`: the general one, and the one for a live motion.
+/// Defaults of the setting `buffer_ms`: in general, and for a live motion.
 const DEFAULT_BUFFER_MS: [&str; 2] = ["100", "30"];
 /// Default of the setting `gain`.
 pub(crate) const DEFAULT_GAIN: &str = "3";
@@ -18,26 +18,26 @@ pub fn reducing_settings() -> Vec<Setting> {
         "gain",
         SettingKind::Number { min: 0.0, max: 100.0 },
         DEFAULT_GAIN,
-        "Strength of a level (RMS) of full scale, of which a motor has at most 1: a third of full scale is then all it has, about \
-         what noise can reach without clipping.",
+        "The motor's strength is this gain times the level (RMS, where 1 is full scale), at most 1. With a gain of 3, a third of \
+         full scale gives full strength. This is about the level that noise can reach without clipping.",
     );
     let block = Setting::hardware(
         "block_ms",
         SettingKind::Number { min: 5.0, max: 100.0 },
         "10",
-        "Length of a block, of which the motor has one strength and one frequency, milliseconds.",
+        "Duration of a block, milliseconds. The motor plays each block with one strength and one frequency.",
     );
     vec![gain, block, buffer_setting()]
 }
 
-/// Returns the setting `buffer_ms`, which is shorter with a live motion.
+/// Returns the setting `buffer_ms`. Its default is shorter for a live motion.
 pub fn buffer_setting() -> Setting {
     let [usual, live] = DEFAULT_BUFFER_MS;
     Setting::hardware(
         "buffer_ms",
         SettingKind::Number { min: 10.0, max: 10_000.0 },
         usual,
-        "Samples kept ready, milliseconds, at least two blocks: more is safer, less is quicker.",
+        "Samples kept ready, milliseconds, at least two blocks. A larger buffer is safer, a smaller one has less latency.",
     )
     .with_live_default(live)
     .with_from_scene(FromScene::Less)
@@ -53,10 +53,10 @@ pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError
     DeviceError::Rate { device: device.to_owned(), rate_hz, rates: can.rates.to_string() }
 }
 
-/// The values of the shared settings.
+/// The values of the settings that all devices with motors have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
-    /// Strength at a level of 1.
+    /// Strength of the motor at a level of 1, before it is limited to 1.
     pub gain: f64,
     /// Duration of a block, seconds.
     pub block_s: f64,
@@ -79,7 +79,7 @@ impl Plan {
         (self.block_s * rate_hz).round().max(1.0) as usize
     }
 
-    /// Returns the capabilities of such a device: it takes sound, paced by a clock.
+    /// Returns the capabilities of a device with a motor: it takes sound, at the pace of a clock.
     pub fn capabilities(&self) -> Capabilities {
         Capabilities {
             quantity: Quantity::Sound,

@@ -10,16 +10,16 @@ use htex_dsp::grid::Band;
 
 use crate::motor::{Block, Motor};
 
-/// What the writer asks the thread to do.
+/// A request from the writer to the thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Wish {
     /// Wait for samples before the first block.
     #[default]
     Wait,
     Play,
-    /// Play the samples in the buffer, then rest.
+    /// Play the samples in the buffer, then stop the motor.
     Drain,
-    /// Rest now.
+    /// Stop the motor now.
     Stop,
 }
 
@@ -28,12 +28,12 @@ pub(crate) enum Wish {
 pub(crate) struct State {
     pub(crate) waiting: VecDeque<f32>,
     pub(crate) wish: Wish,
-    /// Number of frames in the blocks that are over.
+    /// Number of frames in the blocks that have been played.
     pub(crate) played: u64,
     pub(crate) underruns: u64,
-    /// An error that the next call returns and thereby clears.
+    /// An error for the next call. The call returns the error and clears this field.
     pub(crate) error: Option<DeviceError>,
-    /// The motor is at rest and will stay at rest.
+    /// Whether the motor is at rest for good.
     pub(crate) ended: bool,
 }
 
@@ -52,7 +52,7 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    /// Waits for a change, at most for this duration.
+    /// Waits for a change of the state, at most for this duration.
     pub(crate) fn wait<'a>(
         &'a self,
         state: MutexGuard<'a, State>,
@@ -78,7 +78,7 @@ impl Shared {
     fn wait_for_start(&self) {
         let mut state = self.lock();
         while state.wish == Wish::Wait {
-            // Only a change ends the wait, so any long duration will do.
+            // The loop repeats until the state changes, so any long duration is suitable.
             state = self.wait(state, Duration::from_secs(3_600));
         }
     }
@@ -93,7 +93,7 @@ pub(crate) struct Worker {
     pub(crate) block_frames: usize,
 }
 
-/// The next action when a block is over.
+/// What to do next when a block is over.
 enum Next {
     Block,
     End,
@@ -118,7 +118,8 @@ impl Worker {
         shared.changed();
     }
 
-    /// Plays until the end, a stop or an error. The motor is at rest afterwards.
+    /// Plays blocks until the end of the samples, a stop or an error. The motor is at rest
+    /// afterwards.
     fn play(&mut self) -> Result<(), DeviceError> {
         let mut analyser = Analyser::new(1, Band::TACTILE, self.rate_hz);
         let mut samples = Vec::with_capacity(self.block_frames);
@@ -130,26 +131,27 @@ impl Worker {
                 Next::Block => {}
                 Next::End => return self.motor.end().map_err(|what| self.failed(what)),
                 Next::Stop => return self.stop(),
-                // A motor that cannot be stopped matters more than one that ran dry.
+                // If the motor cannot be stopped, this error is returned, because it matters more
+                // than an underrun.
                 Next::Dry => return self.stop().and(Err(self.ran_dry())),
             }
             analyser.push(&samples);
             let measured = analyser.read(&mut []);
             let block = Block { samples: &samples, measured };
             if let Err(what) = self.motor.play(&block) {
-                // The motor has failed, and the reason for that says more than an error of stopping
-                // it.
+                // An error of stopping is ignored, because the reason why the motor failed says
+                // more.
                 let _ = self.motor.stop();
                 return Err(self.failed(what));
             }
             let length = Duration::from_secs_f64(samples.len() as f64 / self.rate_hz);
-            // A program that was held up must not play everything that it missed at once.
+            // After a delay of the program, the missed blocks must not be played all at once.
             let latest = Instant::now().checked_sub(length).unwrap_or(due);
             due = (due + length).max(latest);
         }
     }
 
-    /// Waits until the block in `samples` is over, and replaces it with the next one.
+    /// Waits until the block in `samples` is over, and replaces it with the next block.
     fn next(&self, due: Instant, samples: &mut Vec<f32>) -> Next {
         let mut state = self.shared.wait_until(due);
         if state.wish == Wish::Stop {

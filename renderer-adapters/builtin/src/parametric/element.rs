@@ -1,4 +1,4 @@
-//! The haptic element of a hand, reserved for one open device.
+//! The haptic element (OpenXR's name for an actuator) of a hand, reserved for one open device.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use htex_device::DeviceError;
 use crate::driver::Claim;
 use crate::parametric::session::{Hand, Session};
 
-/// A reserved haptic element. Dropping it releases it.
+/// A reserved haptic element. Dropping this value releases the element.
 pub(crate) struct Element {
     pub(crate) session: Arc<Session>,
     pub(crate) hand: Hand,

@@ -2,9 +2,9 @@
 //! (API 36) accepts them.
 //!
 //! Android offers vibrators only in Java. The application therefore exports three C functions that
-//! call it (`docs/devices.md` declares them). An effect replaces the previous one and begins at
-//! rest: its first point is a ramp from 0. Streaming is a series of effects, each passed on as soon
-//! as its blocks are known.
+//! call Java (`docs/devices.md` declares them). An effect replaces the previous effect and begins
+//! at rest: its first point is a ramp from 0. Streaming is a series of effects. Each effect is
+//! passed on as soon as its blocks are known.
 #![allow(unsafe_code)] // The application's functions are C.
 
 use std::thread::sleep;
@@ -16,10 +16,10 @@ use htex_base::native::{Library, Symbols};
 use htex_device::DeviceError;
 use htex_dsp::reduced::Scale;
 
-/// Duration of an effect, if the vibrator accepts that many points, seconds. Longer effects have
-/// fewer ramps, shorter ones less delay.
+/// Duration of an effect, seconds, if the vibrator accepts enough points. Longer effects have fewer
+/// ramps; shorter effects have less delay.
 const EFFECT_S: f64 = 0.1;
-/// Minimum number of points of an effect: a ramp and one more.
+/// Minimum number of points of an effect: a ramp and one more point.
 const LEAST_POINTS: u32 = 2;
 
 /// The limits of a vibrator, from `VibratorEnvelopeEffectInfo` and `VibratorFrequencyProfile`.
@@ -33,8 +33,8 @@ pub(crate) struct Limits {
     high_hz: f32,
 }
 
-/// The arguments of `addControlPoint`: the values reached at the end of the duration, which begins
-/// at the previous point.
+/// The arguments of `addControlPoint`. The values are reached at the end of the duration, which
+/// begins at the previous point.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub(crate) struct ControlPoint {
@@ -101,7 +101,7 @@ impl Vibrator {
         }
     }
 
-    /// Checks that the vibrator accepts points of this duration.
+    /// Checks that the vibrator accepts points with this duration.
     pub(crate) fn takes(&self, block_ms: u32) -> Result<(), DeviceError> {
         let Limits { least_ms, most_ms, .. } = self.limits;
         if (least_ms..=most_ms).contains(&block_ms) {
@@ -138,7 +138,7 @@ impl Envelopes {
         vibrator.takes(block_ms)?;
         let Limits { most_points, low_hz, high_hz, .. } = vibrator.limits;
         let effect = (EFFECT_S / plan.block_s).ceil() as u32;
-        // The last effect needs one more point, which ends it.
+        // The last effect needs one more point, which ends the vibration.
         let most = (most_points - 1).max(1);
         Ok(Self {
             vibrator,
@@ -169,7 +169,7 @@ impl Envelopes {
 impl Motor for Envelopes {
     fn play(&mut self, block: &Block<'_>) -> Result<(), String> {
         let measured = block.measured;
-        // Silence has no mean frequency, so the last one stays.
+        // Silence has no mean frequency, so the last frequency stays.
         if measured.centroid_hz > 0.0 {
             self.frequency_hz = measured.centroid_hz.clamp(self.scale.low_hz, self.scale.high_hz);
         }
@@ -182,7 +182,7 @@ impl Motor for Envelopes {
     }
 
     fn end(&mut self) -> Result<(), String> {
-        // The last effect was passed on early: it still has to play for the duration of the blocks
+        // The last effect was passed on early. It still has to play for the duration of the blocks
         // after it.
         let left =
             if self.started { (self.effect - 1).saturating_sub(self.waiting.len()) } else { 0 };
@@ -217,7 +217,7 @@ fn done(call: &str, code: i32) -> Result<(), String> {
     }
 }
 
-/// Returns the duration of a block, which is the duration of a point.
+/// Returns the duration of a block, which is also the duration of a point, milliseconds.
 pub(crate) fn milliseconds(plan: &Plan) -> u32 {
     (1e3 * plan.block_s).round() as u32
 }

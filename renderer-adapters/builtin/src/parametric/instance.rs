@@ -13,14 +13,14 @@ use crate::parametric::table::{Entry, Table, VERSION, done, function};
 const HEADLESS: &CStr = c"XR_MND_headless";
 const PCM: &CStr = c"XR_FB_haptic_pcm";
 
-/// An instance and its system. Dropping it destroys both, with everything created from them.
+/// An OpenXR instance and its system. Dropping it destroys both, and everything created from them.
 pub(crate) struct Instance {
     pub(crate) table: Table,
     pub(crate) handle: xr::Instance,
     pub(crate) system: xr::SystemId,
-    /// Whether the system plays points.
+    /// Whether the system can play points (`XR_EXT_haptic_parametric`).
     pub(crate) has_points: bool,
-    /// Whether the runtime plays samples.
+    /// Whether the runtime can play samples (`XR_FB_haptic_pcm`).
     pub(crate) has_pcm: bool,
 }
 
@@ -86,7 +86,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Returns the path of a text such as `/user/hand/left`.
+    /// Converts a text such as `/user/hand/left` to an OpenXR path.
     pub(crate) fn path(&self, text: &CStr) -> Result<xr::Path, String> {
         let mut path = xr::Path::NULL;
         // SAFETY: the text ends in zero.
@@ -125,7 +125,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
     let mut all = vec![empty; count as usize];
     // SAFETY: there are as many places as said.
     done(call, unsafe { enumerate(null(), count, &mut count, all.as_mut_ptr()) })?;
-    // The runtime may write fewer than it announced.
+    // The runtime may write fewer extensions than it announced.
     all.truncate(count as usize);
     let name = |one: &xr::ExtensionProperties| {
         let bytes = one.extension_name.iter().take_while(|c| **c != 0);
@@ -162,7 +162,7 @@ fn create(entry: Entry, extensions: &[&CStr]) -> Result<xr::Instance, String> {
     Ok(instance)
 }
 
-/// Copies a short text into an array of fixed size, filled up with zeros.
+/// Copies a short text into an array of fixed size, and fills the rest with zeros.
 pub(crate) fn fixed<const N: usize>(text: &str) -> [c_char; N] {
     let mut place = [0; N];
     for (to, byte) in place.iter_mut().take(N - 1).zip(text.bytes()) {

@@ -1,17 +1,18 @@
-//! Controllers that take points or samples some times per second, through an OpenXR runtime.
+//! Controllers that take points or samples several times per second, through an OpenXR runtime.
 //!
-//! The library is a runtime itself or the installed loader. It is loaded at run time; nothing is
-//! linked. The setting `form` chooses what is played:
+//! The loaded library is either a runtime itself or the installed loader. It is loaded at run time,
+//! so nothing is linked. The setting `form` chooses what is played:
 //! - `form=points` plays `XR_EXT_haptic_parametric`. Each block of `block_ms` becomes a point with
-//!   the amplitude and the frequency at its end ([`htex_dsp::reduced::Points`]). Points are passed
-//!   on in frames of the duration that the runtime prefers.
-//! - `form=pcm` plays `XR_FB_haptic_pcm`: the samples themselves, at the rate of the controller.
-//! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept, through
+//!   the amplitude and the frequency at the end of the block ([`htex_dsp::reduced::Points`]).
+//!   Points are passed on in frames. A frame has the duration that the runtime prefers.
+//! - `form=pcm` plays `XR_FB_haptic_pcm`: the samples themselves, at the controller's sample rate.
+//! - `form=pwle` plays piecewise linear envelopes, which Android's vibrators accept. It calls
 //!   functions of the application.
 //!
 //! The adapter has its own session, without graphics (`XR_MND_headless`), so that the command can
-//! play on a controller. A session ends with its last device. If a program hangs, the runtime ends
-//! a stream of points after 50 ms, and a stream of samples when it has no more.
+//! play on a controller. A session ends when its last device is closed. If the program hangs, the
+//! runtime ends a stream of points after 50 ms, and a stream of samples when it has no more
+//! samples.
 #![deny(unsafe_code)]
 
 mod element;
@@ -104,8 +105,8 @@ impl PlayRequest {
         Ok(self.plan.capabilities())
     }
 
-    /// Returns the capabilities of a controller with these settings. Points can have any rate.
-    /// Samples have the rate of the controller.
+    /// Returns the capabilities of a controller with these settings. For points, any sample rate is
+    /// possible. Samples must have the controller's rate.
     fn of_session(&self, session: &Session) -> Result<Capabilities, DeviceError> {
         let can = self.plan.capabilities();
         if self.form != Form::Pcm {
@@ -128,7 +129,7 @@ impl PlayRequest {
         }
     }
 
-    /// Opens a device on a motor, which is created only if the device supports the rate.
+    /// Opens an output for a motor. Creates the motor only if the output supports the rate.
     fn paced(
         &self,
         name: &str,
@@ -153,11 +154,11 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
         summary: "Points or samples on a controller, through an OpenXR runtime.".to_owned(),
         settings: settings::all(),
         mapping: Some(Mapping {
-            plays: "form=points: an amplitude and a frequency for each block of block_ms, between which the runtime interpolates, as frames of \
-                    XR_EXT_haptic_parametric; form=pcm: the samples, at the controller's rate; form=pwle: effects of control points, one for each block"
+            plays: "form=points: an amplitude and a frequency for each block of block_ms, which the runtime interpolates (XR_EXT_haptic_parametric); \
+                    form=pcm: the samples, at the controller's rate; form=pwle: effects of control points, one point for each block"
                 .to_owned(),
-            loses: "form=points: the spectrum, of which the level and the mean frequency remain, and changes within a block; frequencies \
-                    outside the range that the controller has; form=pcm: frequencies from half of the controller's rate; form=pwle: as form=points, and each effect of about 0.1 s \
+            loses: "form=points: the spectrum, except its level and mean frequency, changes within a block, and frequencies \
+                    outside the controller's range; form=pcm: frequencies above half of the controller's rate; form=pwle: the same as with form=points, and each effect of about 0.1 s \
                     begins with a ramp from rest"
                 .to_owned(),
         }),

@@ -15,8 +15,9 @@ use crate::parametric::structures::{
     FREQUENCIES_HZ, Frame, MOST_POINTS, Properties, VIBRATION, Vibration, XrPoint,
 };
 
-/// The frequency range if neither the user nor the runtime states one, hertz. It begins a little
-/// below what wideband actuators reach and ends a little above what a finger feels best.
+/// The frequency range that is used if neither the user nor the runtime states one, hertz. It
+/// begins a little below the lowest frequencies of wideband actuators, and ends a little above the
+/// frequencies that a finger feels best.
 const USUAL_HZ: (f64, f64) = (50.0, 500.0);
 pub(crate) struct Stream {
     element: Element,
@@ -27,13 +28,14 @@ pub(crate) struct Stream {
     waiting: Vec<Point>,
     /// Duration of the samples that were passed to the runtime, seconds.
     sent_s: f64,
-    /// Minimum duration of the first frame, seconds. It is at least one block longer than the other
-    /// frames, because each frame comes one block before the runtime needs it.
+    /// Minimum duration of the first frame, seconds. The first frame is at least one block longer
+    /// than the other frames, because each frame is passed on one block before the runtime needs
+    /// it.
     first_s: f64,
     /// Minimum duration of every other frame, seconds.
     frame_s: f64,
     block_s: f64,
-    /// When the first frame was passed on. This is the runtime's time 0.
+    /// When the first frame was passed on. This moment is the runtime's time 0.
     since: Option<Instant>,
 }
 
@@ -80,8 +82,8 @@ impl Stream {
         self.points.frames as f64 / self.rate_hz
     }
 
-    /// Skips to the runtime's present after a delay of this thread. The runtime has then played
-    /// everything it had, and its time has gone on.
+    /// After a delay of this thread, skips to the runtime's current time. The runtime has then
+    /// played all its points, but its time has continued.
     fn catch_up(&mut self) {
         let now_s = self.since.map_or(0.0, |since| since.elapsed().as_secs_f64());
         if now_s > self.there_s() {
@@ -128,7 +130,7 @@ impl Motor for Stream {
         self.catch_up();
         let points = self.points.block(&block.measured, &self.scale, self.rate_hz);
         self.waiting.extend(points);
-        // Half a sample more, because the durations are rounded.
+        // Add half a sample, because the durations are rounded.
         let unsent_s = self.there_s() - self.sent_s + 0.5 / self.rate_hz;
         match self.since {
             None if unsent_s >= self.first_s => {
@@ -169,8 +171,8 @@ impl Motor for Stream {
     }
 }
 
-/// Returns the frequency range that the points cover: the overlap of what the user states and what
-/// the element supports.
+/// Returns the frequency range that the points cover: the range that the user states, limited to
+/// the range that the haptic element supports.
 fn range(stated_hz: Option<(f64, f64)>, properties: &Properties) -> (f64, f64) {
     let element = (f64::from(properties.min_frequency_hz), f64::from(properties.max_frequency_hz));
     let is_told = element.0 >= FREQUENCIES_HZ.0 && element.0 <= element.1;
@@ -178,7 +180,7 @@ fn range(stated_hz: Option<(f64, f64)>, properties: &Properties) -> (f64, f64) {
         (None, false) => USUAL_HZ,
         (None, true) => element,
         (Some(stated), false) => stated,
-        // The runtime does the same: it moves both ends into the range of the element.
+        // The runtime does the same with both ends of the range.
         (Some((low, high)), true) => {
             (low.clamp(element.0, element.1), high.clamp(element.0, element.1))
         }

@@ -11,7 +11,7 @@ use openxr_sys as xr;
 
 use crate::parametric::element::Element;
 
-/// Number of samples that a runtime can hold.
+/// Maximum number of samples that a runtime can hold.
 const MOST: usize = xr::MAX_HAPTIC_PCM_BUFFER_SIZE_FB;
 
 pub(crate) struct Samples {
@@ -20,12 +20,12 @@ pub(crate) struct Samples {
     block_s: f64,
     /// Samples that the runtime has not taken yet.
     waiting: Vec<f32>,
-    /// Number of samples to collect before the first call: two blocks. The runtime then always has
-    /// a block in reserve.
+    /// Number of samples to collect before the first call: two blocks. So the runtime always has a
+    /// block in reserve.
     first: usize,
-    /// When the runtime began.
+    /// When the runtime began to play.
     since: Option<Instant>,
-    /// Number of samples that the runtime has taken since it began.
+    /// Number of samples that the runtime has taken since it began to play.
     taken: u64,
 }
 
@@ -93,7 +93,7 @@ impl Motor for Samples {
 
     fn end(&mut self) -> Result<(), String> {
         let since = Instant::now();
-        // Twice the time in which a full runtime plays everything.
+        // Twice the time in which a runtime with a full buffer plays everything.
         let most = Duration::from_secs_f64(2.0 * (MOST as f64 / self.rate_hz).max(self.block_s));
         while !self.waiting.is_empty() {
             self.send()?;

@@ -1,7 +1,7 @@
 //! An OpenXR session with one haptic action on both hands.
 //!
-//! A runtime allows a program one session at a time. Devices of both hands share it, and it ends
-//! with the last one.
+//! A runtime allows a program only one session at a time. So the devices of both hands share a
+//! session, which ends when the last device is closed.
 #![allow(unsafe_code)] // The runtime's functions are C.
 
 use std::collections::BTreeMap;
@@ -64,7 +64,7 @@ const PROFILES: [&CStr; 6] = [
     c"/interaction_profiles/hp/mixed_reality_controller",
 ];
 
-/// The sessions in use, by the setting that named the runtime.
+/// The sessions in use. The key is the setting that named the runtime.
 static IN_USE: Mutex<BTreeMap<String, Weak<Session>>> = Mutex::new(BTreeMap::new());
 
 /// A session that has the focus or has lost it.
@@ -86,10 +86,11 @@ struct State {
 }
 
 impl Session {
-    /// Returns the session of the runtime that a setting names. Creates it if no device has it.
+    /// Returns the session of the runtime that a setting names. Creates the session if no device
+    /// uses it yet.
     pub(crate) fn shared(path: &str) -> Result<Arc<Self>, DeviceError> {
-        // The lock stays until the new session is in the map, so that two threads do not create
-        // two.
+        // The lock is held until the new session is in the map, so that two threads cannot create
+        // two sessions.
         let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(session) = in_use.get(path).and_then(Weak::upgrade) {
             return Ok(session);
@@ -163,7 +164,8 @@ impl Session {
         done("xrCreateAction", code)
     }
 
-    /// Binds the action to all profiles that the runtime accepts. It must accept at least one.
+    /// Binds the action to all interaction profiles that the runtime accepts. The runtime must
+    /// accept at least one profile.
     fn suggest(&self) -> Result<(), String> {
         let instance = &self.instance;
         let mut bindings = Vec::new();
@@ -227,7 +229,7 @@ impl Session {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         while let Some(now) = self.next_state()? {
             state.now = now;
-            // The runtime refuses to begin a session that runs.
+            // The runtime refuses to begin a session that is already running.
             if now == xr::SessionState::READY && !state.begun {
                 self.begin_session()?;
                 state.begun = true;
@@ -250,7 +252,7 @@ impl Session {
         done("xrSyncActions", code)
     }
 
-    /// Returns the state in the next event of this session; `None` if there is no event.
+    /// Returns the state in the next event of this session, or `None` if there is no event.
     fn next_state(&self) -> Result<Option<xr::SessionState>, String> {
         loop {
             let mut event = xr::EventDataBuffer {
@@ -322,7 +324,7 @@ impl Session {
         done("xrStopHapticFeedback", code)
     }
 
-    /// Returns the properties of a hand's haptic element, if the system plays points.
+    /// Returns the properties of a hand's haptic element, if the system can play points.
     pub(crate) fn properties(&self, hand: Hand) -> Result<Properties, String> {
         let get = self.instance.table.parametric_properties;
         let (Some(get), true) = (get, self.instance.has_points) else {

@@ -32,13 +32,13 @@ pub(crate) fn all() -> Vec<Setting> {
             "runtime",
             SettingKind::Text,
             "",
-            "Library of an OpenXR runtime or loader, a file or a name that the system's loader finds; empty: the installed loader.",
+            "Library of an OpenXR runtime or loader: a file, or a name that the system's loader finds. Empty: the installed loader.",
         ),
         Setting::hardware(
             "form",
             SettingKind::choice(&["points", "pcm", "pwle"]),
             "points",
-            "What is handed over: points, samples at the controller's rate, or envelopes of an application's vibrator (then `runtime` names its library).",
+            "What is played: points, samples at the controller's rate (pcm), or envelopes on an application's vibrator (pwle; `runtime` then names the application's library).",
         ),
         Setting::hardware(
             "hand",
@@ -50,13 +50,13 @@ pub(crate) fn all() -> Vec<Setting> {
             "low_hz",
             hz.clone(),
             "0",
-            "Of points: mean frequency that is the lowest one of the controller, 1 to 1000 Hz; 0: what the controller states, else 50.",
+            "Only for form=points: lowest frequency of the points, hertz, 1 to 1000. 0: the lowest frequency that the controller states, else 50.",
         ),
         Setting::hardware(
             "high_hz",
             hz,
             "0",
-            "Of points: mean frequency that is the highest one of the controller, 1 to 1000 Hz; 0: what the controller states, else 500.",
+            "Only for form=points: highest frequency of the points, hertz, 1 to 1000. 0: the highest frequency that the controller states, else 500.",
         ),
     ];
     all.extend(reducing_settings());
@@ -67,7 +67,7 @@ impl PlayRequest {
     /// Reads the settings.
     ///
     /// # Errors
-    /// When a setting has no effect together with the others.
+    /// When a setting would have no effect in combination with the other settings.
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let form = match settings.text("form") {
             "pcm" => Form::Pcm,

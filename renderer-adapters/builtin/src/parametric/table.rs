@@ -29,7 +29,7 @@ const LIBRARY: DriverLibrary = DriverLibrary {
 /// The requested version of OpenXR: the first one, which all runtimes support.
 pub(crate) const VERSION: xr::Version = xr::Version::new(1, 0, 0);
 
-/// The function that looks up all others.
+/// The type of the function that looks up all other functions.
 pub(crate) type Entry = pfn::GetInstanceProcAddr;
 
 /// Loads the entry function of the library at `path`, or of the installed loader if `path` is
@@ -38,7 +38,8 @@ pub(crate) fn entry(path: &str) -> Result<Entry, DeviceError> {
     LIBRARY.load(path, entry_of)
 }
 
-/// Finds the entry function. A runtime exports the negotiation function, a loader the entry itself.
+/// Finds the entry function. A runtime exports the negotiation function, and a loader exports the
+/// entry function itself.
 fn entry_of(library: Library) -> Result<Entry, String> {
     // SAFETY: `openxr_loader_negotiation.h` declares a function of this name and type.
     let negotiate = unsafe {
@@ -79,7 +80,7 @@ fn negotiated(negotiate: pfn::NegotiateLoaderRuntimeInterface) -> Result<Entry, 
     request.get_instance_proc_addr.ok_or_else(|| "it gives no `xrGetInstanceProcAddr`".to_owned())
 }
 
-/// Checks that a call succeeded. The error is the reason.
+/// Checks that a call succeeded. The error names the call and its result.
 pub(crate) fn done(call: &str, code: xr::Result) -> Result<(), String> {
     match code {
         xr::Result::SUCCESS => Ok(()),

@@ -26,8 +26,8 @@ const LIBRARY: DriverLibrary = DriverLibrary {
 
 /// `SDL_INIT_JOYSTICK`.
 const JOYSTICK: u32 = 0x200;
-/// A program without windows has no focus and no message loop. Signals must remain the program's
-/// own.
+/// Hints for SDL. The first two are needed because a program without windows has no focus and no
+/// message loop. The third leaves the handling of signals to the program.
 const HINTS: [(&std::ffi::CStr, &std::ffi::CStr); 3] = [
     (c"SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", c"1"),
     (c"SDL_JOYSTICK_THREAD", c"1"),
@@ -43,7 +43,7 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// Loads the library at `path`, or the installed one if `path` is empty.
+    /// Loads the library at `path`, or the installed library if `path` is empty.
     pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
         LOADED.get_or_load(path, || {
             let table = LIBRARY.load(path, Table::from_library)?;
@@ -59,7 +59,7 @@ fn start(table: &Table) -> Result<(), DeviceError> {
         for (name, value) in HINTS {
             (table.set_hint)(name.as_ptr(), value.as_ptr());
         }
-        // Otherwise SDL refuses to start in a program whose `main` is not its own.
+        // Without this call, SDL refuses to start in a program that does not use SDL's own `main`.
         (table.set_main_ready)();
         (table.init)(JOYSTICK)
     };

@@ -1,12 +1,12 @@
 //! The motors of gamepads and joysticks, through SDL 2, which is loaded at run time and not linked.
 //!
-//! A gamepad has two motors with an unbalanced mass, a large and a small one. Each takes a
-//! strength. They get the level of each block of `block_ms`, divided between them by the mean
-//! frequency ([`htex_dsp::reduced::two_motors`]).
+//! A gamepad has two motors with an unbalanced mass, a large motor and a small motor. Each motor
+//! takes a strength. The level of each block of `block_ms` is divided between the motors by the
+//! mean frequency ([`htex_dsp::reduced::two_motors`]).
 //!
-//! Each strength is set for `HOLD_BLOCKS` blocks only. If this thread hangs in a program that polls
-//! SDL's events, SDL stops the motors after that time. If the program ends, the system stops them.
-//! SDL stays initialised, because an application may use it as well.
+//! A strength holds only for `HOLD_BLOCKS` blocks. If this thread hangs in a program that polls
+//! SDL's events, SDL stops the motors after that time. If the program ends, the system stops the
+//! motors. SDL stays initialised, because the application may also use SDL.
 #![deny(unsafe_code)]
 
 mod driver;
@@ -72,13 +72,13 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
         "device",
         SettingKind::Text,
         pads::FIRST,
-        "Gamepad or joystick, as the list of devices names it; `first` is the first one.",
+        "Name of the gamepad or joystick in the list of devices; `first` is the first in the list.",
     );
     let driver = Setting::hardware(
         "driver",
         SettingKind::Text,
         "",
-        "SDL 2's library, a file or a name that the system's loader finds; empty: the installed one.",
+        "Library of SDL 2: a file, or a name that the system's loader finds. Empty: the installed library.",
     );
     let mut settings = vec![device, driver];
     settings.extend(reducing_settings());
@@ -89,11 +89,11 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| {
         summary: "The two motors of a gamepad or joystick, through SDL 2.".to_owned(),
         settings,
         mapping: Some(Mapping {
-            plays: "the level of blocks of block_ms, on a large and a small motor: all on the large one up to a mean frequency of 60 Hz, \
-                    all on the small one from 420 Hz"
+            plays: "the level of each block of block_ms, on a large and a small motor: only the large motor up to a mean frequency of 60 Hz, \
+                    only the small motor from 420 Hz"
                 .to_owned(),
             loses: "the waveform and the spectrum: a motor has its own frequency, which rises with its strength, and takes some \
-                    20 to 100 ms to turn"
+                    20 to 100 ms to start"
                 .to_owned(),
         }),
         ..Descriptor::default()

@@ -6,29 +6,29 @@ use htex_device::DeviceError;
 use crate::sdl::driver::Driver;
 use crate::sdl::table::text;
 
-/// The setting's value that chooses the first one.
+/// The value of the setting `device` that selects the first gamepad or joystick.
 pub(crate) const FIRST: &str = "first";
 
 /// A connected gamepad or joystick.
 #[derive(Debug, Clone)]
 pub(crate) struct Pad {
-    /// SDL's name. A second one of the same name is called `NAME #2`.
+    /// SDL's name. A second gamepad of the same name is called `NAME #2`.
     pub(crate) name: String,
-    /// Its index in SDL's list, which changes when others come and go.
+    /// The index in SDL's list. It changes when other gamepads are connected or disconnected.
     pub(crate) index: i32,
-    /// Its number, which stays the same while it is connected.
+    /// The number of the gamepad. It stays the same while the gamepad is connected.
     pub(crate) instance: i32,
 }
 
 impl Driver {
-    /// Lists all that are connected.
+    /// Lists all connected gamepads and joysticks.
     pub(crate) fn pads(&self) -> Vec<Pad> {
         let sdl = &self.table;
         let mut pads: Vec<Pad> = Vec::new();
         // SAFETY: under the lock the list does not change; indices below its length are valid.
         unsafe {
             (sdl.lock)();
-            // SDL notices pads that came or went only in an update.
+            // SDL notices only in an update which gamepads were connected or disconnected.
             (sdl.update)();
             for index in 0..(sdl.count)() {
                 let (name, instance) = (text((sdl.name)(index)), (sdl.instance)(index));
@@ -44,7 +44,7 @@ impl Driver {
         pads
     }
 
-    /// Finds the one with this name.
+    /// Finds the gamepad or joystick with this name.
     pub(crate) fn find(&self, name: &str) -> Result<Pad, DeviceError> {
         let pads = self.pads();
         let mut all = pads.iter();

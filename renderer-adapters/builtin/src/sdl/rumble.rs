@@ -10,7 +10,7 @@ use crate::sdl::driver::Driver;
 use crate::sdl::pads::Pad;
 use crate::sdl::table::Handle;
 
-/// Number of blocks for which a strength holds if no other one follows.
+/// Number of blocks for which a strength holds if no other strength follows.
 pub(crate) const HOLD_BLOCKS: f64 = 10.0;
 
 pub(crate) struct Rumble {
@@ -75,7 +75,7 @@ impl Motor for Rumble {
         let sdl = &self.driver.table;
         // SAFETY: the handle is open.
         let attached = unsafe {
-            // SDL notices a disconnection only in an update.
+            // SDL notices only in an update that a gamepad was disconnected.
             (sdl.update)();
             (sdl.attached)(self.handle)
         };

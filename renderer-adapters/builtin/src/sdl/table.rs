@@ -36,7 +36,7 @@ impl Table {
     }
 }
 
-/// Copies a text of SDL; empty for a null pointer.
+/// Copies a text of SDL. Returns an empty text for a null pointer.
 pub(crate) fn text(at: *const c_char) -> String {
     if at.is_null() {
         return String::new();

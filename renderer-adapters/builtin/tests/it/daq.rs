@@ -1,4 +1,4 @@
-//! Playback through the simulated card: bit-exact output, and the output after errors.
+//! Tests playback through the simulated card: the output is bit-exact, and zero after errors.
 
 use crate::daq_simulated as simulated;
 
@@ -65,7 +65,7 @@ fn a_stream_that_is_not_zero_at_its_ends_is_led_there() {
 }
 
 /// Samples wait no longer than `buffer_ms`, even after a ramp that is longer than the buffer. On a
-/// busy machine, a pause of 20 ms lets the stream run dry; then the test tries again.
+/// busy machine, a pause of 20 ms may let the stream run dry. The test then tries again.
 #[test]
 fn a_short_buffer_is_a_short_wait() {
     let played = (0..10).find_map(|_| short_buffer().ok());
@@ -107,7 +107,8 @@ fn no_sample_beyond_the_limit_comes_out() {
     }
 }
 
-/// A call may be longer than the buffer: its last sample is checked before its first one is output.
+/// A call may have more samples than the buffer. Its last sample is checked before its first sample
+/// is output.
 #[test]
 fn a_wrong_sample_at_the_end_of_a_long_call_stops_all_of_it() {
     let card = Card::new();
@@ -130,8 +131,8 @@ fn direct_v(card: &Card) -> f64 {
     GAIN * means.fold(0.0, |most, mean| mean.abs().max(most))
 }
 
-/// A mean over 100 ms beyond the limit is not output, whatever the block size. The output goes to
-/// zero with an error.
+/// Samples whose mean over 100 ms exceeds the limit are not output, whatever the block size. The
+/// output goes to zero with an error.
 #[test]
 fn no_direct_voltage_beyond_the_limit_comes_out() {
     for (volts, limit_v, block) in
@@ -182,7 +183,7 @@ fn a_carrier_that_is_cut_is_led_to_zero_as_a_carrier() {
     }
 }
 
-/// Refused: a rate too low for the carrier, and a buffer that delays the zero.
+/// The device refuses a rate too low for the carrier, and a buffer that would delay the zero.
 #[test]
 fn what_endangers_a_finger_is_refused() {
     for rate_hz in [7_000.0, 3_500.0, 14_000.0, 17_499.0] {

@@ -60,7 +60,7 @@ fn calls(run: impl Fn(&Card)) -> Vec<(&'static str, u64)> {
     FUNCTIONS.map(|function| (function, card.calls(function))).to_vec()
 }
 
-/// Selects the first calls, some in the middle, and the last ones.
+/// Selects the first calls, some calls in the middle, and the last calls.
 fn some(count: u64) -> impl Iterator<Item = u64> {
     (1..=count + 1).filter(move |call| *call <= 4 || *call + 3 >= count || call % 16 == 0)
 }
@@ -109,7 +109,7 @@ fn a_device_that_is_dropped_ends_at_zero_whatever_fails_once() {
     }
 }
 
-/// If the driver hangs in one call for a while, the output is at zero, only late.
+/// If the driver hangs in one call for a while, the output still goes to zero, but late.
 #[test]
 fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
     for function in FUNCTIONS {
@@ -120,7 +120,7 @@ fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
     }
 }
 
-/// If a call of a running stream does not return, the output is at zero long before it does,
+/// If a call of a running stream hangs, the output goes to zero long before the call returns,
 /// without the session that the call holds. When the call returns, the stream ends and outputs
 /// nothing more.
 #[test]

@@ -1,4 +1,4 @@
-//! Reads files back with other readers.
+//! Writes files with the device, and reads them back with independent readers.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -156,7 +156,7 @@ fn what_cannot_be_had_is_refused() {
     assert!(matches!(error, DeviceError::File { .. }), "{error}");
 }
 
-/// Neither a dropped device nor a failed one leaves anything behind. An old file stays.
+/// Neither a dropped device nor a failed device leaves a file behind. An old file stays.
 #[test]
 fn without_an_end_nothing_is_left() {
     let folder = tempfile::tempdir().unwrap();

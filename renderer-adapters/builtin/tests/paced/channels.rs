@@ -1,5 +1,5 @@
-//! Selected channels of a file, of no output, and of a sound card (`with_alsa.rs` runs that part
-//! where ALSA is installed).
+//! Tests selected channels of a file, of the output `null`, and of a sound card. (`with_alsa.rs`
+//! runs the tests of sound cards if ALSA is installed.)
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};

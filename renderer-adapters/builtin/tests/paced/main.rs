@@ -1,5 +1,5 @@
-//! Tests of devices that keep a clock, in one program without tests that compute for long: their
-//! threads must be woken in time.
+//! Tests of devices that keep a clock. Their threads must be woken in time, so this program has no
+//! tests with long computations.
 #![allow(unreachable_pub, clippy::unwrap_used, unsafe_code, reason = "a failed test may panic")]
 
 mod channels;

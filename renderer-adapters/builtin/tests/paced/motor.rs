@@ -1,4 +1,4 @@
-//! The timing of blocks: what a motor is told and when, and that it always rests at the end.
+//! Tests which calls a motor gets and when, and that it is always at rest at the end.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -197,8 +197,8 @@ fn a_motor_that_fails_is_stopped_and_its_reason_is_told_once() {
     assert!(matches!(device.finish(), Err(DeviceError::Closed(_))));
 }
 
-/// A write with a timeout of zero takes what fits. One that may wait returns when there is space
-/// again.
+/// A write with a timeout of zero takes the samples that fit. A write that may wait returns when
+/// there is space again.
 #[test]
 fn a_write_takes_what_fits() {
     let log = Log::new(usize::MAX);

@@ -64,7 +64,7 @@ fn a_texture_is_a_stream_that_keeps_the_rules() {
     }
 }
 
-/// Each frame must come before the runtime has played what it has.
+/// Each frame must come before the runtime has played all the points it has.
 #[test]
 fn frames_come_in_time() {
     let Some(mock) = Mock::new() else { return };
@@ -100,8 +100,8 @@ fn a_texture_shorter_than_the_first_frame_is_one_event() {
     assert!(!mock.record().iter().any(|line| line.starts_with("points")));
 }
 
-/// The range of the points must lie within the controller's range, because the runtime would move
-/// it there.
+/// The range of the points must lie within the controller's range. Otherwise the runtime would
+/// change the range.
 #[test]
 fn frequencies_are_places_in_the_range_of_the_controller() {
     let Some(mock) = Mock::new() else { return };

@@ -1,4 +1,5 @@
-//! A virtual joystick of SDL itself, whose motors record what they are told (`pad.c`).
+//! Tests with a virtual joystick of SDL, whose motors record the strengths that they are set to
+//! (`pad.c`).
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ use htex_device_builtin::sdl::Sdl;
 const RATE_HZ: f64 = 8_000.0;
 const LONG: Duration = Duration::from_secs(5);
 
-/// Builds the library of the virtual joystick; `None` without SDL.
+/// Builds the library of the virtual joystick. Returns `None` if SDL is not installed.
 fn library() -> Option<&'static Path> {
     static BUILT: OnceLock<Option<PathBuf>> = OnceLock::new();
     let built = BUILT
@@ -67,7 +68,7 @@ impl Pad {
         }
     }
 
-    /// Returns what the motors were told since this test began: the time, and the strength of the
+    /// Returns the strengths that were set since this test began: the time, and the strength of the
     /// large and of the small motor.
     fn told(&self) -> Vec<(i64, u16, u16)> {
         type Get = unsafe extern "C" fn(usize, &mut i64, &mut u16, &mut u16);

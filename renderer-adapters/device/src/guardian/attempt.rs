@@ -1,5 +1,5 @@
-//! Attempts to set a display's output to zero without its guardian. Opening the device sets it to
-//! zero.
+//! Attempts to set a display's output to zero without its guardian. Each attempt opens the device,
+//! which sets the output to zero.
 
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -51,7 +51,8 @@ impl Display {
     }
 }
 
-/// Prepares the helper program for a device, out of reach of the terminal's keys.
+/// Prepares the command that starts the helper program for a device. The program gets its own
+/// process group, so keys such as Ctrl-C in the terminal do not reach it.
 fn prepared(mut command: Command, known: &AdapterEntry) -> Command {
     if let Origin::Library(path) = &known.origin {
         command.arg("--device-file").arg(path);
@@ -69,8 +70,8 @@ fn prepared(mut command: Command, known: &AdapterEntry) -> Command {
 pub(crate) struct Attempt(Arc<Mutex<Option<Child>>>);
 
 impl Attempt {
-    /// Starts the attempt. It reports its result once: nothing if the output is at zero, otherwise
-    /// the reason.
+    /// Starts the attempt, which calls `tell` once: with `Ok` if the output is at zero, otherwise
+    /// with the reason.
     pub(crate) fn start(
         display: &Arc<Display>,
         by: By,
@@ -101,7 +102,7 @@ impl Attempt {
     }
 }
 
-/// Attempts zero by a helper process, which opens the device.
+/// Tries to set the output to zero with a helper process, which opens the device.
 fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), String> {
     let mut started = display.start().map_err(|error| error.to_string())?;
     let pipes = started.stdin.take().zip(started.stdout.take());
@@ -118,7 +119,7 @@ fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), Str
     }
 }
 
-/// Attempts zero by opening the device in this process.
+/// Tries to set the output to zero by opening the device in this process.
 fn by_player(display: &Display) -> Result<(), String> {
     let opened = display.known.adapter.open_output(&display.settings, &display.format);
     opened.map(drop).map_err(|error| error.to_string())

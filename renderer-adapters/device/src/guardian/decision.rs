@@ -1,36 +1,39 @@
-//! The player's decisions about its guardian: how long it waits, when it kills, how it gets the
-//! output to zero, and what it prints.
+//! What the player (the app's process) decides about its guardian: how long to wait for it, when to
+//! kill it, how to get the output to zero, and what to print.
 //!
-//! This is a state machine without a clock, process or pipe. The program runs it in
-//! `src/worker.rs`. The model checker (`cargo xtask prove zero`) runs the same code against a model
-//! of the guardian, the helpers, the card and the signals.
+//! This is a state machine without a clock, process or pipe. The program runs it in `worker.rs`.
+//! The model checker (`cargo xtask prove zero`) runs the same code against a model of the guardian,
+//! the helpers, the card and the signals.
 //!
-//! A guardian that does not answer in time gets SIGKILL, which also ends a stopped process. Then
-//! attempts follow, one at a time, until one confirms zero. The first is made by a helper process,
-//! the next by a thread of the player itself (because the helper program may be missing), the next
-//! by a process again. Processes come first because a driver call that does not return blocks only
-//! the process, not the player.
+//! The player sends SIGKILL to a guardian that does not answer in time, which also ends a stopped
+//! process. The player then makes one attempt after another to set the output to zero, until one
+//! succeeds. A helper process makes the first attempt. A thread of the player makes the next one,
+//! because the helper program may be missing. After that, they alternate. The helper process comes
+//! first because a driver call that does not return blocks only that process, not the player.
 
 use std::time::Duration;
 
-/// Time from the detection to the first printed warning, unless zero is confirmed before.
+/// Time from detecting the guardian's failure to the first printed warning, unless the output is
+/// confirmed to be at zero before.
 pub const CONFIRM: Duration = Duration::from_millis(500);
 /// Time between two printed warnings.
 pub const EVERY: Duration = Duration::from_millis(1_000);
-/// Longest duration of a request itself. A write that waits longer is sent as several requests.
+/// Longest time that a request may take by itself. A write with a longer timeout is sent as several
+/// requests.
 pub const REQUEST: Duration = Duration::from_millis(100);
 /// Longest time for opening a device, because a driver may take seconds to load.
 pub const OPENING: Duration = Duration::from_millis(10_000);
-/// Additional time for the guardian beyond the request, the buffer and the ramp.
+/// Time that the guardian gets in addition to the request, the buffer and the ramp.
 pub const GRACE: Duration = Duration::from_millis(500);
 /// Longest wait for a killed guardian to end. Its tasks hold the output until then.
 const GONE: Duration = Duration::from_millis(100);
-/// Pause before an attempt is repeated, until the first printed warning; [`EVERY`] after it.
+/// Pause before the next attempt, until the first warning is printed. After the warning, the pause
+/// is [`EVERY`].
 const RETRY: Duration = Duration::from_millis(100);
 /// Longest duration of an attempt, because a driver may take seconds to load.
 const ATTEMPT: Duration = Duration::from_millis(5_000);
 
-/// The longest waits for one device.
+/// How long the player waits at most, for one device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Waits {
     /// Longest time from the last sample to zero if nothing fails: the device's buffer and ramp.
@@ -38,7 +41,7 @@ pub struct Waits {
 }
 
 impl Waits {
-    /// Returns the longest wait for the answer to a request, called D.
+    /// Returns the longest wait for the answer to a request. The documentation calls this time D.
     pub fn answer(self) -> Duration {
         self.to_zero + REQUEST + GRACE
     }
@@ -48,14 +51,14 @@ impl Waits {
         self.to_zero + OPENING + GRACE
     }
 
-    /// Returns the longest wait for the answer when the device is dropped. Together with the
-    /// [`CONFIRM`] that follows, dropping takes at most D.
+    /// Returns the longest wait for the answer when the device is dropped. With the time
+    /// [`CONFIRM`] that follows, dropping takes at most as long as [`Self::answer`].
     pub fn abort(self) -> Duration {
         self.answer().saturating_sub(CONFIRM)
     }
 }
 
-/// Who makes an attempt to set the output to zero.
+/// Who makes an attempt to set the output to zero: a process or a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum By {
     /// A second helper process.
@@ -121,13 +124,14 @@ pub enum Why {
     Silent(Duration),
 }
 
-/// The player as a state machine: it makes the decisions of this module.
+/// The player's decisions as a state machine.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Player {
     state: State,
     /// Number of the last attempt.
     attempt: u32,
-    /// The attempt that a thread of the player is still making. Nothing can end it.
+    /// Number of the attempt that a thread of the player is still making. Nothing can end this
+    /// thread.
     own: Option<u32>,
     last: By,
     why: Option<Why>,
@@ -168,7 +172,7 @@ enum Step {
 
 impl Default for Player {
     fn default() -> Self {
-        // As if the player had made an attempt, so that a process makes the first.
+        // `last` is `Player` so that a process makes the first attempt.
         Self { state: State::Idle, attempt: 0, own: None, last: By::Player, why: None }
     }
 }
@@ -220,8 +224,8 @@ impl Player {
         self.why
     }
 
-    /// Moves all times of the player back by `by`. The model checker keeps its clock at a fixed
-    /// time in this way, so that worlds that differ only in their time become equal.
+    /// Moves all times of the player back by `by`. The model checker uses this to keep its clock at
+    /// a fixed time. States that differ only in their time then compare equal.
     pub fn set_back(&mut self, by: Duration) {
         let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
         match &mut self.state {
@@ -313,7 +317,8 @@ impl Player {
         let State::Rescuing(rescue) = &self.state else {
             return vec![];
         };
-        // After a warning the caller already has its error, so the good news is printed instead.
+        // After a warning, the caller already has its error. So the news that the output is at zero
+        // is printed.
         let action = if rescue.has_said { Action::SayZero } else { Action::GiveZero };
         self.state = State::Closed;
         vec![action]
@@ -379,8 +384,8 @@ impl Player {
         actions
     }
 
-    /// Returns a number that no attempt has which may still report a result. There are only a few
-    /// numbers, so that the model stays finite.
+    /// Returns a number for the next attempt, different from the number of any attempt that may
+    /// still report a result. Only three numbers are used in turn, so that the model stays finite.
     fn next_number(&self) -> u32 {
         let is_free = |number: &u32| *number != self.attempt && Some(*number) != self.own;
         (1..=3).find(is_free).unwrap_or(1)

@@ -1,4 +1,4 @@
-//! The app's side: a device that passes its samples to another process.
+//! The app's side: an output that passes its samples to another process.
 
 use std::fmt::Display as Show;
 use std::process::Command;
@@ -15,15 +15,16 @@ use crate::guardian::decision::{REQUEST, Waits};
 use crate::guardian::message::{ABORT, Answer, FINISH, MOST_SAMPLES, OPEN, STATUS, WRITE};
 use crate::guardian::worker::{Message, Reply, Worker};
 
-/// The settings in which a display states how long its output takes to reach zero, milliseconds.
+/// The settings that tell how long a display's output takes to reach zero, milliseconds.
 const BUFFER_SETTING: &str = "buffer_ms";
 const RAMP_SETTING: &str = "ramp_ms";
-/// Total duration of buffer and ramp for a display whose settings state neither.
+/// Assumed duration of buffer and ramp together, for a display whose settings state neither.
 const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
-/// Longest buffer or ramp that the app waits for, milliseconds.
+/// Maximum duration of the buffer, and of the ramp, that the app waits for, milliseconds.
 const MOST_MS: f64 = 10_000.0;
 
-/// Whether a device's output could cause harm if it kept its last value.
+/// Whether an output needs a guardian, because it could cause harm if it kept its last value. True
+/// for a display voltage at the pace of a clock.
 pub fn is_wanted(able: &Capabilities) -> bool {
     able.paced && able.quantity == Quantity::DisplayVoltage
 }
@@ -40,13 +41,17 @@ pub fn not_started(error: impl Show) -> DeviceError {
     DeviceError::Message(format!("no process to hold the output can be started: {error}"))
 }
 
-/// A device held by another process, the guardian.
+/// An output whose device is held by another process, the guardian.
 ///
-/// Each call waits for that process at most buffer + ramp + 0.6 s. Opening may take 10 s more, and
-/// a write may also take its own timeout. Dropping the device waits at most as long. After that,
-/// the guardian is killed, and a second process sets the output to zero. If that is not confirmed
-/// 0.5 s later, the call returns an error that says so. A thread then prints every second that the
-/// amplifier must be switched off, until zero is confirmed ([`crate::guardian::is_unconfirmed`]).
+/// Each call waits at most buffer + ramp + 0.6 s for an answer of the guardian. The buffer and the
+/// ramp are the device's. Opening waits up to buffer + ramp + 10.5 s, and a write may also take its
+/// own timeout.
+///
+/// If no answer comes in time, the guardian is killed, and a second process sets the output to
+/// zero. If this is not confirmed within 0.5 s, the call returns an error that says so. A thread
+/// then prints every second that the amplifier must be switched off, until the output is confirmed
+/// to be at zero ([`crate::guardian::is_unconfirmed`]). Dropping the output takes at most buffer +
+/// ramp + 0.6 s in all.
 pub struct GuardedOutput {
     worker: Mutex<Sender<Message>>,
     name: String,
@@ -74,8 +79,8 @@ impl GuardedOutput {
             waits: waits(settings),
             ended: false,
         };
-        // Ended, so that dropping does not abort: a device that was not opened has no output to set
-        // to zero, and may belong to another process.
+        // Dropping must not abort a device that was not opened: it has no output to set to zero,
+        // and it may belong to another process.
         if let Err(error) = guarded.ask(OPEN, opening, guarded.waits.opening()) {
             guarded.ended = true;
             return Err(error);
@@ -83,8 +88,8 @@ impl GuardedOutput {
         Ok(guarded)
     }
 
-    /// Sends a request and waits for the answer, at most `patience`. If no answer comes, waits
-    /// until the output is at zero or 0.5 s have passed.
+    /// Sends a request and waits at most `patience` for the answer. If no answer comes, waits until
+    /// the output is at zero, at most another 0.5 s.
     fn ask(&self, tag: u8, body: Vec<u8>, patience: Duration) -> Result<Answer, DeviceError> {
         let (reply, replied) = channel();
         let ask = Message::Ask { tag, body, patience, reply };
@@ -125,7 +130,7 @@ impl GuardedOutput {
     }
 }
 
-/// Computes the waits from a display's buffer and ramp, if its settings state them.
+/// Computes the waits from the buffer and the ramp in a display's settings, or from a default.
 fn waits(settings: &Settings) -> Waits {
     let stated = [BUFFER_SETTING, RAMP_SETTING]
         .map(|name| settings.number(name))

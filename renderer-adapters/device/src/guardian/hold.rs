@@ -7,10 +7,10 @@ use crate::{AdapterEntry, DeviceError, Output, Settings, StreamFormat};
 
 use crate::guardian::message::{Answer, FINISH, Opening, STATUS, WRITE, put, read_message};
 
-/// Holds a device for the app at the other end of the pipes, which are the standard input and
-/// output of a helper program. Returns when the pipes end.
+/// Holds a device for the app at the other end of two pipes. Returns when the pipe `from` ends. In
+/// a helper program, the pipes are its standard input and output.
 ///
-/// The program ignores signals. Only the end of the pipe ends it.
+/// Call it in a program that ignores signals, so that only the end of the pipe ends the program.
 pub fn hold(
     find: impl FnOnce(&str) -> Result<AdapterEntry, DeviceError>,
     from: impl Read,

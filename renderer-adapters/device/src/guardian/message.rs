@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use crate::DeviceError;
 use serde::{Deserialize, Serialize};
 
-/// Longest message, bytes: one second at a million samples per second.
+/// Longest message, bytes: about one second of `f32` samples at a million samples per second.
 pub(crate) const LONGEST: u32 = 4 << 20;
 
 /// Maximum number of samples in a request.
@@ -47,7 +47,8 @@ impl Answer {
     }
 }
 
-/// Requests of the app, one byte each. Samples follow a time in milliseconds.
+/// Requests of the app, one byte each. A write request has the timeout in milliseconds, then the
+/// samples.
 pub(crate) const OPEN: u8 = b'o';
 pub(crate) const WRITE: u8 = b'w';
 pub(crate) const STATUS: u8 = b's';

@@ -1,16 +1,17 @@
-//! The guardian: a second process that holds the output of a display that a finger touches. However
-//! the first process ends, no voltage stays at the output.
+//! The guardian: a second process that holds the output of a display that a finger touches. No
+//! voltage stays at the output, however the first process ends.
 //!
 //! A signal that kills, stops or hangs the app reaches only the app. The guardian is in its own
-//! process group, receives no signals from the terminal's keys, and ends when its pipe does. It
-//! then plays what it has (at most the device's buffer), sets the output to zero, and exits. A
-//! device whose buffer runs dry sets its output to zero by itself.
+//! process group and receives no signals from the terminal's keys. When the pipe from the app
+//! closes, the guardian plays the samples it still has (at most the device's buffer), sets the
+//! output to zero, and exits. A device whose buffer runs dry sets its output to zero by itself.
 //!
 //! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper
 //! process, which sets the output to zero. [`decision`] decides when and how.
 //!
-//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] says so. The helper program is [`htex`] or
-//! the app's own, which calls [`hold`]. An app needs its own for devices that `htex` does not have.
+//! An app opens a device as [`GuardedOutput`] if [`is_wanted`] says so. The helper program is the
+//! command `htex guard` ([`htex`]), or a program of the app that calls [`hold`]. An app needs its
+//! own helper program for devices that the command `htex` does not have.
 //!
 //! ```no_run
 //! use std::time::Duration;

@@ -25,9 +25,10 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Number of outputs that are not confirmed to be at zero.
 static UNCONFIRMED: AtomicUsize = AtomicUsize::new(0);
 
-/// Whether the output of a display may have kept a voltage after its guardian failed. The player
-/// keeps trying to set it to zero, and prints every second that the amplifier must be switched off.
-/// A program that is about to end waits while this is true, so that the player can continue.
+/// Whether the output of a display may have kept a voltage after its guardian failed. While this is
+/// true, a thread keeps trying to set the output to zero, and prints every second that the
+/// amplifier must be switched off. A program should not exit as long as this is true, because that
+/// would end the thread.
 pub fn is_unconfirmed() -> bool {
     UNCONFIRMED.load(Ordering::SeqCst) > 0
 }
@@ -44,7 +45,7 @@ pub(crate) enum Message {
         patience: Duration,
         reply: Sender<()>,
     },
-    /// An answer, or an error, from the guardian's pipe.
+    /// The guardian's answer, or an error of its pipe.
     Heard(std::io::Result<Answer>),
     Attempted(u32, Result<(), String>),
     /// Some time has passed.

@@ -1,8 +1,9 @@
 //! `cargo xtask prove zero`: tries every single and double failure of the player, its guardian, the
 //! helpers and the card, at every step.
 //!
-//! [`broken`] states the rules that must hold. Ordinary tests try every single failure, and with
-//! `HTEX_WHOLE` also the double ones.
+//! A world is a state of all processes and the card. [`broken`] states the rules that must hold in
+//! every world. Ordinary tests try every single failure. With `HTEX_WHOLE`, they also try the
+//! double failures.
 
 mod faults;
 mod world;
@@ -15,13 +16,15 @@ use faults::Fault;
 use htex_device::guardian::decision::{CONFIRM, EVERY};
 use world::{App, Driver, Mutant, Output, Process, STEP, WAITS, World};
 
-/// The part of a world's failures that the rules need. Worlds that agree in this part count as one.
+/// The part of a world's failures that the rules need. Worlds with the same part count as one
+/// world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 struct Failures {
     count: usize,
-    /// The player was stopped for a while, so its own time limits do not hold.
+    /// Whether the player was stopped for a while, so that its own time limits do not apply.
     player_stopped: bool,
-    /// A helper, the driver or the kernel may prevent every attempt from writing zero in time.
+    /// Whether a helper, the driver or the kernel may prevent every attempt from writing zero in
+    /// time.
     zero_prevented: bool,
 }
 
@@ -40,7 +43,7 @@ type Trace = [Option<(u32, Cause)>; 3];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cause {
-    /// The scene's end or Ctrl-C. This is not a failure and may come in addition to two.
+    /// The scene's end or Ctrl-C. This is not a failure, and may come in addition to two failures.
     End,
     Failure(Fault),
 }
@@ -50,9 +53,10 @@ struct Explored {
     seen: Seen,
     /// Number of worlds in which neither the player nor the guardian can act and a voltage stays.
     nobody: u64,
-    /// Number of worlds in which all processes have ended at zero.
+    /// Number of worlds in which all processes have ended and the output is at zero.
     at_zero: u64,
-    /// Number of worlds in which all processes have ended with the warning and not at zero.
+    /// Number of worlds in which all processes have ended with the warning, and the output is not
+    /// at zero.
     said: u64,
     detected: u64,
     broken: BTreeMap<&'static str, Trace>,
@@ -185,8 +189,8 @@ fn causes(
 }
 
 impl Explored {
-    /// Advances a world by one step, once with the player first and once with it last, and keeps
-    /// the results.
+    /// Advances a world by one step, once with the player first and once with the player last.
+    /// Keeps both results.
     fn go_on(&mut self, (world, failures, trace): &(World, Failures, Trace), next: &mut Layer) {
         let (failures, trace) = (*failures, *trace);
         let [first, last] = [true, false].map(|player_first| {

@@ -1,4 +1,5 @@
-//! Faults of an input in Rust, as a host sees them through the C functions.
+//! Tests which errors a host gets through the C functions from a faulty input that is written in
+//! Rust.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
@@ -217,7 +218,7 @@ fn another_version_and_a_text_that_is_none_are_refused() {
     NativeAdapter::from_table("counter", Box::leak(Box::new(newer))).unwrap();
 }
 
-/// A library gives the functions of its own direction, and only those.
+/// A library must have the functions of its own direction. It does not need the others.
 #[test]
 fn a_table_without_a_function_of_its_direction_is_refused() {
     for (table, name) in [

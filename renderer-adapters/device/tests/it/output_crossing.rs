@@ -1,4 +1,5 @@
-//! Faults of an output in Rust, as a host sees them through the C functions.
+//! Tests which errors a host gets through the C functions from a faulty output that is written in
+//! Rust.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;

@@ -1,5 +1,6 @@
-//! Prints the time to render one sample, in nanoseconds: the shortest of several runs in blocks of
-//! 64 samples, or of another length. `cargo xtask prove costs` compares other languages with it.
+//! Prints the time to render one sample, in nanoseconds: the shortest time of five runs. The last
+//! argument is the number of samples in a block. `cargo xtask prove costs` compares the bindings
+//! for other languages with this example.
 //!
 //! `cargo run --release -p htex --example block -- cloth.htex ar 64`
 

@@ -12,13 +12,13 @@
 //!
 //! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread. A
 //! [`Voice`] is [`Send`], so another thread can make it. Call [`Voice::set_motion`] once per block
-//! of 1 to 10 ms. Longer blocks lag behind the finger. Shorter ones only cost time, because a voice
-//! takes 10 ms to reach a new spectrum and level.
+//! of 1 to 10 ms. Longer blocks lag behind the finger. Shorter blocks only cost time, because a
+//! voice takes 10 ms to reach a new spectrum and level.
 //!
 //! # On a sound card
 //!
-//! Samples are in the texture's unit: a few millinewtons RMS for a force. A gain and a limit bring
-//! them to the full scale of a sound card, which is 1:
+//! Samples are in the texture's unit: a few millinewtons RMS for a force. A sound card expects
+//! samples from -1 to 1, so set a gain and a limit:
 //!
 //! ```no_run
 //! use htex::{Texture, VoiceOptions};
@@ -44,9 +44,9 @@
 //! | `storage` | | `library::storage`: files by path or URI; `Library::open_located` |
 //! | `cloud` | | web servers and object stores for `storage` |
 //! | `scene` | | `Scene` and `scene`: plans and renders scenes; `device`: plays them |
-//! | `audio` | | nothing in the library; the sound card of the example `live` |
+//! | `audio` | | nothing to the library; the example `live` can then use a sound card |
 //!
-//! Without `wasm` a program is smaller, and plays only representations of built-in models.
+//! A program without `wasm` is smaller, but plays only representations of built-in models.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -57,7 +57,7 @@ pub use htex_author as author;
 pub use htex_device as device;
 /// The `.htex` file: its types, reading, writing and validation.
 pub use htex_format as format;
-/// The player. Its main types are at the root of this crate.
+/// Opens and plays textures. The main types are also at the root of this crate.
 pub use htex_play as play;
 pub use htex_play::{Error, Motion, Registry, Representation, Texture, Voice, VoiceOptions};
 #[cfg(feature = "scene")]
@@ -65,8 +65,8 @@ pub use htex_scene as scene;
 #[cfg(feature = "scene")]
 pub use htex_scene::Scene;
 
-/// Models: finding, loading and calling them ([`Registry`]), and the traits of a model of your own
-/// ([`ShapedModel`], [`Model`]).
+/// Models: finding, loading and calling them ([`Registry`]), and the traits to implement for a
+/// model of your own ([`ShapedModel`], [`Model`]).
 ///
 /// [`ShapedModel`]: model::ShapedModel
 /// [`Model`]: model::Model
@@ -79,7 +79,7 @@ pub mod model {
     };
 }
 
-/// Library files, which hold thousands of textures.
+/// Library files (`.htexlib`). One file can hold thousands of textures.
 #[cfg(feature = "library")]
 pub mod library {
     #[cfg(feature = "storage")]

@@ -7,8 +7,8 @@ use crate::exploration::{Coverage, Effects, RecordedRange, Scaling, slides};
 use crate::mesh::{Mesh, Weights};
 use crate::{Error, Motion};
 
-/// The conditions at which a representation was recorded, with the level at each.
-/// [`Representation::conditions`](crate::Representation::conditions) returns them.
+/// The conditions (speed and normal force) at which a representation was recorded, and the level at
+/// each condition. [`Representation::conditions`](crate::Representation::conditions) returns them.
 ///
 /// ```no_run
 /// use htex::play::Effects;
@@ -27,7 +27,7 @@ pub struct Conditions {
     pub(crate) strongest_rms: f64,
 }
 
-/// How a motion is played: which recorded conditions are mixed, and how the mix is scaled.
+/// How to play a motion: which recorded conditions are mixed, and how the mix is scaled.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placement {
     pub(crate) weights: Weights,
@@ -38,7 +38,8 @@ pub(crate) struct Placement {
 }
 
 impl Conditions {
-    /// Collects the conditions at which a representation was fitted, without stored triangles.
+    /// Collects the conditions at which a representation was fitted. Triangles that the asset
+    /// stores are not used.
     pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         Self::in_mesh(Mesh::new(&points(at, conditions)), at, conditions, law)
     }
@@ -67,20 +68,22 @@ impl Conditions {
         }
     }
 
-    /// Returns how a voice with these effects plays a motion, and whether the motion lies within
+    /// Returns how a voice with these effects plays a motion, and whether the motion lies between
     /// the recorded conditions.
     pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
         let Placement { scaling, nearest, .. } = self.locate(motion);
         self.range.coverage(motion, nearest, scaling, effects)
     }
 
-    /// Returns the recorded speeds and forces, and the law that applies outside them.
+    /// Returns the range of recorded speeds and forces, and the scaling law that applies outside
+    /// it.
     pub fn range(&self) -> &RecordedRange {
         &self.range
     }
 
-    /// Returns the factors that scale the texture at a motion outside the recorded ones. They limit
-    /// the level to `ceiling` times the strongest recorded level. Does not allocate.
+    /// Returns the factors that scale the texture at a motion outside the recorded range. The
+    /// factor of the level is limited, so that the level is at most `ceiling` times the strongest
+    /// recorded level. Does not allocate.
     pub fn scaling(&self, motion: Motion, ceiling: f64) -> Scaling {
         self.bounded(&self.locate(motion), ceiling)
     }
@@ -90,8 +93,8 @@ impl Conditions {
     pub(crate) fn bounded(&self, placement: &Placement, ceiling: f64) -> Scaling {
         let most = ceiling * self.strongest_rms / placement.level_rms;
         let Scaling { frequency, level } = placement.scaling;
-        // Inside the recorded range no level exceeds the strongest one. A level of 0 has no limit
-        // to its factor.
+        // Inside the recorded range, no level exceeds the strongest one. If the level is 0, its
+        // factor has no limit.
         let level = if level > 1.0 && level > most { most.max(1.0) } else { level };
         Scaling { frequency, level }
     }
@@ -108,18 +111,18 @@ impl Conditions {
     }
 
     /// Returns the level of a mix of conditions: the weighted mean of their levels. The mean of
-    /// logarithms is less accurate for simulated sandpaper: its median third-octave error for a
-    /// free motion is 1.2 dB instead of 0.4. On recordings it is no better: for 398 nodes of the
-    /// Penn Haptic Texture Toolkit, each predicted from the others, the median is 0.72 against 0.68
-    /// dB.
+    /// logarithms is less accurate for simulated sandpaper: for a free motion, its median
+    /// third-octave error is 1.2 dB instead of 0.4 dB. It is also not better for recordings: for
+    /// 398 nodes of the Penn Haptic Texture Toolkit, each predicted from the others, its median
+    /// error is 0.72 dB instead of 0.68 dB.
     fn level_at(&self, weights: &Weights) -> f64 {
         let level = |(i, weight): (usize, f64)| weight * self.level_rms[i];
         weights.iter().map(level).sum()
     }
 }
 
-/// Returns the speed and force of each condition at which a representation was fitted; an unknown
-/// one is 0.
+/// Returns the speed and force of each condition at which a representation was fitted. An unknown
+/// speed or force is 0.
 fn points(at: &[AtCondition], conditions: &[Condition]) -> Vec<[f64; 2]> {
     let point = |at: &AtCondition| {
         let known = conditions.get(at.condition).copied().unwrap_or_default();
@@ -128,7 +131,7 @@ fn points(at: &[AtCondition], conditions: &[Condition]) -> Vec<[f64; 2]> {
     at.iter().map(point).collect()
 }
 
-/// The recorded conditions of a representation, with the parameters at each.
+/// The recorded conditions of a representation, and the parameters at each condition.
 #[derive(Debug, Clone)]
 pub(crate) struct RecordedConditions {
     pub(crate) conditions: Conditions,

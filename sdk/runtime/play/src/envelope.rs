@@ -1,10 +1,10 @@
-//! A voice's output in a few numbers, for vibration motors, phones and pads that are driven by
-//! level and frequency instead of samples.
+//! A voice's output summarised in a few numbers, for vibration motors, phones and gamepads that
+//! play a level and a frequency instead of samples.
 //!
-//! The level is exact and has no delay: it is computed from the samples of the block itself.
-//! Centroid and bands are computed from Hann windows, as [`htex_dsp::envelope`] defines them, and
-//! lag behind. The middle of a window is 21 to 26 ms before its end at 20 and 48 kHz, and a window
-//! ends every 11 to 13 ms.
+//! The level is exact and has no delay: it is computed from the samples of the block itself. The
+//! centroid and the bands are computed from Hann windows, as [`htex_dsp::envelope`] defines them,
+//! so they lag behind. At 20 and 48 kHz, the middle of a window is 21 to 26 ms before its end, and
+//! a window ends every 11 to 13 ms.
 
 use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;
@@ -14,8 +14,8 @@ use crate::Error;
 /// Largest number of bands in an envelope.
 pub const MOST_BANDS: usize = 32;
 
-/// What a voice played since the last call of [`Voice::envelope`](crate::Voice::envelope),
-/// including effects, gain and limiter.
+/// Level and mean frequency of what a voice played since the last call of
+/// [`Voice::envelope`](crate::Voice::envelope). Effects, gain and limiter are included.
 ///
 /// ```no_run
 /// use htex::{Texture, VoiceOptions};
@@ -37,7 +37,7 @@ pub struct Envelope {
     pub frames: u64,
 }
 
-/// Makes a voice's analyser with `count` bands; `None` if `count` is 0.
+/// Makes a voice's analyser with `count` bands, or returns `None` if `count` is 0.
 ///
 /// # Errors
 /// When there are more than [`MOST_BANDS`].
@@ -53,10 +53,11 @@ pub(crate) fn analyser(count: usize, band: Band, rate_hz: f64) -> Result<Option<
     }
 }
 
-/// Reads an analyser into `bands`. The length of `bands` must be the number of bands or 0.
+/// Reads an analyser, and writes its bands to `bands`. The length of `bands` must be the number of
+/// bands or 0.
 ///
 /// # Errors
-/// When `bands` has another length; the analyser then keeps its state.
+/// When `bands` has another length. The analyser then keeps its state.
 pub(crate) fn read(analyser: Option<&mut Analyser>, bands: &mut [f64]) -> Result<Envelope, Error> {
     let there = analyser.as_ref().map_or(0, |analyser| analyser.bands());
     let given = bands.len();

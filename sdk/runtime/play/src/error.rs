@@ -3,8 +3,8 @@
 use htex_format::ReadError;
 use htex_host::HostError;
 
-/// An error from opening, playing or baking a texture. [`Self::kind`] says what went wrong without
-/// its details.
+/// An error from opening, playing or baking a texture. [`Self::kind`] says what kind of error it
+/// is, without details.
 ///
 /// ```
 /// use htex::Texture;
@@ -51,8 +51,8 @@ pub enum Error {
          not compatible; install a {model} of the same major version"
     )]
     ModelVersion { model: String, asset: String, installed: String },
-    /// The installed model is older than the one that fitted the asset, and lacks some of its
-    /// fields.
+    /// The installed version of the model is older than the version that fitted the asset, and
+    /// lacks some of its fields.
     #[error(
         "version {installed} of {model} is installed, and the asset was fitted by {asset}: {problem}; install version {asset} or \
          newer of {model}{}", if *.embedded { ", or allow the model that the asset embeds" } else { "" }
@@ -62,7 +62,7 @@ pub enum Error {
         /// The version that fitted the asset.
         asset: Box<str>,
         installed: Box<str>,
-        /// Each field that differs, and how.
+        /// A list of the fields that differ, and how they differ.
         problem: Box<str>,
         /// Whether the asset embeds a model of this id, which was not allowed to run.
         embedded: bool,
@@ -73,7 +73,7 @@ pub enum Error {
     )]
     Fields {
         model: String,
-        /// Each field that differs, and how.
+        /// A list of the fields that differ, and how they differ.
         problem: String,
     },
     /// The stored triangles cannot be used for interpolation. Only an asset that was not read from
@@ -136,7 +136,7 @@ pub enum Error {
         /// The allowed range.
         range: &'static str,
     },
-    /// The buffer for an envelope has another number of bands than the voice.
+    /// The buffer for an envelope has a different number of bands than the voice.
     #[error(
         "{given} bands were asked for, and the voice has {there}; the options of the voice give their number"
     )]
@@ -152,7 +152,8 @@ pub enum Error {
         "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
     )]
     Axis { axis: &'static str, values: Vec<f64>, most: usize, least: f64, largest: f64 },
-    /// The conditions to bake are not all combinations of their speeds and forces.
+    /// The conditions to bake do not form a grid: a combination of their speeds and forces is
+    /// missing.
     #[cfg(feature = "bake")]
     #[error(
         "no condition at {speed_mm_s} mm/s and {force_n} N: the conditions are all combinations of their speeds and \
@@ -176,7 +177,7 @@ pub enum Error {
         /// The highest frequency of the texture.
         top_hz: f64,
     },
-    /// The model follows the motion itself, which a baked block cannot do.
+    /// The model follows the position of the finger itself, which a baked block cannot do.
     #[cfg(feature = "bake")]
     #[error(
         "the model {model} follows the position of the finger itself; bake another representation"
@@ -210,7 +211,7 @@ pub enum Error {
     Refused(#[from] htex_player::OpenError),
 }
 
-/// What went wrong, without the details ([`Error::kind`]).
+/// The kind of an [`Error`], without details. [`Error::kind`] returns it.
 ///
 /// ```
 /// use htex::Texture;

@@ -6,11 +6,11 @@ use htex_format::{AtCondition, Condition, Law};
 
 use crate::Motion;
 
-/// Lowest speed at which the finger slides, mm/s; below it the texture is silent.
+/// Lowest speed at which the finger slides, mm/s. Below this speed, the texture is silent.
 pub const MIN_SLIDING_MM_S: f64 = 0.5;
-/// Lowest ratio of the playing speed to the recorded speed.
+/// Lowest ratio of the playback speed to the recorded speed.
 pub const MIN_RATIO: f64 = 1.0 / 16.0;
-/// Highest ratio of the playing speed to the recorded speed.
+/// Highest ratio of the playback speed to the recorded speed.
 pub const MAX_RATIO: f64 = 8.0;
 /// Duration of the fade when the finger starts or stops sliding, seconds.
 pub const CONTACT_RAMP_S: f64 = 0.020;
@@ -18,11 +18,11 @@ pub const CONTACT_RAMP_S: f64 = 0.020;
 pub const MOST_SPEED_MM_S: f64 = 1_000.0;
 /// Highest normal force that is accepted as a valid reading of a finger, newtons.
 pub const MOST_FORCE_N: f64 = 20.0;
-/// Longest time, in seconds, for which the last good motion is held while readings are out of
-/// range.
+/// Maximum time, in seconds, for which a voice holds the last valid motion while readings are out
+/// of range.
 pub const HOLD_S: f64 = 0.1;
-/// Speed, mm/s, and force, newtons, assumed for a texture that states neither. They are the values
-/// of the paper's study.
+/// Speed (mm/s) and force (newtons) that are assumed where a texture does not state them. They are
+/// the values of the paper's study.
 pub const USUAL: (f64, f64) = (80.0, 0.4);
 /// Default ceiling of a voice's level, as a multiple of the strongest recorded level.
 pub const CEILING: f64 = 4.0;
@@ -32,8 +32,8 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
     speed_mm_s.abs() >= MIN_SLIDING_MM_S && force_n > 0.0
 }
 
-/// Effects of a motion on a voice, beyond interpolation between recorded conditions. A scene has an
-/// effect with the same name for each.
+/// Effects of a motion on a voice, in addition to interpolation between recorded conditions. A
+/// scene has effects with the same names.
 ///
 /// ```
 /// use htex::play::Effects;
@@ -43,9 +43,9 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Effects {
-    /// Outside the recorded speeds, frequencies follow the asset's law.
+    /// Outside the recorded speeds, frequencies follow the asset's scaling law ([`Law`]).
     pub frequency_scaling: bool,
-    /// Outside the recorded speeds and forces, the level follows the asset's law.
+    /// Outside the recorded speeds and forces, the level follows the asset's scaling law ([`Law`]).
     pub level_scaling: bool,
     /// The voice is silent while the finger does not slide.
     pub contact: bool,
@@ -91,7 +91,8 @@ impl Default for Effects {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Interval {
-    /// The asset does not state the value, or states 0. The speed or force then has no effect.
+    /// The asset does not state the value for every condition, or all values are 0. The speed or
+    /// force then has no effect.
     Unknown,
     /// One value, or several values between which the texture is interpolated.
     Between {
@@ -125,15 +126,15 @@ impl Interval {
         *self != Self::Unknown
     }
 
-    /// Returns the ratio of a speed or force to the nearest recorded one; 1 if the recorded value
-    /// is unknown, or the nearest one is 0.
+    /// Returns the ratio of a speed or force to the nearest recorded value. Returns 1 if the
+    /// recorded values are unknown, or if the nearest value is 0.
     fn ratio(&self, asked: f64, nearest: f64) -> f64 {
         if self.is_known() && nearest > 0.0 { asked / nearest } else { 1.0 }
     }
 }
 
 impl fmt::Display for Interval {
-    /// Such as `80` or `40 to 160`, without a unit.
+    /// Writes text such as `80` or `40 to 160`, without a unit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Unknown => f.write_str("unknown"),
@@ -143,8 +144,8 @@ impl fmt::Display for Interval {
     }
 }
 
-/// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law that
-/// applies outside them.
+/// The range of speeds (mm/s) and forces (newtons) at which a representation was fitted, and the
+/// scaling law that applies outside it.
 ///
 /// ```no_run
 /// let texture = htex::Texture::open("sandpaper.htex")?;
@@ -158,7 +159,7 @@ pub struct RecordedRange {
     pub speed: Interval,
     /// Recorded normal forces, newtons.
     pub force: Interval,
-    /// How frequencies and level follow a motion outside these ranges.
+    /// The scaling law: how frequencies and level depend on the motion outside these ranges.
     pub law: Law,
 }
 
@@ -186,7 +187,8 @@ impl RecordedRange {
     /// Returns the scaling factors for a motion. `nearest` is the nearest recorded motion: speed,
     /// mm/s, and force, newtons.
     pub(crate) fn scaling(&self, motion: Motion, nearest: [f64; 2]) -> Scaling {
-        // The level gets the limited speed too, because the texture is played as if at that speed.
+        // The level also follows the limited speed, because the texture is played as if at that
+        // speed.
         let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]).clamp(MIN_RATIO, MAX_RATIO);
         let force = self.force.ratio(motion.force_n, nearest[1]);
         Scaling {
@@ -216,7 +218,8 @@ impl RecordedRange {
     }
 }
 
-/// The factors that scale a texture at a motion outside the recorded range. Inside, both are 1.
+/// The factors that scale a texture at a motion outside the recorded range. Inside the range, both
+/// are 1.
 ///
 /// ```no_run
 /// use htex::{Motion, Texture};
@@ -238,7 +241,7 @@ impl Scaling {
     /// No scaling: the texture as recorded.
     pub const NONE: Self = Self { frequency: 1.0, level: 1.0 };
 
-    /// Returns the factors, with 1 in place of those whose effect is switched off.
+    /// Returns the factors, but replaces the factor of each effect that is switched off by 1.
     pub(crate) fn with(self, effects: Effects) -> Self {
         let on = |is_on: bool, factor: f64| if is_on { factor } else { 1.0 };
         Self {
@@ -256,7 +259,7 @@ fn reach(recorded: Interval, asked: f64, nearest: f64) -> Reach {
     }
 }
 
-/// How a motion relates to the recorded conditions, and how a voice plays it.
+/// How a requested motion relates to the recorded conditions, and how a voice plays it.
 ///
 /// ```no_run
 /// use htex::{Motion, Texture, VoiceOptions};
@@ -271,9 +274,9 @@ fn reach(recorded: Interval, asked: f64, nearest: f64) -> Reach {
 pub struct Coverage {
     /// Whether the voice is audible: the finger slides, or the effect `contact` is off.
     pub slides: bool,
-    /// How the requested speed relates to the recorded ones, in mm/s.
+    /// How the requested speed relates to the recorded speeds, in mm/s.
     pub speed: Reach,
-    /// How the requested normal force relates to the recorded ones, in newtons.
+    /// How the requested normal force relates to the recorded forces, in newtons.
     pub force: Reach,
     /// The factors that scale the texture.
     pub scaling: Scaling,
@@ -293,13 +296,13 @@ pub enum Reach {
     /// The value was recorded, or lies between recorded values, within the tolerance
     /// [`htex_format::SAME_CONDITION`].
     Inside,
-    /// The asset does not state the recorded value; the speed or force has no effect.
+    /// The asset does not state the recorded value, so the speed or force has no effect.
     Unknown,
     /// The model follows the motion itself ([`crate::Voice::follows_motion`]).
     Followed,
-    /// The texture is played as at the nearest recorded value, scaled by the asset's law.
+    /// The texture is played as at the nearest recorded value, and then scaled by the asset's law.
     Outside {
-        /// The value of the requested motion, in mm/s or newtons.
+        /// The requested value, in mm/s or newtons.
         asked: f64,
         /// The nearest recorded value.
         recorded: f64,
@@ -336,8 +339,8 @@ impl Coverage {
 }
 
 impl Reach {
-    /// The relative distance to a motion that is `ratio` times as fast or as strong as the nearest
-    /// recorded one.
+    /// Returns the relative difference between the requested value and `ratio` times the nearest
+    /// recorded value.
     fn excess(&self, ratio: f64) -> f64 {
         match *self {
             Self::Inside | Self::Unknown | Self::Followed => 0.0,
@@ -352,7 +355,8 @@ fn four_digits(x: f64) -> f64 {
 }
 
 impl fmt::Display for Coverage {
-    /// Describes in one sentence what differs from the recording; empty if nothing does.
+    /// Describes in one sentence how the playback differs from the recording. Writes nothing if it
+    /// does not differ.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.slides {
             return f.write_str("the finger does not slide, so the texture is silent");

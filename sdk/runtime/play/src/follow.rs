@@ -10,7 +10,7 @@ use crate::exploration::{CONTACT_RAMP_S, Effects, HOLD_S, RecordedRange, Scaling
 #[derive(Debug)]
 pub(crate) struct Follow {
     effects: Effects,
-    /// Speed of the incoming samples, as a multiple of the recorded speed.
+    /// Speed at which the source delivers samples, as a multiple of the recorded speed.
     base: f64,
     /// Highest reading speed at which no frequency exceeds half the sample rate, as a multiple of
     /// the recorded speed.
@@ -21,16 +21,16 @@ pub(crate) struct Follow {
     /// Present if frequencies follow the motion.
     warp: Option<Warp>,
     contact: Glide,
-    /// Number of frames for which the last good motion is held while readings are out of range.
+    /// Number of frames for which the last valid motion is held while readings are out of range.
     hold: u64,
     /// The frame at which the voice stops holding the last motion.
     ends: Option<u64>,
 }
 
 impl Follow {
-    /// Makes the effects of a voice at `rate_hz`, initially playing as recorded. Its source
-    /// delivers samples at `base` times the recorded speed. At `highest` times the recorded speed
-    /// the highest frequency of the texture is half the sample rate.
+    /// Makes the effects of a voice at `rate_hz`. The voice first plays as recorded. Its source
+    /// delivers samples at `base` times the recorded speed. At `highest` times the recorded speed,
+    /// the highest frequency of the texture equals half the sample rate.
     pub(crate) fn new(
         range: &RecordedRange,
         effects: Effects,
@@ -53,7 +53,7 @@ impl Follow {
         }
     }
 
-    /// Starts at a motion, without a ramp, instead of as recorded.
+    /// Starts with a motion, without a ramp, instead of playing as recorded.
     pub(crate) fn start(&mut self, motion: Motion, scaling: Scaling) {
         let felt = self.is_felt(motion) && motion.is_plausible();
         if felt {
@@ -63,8 +63,8 @@ impl Follow {
         }
     }
 
-    /// Returns whether the voice is audible at a motion. A motion at which it is not leaves the
-    /// spectrum and the level unchanged.
+    /// Returns whether the voice is audible at a motion. An inaudible motion leaves the spectrum
+    /// and the level unchanged.
     pub(crate) fn is_felt(&self, motion: Motion) -> bool {
         slides(motion.speed_mm_s, motion.force_n) || !self.effects.contact
     }
@@ -78,15 +78,15 @@ impl Follow {
     /// Sets reading speed and gain for a motion that is felt.
     pub(crate) fn scale(&mut self, motion: Motion, scaling: Scaling) {
         let Scaling { frequency, level } = scaling.with(self.effects);
-        // Without the effect of contact, a resting finger is felt too. Its speed of 0 sets no
-        // reading speed.
+        // Without the effect `contact`, the voice is audible even for a resting finger. Its speed
+        // of 0 must not change the reading speed.
         if slides(motion.speed_mm_s, motion.force_n) {
             self.ratio = frequency.min(self.fastest);
         }
         self.gain = level;
     }
 
-    /// Holds the last good motion, because the reading at `frame` is out of range.
+    /// Holds the last valid motion, because the reading at `frame` is out of range.
     pub(crate) fn hold(&mut self, frame: u64) {
         self.ends.get_or_insert(frame + self.hold);
     }
@@ -138,7 +138,7 @@ impl Follow {
     /// Fills `out` with samples of the source, read at the speed that the motion requires.
     pub(crate) fn read(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         match &mut self.warp {
-            // The ratio is exactly 1 at the motion for which the voice was made.
+            // At the motion for which the voice was made, the ratio is exactly 1.
             Some(warp) => warp.process(self.ratio / self.base, out, source),
             None => source(out),
         }

@@ -1,6 +1,5 @@
 //! Opens and plays texture assets. Apps should depend on the crate `htex`, which re-exports this
-//! crate. The other crates of the project, such as the one that plays scenes, use this crate
-//! directly.
+//! crate. The other crates of the project, such as `htex-scene`, use this crate directly.
 //!
 //! ```no_run
 //! use htex::{Motion, Texture, VoiceOptions};
@@ -14,8 +13,8 @@
 //!
 //! [`Voice::render`] does not allocate, lock or access files, so it may run in an audio thread.
 //!
-//! The player is not part of `htex`, because `htex` re-exports `htex-scene`, and `htex-scene` needs
-//! the player. If `htex` contained the player, the two crates would depend on each other.
+//! This code is not part of `htex`, because `htex` re-exports `htex-scene`, and `htex-scene` needs
+//! this code. If `htex` contained it, the two crates would depend on each other.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]

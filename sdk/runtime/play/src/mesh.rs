@@ -1,4 +1,4 @@
-//! Interpolation between exploration conditions.
+//! Interpolation between recorded conditions (speed and normal force).
 //!
 //! The recorded conditions are points (speed, force). The mesh divides each axis by its largest
 //! value and triangulates the points (Delaunay). The weights of a motion are its barycentric
@@ -9,13 +9,13 @@
 //! - Speeds that are equal within [`htex_format::SAME_CONDITION`] count as one value, and so do
 //!   forces (`axis`).
 //! - If there are several Delaunay triangulations, as for a grid, a rule chooses one (`cells`).
-//! - A condition that equals its projection on an edge of the hull, within that tolerance, counts
-//!   as lying on that edge. The narrow triangle between them is not used for interpolation: motions
-//!   in it, and motions outside the hull next to it, have the weights of their projections on the
-//!   edge.
+//! - A condition counts as lying on an edge of the hull if it equals its projection on this edge,
+//!   within the same tolerance. The narrow triangle between the condition and the edge is not used
+//!   for interpolation. Motions in this triangle, and motions outside the hull next to it, have the
+//!   weights of their projections on the edge.
 //!
-//! Weights are continuous in the motion. At a recorded condition, only that condition's weight is
-//! not zero.
+//! The weights change continuously with the motion. At a recorded condition, only that condition's
+//! weight is not zero.
 //!
 //! An asset may store triangles (`stored`). Weights are then barycentric in the stored triangles,
 //! and none of these rules applies.
@@ -30,19 +30,19 @@ mod triangulation;
 use axis::Axis;
 use htex_format::{Triangle, TrianglesError};
 
-/// Farthest coordinate at which distances to edges are compared, relative to the largest speed and
-/// force. A motion farther out is moved in to this distance, because rounding would hide which edge
-/// is nearest.
+/// Largest coordinate at which distances to edges are compared, relative to the largest speed and
+/// force. A motion farther out is first moved to this distance. Otherwise rounding would hide which
+/// edge is nearest.
 const FARTHEST: f64 = 1e6;
 /// Largest distance from an edge, relative to the largest speed and force, that counts as rounding.
 const ON_SIDE: f64 = 1e-9;
 
-/// Conditions with at most this weight are dropped, so that at a recorded condition its parameters
-/// play without interpolation.
+/// Conditions with at most this weight are dropped, so that a motion at a recorded condition plays
+/// that condition's parameters without interpolation.
 const NO_WEIGHT: f64 = 1e-12;
 
-/// The weights of up to three conditions. They sum to one and are ordered by ascending speed, then
-/// force.
+/// The weights with which a motion mixes up to three conditions. They sum to one and are ordered by
+/// ascending speed, then by ascending force.
 ///
 /// ```
 /// use htex::play::Mesh;
@@ -66,8 +66,8 @@ impl Weights {
         (0..self.count).map(|i| (self.condition[i], self.weight[i]))
     }
 
-    /// Returns the weights above [`NO_WEIGHT`] in ascending order of the sorted conditions, with
-    /// the caller's numbers in place of the sorted indices.
+    /// Returns the weights above [`NO_WEIGHT`] in ascending order of the sorted conditions.
+    /// Replaces the sorted indices by the caller's numbers.
     fn numbered(self, numbers: &[usize]) -> Self {
         let mut parts = [0, 1, 2].map(|i| (self.condition[i], self.weight[i]));
         // Insertion sort: there are at most three parts, and this must not allocate.
@@ -88,8 +88,8 @@ impl Weights {
     }
 }
 
-/// The triangulation of recorded conditions, by the rules in section 11 of the format's
-/// specification.
+/// A triangulation of recorded conditions, which gives the weights for any motion. Section 11 of
+/// the format's specification states its rules.
 ///
 /// ```
 /// use htex_play::Mesh;
@@ -117,25 +117,25 @@ pub struct Mesh {
 struct Face {
     corners: [usize; 3],
     places: [[f64; 2]; 3],
-    /// The edge of the hull to which this triangle belongs, if it is a narrow one.
+    /// The edge of the hull to which this triangle belongs, if it is a narrow triangle.
     side: Option<usize>,
 }
 
-/// An edge of the hull with all conditions on it, or the line if all conditions lie on one.
+/// An edge of the hull with all conditions on it. If all conditions lie on one line, this line.
 #[derive(Debug, Clone, PartialEq)]
 struct Side {
     from: [f64; 2],
     along: [f64; 2],
     /// Conditions in order along the edge, including both ends.
     conditions: Vec<usize>,
-    /// Position of each condition's projection on the edge, from 0 at the first to 1 at the last;
-    /// strictly ascending.
+    /// Position of each condition's projection on the edge, from 0 for the first to 1 for the last
+    /// condition. Strictly ascending.
     feet: Vec<f64>,
 }
 
 impl Mesh {
-    /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, both finite and not
-    /// negative.
+    /// Makes a mesh of one or more points: speed (mm/s) and force (newtons). Both must be finite
+    /// and not negative.
     pub fn new(conditions: &[[f64; 2]]) -> Self {
         triangulation::mesh(conditions)
     }
@@ -161,8 +161,8 @@ impl Mesh {
         self.locate(speed_mm_s, force_n).0
     }
 
-    /// Returns the weights at a motion, and the nearest recorded motion (speed, force), which is
-    /// the motion itself inside the mesh. Does not allocate.
+    /// Returns the weights at a motion, and the nearest motion (speed, force) within the mesh. For
+    /// a motion inside the mesh, this is the motion itself. Does not allocate.
     pub(crate) fn locate(&self, speed_mm_s: f64, force_n: f64) -> (Weights, [f64; 2]) {
         let asked = [speed_mm_s, force_n];
         let q = [0, 1].map(|axis| self.axes[axis].place(asked[axis]));
@@ -194,7 +194,7 @@ impl Mesh {
     /// Returns the weights at a point if it lies in a triangle or on its edge.
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
         let [a, b, c] = face.places;
-        // Two triangles compute numbers of equal size and opposite sign for their common edge, so
+        // For their common edge, two triangles compute areas of equal size and opposite sign. So
         // rounding cannot put a motion outside both.
         let areas = [area(q, b, c), area(q, c, a), area(q, a, b)];
         if areas.iter().any(|area| *area < 0.0) {
@@ -215,7 +215,8 @@ impl Mesh {
     /// Returns the weights of the nearest point of the hull, and that point.
     fn nearest(&self, q: [f64; 2]) -> (Weights, [f64; 2]) {
         let size = q[0].abs().max(q[1].abs());
-        // Moving the point in keeps its direction, which decides the nearest edge this far out.
+        // Moving the point closer keeps its direction. At this distance, the direction decides
+        // which edge is nearest.
         let q = if size > FARTHEST { q.map(|x| x / size * FARTHEST) } else { q };
         let distance = |side: &Side| side.distance2(q);
         let nearest = self.sides.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));

@@ -15,14 +15,15 @@ use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S, slides};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Motion {
-    /// Scanning speed, mm/s, finite. For a texture it is a magnitude: a voice refuses a negative
-    /// speed. Over a scene it is negative on the back stroke.
+    /// Scanning speed, mm/s, finite. A voice of a texture expects a magnitude and refuses a
+    /// negative speed. In a scene, the speed is negative on the back stroke.
     pub speed_mm_s: f64,
-    /// Normal force, newtons; finite and not negative.
+    /// Normal force, newtons. It must be finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm; finite, of either sign. `None` if unknown.
+    /// Position along the path, mm. It must be finite and may have either sign. `None` if unknown.
     pub position_mm: Option<f64>,
-    /// Place on the surface, x and y, mm; finite, of either sign. `None` if unknown.
+    /// Place on the surface, x and y, mm. Both must be finite and may have either sign. `None` if
+    /// unknown.
     pub place_mm: Option<[f64; 2]>,
 }
 
@@ -48,16 +49,16 @@ impl Motion {
         Self { place_mm: place_mm.into(), ..self }
     }
 
-    /// Returns the part of the motion that a texture follows: the speed without its sign, and the
-    /// force.
+    /// Returns a motion with only the values that a texture follows: the speed without its sign,
+    /// and the force.
     #[must_use]
     pub fn without_direction(self) -> Self {
         Self::new(self.speed_mm_s.abs(), self.force_n)
     }
 
     /// Returns whether a finger can move like this, in either direction: all numbers are finite,
-    /// the force is not negative, the speed is at most 1000 mm/s and the force at most 20 N.
-    /// Otherwise the reading has failed.
+    /// the force is not negative, the speed is at most 1000 mm/s and the force at most 20 N. A
+    /// motion outside these limits is a failed reading.
     pub fn is_reading(&self) -> bool {
         let unsigned = Self { speed_mm_s: self.speed_mm_s.abs(), ..*self };
         unsigned.checked().is_ok() && unsigned.is_plausible()
@@ -71,8 +72,8 @@ impl Motion {
     /// Returns the motion if its numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`]
-    /// if the position is not finite, and [`Error::Place`] if the place is not.
+    /// [`Error::Motion`] if the speed or the force is negative or not finite. [`Error::Position`]
+    /// if the position is not finite. [`Error::Place`] if the place is not finite.
     ///
     /// ```
     /// use htex::Motion;
@@ -101,8 +102,8 @@ impl Motion {
         self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 
-    /// Returns whether another motion has the same speed and force. Only they determine the
-    /// parameters.
+    /// Returns whether another motion has the same speed and force. The parameters depend only on
+    /// these two.
     pub(crate) fn has_conditions_of(&self, other: &Self) -> bool {
         (self.speed_mm_s, self.force_n) == (other.speed_mm_s, other.force_n)
     }

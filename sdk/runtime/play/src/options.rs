@@ -28,8 +28,9 @@ pub struct VoiceOptions {
 }
 
 impl Default for VoiceOptions {
-    /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, a ceiling
-    /// of 4 times the strongest level, a gain of 1, no limit and no envelope.
+    /// The defaults: 20 kHz (the paper's rate), seed 0, the motion of the default condition,
+    /// streamed synthesis, all effects, a ceiling of 4 times the strongest recorded level, a gain
+    /// of 1, no limit and no envelope.
     fn default() -> Self {
         Self {
             rate_hz: 20_000.0,
@@ -69,7 +70,7 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets how the samples are made: by the model's voice, or by a method that computes less and
+    /// Sets how the samples are made: by the model itself, or by a method that computes less but
     /// keeps the spectrum constant. A [`SampleSource`](crate::SampleSource) is always streamed.
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
@@ -77,34 +78,34 @@ impl VoiceOptions {
         self
     }
 
-    /// Sets the ceiling of the level at motions outside the recorded ones, as a multiple of the
-    /// strongest recorded level; above 0 and finite. It never reduces a level that the motion does
-    /// not raise.
+    /// Sets the ceiling of the level at motions outside the recorded range, as a multiple of the
+    /// strongest recorded level. It must be above 0 and finite. The ceiling limits only how far a
+    /// motion raises the level; it never makes a recorded level weaker.
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;
         self
     }
 
-    /// Sets the gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not
-    /// negative.
+    /// Sets the initial gain of the samples, which must not be negative.
+    /// [`Voice::set_gain`](crate::Voice::set_gain) changes it later.
     #[must_use]
     pub fn with_gain(mut self, gain: f64) -> Self {
         self.gain = gain;
         self
     }
 
-    /// Sets the largest absolute value of a sample after the gain, in the asset's unit; above 0.
-    /// The gain drops at once when a sample would exceed the limit, and recovers within 50 ms (to
-    /// 1/e). `None` for no limit.
+    /// Sets a limit for the absolute value of samples after the gain, in the asset's unit; above 0.
+    /// When a sample would exceed the limit, a limiter reduces the gain at once. The gain then
+    /// recovers with a time constant of 50 ms. `None` means no limit.
     #[must_use]
     pub fn with_limit(mut self, limit: impl Into<Option<f64>>) -> Self {
         self.limit = limit.into();
         self
     }
 
-    /// Sets the number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. 0 switches
-    /// the envelope off and costs no time.
+    /// Sets the number of bands in [`Voice::envelope`](crate::Voice::envelope), 1 to 32. With 0
+    /// bands, the envelope is off and costs no time.
     #[must_use]
     pub fn with_envelope_bands(mut self, bands: usize) -> Self {
         self.envelope_bands = bands;

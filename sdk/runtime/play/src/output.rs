@@ -1,10 +1,10 @@
-//! The gain and the limiter of a voice. They are applied last.
+//! The gain and the limiter of a voice, the last steps before the output.
 
 use htex_dsp::glide::Glide;
 
 use crate::Error;
 
-/// Time constant with which the limiter recovers, seconds. A shorter one would distort the lowest
+/// Time constant with which the limiter recovers, seconds. A shorter time would distort the lowest
 /// frequency of a texture, 20 Hz.
 const RELEASE_S: f64 = 0.050;
 
@@ -18,8 +18,8 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Makes a gain whose changes take `ramp` samples, and a limiter that keeps samples within
-    /// `limit`.
+    /// Makes a gain and a limiter. A change of the gain takes `ramp` samples. The limiter keeps
+    /// samples within `limit`.
     ///
     /// # Errors
     /// When the gain is negative or not finite, or the limit is not above 0.
@@ -37,7 +37,7 @@ impl Output {
     /// Changes the gain: gradually, or at once if the voice is silent.
     ///
     /// # Errors
-    /// When it is negative or not finite.
+    /// When `gain` is negative or not finite.
     pub(crate) fn set_gain(&mut self, gain: f64, rests: bool) -> Result<(), Error> {
         let gain = checked(gain)?;
         self.target = gain;
@@ -62,7 +62,7 @@ impl Output {
         }
     }
 
-    /// Ends all ramps at once; the samples are zero, so no jump is audible.
+    /// Ends all ramps at once. The samples are zero, so no jump is audible.
     pub(crate) fn rest(&mut self) {
         self.gain.finish();
         if let Some(limiter) = &mut self.limiter {
@@ -89,7 +89,7 @@ fn checked(gain: f64) -> Result<f32, Error> {
 struct Limiter {
     limit: f32,
     gain: f32,
-    /// Fraction of the remaining way to 1 that the gain recovers with each sample.
+    /// With each sample, the gain recovers by this fraction of its remaining distance to 1.
     release: f32,
 }
 
@@ -108,7 +108,7 @@ impl Limiter {
 
     fn apply(&mut self, block: &mut [f32]) {
         for sample in block {
-            // The gain recovers before the check, so that the limit has the last word.
+            // The gain recovers before the check, so that the sample stays within the limit.
             self.gain += (1.0 - self.gain) * self.release;
             let peak = sample.abs();
             if peak * self.gain > self.limit {

@@ -12,7 +12,7 @@ use htex_host::{Field, Kind};
 pub enum Parameter {
     /// A field with one number.
     Number(f64),
-    /// A field with a list of numbers. Its length is given by an earlier number in the flat array.
+    /// A field with a list of numbers.
     List(Vec<f64>),
 }
 

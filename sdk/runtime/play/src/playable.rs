@@ -6,10 +6,11 @@ use semver::Version;
 
 use crate::Error;
 
-/// Returns the model in `registry` that plays a representation. Candidates have the
-/// representation's id and major version, in the order of the registry. The first candidate that
-/// has the representation's fields and is not older wins; otherwise the first that has the fields;
-/// otherwise the first.
+/// Returns the model in `registry` that plays a representation. Candidates are the models with the
+/// representation's id and major version, in the order of the registry. This function returns the
+/// first candidate that has the representation's fields and is not older than the model version
+/// that fitted it. If there is none, it returns the first candidate that has the fields, or else
+/// the first candidate.
 ///
 /// ```no_run
 /// let asset = htex::Texture::open("sandpaper.htex")?;
@@ -21,7 +22,7 @@ use crate::Error;
 /// ```
 ///
 /// # Errors
-/// When there is no such model.
+/// When there is no candidate.
 pub fn model_of<'a>(
     registry: &'a Registry,
     representation: &Representation,
@@ -45,7 +46,7 @@ pub fn model_of<'a>(
     })
 }
 
-/// Returns whether a model's version is earlier than the one that fitted a representation.
+/// Returns whether a model's version is earlier than the version that fitted a representation.
 fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
     let versions = [&model.descriptor().version, &representation.model_version];
     match versions.map(|version| Version::parse(version).ok()) {

@@ -16,8 +16,8 @@ const MOST_RATE_HZ: f64 = 1e7;
 /// A representation of a texture: the parameters of one model at each recorded condition.
 /// [`Texture::representation`] returns it.
 ///
-/// A texture may have several representations of the same surface, made by different models. Its
-/// model is loaded when a method first needs it.
+/// A texture may have several representations of the same surface, made by different models. The
+/// model of a representation is loaded when a method first needs it.
 ///
 /// ```no_run
 /// use htex::{Motion, Texture, VoiceOptions};
@@ -38,12 +38,12 @@ impl<'a> Representation<'a> {
         Self { texture, index }
     }
 
-    /// Returns the texture that it belongs to.
+    /// Returns the texture that the representation belongs to.
     pub fn texture(&self) -> &'a Texture {
         self.texture
     }
 
-    /// Returns what the file states about this representation.
+    /// Returns the manifest's entry for this representation.
     pub fn data(&self) -> &'a htex_format::Representation {
         &self.texture.manifest().representations[self.index]
     }
@@ -58,7 +58,7 @@ impl<'a> Representation<'a> {
         self.texture.is_runnable(self.data())
     }
 
-    /// Returns the model, loaded.
+    /// Returns the model of the representation, and loads it if necessary.
     ///
     /// # Errors
     /// When the model is missing or incompatible.
@@ -122,7 +122,7 @@ impl<'a> Representation<'a> {
         })
     }
 
-    /// Makes the pre-rendered sound of a voice; `None` if the voice is streamed.
+    /// Makes the pre-rendered sound of a voice, or returns `None` if the voice is streamed.
     fn still(&self, options: &VoiceOptions) -> Result<Option<StillSound>, Error> {
         if options.synthesis == Synthesis::Streamed {
             return Ok(None);
@@ -138,11 +138,11 @@ impl<'a> Representation<'a> {
         )?)
     }
 
-    /// Makes the source of a voice: samples of unit RMS without the level, at the rate that the
-    /// model chooses for a player at the rate in the options.
+    /// Makes the source of a voice, which renders samples of unit RMS without the level. The model
+    /// chooses the source's sample rate for a player that runs at the rate in the options.
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// The errors of [`Self::voice`].
     pub fn source(&self, options: &VoiceOptions) -> Result<SampleSource, Error> {
         let motion = options.motion.unwrap_or_else(|| self.start());
         let model = self.model()?;
@@ -153,12 +153,13 @@ impl<'a> Representation<'a> {
 
     /// Returns the magnitudes that a long recording of the voice would show at a motion, or at the
     /// default condition if `motion` is `None`. Frequencies are in hertz, magnitudes in the asset's
-    /// unit. Outside the recorded conditions the asset's law applies; where the finger does not
-    /// slide the magnitudes are 0. If the law scales all frequencies by a ratio r, a noise of
-    /// magnitude m(f) has the magnitude `m(f / r) / sqrt(r)`, and a sum of sinusoids `m(f / r)`.
+    /// unit. Outside the recorded conditions, the asset's scaling law applies. Where the finger
+    /// does not slide, the magnitudes are 0. If the law scales all frequencies by a ratio r, noise
+    /// of magnitude m(f) has the magnitude `m(f / r) / sqrt(r)`, and a sum of sinusoids has the
+    /// magnitude `m(f / r)`.
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// The errors of [`Self::voice`].
     pub fn magnitude(
         &self,
         motion: Option<Motion>,
@@ -173,12 +174,12 @@ impl<'a> Representation<'a> {
         scaled_magnitude(&model, &parameters, band, frequency_hz, scaling.frequency, level_rms)
     }
 
-    /// Returns the level of a voice at a motion, or at the default condition if `motion` is `None`:
-    /// the RMS in the asset's unit. Outside the recorded conditions the asset's law applies; where
-    /// the finger does not slide the level is 0.
+    /// Returns the level of a voice at a motion, or at the default condition if `motion` is `None`.
+    /// The level is the RMS in the asset's unit. Outside the recorded conditions, the asset's
+    /// scaling law applies. Where the finger does not slide, the level is 0.
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// The errors of [`Self::voice`].
     pub fn level_rms(&self, motion: Option<Motion>) -> Result<f64, Error> {
         let Some(scaling) = self.scaling(motion)? else {
             return Ok(0.0);
@@ -187,7 +188,7 @@ impl<'a> Representation<'a> {
         Ok(level_rms * scaling.level)
     }
 
-    /// Returns the factors that scale frequencies and level at a motion; `None` where the finger
+    /// Returns the factors that scale frequencies and level at a motion, or `None` if the finger
     /// does not slide.
     fn scaling(&self, motion: Option<Motion>) -> Result<Option<Scaling>, Error> {
         // A model that follows the motion itself needs no factors.
@@ -206,7 +207,7 @@ impl<'a> Representation<'a> {
     /// returns magnitudes where the finger does not slide.
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// The errors of [`Self::voice`].
     pub fn recorded_magnitude(
         &self,
         motion: Option<Motion>,
@@ -222,7 +223,7 @@ impl<'a> Representation<'a> {
     /// condition.
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// The errors of [`Self::voice`].
     pub fn parameters(&self, motion: Option<Motion>) -> Result<(Vec<f64>, f64), Error> {
         let motion = motion.unwrap_or_else(|| self.start()).checked()?;
         let model = self.model()?;
@@ -242,7 +243,7 @@ impl<'a> Representation<'a> {
     /// ```
     ///
     /// # Errors
-    /// As [`Self::voice`].
+    /// The errors of [`Self::voice`].
     pub fn named_parameters(
         &self,
         motion: Option<Motion>,
@@ -265,12 +266,14 @@ impl<'a> Representation<'a> {
         })
     }
 
-    /// Returns the index, in the manifest, of the condition at which the representation is played
-    /// when no motion is given: its first condition, or its strongest if the first is silent. A
-    /// condition is silent if its level is 0, or if a finger does not slide at its stated speed or
-    /// force. The strongest condition is the one with the highest level among those that are not
-    /// silent; of equal ones it is the first. If all are silent, the first condition is the
-    /// default. Loads no model.
+    /// Returns the default condition, at which the representation is played when no motion is
+    /// given, as an index into the manifest's conditions. Loads no model.
+    ///
+    /// The default is the representation's first condition, unless this condition is silent. Then
+    /// it is the condition with the highest level among those that are not silent, and the first of
+    /// them if several have the same level. If all conditions are silent, it is the first
+    /// condition. A condition is silent if its level is 0, or if a finger does not slide at its
+    /// stated speed or force.
     pub fn default_condition(&self) -> usize {
         let at = &self.data().at;
         let default = default_condition(at, &self.texture.manifest().conditions);
@@ -278,7 +281,8 @@ impl<'a> Representation<'a> {
     }
 
     /// Returns a motion with a speed in mm/s and a force in newtons. A missing value is taken from
-    /// [`Self::default_condition`]; if that condition does not state it, it is 80 mm/s or 0.4 N.
+    /// [`Self::default_condition`]. If that condition does not state it either, it is 80 mm/s or
+    /// 0.4 N.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;
@@ -300,8 +304,8 @@ impl<'a> Representation<'a> {
         condition.copied().unwrap_or_default()
     }
 
-    /// Returns the motion of the default condition. A value that it does not state is 0, as in the
-    /// mesh.
+    /// Returns the motion of the default condition. A value that the condition does not state is 0,
+    /// as in the mesh.
     fn start(&self) -> Motion {
         let default = self.condition();
         let [speed_mm_s, force_n] =

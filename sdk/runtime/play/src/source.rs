@@ -8,13 +8,13 @@ use crate::spectrum::scaled_magnitude;
 use crate::travel::Course;
 use crate::{Error, Motion};
 
-/// Largest number of conditions that are interpolated at once.
+/// Maximum number of conditions between which a motion is interpolated.
 const MIXED: usize = 3;
 
-/// A stream of unit-RMS samples at the model's own rate, with their level. A program that renders
-/// many textures can add their sources and resample the sum once; [`crate::Voice`] resamples a
-/// single texture. A source interpolates between conditions. The renderer applies the other effects
-/// of a motion ([`crate::Effects`]).
+/// A stream of unit-RMS samples at the model's own rate, and the level to multiply them by. A
+/// program that renders many textures can add their sources and resample the sum once, whereas a
+/// [`crate::Voice`] resamples a single texture. A source interpolates between conditions. The
+/// program must apply the other effects of a motion ([`crate::Effects`]) itself.
 ///
 /// ```no_run
 /// use htex::{Texture, VoiceOptions};
@@ -38,8 +38,7 @@ pub struct SampleSource {
     band: Band,
     motion: Motion,
     level_rms: f64,
-    /// Whether the model follows the motion itself. If so, the next field is the finger's path for
-    /// it.
+    /// Whether the model follows the motion itself. If so, `course` holds the finger's path for it.
     follows: bool,
     course: Course,
     /// Samples rendered so far.
@@ -83,7 +82,7 @@ impl SampleSource {
     }
 
     /// Returns whether the model always renders at this rate, no matter which rate the player
-    /// wants. Convert its samples with
+    /// wants. If so, convert the samples with
     /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that the texture
     /// has the same level at all rates.
     pub fn has_own_rate(&self) -> bool {
@@ -105,8 +104,8 @@ impl SampleSource {
         self.level_rms
     }
 
-    /// Returns whether the model follows the motion itself. The renderer then calls
-    /// [`Self::follow`] and scales neither frequencies nor level.
+    /// Returns whether the model follows the motion itself. If so, call [`Self::follow`] for every
+    /// motion, and scale neither frequencies nor level.
     pub fn follows_motion(&self) -> bool {
         self.follows
     }
@@ -135,16 +134,19 @@ impl SampleSource {
         self.frames as f64 / self.rate_hz
     }
 
-    /// Sets the motion of the finger for a model that follows the motion itself; does nothing for
-    /// other models. `at_s` is the time of the motion, in seconds after this source's first sample.
-    /// It may precede the samples rendered so far, because a resampler reads ahead; the position is
-    /// then advanced by the time rendered ahead. The speed is negative while the position
-    /// decreases; an unknown position counts as 0. Numbers are clamped to the ranges of the model
-    /// ABI. A known place is passed on unchanged; without one the model receives a path along x.
-    /// Does not allocate, lock or do I/O if the model keeps to the ABI.
+    /// Sets the motion of the finger for a model that follows the motion itself. Does nothing for
+    /// other models. Does not allocate, lock or do I/O if the model keeps to the ABI.
+    ///
+    /// `at_s` is the time of the motion, in seconds after this source's first sample. This time may
+    /// be earlier than the last rendered sample, because a resampler reads ahead. The position and
+    /// the place are then moved forward by the distance that the finger covers in the difference.
+    ///
+    /// The speed is negative while the position decreases. An unknown position counts as 0. If the
+    /// place is unknown, the model receives a path along x. Numbers are clamped to the ranges of
+    /// the model ABI.
     ///
     /// # Errors
-    /// When a number is not finite, or the model refuses the motion; the source then continues
+    /// When a number is not finite, or the model refuses the motion. The source then continues
     /// unchanged.
     pub fn follow(&mut self, motion: Motion, at_s: f64) -> Result<(), Error> {
         if !self.follows {
@@ -170,13 +172,14 @@ impl SampleSource {
         &self.recorded.conditions
     }
 
-    /// Changes gradually to the spectrum of the recorded motion nearest to this one, and returns
-    /// its level. Setting an unchanged motion costs no time; a new one interpolates parameters in
-    /// memory that the voice already owns. Does not allocate, lock or do I/O if the model keeps to
-    /// the ABI, as this project's models do.
+    /// Changes gradually to the spectrum at this motion, interpolated between recorded conditions,
+    /// and returns its level. For a motion outside the recorded conditions, it is the spectrum at
+    /// the nearest motion within them. Setting the same motion again costs no time. For a new
+    /// motion, the source interpolates parameters in memory that it already owns. Does not
+    /// allocate, lock or do I/O if the model keeps to the ABI, as this project's models do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the source
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate. The source
     /// then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<f64, Error> {
         let motion = motion.checked()?;
@@ -212,14 +215,14 @@ impl SampleSource {
     }
 
     /// Fills `out` with the next `frames` samples of each source, one source after another. The
-    /// samples are bit-identical to those from [`Self::render`], but take as few calls as the
-    /// models allow: AR then needs about six tenths of the time in blocks of 256 frames. If `out`
-    /// is too short, the remaining sources are not advanced; if it is too long, the rest is filled
+    /// samples are bit-identical to those from [`Self::render`], but need as few calls of the
+    /// models as possible. In blocks of 256 frames, AR then needs about 60 % of the time. If `out`
+    /// is too short, the remaining sources are not advanced. If it is too long, the rest is filled
     /// with zeros. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// The first error that a model returns. The samples of its source are zero; the other sources
-    /// continue.
+    /// The first error that a model returns. The samples of this source are then zero, and the
+    /// other sources continue.
     pub fn render_together<'a>(
         sources: impl IntoIterator<Item = &'a mut Self>,
         frames: usize,
@@ -236,7 +239,7 @@ impl SampleSource {
     /// Fills `out` with the next samples, which have unit RMS. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// When the model fails; `out` is then filled with zeros.
+    /// When the model fails. `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         self.frames += out.len() as u64;
         Ok(self.voice.render(out)?)

@@ -4,9 +4,10 @@ use htex_host::{Band, LoadedModel};
 
 use crate::Error;
 
-/// Returns the magnitudes, at frequencies in hertz, of a model's unit-RMS voice when it is read at
-/// `ratio` times its recorded speed and played at a level. A noise of magnitude m(f) then has the
-/// magnitude `m(f / ratio) / sqrt(ratio)`, and a sum of sinusoids `m(f / ratio)`.
+/// Returns the magnitudes of a model's voice at the frequencies `frequency_hz`, if its unit-RMS
+/// samples are read at `ratio` times the recorded speed and played at a level. Noise of magnitude
+/// m(f) then has the magnitude `m(f / ratio) / sqrt(ratio)`, and a sum of sinusoids has the
+/// magnitude `m(f / ratio)`.
 pub(crate) fn scaled_magnitude(
     model: &LoadedModel,
     parameters: &[f64],

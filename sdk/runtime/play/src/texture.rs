@@ -1,6 +1,6 @@
 //! An asset and the models that can play it.
 //!
-//! A model is loaded when one of its representations is first used: validating, listing or
+//! A model is loaded when one of its representations is first used. So validating, listing or
 //! inspecting an asset runs no module.
 
 use std::path::Path;
@@ -65,12 +65,12 @@ impl Texture {
         Self::from_bytes(&library.get(name)?)
     }
 
-    /// Makes an asset from its data. The built-in models can play it.
+    /// Makes a texture from the data of an asset. The built-in models can play it.
     pub fn new(data: htex_format::Asset) -> Self {
         Self::with_registry(data, Registry::builtin())
     }
 
-    /// Makes an asset from its data. The models in `registry` can play it.
+    /// Makes a texture from the data of an asset. The models in `registry` can play it.
     pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
         let models = data.manifest.representations.iter();
         Self {
@@ -82,10 +82,10 @@ impl Texture {
     }
 
     /// Allows embedded models to run, in a sandbox. An embedded model takes precedence over the
-    /// models of the registry, unless a plugin that was named by its file can play the
-    /// representation ([`model_of`]). An embedded model is loaded when a representation with its id
-    /// is first used. That use returns an error if the module cannot be loaded, or if its id or
-    /// version is not the declared one.
+    /// models of the registry. But a plugin that the user loaded by its file name comes first, if
+    /// it can play the representation ([`model_of`]). An embedded model is loaded when a
+    /// representation with its id is first used. This first use returns an error if the module
+    /// cannot be loaded, or if its id or version differs from the declared one.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
         self.embedded = true;
@@ -97,7 +97,7 @@ impl Texture {
     ///
     /// # Errors
     /// When the asset embeds no model with this id, when the model cannot be loaded, or when its id
-    /// or version is not the declared one.
+    /// or version differs from the declared one.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
         if self.embeds(id) {
             self.registry_with(id).map(drop)
@@ -111,7 +111,7 @@ impl Texture {
         self.data.manifest.plugins.iter().any(|p| p.model == id)
     }
 
-    /// Returns the registry, with the embedded model of this id added if there is one.
+    /// Returns the registry, and adds the embedded model of this id if there is one.
     fn registry_with(&self, id: &str) -> Result<Registry, Error> {
         let mut registry = self.registry.clone();
         let plugins = self.data.manifest.plugins.iter().zip(&self.data.plugins);
@@ -138,7 +138,7 @@ impl Texture {
         self.data.manifest.quantity
     }
 
-    /// Returns the models that can play the asset, without the embedded ones.
+    /// Returns the models that can play the asset, except embedded models.
     pub fn registry(&self) -> &Registry {
         &self.registry
     }
@@ -177,10 +177,11 @@ impl Texture {
         Ok(Representation::new(self, index))
     }
 
-    /// Makes a voice of the best representation. For another one, use [`Self::representation`].
+    /// Makes a voice of the best representation. For another representation, use
+    /// [`Self::representation`].
     ///
     /// # Errors
-    /// As [`Representation::voice`].
+    /// The errors of [`Representation::voice`].
     pub fn voice(&self, options: &VoiceOptions) -> Result<Voice, Error> {
         self.representation(None)?.voice(options)
     }
@@ -188,7 +189,7 @@ impl Texture {
     /// Returns the magnitudes of the best representation at a motion.
     ///
     /// # Errors
-    /// As [`Representation::magnitude`].
+    /// The errors of [`Representation::magnitude`].
     pub fn magnitude(
         &self,
         motion: Option<Motion>,
@@ -200,14 +201,15 @@ impl Texture {
     /// Returns the level of the best representation at a motion.
     ///
     /// # Errors
-    /// As [`Representation::level_rms`].
+    /// The errors of [`Representation::level_rms`].
     pub fn level_rms(&self, motion: Option<Motion>) -> Result<f64, Error> {
         self.representation(None)?.level_rms(motion)
     }
 
     /// Returns the representations from the best to the worst. Representations that this program
-    /// can run come first. Among them, the ones with a measured error come first, in the order of
-    /// their [`htex_format::Representation::error_db`]. Ties keep the order of the file.
+    /// can run come first, then the others. Within each group, representations with a measured
+    /// error come first, ordered by [`htex_format::Representation::error_db`] from small to large.
+    /// Ties keep the order of the file.
     ///
     /// ```no_run
     /// let texture = htex::Texture::open("sandpaper.htex")?;
@@ -225,8 +227,8 @@ impl Texture {
         ranked
     }
 
-    /// Returns the indices of the representations: first the ones with a measured error, by that
-    /// error, then the others.
+    /// Returns the indices of the representations. Representations with a measured error come
+    /// first, ordered by this error, then the others.
     fn by_error(&self, measure: ErrorMeasure) -> Vec<usize> {
         let all = &self.data.manifest.representations;
         let mut sorted: Vec<_> =
@@ -239,8 +241,8 @@ impl Texture {
         sorted.into_iter().map(|(i, _)| i).collect()
     }
 
-    /// Returns the first of [`Self::ranked`]. Asks whether a model is there only as often as
-    /// needed, since that takes longer than the rest of the choice.
+    /// Returns the first of [`Self::ranked`]. Looks for models only as often as needed, because
+    /// this takes longer than everything else here.
     fn best(&self, measure: ErrorMeasure) -> Option<usize> {
         let all = &self.data.manifest.representations;
         let sorted = self.by_error(measure);
@@ -263,7 +265,7 @@ impl Texture {
         Ok(kept.get_or_init(|| model).clone())
     }
 
-    /// Returns whether the embedded model with this id may run; always false in a program without a
+    /// Returns whether the embedded model with this id may run. Always false in a program without a
     /// sandbox.
     fn may_run_embedded(&self, id: &str) -> bool {
         RUNS_WASM && self.embedded && self.embeds(id)

@@ -1,9 +1,10 @@
 //! The position of a finger on its path, given by the host or integrated from the speed.
 //!
 //! Position and place belong to the next sample that the *voice* renders
-//! ([`crate::SampleSource::follow`]), not to the next sample of the source: a resampler reads
-//! ahead by a part of a block that differs from call to call, and that jitter would be audible. For
-//! a model that does not follow the motion itself, setting a motion costs one test of a `bool`.
+//! ([`crate::SampleSource::follow`]), not to the next sample of the source. A resampler reads ahead
+//! by a part of a block, and this part differs from call to call. The resulting jitter would be
+//! audible. For a model that does not follow the motion itself, setting a motion costs one test of
+//! a `bool`.
 
 use crate::Motion;
 
@@ -16,8 +17,8 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// Returns where the finger is `way_mm` after a place, in the direction in which the places
-    /// moved.
+    /// Returns the place that the finger reaches `way_mm` after `place_mm`, if it keeps the
+    /// direction from the previous place to this one.
     pub(crate) fn extrapolate(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
         if let Some(before) = self.place_mm {
             let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);
@@ -37,8 +38,8 @@ pub(crate) struct Travel {
     rate_hz: f64,
     /// Frames since the last motion.
     frames: u64,
-    /// The last motion: its speed is negative while the finger moves backward, and its position is
-    /// known.
+    /// The last motion. Its speed is negative while the finger moves backward, and its position is
+    /// always known.
     motion: Motion,
     /// Whether a motion was set.
     set: bool,
@@ -63,7 +64,7 @@ impl Travel {
         self.frames += frames as u64;
     }
 
-    /// Sets a checked motion; returns the motion for the model if it has changed.
+    /// Sets a checked motion. If the motion has changed, returns the motion to pass to the model.
     ///
     /// The finger moves backward if the position is less than the last one given, and forward if it
     /// is greater. If the position is equal or unknown, the direction stays the same. A place

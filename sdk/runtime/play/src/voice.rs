@@ -50,11 +50,11 @@ pub struct Voice {
     analyser: Option<Analyser>,
     /// Frames rendered so far.
     frames: u64,
-    /// Frames for which the source was rendered. It pauses while the voice is silent, so these may
-    /// be fewer than `frames`.
+    /// Frames for which the source was rendered. The source pauses while the voice is silent, so
+    /// this may be less than `frames`.
     played: u64,
     rate_hz: f64,
-    /// Ceiling of the level, as a multiple of the strongest recorded one.
+    /// Ceiling of the level, as a multiple of the strongest recorded level.
     ceiling: f64,
     /// The last motion.
     asked: Option<Motion>,
@@ -63,8 +63,8 @@ pub struct Voice {
 }
 
 impl Voice {
-    /// Makes a voice from a source and the resampler it needs, or from a pre-rendered sound. The
-    /// resampler reads the source `base` times as fast as recorded.
+    /// Makes a voice from a source, or from a pre-rendered sound `still`. The voice reads the
+    /// source `base` times as fast as recorded.
     pub(crate) fn new(
         source: SampleSource,
         still: Option<StillSound>,
@@ -115,28 +115,28 @@ impl Voice {
     }
 
     /// Sets the motion of the finger. Spectrum and level change gradually to values interpolated
-    /// between the recorded conditions; if the voice is not streamed
+    /// between the recorded conditions. If the voice is not streamed
     /// ([`Synthesis`](crate::Synthesis)), only the level changes.
     ///
-    /// Outside the recorded conditions, frequencies and level follow the asset's law
-    /// ([`Law`](htex_format::Law)), starting at the nearest recorded motion. Frequencies are at least
-    /// 1/16 and at most 8 times the recorded ones, and never exceed half the sample rate. The level
-    /// is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest recorded one. A
-    /// finger that does not slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these
-    /// effects can be switched off ([`Effects`](crate::Effects)); [`Self::coverage`] reports them
-    /// for a motion.
+    /// Outside the recorded conditions, frequencies and level follow the asset's scaling law
+    /// ([`Law`](htex_format::Law)), starting from the nearest motion within them. Frequencies are
+    /// at least 1/16 and at most 8 times the recorded frequencies, and never exceed half the sample
+    /// rate. The level is at most [`ceiling`](VoiceOptions::with_ceiling) times the strongest
+    /// recorded level. The voice is silent while the finger does not slide (below 0.5 mm/s or at 0
+    /// N). Each of these effects can be switched off ([`Effects`](crate::Effects)).
+    /// [`Self::coverage`] reports how they apply to a motion.
     ///
     /// A motion above 1 m/s or 20 N, or with a value out of range, counts as a failed reading. The
-    /// voice then holds the last good motion for at most 100 ms, and is silent after that until the
-    /// next good one.
+    /// voice then holds the last valid motion for at most 100 ms. After that, it is silent until
+    /// the next valid motion.
     ///
-    /// Setting an unchanged motion costs no time; a new one interpolates parameters in memory that
-    /// the voice already owns. Does not allocate, lock or do I/O if the model keeps to the ABI, as
-    /// this project's models do.
+    /// Setting the same motion again costs no time. For a new motion, the voice interpolates
+    /// parameters in memory that it already owns. Does not allocate, lock or do I/O if the model
+    /// keeps to the ABI, as this project's models do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate. In the first
-    /// case the voice continues as for a failed reading, in the second it continues unchanged.
+    /// When a value is out of range (see [`Motion`]); the voice then continues as after a failed
+    /// reading. When the model cannot interpolate; the voice then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let checked = motion.checked();
         if checked.is_err() || !motion.is_plausible() {
@@ -177,7 +177,7 @@ impl Voice {
         self.stream.source_mut().follow(motion, self.played as f64 / self.rate_hz)
     }
 
-    /// Returns how this voice plays a motion, and whether the motion lies within the recorded
+    /// Returns how this voice plays a motion, and whether the motion lies between the recorded
     /// conditions. Does not allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
@@ -198,10 +198,10 @@ impl Voice {
         self.asked.unwrap_or(self.started)
     }
 
-    /// Returns the magnitudes that a long recording of this voice would show at the current motion,
-    /// at frequencies in hertz and in the asset's unit. They include its effects, its
-    /// [`ceiling`](VoiceOptions::with_ceiling) and its gain, and are 0 where the voice is silent. A
-    /// gradual change counts as finished, and the limiter is not included.
+    /// Returns the magnitudes that a long recording of this voice would show at the current motion.
+    /// Frequencies are in hertz, magnitudes in the asset's unit. The magnitudes include the
+    /// effects, the [`ceiling`](VoiceOptions::with_ceiling) and the gain, but not the limiter. A
+    /// gradual change counts as finished. If the voice is silent, all magnitudes are 0.
     ///
     /// # Errors
     /// When the model refuses the parameters.
@@ -222,7 +222,7 @@ impl Voice {
     /// Sets the gain, which changes gradually (10 ms). Does not allocate.
     ///
     /// # Errors
-    /// When the gain is negative or not finite; it then keeps its old value.
+    /// When the gain is negative or not finite. The gain then keeps its old value.
     pub fn set_gain(&mut self, gain: f64) -> Result<(), Error> {
         self.output.set_gain(gain, self.follow.rests())
     }
@@ -234,11 +234,11 @@ impl Voice {
     }
 
     /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
-    /// While the voice is silent ([`Self::is_silent`]) this takes hardly any time, and the noise
-    /// pauses: it continues where it stopped when the finger slides again.
+    /// While the voice is silent ([`Self::is_silent`]), this takes hardly any time and the noise
+    /// pauses. When the finger slides again, the noise continues where it stopped.
     ///
     /// # Errors
-    /// When the model fails; the samples that it did not render are zero.
+    /// When the model fails. The samples that it did not render are then zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let sounding = self.follow.sounding(out.len(), self.frames);
         let (sounding, resting) = out.split_at_mut(sounding);
@@ -272,10 +272,10 @@ impl Voice {
         self.rate_hz
     }
 
-    /// Returns an endless iterator over the next samples, in the asset's unit. It renders one
-    /// sample at a time and none ahead, so that the voice continues after the last sample that was
-    /// taken; [`Self::render`] is faster. Does not allocate, lock or do I/O. If the model fails,
-    /// the iterator returns the error and then ends.
+    /// Returns an endless iterator over the next samples, in the asset's unit. The iterator renders
+    /// one sample at a time and none ahead, so the voice later continues after the last sample that
+    /// was taken. [`Self::render`] is faster. Does not allocate, lock or do I/O. If the model
+    /// fails, the iterator returns the error and then ends.
     ///
     /// ```no_run
     /// use htex::{Texture, VoiceOptions};
@@ -301,7 +301,7 @@ impl Voice {
     /// not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// As [`Self::render`], and when `gain` is not finite; `out` is then unchanged.
+    /// The errors of [`Self::render`]. Also when `gain` is not finite; `out` is then unchanged.
     pub fn render_add(&mut self, out: &mut [f32], gain: f32) -> Result<(), Error> {
         if !gain.is_finite() {
             return Err(Error::OutOfRange {
@@ -323,12 +323,15 @@ impl Voice {
         result
     }
 
-    /// Returns the envelope of what was rendered since the last call, or since the start: the
-    /// level, the mean frequency, and the mean square in each of the voice's bands
-    /// ([`VoiceOptions::with_envelope_bands`]). The mean squares are in the squared unit and are
-    /// written to `bands`, which may be empty. All effects, the gain and the limiter are included.
-    /// The level is exact. Frequency and bands lag by some 20 ms, because they are computed from
-    /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
+    /// Returns the envelope of the samples rendered since the last call, or since the start: their
+    /// level and mean frequency. All effects, the gain and the limiter are included. Does not
+    /// allocate, lock or do I/O.
+    ///
+    /// Also writes the mean square in each band ([`VoiceOptions::with_envelope_bands`]) to `bands`,
+    /// in the square of the asset's unit. `bands` may be empty.
+    ///
+    /// The level is exact. The mean frequency and the bands lag by some 20 ms, because they are
+    /// computed from windows of 40 to 80 ms ([`crate::envelope`]).
     ///
     /// ```no_run
     /// use htex::{Texture, VoiceOptions};
@@ -347,10 +350,10 @@ impl Voice {
         envelope::read(self.analyser.as_mut(), bands)
     }
 
-    /// Returns the edges of the bands of [`Self::envelope`], hertz: one more than there are bands,
-    /// spaced by equal ratios from the lowest to the highest frequency of the asset. The first band
-    /// also includes everything down to 0 Hz, and the last everything up to half the sample rate.
-    /// Empty if the voice has no bands.
+    /// Returns the edges of the bands of [`Self::envelope`], hertz. There is one more edge than
+    /// there are bands. The edges are spaced by equal ratios from the lowest to the highest
+    /// frequency of the asset. The first band also includes everything down to 0 Hz, and the last
+    /// band everything up to half the sample rate. Empty if the voice has no bands.
     pub fn envelope_edges_hz(&self) -> &[f64] {
         self.analyser.as_ref().map_or(&[], Analyser::edges_hz)
     }

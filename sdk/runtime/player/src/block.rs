@@ -23,8 +23,8 @@ pub enum OpenError {
     NotABlock = 2,
     /// The layout does not have version 1.
     Version = 3,
-    /// The length in the header differs from the length of its parts, or exceeds the number of
-    /// bytes.
+    /// The length in the header differs from the length of the block's parts, or the input has
+    /// fewer bytes than this length.
     Length = 4,
     /// The checksum does not match, so the bytes were changed.
     Checksum = 5,
@@ -56,8 +56,8 @@ impl core::error::Error for OpenError {}
 /// What a block stores for its conditions: filters for noise, or sinusoids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlockKind {
-    /// Symmetrical filters for white noise. Each has `half` coefficients on each side of the
-    /// centre, and each condition mixes them.
+    /// Symmetrical filters for white noise. Each filter has `half` coefficients on each side of the
+    /// centre. Each condition has its own mix of the filters.
     Noise {
         /// Coefficients on one side.
         half: usize,
@@ -309,25 +309,27 @@ impl<'a> Block<'a> {
         self.quantity
     }
 
-    /// Returns the law that the texture follows beyond the grid.
+    /// Returns the scaling law that the texture follows when the motion is beyond the grid of
+    /// conditions.
     pub fn law(&self) -> Law {
         self.law
     }
 
-    /// Returns the largest level to which the law may raise a level of the grid, in the asset's
-    /// unit.
+    /// Returns the ceiling of the level, in the asset's unit. Beyond the grid, the scaling law does
+    /// not raise the level above it.
     pub fn ceiling(&self) -> f32 {
         self.ceiling
     }
 
-    /// Returns a magnitude that samples at the motions of the grid rarely exceed, in the asset's
-    /// unit. Use it as the full scale of [`crate::Player::render_i16`].
+    /// Returns a magnitude that samples rarely exceed while the motion is within the grid, in the
+    /// asset's unit. Use it as the full scale of [`crate::Player::render_i16`].
     pub fn full_scale(&self) -> f32 {
         self.full_scale
     }
 
-    /// Returns how many 32-bit numbers the player in C (`c/htex_player.h`) needs for the block.
-    /// `htex_player_size` is the size of these and of the struct `htex_player`.
+    /// Returns how many 32-bit numbers the player in C (`c/htex_player.h`) needs for the block. The
+    /// function `htex_player_size` returns the size of these numbers and the struct `htex_player`
+    /// together.
     pub fn numbers(&self) -> usize {
         let interpolator = (self.up + 2) * self.row;
         match self.kind {
@@ -356,12 +358,12 @@ impl<'a> Block<'a> {
         self.rows.part(phase * self.row, self.row)
     }
 
-    /// Returns the duration of a change of motion, samples at the internal rate.
+    /// Returns the duration of a glide to another motion, samples at the internal rate.
     pub(crate) fn glide(&self) -> u32 {
         self.glide
     }
 
-    /// Returns the number of samples for which a motion is held.
+    /// Returns how long a motion is held, samples.
     pub(crate) fn hold(&self) -> u32 {
         (HOLD_S * self.rate_hz) as u32
     }
@@ -384,12 +386,13 @@ impl<'a> Block<'a> {
         self.integers.get(condition * self.filters() + filter)
     }
 
-    /// Returns the factor from products of the integer weights and coefficients to coefficients.
+    /// Returns the factor that turns an integer weight times an integer coefficient into a
+    /// coefficient.
     pub(crate) fn filter_scale(&self, filter: usize) -> f32 {
         self.numbers.get(filter)
     }
 
-    /// Returns the centre of a filter, followed by one side, outwards, as integers.
+    /// Returns the coefficients of a filter as integers: first the centre, then one side outwards.
     pub(crate) fn filter(&self, filter: usize) -> Integers<'a> {
         let BlockKind::Noise { half, filters } = self.kind else {
             return Integers::new(&[]);
@@ -419,14 +422,14 @@ impl<'a> Block<'a> {
         Target { weights, level: self.scaled(level, factors.level), frequency: factors.frequency }
     }
 
-    /// Returns a level times a factor, but does not raise it above the ceiling.
+    /// Multiplies a level by a factor, but does not raise it above the ceiling.
     fn scaled(&self, level: f32, factor: f32) -> f32 {
         let scaled = level * factor;
         if scaled > level && scaled > self.ceiling { level.max(self.ceiling) } else { scaled }
     }
 
-    /// Returns a factor of frequencies, reduced so that it does not raise a frequency above the
-    /// highest one that is permitted.
+    /// Reduces a factor of frequencies so that it does not raise `highest`, the highest frequency
+    /// that sounds, above the permitted maximum.
     pub(crate) fn limited(&self, factor: f32, highest: f32) -> f32 {
         if factor > 1.0 && highest * factor > self.highest {
             (self.highest / highest).max(1.0)
@@ -436,7 +439,7 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Returns the value within the range of an axis that is nearest to a number.
+/// Clamps a number to the range of an axis.
 fn nearest_on(axis: Words<'_>, number: f32) -> f32 {
     // Not `clamp`, which can panic.
     number.max(axis.get(0)).min(axis.last())

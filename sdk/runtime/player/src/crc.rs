@@ -15,7 +15,7 @@ pub fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// Divides by four bits of the polynomial division.
+/// Performs four bits of the polynomial division.
 fn nibble(crc: u32) -> u32 {
     // The index has four bits, and the table has 16 entries.
     TABLE[(crc & 15) as usize] ^ (crc >> 4)

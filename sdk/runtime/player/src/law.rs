@@ -1,17 +1,17 @@
-//! How a texture changes with a motion beyond the grid of a block.
+//! How a texture changes when the motion is beyond the grid of a block.
 
 use crate::layout::{MAX_RATIO, MIN_RATIO};
 use crate::power::{exp2, log2};
 
-/// Range of the ratio between a speed and the nearest one of the grid, and of the factor of
-/// frequencies.
+/// Range of the ratio between a speed and the nearest speed of the grid. Also the range of the
+/// factor of frequencies.
 const RATIO: (f32, f32) = (MIN_RATIO, MAX_RATIO);
-/// Range of the ratio between a force and the nearest one of the grid: 2^20 in both directions.
+/// Range of the ratio between a force and the nearest force of the grid: from 2^-20 to 2^20.
 const FORCE_RATIO: (f32, f32) = (1.0 / 1_048_576.0, 1_048_576.0);
 
 /// The exponents of the law that a texture follows beyond its grid. From the nearest motion (v0,
 /// F0) of the grid to a motion (v, F), frequencies change by `(v / v0)^a`, and the level changes by
-/// `(v / v0)^b (F / F0)^c`. Only sinusoids change in frequency; filters cannot.
+/// `(v / v0)^b (F / F0)^c`. Only sinusoids change in frequency, because filters cannot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
     /// Exponent a: how frequencies depend on the speed.
@@ -35,8 +35,8 @@ impl Factors {
 }
 
 impl Law {
-    /// Returns the factors for a motion, given the nearest one of the grid. Both are a speed and a
-    /// force, above 0.
+    /// Returns the factors for a motion, given the nearest motion of the grid. Each motion is a
+    /// speed and a force, both above 0.
     pub(crate) fn factors(&self, motion: (f32, f32), nearest: (f32, f32)) -> Factors {
         let speed = log2(within(motion.0 / nearest.0, RATIO));
         let force = log2(within(motion.1 / nearest.1, FORCE_RATIO));

@@ -24,11 +24,12 @@ pub const MOST_UP: usize = 64;
 pub const MOST_ROW: usize = 64;
 /// Largest number of filters that the conditions of a noise block mix.
 pub const MOST_FILTERS: usize = 64;
-/// Largest scale of a filter. With it, a mix of 16-bit integers is at most 64.
+/// Largest scale of a filter. With this scale, a 16-bit weight times a 16-bit coefficient gives at
+/// most 64.
 pub const MOST_SCALE: f32 = 1.0 / 16_777_216.0;
 /// Largest number of values on an axis of conditions.
 pub const MOST_ON_AXIS: usize = 32;
-/// Longest change of motion, samples at the internal rate.
+/// Longest glide to another motion, samples at the internal rate.
 pub const MOST_GLIDE: u16 = 4096;
 /// Range of the sample rate, hertz.
 pub const RATE_HZ: (f32, f32) = (100.0, 1e6);
@@ -48,10 +49,12 @@ pub const MOST_SPEED_MM_S: f32 = 1_000.0;
 pub const LEAST_FORCE_N: f32 = 1e-6;
 /// Highest force of a condition, and of a plausible reading, newtons.
 pub const MOST_FORCE_N: f32 = 20.0;
-/// Time for which the last good motion is held while readings are not plausible, seconds.
+/// Time for which the player holds the last plausible motion while readings are not plausible,
+/// seconds.
 pub const HOLD_S: f32 = 0.1;
-/// Lowest ratio between a speed and the nearest one of the grid, and lowest factor of frequencies.
+/// Lowest ratio between a speed and the nearest speed of the grid, and lowest factor of
+/// frequencies.
 pub const MIN_RATIO: f32 = 0.0625;
-/// Highest ratio between a speed and the nearest one of the grid, and highest factor of
+/// Highest ratio between a speed and the nearest speed of the grid, and highest factor of
 /// frequencies.
 pub const MAX_RATIO: f32 = 8.0;

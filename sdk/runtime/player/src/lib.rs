@@ -9,10 +9,10 @@
 //! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
 //! ```
 //!
-//! For identical bits no operations are fused; cosines, logarithms and powers are polynomials, and
-//! the square root is the one of `libm`. `sdk/runtime/play/tests/it/bake_board.rs` compares the bits of an
-//! emulated Cortex-M4F with the host's. `c/htex_player.c` is the same player in C, with the same
-//! bits (`tests/it/c.rs`).
+//! To give identical bits, the code fuses no operations, computes cosines, logarithms and powers
+//! with polynomials, and takes the square root from `libm`.
+//! `sdk/runtime/play/tests/it/bake_board.rs` compares the bits of an emulated Cortex-M4F with the
+//! host's. `c/htex_player.c` is the same player in C, with the same bits (`tests/it/c.rs`).
 #![no_std]
 #![forbid(unsafe_code)]
 

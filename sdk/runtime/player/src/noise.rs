@@ -36,7 +36,8 @@ impl Noise {
         next: 0,
     };
 
-    /// Starts the noise; all numbers must be zero before. The first sample is already stationary.
+    /// Starts the noise. All numbers must be zero before the call. The first sample is already
+    /// stationary.
     pub(crate) fn start(&mut self, half: usize, seed: u32) {
         (self.half, self.random) = (half, Random::new(seed));
         for _ in 0..self.taps() {
@@ -49,8 +50,8 @@ impl Noise {
         2 * self.half + 1
     }
 
-    /// Starts a glide over `samples` samples to the filter of a motion; with 0 samples the filter
-    /// is set at once. Returns the level that is reached.
+    /// Starts a glide over `samples` samples to the filter of a motion. If `samples` is 0, sets the
+    /// filter at once. Returns the level at the end of the glide.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         if samples == 0 {
             self.silence();
@@ -67,8 +68,8 @@ impl Noise {
                 }
                 *weight *= block.filter_scale(filter);
             }
-            // A filter with weight 0 does not change any bit, so incomplete groups are filled with
-            // one.
+            // An incomplete group is filled up with a filter of weight 0, which does not change any
+            // bit.
             let filters: [usize; AT_ONCE] =
                 core::array::from_fn(|i| (first + i).min(block.filters() - 1));
             let filters = filters.map(|filter| block.filter(filter));
@@ -106,7 +107,8 @@ impl Noise {
         level
     }
 
-    /// Starts a glide over `samples` samples to silence; with 0 samples it is silent at once.
+    /// Starts a glide over `samples` samples to silence. If `samples` is 0, the noise is silent at
+    /// once.
     pub(crate) fn fade(&mut self, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
         self.centre_step = -self.centre * part;
@@ -146,8 +148,8 @@ impl Noise {
         }
     }
 
-    /// Returns the next sample. `is_gliding`: advances the glide first. `becomes_silent`: this step
-    /// ends a glide to silence.
+    /// Returns the next sample. If `is_gliding`, advances the glide first. `becomes_silent` means
+    /// that this step ends a glide to silence.
     pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
         if is_gliding {
             self.glide();

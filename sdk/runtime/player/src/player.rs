@@ -6,7 +6,7 @@ use crate::noise::Noise;
 use crate::tones::Tones;
 use crate::upsampler::Upsampler;
 
-/// The state of a player: numbers that change while a block is played.
+/// The state of a player: the numbers that change while it plays a block.
 #[derive(Debug, Clone)]
 struct Memory {
     noise: Noise,
@@ -64,14 +64,15 @@ pub struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    /// Makes a player at the first condition. Players with different seeds have independent noise.
+    /// Makes a player that starts with the motion of the first condition. Players with different
+    /// seeds have independent noise.
     pub fn new(block: Block<'a>, seed: u32) -> Self {
         let mut player = Self { block, memory: Memory::ZERO };
         player.start(seed);
         player
     }
 
-    /// Starts to play; all numbers of the state must be zero before.
+    /// Starts to play. All numbers of the state must be zero before the call.
     fn start(&mut self, seed: u32) {
         match self.block.kind() {
             BlockKind::Noise { half, .. } => self.memory.noise.start(half, seed),
@@ -95,12 +96,12 @@ impl<'a> Player<'a> {
     /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Returns false,
     /// without a change, if a number is not finite.
     ///
-    /// Spectrum and level glide to the motion; before the first sample they are set at once. Beyond
-    /// the grid, the level and the frequencies of sinusoids follow the law of the block, starting
-    /// from the nearest motion of the grid. While the finger does not slide (below 0.5 mm/s, or
-    /// without force), the player is silent. A reading above 1000 mm/s or 20 N is not plausible:
-    /// the player holds the last motion for 0.1 s, and is then silent until the next plausible
-    /// reading.
+    /// Spectrum and level glide to the motion. Before the first sample, they are set at once.
+    /// Beyond the grid, the level and the frequencies of sinusoids follow the law of the block,
+    /// starting from the nearest motion of the grid. While the finger does not slide (below 0.5
+    /// mm/s, or without force), the player is silent. A reading above 1000 mm/s or 20 N is not
+    /// plausible: the player holds the last motion for 0.1 s, and is then silent until the next
+    /// plausible reading.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;
@@ -171,9 +172,9 @@ impl<'a> Player<'a> {
         out.iter_mut().for_each(|x| *x = self.tick());
     }
 
-    /// Fills `out` with the next samples as integers. `full_scale`, in the asset's unit, becomes
-    /// 32767, and larger samples are clipped. If `full_scale` is not above zero, all integers are
-    /// zero.
+    /// Fills `out` with the next samples as integers. A sample of `full_scale` (in the asset's
+    /// unit) becomes 32767, and larger samples are clipped. If `full_scale` is not above zero, all
+    /// integers are zero.
     pub fn render_i16(&mut self, out: &mut [i16], full_scale: f32) {
         let gain = if full_scale > 0.0 { 32_767.0 / full_scale } else { 0.0 };
         for x in out {
@@ -199,13 +200,14 @@ impl<'a> Player<'a> {
         self.memory.upsampler.sample(row)
     }
 
-    /// Counts a sample of a motion that is held. After the last one the player becomes silent.
+    /// Counts down the samples of a held motion. After the last sample, the player fades to
+    /// silence.
     fn count_held(&mut self) {
         if !self.memory.is_held {
             return;
         }
         match self.memory.held {
-            // Called with every sample from then on, but a silent player does nothing.
+            // Called again for each later sample, but then the player is already silent.
             0 => self.fade(),
             _ => self.memory.held -= 1,
         }

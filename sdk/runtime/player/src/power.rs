@@ -13,15 +13,16 @@ const EXP2: [f32; 7] = [
     0.001_333_355_8,
     0.000_154_035_3,
 ];
-/// Fraction bits of the square root of two. Larger mantissas are halved, with the next exponent.
+/// Bits of the square root of two as `f32`. A larger mantissa is halved, and its exponent is
+/// increased by one.
 const ROOT_2: u32 = 0x3FB5_04F3;
 /// Position of the exponent bits.
 const FRACTION_BITS: u32 = 23;
 const FRACTION: u32 = (1 << FRACTION_BITS) - 1;
 const BIAS: i32 = 127;
 
-/// Returns the binary logarithm of a normal positive number. The error is at most 2e-7, absolute or
-/// relative.
+/// Returns the binary logarithm of a normal positive number. The absolute or the relative error,
+/// whichever is smaller, is at most 2e-7.
 pub(crate) fn log2(x: f32) -> f32 {
     let bits = x.to_bits();
     let mut exponent = (bits >> FRACTION_BITS) as i32 - BIAS;

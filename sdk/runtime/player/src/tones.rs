@@ -50,8 +50,8 @@ impl Tones {
         self.tones.get_mut(..self.count).unwrap_or(&mut [])
     }
 
-    /// Starts a glide over `samples` samples to the sinusoids of a motion; with 0 samples they are
-    /// set at once. Returns the level that is reached.
+    /// Starts a glide over `samples` samples to the sinusoids of a motion. If `samples` is 0, sets
+    /// the sinusoids at once. Returns the level at the end of the glide.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         let part = 1.0 / samples.max(1) as f32;
         let (mut power, mut highest) = (0.0, 0.0f32);
@@ -89,8 +89,8 @@ impl Tones {
         level
     }
 
-    /// Starts a glide over `samples` samples to silence, without a change of frequencies; with 0
-    /// samples it is silent at once.
+    /// Starts a glide over `samples` samples to silence, without a change of frequencies. If
+    /// `samples` is 0, the sinusoids are silent at once.
     pub(crate) fn fade(&mut self, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
         for tone in self.sounding() {
@@ -115,8 +115,8 @@ impl Tones {
         self.sounding().iter_mut().for_each(|tone| tone.amplitude = 0.0);
     }
 
-    /// Returns the next sample. `is_gliding`: advances the glide first. `becomes_silent`: this step
-    /// ends a glide to silence.
+    /// Returns the next sample. If `is_gliding`, advances the glide first. `becomes_silent` means
+    /// that this step ends a glide to silence.
     pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
         if is_gliding {
             self.glide();
@@ -140,7 +140,7 @@ impl Tones {
     }
 }
 
-/// Returns the cosine of a phase of which `2^32` is one cycle. The error is at most 4e-6. Uses
+/// Returns the cosine of a phase, where `2^32` is one cycle. The error is at most 4e-6. Uses
 /// Taylor's series of the sine within a quarter of a cycle.
 fn cosine(phase: u32) -> f32 {
     let x = phase as i32 as f32 * CYCLES;

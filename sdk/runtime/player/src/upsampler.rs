@@ -1,4 +1,4 @@
-//! Interpolation from the internal rate to the rate of the samples.
+//! Interpolation from the internal rate to the output's sample rate.
 
 use crate::layout::MOST_ROW;
 use crate::words::Words;
@@ -27,7 +27,7 @@ impl Upsampler {
         }
     }
 
-    /// Returns the sample of the phase that has these coefficients.
+    /// Returns the output sample for the phase with these coefficients.
     pub(crate) fn sample(&self, coefficients: Words<'_>) -> f32 {
         let inputs = self
             .history

@@ -1,4 +1,4 @@
-//! Weights of the conditions that a motion mixes.
+//! Weights with which a motion mixes the conditions of the grid.
 
 use crate::words::Words;
 
@@ -9,8 +9,8 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Computes the weights of the four corners around a motion within the grid. In the order of
-    /// the conditions, speeds vary first.
+    /// Computes the weights of the four corners around a motion within the grid. The conditions are
+    /// ordered such that the speed varies fastest.
     pub(crate) fn new(speeds: Words<'_>, forces: Words<'_>, speed: f32, force: f32) -> Self {
         let (s, u) = place(speeds, speed);
         let (f, v) = place(forces, force);

@@ -69,7 +69,7 @@ fn typical() -> Vec<(&'static str, Scene, Capabilities)> {
     ]
 }
 
-/// The minimum time per sample of each renderer, nanoseconds, measured in turns.
+/// Returns the minimum time per sample of each renderer, nanoseconds. The renderers run in turns.
 fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; renderers.len()];
     let mut block = [0.0f32; BLOCK];
@@ -86,7 +86,8 @@ fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
     least
 }
 
-/// The typical scenes as they are, with a compensated display response, and with all effects on.
+/// Three variants of each typical scene: unchanged, with a compensated display response, and with
+/// all effects on.
 fn variants() -> Vec<(String, Scene, Capabilities)> {
     let mut all = Vec::new();
     for (name, scene, device) in typical() {
@@ -112,7 +113,8 @@ fn response() -> Response {
     }
 }
 
-/// Compares the cost that each plan states, by costs measured here, with the time its chain takes.
+/// Compares each plan's stated cost, computed from costs measured here, with the time that its
+/// chain takes.
 fn stated() {
     let costs = Costs::measure(&Registry::builtin(), "this machine").unwrap();
     println!(
@@ -166,7 +168,8 @@ fn saved() {
     }
 }
 
-/// A live motion that is set before every block, and its cost compared with a constant motion.
+/// Compares the cost of a live motion, which is set before every block, with the cost of a constant
+/// motion.
 fn live() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz     constant  live, one condition  live, nine conditions"
@@ -230,9 +233,9 @@ fn budgets() {
     }
 }
 
-/// The time per sample of one of many voices, each with its own chain and resampler, and the number
-/// of voices that one core plays at 20 kHz, extrapolated from the cost with 5,000 voices. Voices
-/// start at different times, like independent fingers.
+/// Prints the time per sample of one voice among many, each with its own chain and resampler. Also
+/// prints how many voices one core can play at 20 kHz, extrapolated from the cost with 5,000
+/// voices. Voices start at different times, like independent fingers.
 fn voices() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz   1 voice  1,000  5,000  10,000  \
@@ -258,7 +261,7 @@ fn row<V: FnMut(&mut [f32])>(name: &str, make: impl Fn(u64) -> V) {
     for count in [1, 1_000, 5_000, 10_000] {
         while many.len() < count {
             let mut voice = make(many.len() as u64);
-            // Starts within the time in which each voice computes one frame.
+            // Each voice starts at a different point of the time in which it computes one frame.
             voice(&mut vec![0.0; BLOCK * (many.len() * 61 % FRAME_BLOCKS)]);
             many.push(voice);
         }
@@ -289,8 +292,8 @@ fn app_voice(model: &str, seed: u64) -> htex_play::Voice {
 /// Blocks in 0.36 s of sound. In this time each voice computes one frame.
 const FRAME_BLOCKS: usize = 112;
 
-/// Returns the time per sample of voices rendered in turn, nanoseconds, and the time of the slowest
-/// block, milliseconds: the minimum over several runs.
+/// Renders the voices in turn. Returns the time per sample, nanoseconds, and the time of the
+/// slowest block, milliseconds. Both are the minimum over several runs.
 fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     let mut block = [0.0f32; BLOCK];
     let mut least = (f64::INFINITY, f64::INFINITY);
@@ -310,8 +313,8 @@ fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     least
 }
 
-/// A thousand live voices of each model over nine conditions. Each has its own motion, which
-/// changes all the time, and its own start time.
+/// Measures a thousand live voices of each model over nine conditions. Each voice has its own start
+/// time and its own motion, which changes all the time.
 fn fingers() {
     println!("\n1,000 live voices over nine conditions, blocks of 64 at 20 kHz: part of one core");
     for model in Registry::builtin_names() {

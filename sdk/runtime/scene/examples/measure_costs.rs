@@ -1,5 +1,6 @@
-//! Measures and prints the costs that are embedded in this crate:
-//! `cargo run --release -p htex-scene --example measure_costs -- "name of the machine" > sdk/runtime/scene/src/costs.json`.
+//! Measures the run times of models and stages, and prints the file of costs that this crate
+//! embeds: `cargo run --release -p htex-scene --example measure_costs -- "name of the machine" >
+//! sdk/runtime/scene/src/costs.json`.
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let machine = std::env::args().nth(1).unwrap_or_default();

@@ -1,7 +1,7 @@
 //! A buffer of samples rendered in advance, for scenes whose motion is constant.
 
-/// Number of samples rendered in advance at a time. Of 256, 512 and 1,024, this length lets one
-/// core play the most renderers in turn (the example `chains`, mode `voices`).
+/// Number of samples rendered in advance at a time. We tried 256, 512 and 1,024 samples: with
+/// 1,024, one core can play the most renderers in turn (the example `chains`, mode `voices`).
 const AHEAD: usize = 1024;
 
 /// The buffer. Samples from index `taken` on have not been played yet.
@@ -14,7 +14,7 @@ pub(crate) struct Ahead {
 }
 
 impl Ahead {
-    /// Makes an empty buffer. It has memory only if `wanted`.
+    /// Makes an empty buffer, which has memory only if `wanted` is true.
     pub(crate) fn new(wanted: bool, seed: u64) -> Self {
         // Multiplying by 2⁶⁴ / φ spreads successive seeds evenly.
         let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
@@ -43,8 +43,8 @@ impl Ahead {
     /// Moves the buffer out, resized to the next length but at most `left` samples. [`Self::end`]
     /// moves it back.
     pub(crate) fn begin(&mut self, left: u64) -> Vec<f32> {
-        // An empty vector takes no memory, so nothing is allocated. The renderer needs itself whole
-        // while it fills the samples.
+        // The buffer is moved out, because the renderer borrows all of itself while it fills the
+        // samples. An empty vector takes its place, which allocates nothing.
         let mut samples = std::mem::take(&mut self.samples);
         let frames = match samples.len() {
             0 => self.first,

@@ -9,11 +9,11 @@ use crate::motion::topmost;
 use crate::rules as rule;
 use crate::trace::Trace;
 
-/// Fraction of the time on a surface that may lie outside the recorded motions without a warning,
-/// because strokes slow down where they turn.
+/// Fraction of the time on a surface during which the motion may be outside the recorded range
+/// without a warning. It is above 0 because strokes slow down where they turn.
 const MOST: f64 = 0.1;
-/// Largest number of trace rows that are checked, evenly spaced. Each row is compared with all
-/// conditions, so more would be slow.
+/// Maximum number of trace rows that are checked, evenly spaced. Each row is compared with all
+/// conditions, so checking more rows would be slow.
 const MOST_ROWS: usize = 20_000;
 
 /// Warns about surfaces whose motion lies outside the recorded range and is played as a different
@@ -56,7 +56,8 @@ fn effects(scene: &SceneFile) -> Effects {
         .with_level_scaling(is_on(Effect::LevelScaling))
 }
 
-/// The finger at the rows of a trace, or in constant motion; empty if the motion is live.
+/// Returns the finger's motion at the rows of a trace, or the single constant motion. Empty if the
+/// motion is live.
 fn fingers(scene: &SceneFile, trace: Option<&Trace>) -> Vec<Motion> {
     match (&scene.motion, trace) {
         (file::Motion::Constant(constant), _) => {
@@ -77,8 +78,8 @@ fn fingers(scene: &SceneFile, trace: Option<&Trace>) -> Vec<Motion> {
     }
 }
 
-/// Returns the fraction of the sliding fingers that are played as a different motion, and the
-/// coverage of the one that is farthest from the recorded range.
+/// Looks only at the motions at which the finger slides. Returns the fraction of them that is
+/// played as a different motion, and the coverage of the motion farthest from the recorded range.
 fn beyond<'a>(
     fingers: impl Iterator<Item = &'a Motion>,
     conditions: &Conditions,

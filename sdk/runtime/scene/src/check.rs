@@ -1,4 +1,4 @@
-//! Rules for the contents of a scene that need neither its files nor its device.
+//! Checks the contents of a scene, without reading its files or opening its device.
 
 use htex_base::finding::{Findings, Rule};
 
@@ -14,7 +14,7 @@ pub(crate) fn check(scene: &SceneFile, limits: &Limits, findings: &mut Findings)
         Motion::Trace(_) | Motion::Live => {}
     }
     check_device(&scene.device, findings);
-    // A missing value is valid, so any valid number stands for it.
+    // A missing value is valid, so it is replaced by a valid number for the check.
     let duration = scene.duration_s.unwrap_or(1.0);
     let is_length = duration > 0.0 && duration <= 1e9;
     findings.require(is_length, rule::DURATION_INVALID, "/duration_s", || {
@@ -76,7 +76,7 @@ fn check_overlaps(surfaces: &[Surface], findings: &mut Findings) {
     }
 }
 
-/// Whether two regions intersect; `None` covers everything.
+/// Whether two regions intersect. A region that is `None` covers everything.
 fn overlap(a: Option<&Region>, b: Option<&Region>) -> bool {
     let (Some(a), Some(b)) = (a, b) else {
         return true;
@@ -140,7 +140,8 @@ struct Range(f64, f64);
 impl Range {
     fn require(self, value: f64, rule: &Rule, pointer: String, findings: &mut Findings) {
         let Self(low, high) = self;
-        // The smallest positive number stands for a range without 0, and means nothing to a reader.
+        // A range that excludes 0 begins at the smallest positive number. The message says "above
+        // 0" instead.
         findings.require((low..=high).contains(&value), rule, pointer, || match low {
             f64::MIN_POSITIVE => {
                 format!("{value} is out of range; it must be above 0 and at most {high}")

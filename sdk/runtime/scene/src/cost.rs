@@ -12,23 +12,23 @@ use serde::{Deserialize, Serialize};
 pub struct Costs {
     /// Name of the machine, and how the costs were measured.
     pub machine: String,
-    /// By model id: time of one sample of a voice at the model's own rate, nanoseconds.
+    /// By model id: time to render one sample of a voice at the model's own rate, nanoseconds.
     pub model_ns: BTreeMap<String, f64>,
     /// By model id: time to interpolate two parameter sets and retune a voice, nanoseconds.
     pub retune_ns: BTreeMap<String, f64>,
-    /// By stage: time of one sample at the stage's rate, nanoseconds.
+    /// By stage: time to process one sample at the stage's rate, nanoseconds.
     pub stage_ns: BTreeMap<String, f64>,
-    /// By stage: time of one sample, at the stage's rate, when a scene switches the stage on
-    /// although it changes nothing, nanoseconds. Interpolation and crossfades then take no time.
+    /// By stage: time to process one sample at the stage's rate, nanoseconds, if a scene switches
+    /// the stage on although it changes nothing. Interpolation and crossfades then take no time.
     pub neutral_ns: BTreeMap<String, f64>,
-    /// Time per sample that the renderer itself takes, nanoseconds: first for a scene in which
-    /// nothing changes, then for one in which it reads the motion before every block.
+    /// Time per sample that the renderer itself takes, nanoseconds. The first value is for a scene
+    /// in which nothing changes, the second for a scene whose motion is read before every block.
     pub renderer_ns: [f64; 2],
-    /// Compensation, when a resampler requests short blocks from it.
+    /// Cost of the compensation filter, when a resampler requests short blocks from it.
     pub compensation: FilterCost,
-    /// Conversions that raise a rate by an integer factor.
+    /// Cost of a conversion that raises the sample rate by an integer factor.
     pub whole: FilterCost,
-    /// Conversions between other rates.
+    /// Cost of a conversion between other sample rates.
     pub rational: FilterCost,
 }
 
@@ -36,15 +36,15 @@ pub struct Costs {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FilterCost {
-    /// Time of a sample apart from its multiplications, nanoseconds.
+    /// Time per sample without the multiplications, nanoseconds.
     pub sample_ns: f64,
     /// Time of one multiply-accumulate, nanoseconds.
     pub mac_ns: f64,
 }
 
 impl FilterCost {
-    /// Time of filters that produce `samples` samples with `macs` multiply-accumulates,
-    /// nanoseconds.
+    /// Returns the time in which filters produce `samples` samples with `macs`
+    /// multiply-accumulates, nanoseconds.
     pub(crate) fn time_ns(self, samples: f64, macs: f64) -> f64 {
         samples * self.sample_ns + macs * self.mac_ns
     }
@@ -56,7 +56,7 @@ impl Costs {
         serde_json::from_str(include_str!("costs.json")).unwrap_or_else(|_| Self::nothing())
     }
 
-    /// Reads stored costs; `None` if the file is missing or has another version.
+    /// Reads stored costs. Returns `None` if the file is missing or has another version.
     pub fn load(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }
@@ -74,7 +74,8 @@ impl Costs {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// Cost of a model. For a model that was not measured, it is the largest known cost.
+    /// Returns the cost of a model. For a model that was not measured, returns the largest known
+    /// cost.
     pub(crate) fn model(&self, id: &str) -> f64 {
         or_largest(&self.model_ns, id)
     }
@@ -87,7 +88,7 @@ impl Costs {
         self.stage_ns.get(name).copied().unwrap_or(0.0)
     }
 
-    /// Cost of a rate conversion, per sample of its output.
+    /// Returns the cost of a rate conversion, per sample of its output.
     pub(crate) fn resampling(&self, work: Work) -> f64 {
         let Work { whole, rational } = work;
         self.whole.time_ns(whole.samples, whole.macs)

@@ -1,8 +1,9 @@
-//! Rules for a scene's device, and the user's settings that override the scene's.
+//! Checks a scene's device, and combines the scene's settings with the user's, which take
+//! precedence.
 //!
-//! A scene never mixes up physical quantities ([`quantity_misfit`]): a device that plays newtons,
-//! or an electrovibration display, plays an asset of accelerations only if somebody states a
-//! `quantity_gain`.
+//! A scene never mixes up physical quantities ([`quantity_misfit`]). For example, a device that
+//! plays newtons, or an electrovibration display, plays an asset of accelerations only if the scene
+//! or the user states a `quantity_gain`.
 
 use std::collections::BTreeMap;
 
@@ -23,12 +24,14 @@ use crate::rules as rule;
 /// come from untrusted sources.
 const DRIVER: &str = "driver";
 
-/// Device options from the program that loads a scene. They take precedence over the scene's.
+/// Device options from the program that loads a scene. They take precedence over the scene's
+/// options.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
-    /// Adapter to use instead of the scene's; the scene's `device` is then ignored.
+    /// Adapter to use instead of the scene's adapter. If given, the whole `device` of the scene is
+    /// ignored.
     pub adapter: Option<String>,
-    /// Profile to use instead of the scene's.
+    /// Profile to use instead of the scene's profile.
     pub profile: Option<String>,
     /// Settings in the adapter's syntax. Relative paths are not resolved.
     pub settings: BTreeMap<String, String>,
@@ -36,20 +39,20 @@ pub struct DeviceOverride {
     /// a file. The scene's own profile and hardware settings are then accepted. Never set this for
     /// a device that plays.
     pub rehearsal: bool,
-    /// Whether the motion arrives while the scene plays. Missing settings then get their live
-    /// defaults.
+    /// Whether the motion is live, i.e. arrives while the scene plays. Missing settings then get
+    /// their live defaults.
     pub live: bool,
     /// Replaces [`DeviceChoice::rate_hz`].
     pub rate_hz: Option<f64>,
     /// Replaces [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
-    /// Default of a missing setting that names a file. `None`: the scene's name with the extension
-    /// of the format, in the current folder.
+    /// Default for a missing setting that names a file. If `None`, the default is a file in the
+    /// current folder with the scene's name and the extension of the format.
     pub output: Option<String>,
 }
 
 impl DeviceOverride {
-    /// The default output file, in a format if one is set.
+    /// Returns the default output file. `format` is the format setting, if there is one.
     fn output(&self, stem: &str, format: Option<&String>) -> String {
         let usual = || file_name(stem, format.map_or("auto", String::as_str));
         self.output.clone().unwrap_or_else(usual)
@@ -113,14 +116,14 @@ fn settle(
     let is_hardware = |s: &Setting| s.from_scene == FromScene::Never;
     if change.rehearsal {
         report_hardware(descriptor, &asked, findings);
-        // In a rehearsal the scene's settings count as the user's. Otherwise its hardware settings
-        // would be ignored.
+        // In a rehearsal, the scene's settings count as the user's settings. Otherwise the scene's
+        // hardware settings would be ignored.
         for (name, value) in std::mem::take(&mut asked) {
             given.entry(name).or_insert(value);
         }
         profile = profile.or(choice.profile.as_deref());
     } else if !descriptor.settings.iter().any(is_hardware) {
-        // Without settings of the hardware, a profile cannot describe hardware.
+        // If no setting describes hardware, a profile cannot describe hardware either.
         profile = profile.or(choice.profile.as_deref());
     } else if let (None, Some(named)) = (profile, &choice.profile) {
         findings.add(rule::DEVICE_HARDWARE, "/device/profile", format!(
@@ -145,8 +148,7 @@ fn settle(
     Some(settings)
 }
 
-/// Reports settings that are accepted from the scene in a rehearsal but not for a device that
-/// plays.
+/// Reports settings of the scene that are accepted in a rehearsal, but not for a device that plays.
 fn report_hardware(
     descriptor: &Descriptor,
     asked: &BTreeMap<String, String>,
@@ -171,8 +173,8 @@ fn add_error(error: DeviceError, findings: &mut Findings) {
     findings.add(rule::DEVICE_SETTING, pointer, error.to_string());
 }
 
-/// The scene's settings as text, without files, which a scene must not name; `None` if a setting is
-/// invalid.
+/// Returns the scene's settings as text, or `None` if a setting is invalid. Leaves out files,
+/// because a scene must not name them.
 fn texts(
     choice: &DeviceChoice,
     descriptor: &Descriptor,
@@ -272,7 +274,7 @@ fn check_quantity(
     }
 }
 
-/// Returns the quantity of a device that takes a texture's samples unchanged.
+/// Returns the quantity that a device must have to play a texture's samples unchanged.
 pub(crate) fn device_quantity(held: Held) -> Quantity {
     match held {
         Held::LateralForce => Quantity::LateralForce,
@@ -283,11 +285,12 @@ pub(crate) fn device_quantity(held: Held) -> Quantity {
     }
 }
 
-/// Returns why a device cannot play assets of a quantity, with this gain or with none; `None` if it
-/// can.
+/// Returns the reason why a device cannot play assets of a quantity with this gain or without a
+/// gain. Returns `None` if the device can play them.
 ///
-/// Two devices need no conversion: an electrovibration drive adds a lateral force, and sound is
-/// scaled to its level from any unit.
+/// Two kinds of device are special. An electrovibration display adds a lateral force, so it plays
+/// assets of lateral forces without a gain. A sound device plays every quantity, because the
+/// samples are scaled to a level.
 pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -> Option<String> {
     let takes = match device {
         Quantity::DisplayVoltage => Quantity::LateralForce.name(),
@@ -316,8 +319,8 @@ pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -
 mod tests {
     use super::*;
 
-    /// Assets and devices have separate lists of quantities, because devices do not depend on
-    /// textures. The lists must match.
+    /// Assets and devices have separate lists of quantities, because the crate of devices does not
+    /// depend on textures. The lists must match.
     #[test]
     fn devices_have_every_quantity_that_assets_have() {
         let physical: Vec<(&str, &str)> = Quantity::ALL

@@ -8,8 +8,8 @@ use htex_format::parse_json;
 
 use crate::load::Scene;
 
-/// An error from opening, planning or playing a scene. [`Self::kind`] says what went wrong without
-/// its details.
+/// An error from opening, planning or playing a scene. [`Self::kind`] says what kind of error it
+/// is, without details.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -54,8 +54,8 @@ pub enum SceneError {
         surface: usize,
         /// The budget, decibels.
         wanted_db: f64,
-        /// The representation with the smallest error, and its largest error over the conditions,
-        /// decibels. `None` if the asset states no error by this measure.
+        /// The model of the representation with the smallest error, and its largest error over the
+        /// conditions, decibels. `None` if the asset states no error by this measure.
         nearest: Option<(String, f64)>,
     },
     /// No choice of representations meets the time budget.
@@ -144,7 +144,7 @@ fn nearest_of(nearest: &Option<(String, f64)>) -> String {
     }
 }
 
-/// What went wrong, without the details ([`SceneError::kind`]).
+/// The kind of a [`SceneError`], without details. [`SceneError::kind`] returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SceneErrorKind {
@@ -180,8 +180,7 @@ impl SceneError {
         }
     }
 
-    /// Shortens pointers to keys that the file leaves out, so that each pointer refers to an
-    /// existing value.
+    /// Shortens each pointer to a missing key until it refers to a value that exists in the file.
     pub(crate) fn pointing_into(mut self, bytes: &[u8]) -> Self {
         if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
             for Finding { pointer, .. } in findings {
@@ -194,7 +193,7 @@ impl SceneError {
         self
     }
 
-    /// Adds the surface to an error from its asset or its model.
+    /// Returns a function that adds the surface to an error from its asset or its model.
     pub(crate) fn for_surface<E: Into<htex_play::Error>>(
         surface: usize,
         scene: &Scene,

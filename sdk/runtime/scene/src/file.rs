@@ -26,10 +26,11 @@ pub struct SceneFile {
     pub surfaces: Vec<Surface>,
     /// The motion of the finger.
     pub motion: Motion,
-    /// The output device; default: a file of newtons.
+    /// The output device. Default: the adapter `file`, which writes newtons.
     #[serde(default)]
     pub device: DeviceChoice,
-    /// Duration, seconds. Default: the duration of the trace; other motions are endless.
+    /// Duration, seconds. By default, a trace determines the duration, and other motions are
+    /// endless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
     pub duration_s: Option<f64>,
@@ -50,17 +51,17 @@ pub struct SceneFile {
 pub struct Surface {
     /// Path of the asset. Relative paths start at the scene's folder.
     pub asset: PathBuf,
-    /// Region of the surface; default: everywhere.
+    /// Region of the surface. Default: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
-    /// Layer: where surfaces overlap, the finger feels the one on the highest layer.
+    /// Layer. Where surfaces overlap, the finger feels the surface on the highest layer.
     #[serde(default)]
     pub layer: i32,
     /// Factor that multiplies the level, 0 to 1000.
     #[serde(default = "one")]
     #[schemars(range(min = 0, max = 1000))]
     pub gain: f64,
-    /// Id or short name of a model, or `auto`.
+    /// The representation to play: the id or short name of its model, or `auto`.
     #[serde(default = "auto")]
     #[schemars(regex(pattern = htex_base::schema::NOT_BLANK))]
     pub representation: String,
@@ -138,7 +139,7 @@ pub struct DeviceChoice {
     /// Settings of the adapter: strings, numbers or booleans.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, Value>,
-    /// Sample rate, hertz; default: the device's own.
+    /// Sample rate, hertz. Default: the device's default rate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e7), extend("exclusiveMinimum" = 0))]
     pub rate_hz: Option<f64>,
@@ -146,9 +147,9 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
-    /// Device units per unit of the assets' quantity. Required if the two quantities differ: with
-    /// 0.1, a device of newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it, assets of
-    /// another quantity are refused.
+    /// Device units per unit of the assets' quantity. For example, with 0.1 a device of newtons
+    /// plays an acceleration of 1 m/s2 as 0.1 N. Required if the two quantities differ; without it,
+    /// such assets are refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub quantity_gain: Option<f64>,
@@ -157,17 +158,17 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
     pub drive_v: Option<f64>,
-    /// RMS level of a preview by ear, decibels relative to full scale (at most 0); default: -18.
+    /// RMS level of a preview by ear, decibels relative to full scale (at most 0). Default: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,
-    /// What the drive voltage or the preview level applies to: the scene's loudest texture or a
-    /// reference level.
+    /// Whether the drive voltage or the preview level applies to the scene's loudest texture, or to
+    /// a reference level.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
-    /// With the levels `own`: the RMS that is mapped to the drive voltage or the preview level, in
-    /// the assets' unit. Default: the RMS of the strongest representation among all the scene's
-    /// surfaces.
+    /// If `levels` is `own`: the RMS that is mapped to the drive voltage or the preview level, in
+    /// the assets' unit. Default: the RMS of the strongest representation of all surfaces that the
+    /// finger touches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
@@ -180,7 +181,8 @@ pub struct DeviceChoice {
     /// folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
-    /// How far below its maximum the response is still compensated, decibels.
+    /// Depth of the compensation, decibels: how far below its maximum the response is still
+    /// compensated.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,
@@ -205,8 +207,8 @@ impl Levels {
     }
 }
 
-/// Limits for choosing representations. If both limits are set, the representation with the
-/// smallest error within the time limit must be within the error limit.
+/// Limits for choosing representations. If both limits are set, the planner chooses the
+/// representation with the smallest error that meets both.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {
@@ -233,12 +235,13 @@ fn is_default(measure: &ErrorMeasure) -> bool {
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
-    /// Interpolation of parameters and level between exploration conditions as speed and force
-    /// change.
+    /// Interpolation of parameters and level between recorded conditions as speed and force change.
     Interpolation,
-    /// Scaling of frequencies with the speed, by the asset's law, outside the recorded speeds.
+    /// Scaling of frequencies with the speed outside the recorded speeds. It follows the asset's
+    /// scaling law.
     FrequencyScaling,
-    /// Scaling of the level with speed and force, by the asset's law, outside the recorded motions.
+    /// Scaling of the level with speed and force outside the recorded motions. It follows the
+    /// asset's scaling law.
     LevelScaling,
     /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,
@@ -304,16 +307,16 @@ impl Effect {
     }
 }
 
-/// Switch of an effect.
+/// Whether an effect is included in the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
-    /// The planner includes it if the scene requires it.
+    /// The planner includes the effect if the scene requires it.
     #[default]
     Auto,
-    /// Always included. If the scene does not require it, it changes no samples.
+    /// The effect is always included. If the scene does not require it, it changes no samples.
     On,
-    /// Never included.
+    /// The effect is never included.
     Off,
 }
 

@@ -1,9 +1,10 @@
-//! Drive voltages for each person, texture and device: V_g of the paper, found by adjustment and
-//! stored in a file that belongs to the user.
+//! Drive voltages for each person, texture and device. They are V_g of the paper, found by
+//! adjustment. They are stored in a file of the user.
 //!
-//! A gain belongs to a texture, not to a file. Its key is the texture's name and author, which stay
-//! the same after a new fit; a hash of the recordings would change with one more recording. The
-//! gain stores the RMS at which it was found, so that other representations keep their energies.
+//! A gain belongs to a texture, not to a file. Its key contains the texture's name and author,
+//! because they stay the same after a new fit. A hash of the recordings would change with one more
+//! recording. The gain stores the RMS at which it was found, so that other representations keep
+//! their energies.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,8 +16,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Level at which a texture is first played to a finger while its gain is adjusted, decibels
-/// relative to the maximum: a tenth of the voltage. It rises only when the person asks for more.
+/// Level at which the adjustment of a gain starts, decibels relative to the maximum. It is a tenth
+/// of the maximum voltage, and rises only when the person asks for more.
 pub const START_DB: f64 = -20.0;
 
 /// Converts decibels to an amplitude factor.
@@ -32,13 +33,13 @@ const MAX_BYTES: u64 = 16 << 20;
 pub struct GainKey {
     /// Name of the person.
     pub person: String,
-    /// Identifier of the texture: see [`texture_id`]. Empty in legacy entries, which have a hash
+    /// Identifier of the texture ([`texture_id`]). Empty in legacy entries, which have a hash
     /// instead.
     #[serde(default)]
     pub texture: String,
     /// Id of the device's adapter.
     pub device: String,
-    /// The device's profile; empty if there is none.
+    /// The device's profile. Empty if there is none.
     pub profile: String,
 }
 
@@ -54,12 +55,12 @@ pub struct Gain {
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub drive_v: f64,
-    /// RMS, in the assets' unit, that is mapped to this drive voltage. If levels are not
-    /// normalised, other representations are scaled relative to it.
+    /// RMS that is mapped to this drive voltage, in the assets' unit. If levels are not normalised,
+    /// other representations are scaled relative to this RMS.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reference_rms: Option<f64>,
-    /// Names of the texture's recordings. They distinguish textures that have the same name.
+    /// Names of the texture's recordings. They distinguish textures with the same name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<String>,
     /// BLAKE3 hash of the asset or scene, hexadecimal. Legacy entries use it as their identifier.
@@ -80,9 +81,9 @@ pub fn gains_schema() -> Value {
     htex_base::schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
 }
 
-/// Returns the identifier that all assets of one texture share, whenever and however they were
-/// fitted: the name and, if present, the author, both normalised by [`texture_name`]. For several
-/// textures that are played together, it contains all of them in order.
+/// Returns the identifier of a texture: its name and, if present, its author, both normalised by
+/// [`texture_name`]. All assets of the texture share it, whenever and however they were fitted. For
+/// several textures that are played together, the identifier contains all of them in order.
 pub fn texture_id<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> String {
     let id = |texture: &Manifest| match texture.author.as_deref().map(texture_name) {
         Some(author) if !author.is_empty() => {
@@ -116,8 +117,9 @@ impl Gains {
         Ok(blake3::hash(&fs::read(file)?).to_hex().to_string())
     }
 
-    /// Returns the path of the user's gains: `gains.json` in `$HTEX_CONFIG_DIR` if that is set,
-    /// otherwise in `htex` in the user's configuration folder. `None` if there is no such folder.
+    /// Returns the path of the user's file of gains. It is `gains.json` in the folder
+    /// `$HTEX_CONFIG_DIR` if this variable is set, otherwise in the folder `htex` in the user's
+    /// configuration folder. `None` if there is no configuration folder.
     pub fn user_file() -> Option<PathBuf> {
         htex_host::folders::config().map(|folder| folder.join("gains.json"))
     }
@@ -125,8 +127,8 @@ impl Gains {
     /// Reads a gains file. If the file is missing, there are no gains.
     ///
     /// # Errors
-    /// If the file cannot be read, is too large, or is not a gains file; also if it has keys that
-    /// would be lost when it is written again.
+    /// If the file cannot be read, is too large, or is not a gains file. Also if it has unknown
+    /// keys, which would be lost when the file is written again.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
@@ -143,8 +145,8 @@ impl Gains {
     /// Reads gains from the contents of a gains file.
     ///
     /// # Errors
-    /// If the contents are not a gains file, or have keys that would be lost when they are written
-    /// again.
+    /// If the contents are not a gains file. Also if they have unknown keys, which would be lost
+    /// when the file is written again.
     pub fn from_json(document: Value) -> io::Result<Self> {
         htex_base::schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
         let gains: Self = serde_json::from_value(document)?;
@@ -163,7 +165,7 @@ impl Gains {
     /// for each other. Creates the folder if it is missing.
     ///
     /// # Errors
-    /// As [`Self::load`], and I/O errors from writing.
+    /// The errors of [`Self::load`]. Also if the file cannot be written.
     #[allow(clippy::disallowed_methods, reason = "the user's own folder of settings")]
     pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {
@@ -178,14 +180,14 @@ impl Gains {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// Returns the gain for a key. If there is none, returns the legacy entry of the same person
-    /// and device for a file with this hash.
+    /// Returns the gain for a key. If there is none, returns the legacy entry for the same person,
+    /// the same device and a file with this hash.
     pub fn find(&self, key: &GainKey, blake3: &str) -> Option<&Gain> {
         let exact = self.gains.iter().find(|gain| gain.key == *key);
         exact.or_else(|| self.gains.iter().find(|gain| gain.is_of_old(key, blake3)))
     }
 
-    /// Inserts a gain. It replaces an earlier gain with the same key and a legacy entry for a file
+    /// Inserts a gain. Removes an earlier gain with the same key, and the legacy entry for a file
     /// with this hash.
     pub fn put(&mut self, gain: Gain, blake3: &str) {
         let replaced = |other: &Gain| other.key == gain.key || other.is_of_old(&gain.key, blake3);

@@ -4,17 +4,17 @@
 //!
 //! These modules lead from a scene to samples:
 //!
-//! 1. `load` reads the scene's file, and the assets, the trace and the response that the scene
-//!    names. It reports problems as findings.
+//! 1. `load` reads the scene file, and the assets, the trace and the response that it names. It
+//!    reports problems as findings.
 //! 2. `requirements` simulates the motion as the renderer will play it. This shows which surfaces
 //!    are touched, which speeds and forces occur, and what the device needs.
 //! 3. `representation` chooses the model of each surface within the scene's budget of time and
 //!    error.
 //! 4. `plan` asks each effect in the table of effects (`stages`) whether the scene needs it, and
-//!    builds only those that are needed. The plan gives a reason for each decision.
-//! 5. `render` pulls samples through the chain, from its end to its start. The end consists of the
-//!    device's stages. Before them come the resampler, the sum of all surfaces with the same sample
-//!    rate, the stages of each surface (`track`) and, at the start, the surface's voice.
+//!    includes only the needed effects. The plan gives a reason for each decision.
+//! 5. `render` pulls samples through the chain: each stage requests its input from the stage before
+//!    it. The chain starts with the voice of each surface and the surface's stages (`track`). Then
+//!    surfaces with the same sample rate are added and resampled. The device's stages come last.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -22,22 +22,24 @@ use crate::trace::Trace;
 use crate::validate::read_scene;
 use crate::{Costs, Renderer, SceneError};
 
-/// The models that may play a scene, and the devices to which it may play.
+/// What a program provides for opening a scene: the models that may play it, and the devices on
+/// which it may play.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
     pub models: &'a Registry,
     /// Whether models embedded in assets may run (in their sandbox).
     pub embedded: bool,
-    /// `None` if the program itself takes the samples: the scene's device is then ignored.
+    /// `None` if the program takes the samples itself. The scene's device is then ignored.
     pub devices: Option<&'a Devices>,
 }
 
-/// Gives a scene its files, for programs that do not keep them in a folder.
+/// Supplies the files of a scene, for programs that do not keep them in a folder.
 pub trait FileSource {
     /// Reads a file by its path, exactly as the scene states it.
     ///
     /// # Errors
-    /// Errors of the program's own; [`io::ErrorKind::NotFound`] if there is no such file.
+    /// [`io::ErrorKind::NotFound`] if there is no such file. The program may return any other
+    /// error.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 }
 
@@ -48,7 +50,7 @@ enum Place<'a> {
 }
 
 impl Place<'_> {
-    /// The folder where relative paths start; empty if there is none.
+    /// Returns the folder where relative paths start. Empty if there is none.
     fn folder(&self) -> PathBuf {
         match self {
             Self::Folder(folder) => folder.clone(),
@@ -57,7 +59,7 @@ impl Place<'_> {
     }
 }
 
-/// A scene with its files.
+/// An opened scene, with all files that it names.
 ///
 /// ```no_run
 /// let scene = htex_scene::Scene::open("two.scene.json")?;
@@ -83,19 +85,19 @@ pub struct Scene {
     pub notes: Vec<Finding>,
 }
 
-/// Default sample rate of a program that takes the samples itself, hertz: the paper's.
+/// Default sample rate for a program that takes the samples itself, hertz. It is the paper's rate.
 const USUAL_RATE_HZ: f64 = 20_000.0;
 /// The sample rates at which a program may take the samples itself, hertz.
 const RATES_HZ: Rates = Rates::Range { min_hz: 100.0, max_hz: 1e6 };
 
 impl Scene {
     /// Opens a scene file and the files it names, for a program that takes the samples itself. The
-    /// built-in and the embedded models play its textures; its device is ignored. Files are read up
-    /// to the limits of [`Limits`].
+    /// built-in and the embedded models play the textures. The scene's device is ignored. The scene
+    /// must keep to the default [`Limits`].
     ///
     /// # Errors
-    /// [`SceneError::Invalid`] with all findings if at least one is an error; [`SceneError::Io`] if
-    /// the file cannot be read.
+    /// [`SceneError::Io`] if the file cannot be read. [`SceneError::Invalid`] with all findings if
+    /// at least one finding is an error.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let models = &Registry::builtin();
         let around = Surroundings { models, embedded: true, devices: None };
@@ -105,7 +107,7 @@ impl Scene {
     /// Opens a scene file and the files it names, for a device or with other models.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn open_with(
         path: &Path,
         around: &Surroundings<'_>,
@@ -114,11 +116,11 @@ impl Scene {
         Self::from_bytes(path, &read_file(path)?, around, device)
     }
 
-    /// Opens a scene in memory and the files it names. `path` only says where the scene would be;
-    /// it is not opened.
+    /// Opens a scene in memory and the files it names. Relative paths start at the folder of
+    /// `path`, but no file at `path` is opened.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn from_bytes(
         path: &Path,
         bytes: &[u8],
@@ -132,7 +134,7 @@ impl Scene {
     /// Opens a scene in memory whose files the program supplies. Its `folder` is empty.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// The errors of [`Self::open`].
     pub fn from_files(
         bytes: &[u8],
         files: &dyn FileSource,
@@ -157,7 +159,7 @@ impl Scene {
     /// Makes a scene with one surface that covers everything, without a scene file.
     ///
     /// # Errors
-    /// As [`Self::open`]; pointers refer to the equivalent scene file.
+    /// The errors of [`Self::open`]. Pointers in findings refer to the equivalent scene file.
     pub fn of_asset(
         asset: &Path,
         motion: Motion,
@@ -183,9 +185,9 @@ impl Scene {
         finish(scene, findings)
     }
 
-    /// Plans the scene for a program that takes samples at `rate_hz`, 100 Hz to 1 MHz, itself, in
-    /// the textures' unit. Neither the scene's device nor costs measured on this machine influence
-    /// the plan.
+    /// Plans the scene for a program that takes the samples itself, at `rate_hz` (100 Hz to 1 MHz)
+    /// and in the textures' unit. The plan depends neither on the scene's device nor on costs
+    /// measured on this machine.
     ///
     /// # Errors
     /// See [`SceneError`].
@@ -206,8 +208,8 @@ impl Scene {
         plan(&scene, &program, &Costs::embedded())
     }
 
-    /// Makes a renderer for a program that takes samples at `rate_hz` itself, in the textures' unit
-    /// ([`Self::plan`]). For a device, use [`crate::plan()`] and [`Renderer::new`].
+    /// Makes a renderer for a program that takes the samples itself, at `rate_hz` and in the
+    /// textures' unit ([`Self::plan`]). For a device, use [`crate::plan()`] and [`Renderer::new`].
     ///
     /// # Errors
     /// See [`SceneError`].
@@ -215,7 +217,7 @@ impl Scene {
         Renderer::new(self, &self.plan(rate_hz)?)
     }
 
-    /// Returns the files from which the scene was read, except the scene file.
+    /// Returns the paths of all files that the scene names.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let assets = self.file.surfaces.iter().map(|surface| &surface.asset);
         let trace = match &self.file.motion {
@@ -226,14 +228,15 @@ impl Scene {
         all.map(|path| self.folder.join(path)).collect()
     }
 
-    /// Returns the quantity of the textures, which is the same for all of them.
+    /// Returns the physical quantity of the textures. It is the same for all textures of a scene.
     pub fn quantity(&self) -> Quantity {
         let first = self.assets.first();
         first.map_or(Quantity::default(), Texture::quantity)
     }
 }
 
-/// The hint of a finding that is gone if embedded models may run ([`Surroundings::embedded`]).
+/// The hint of a finding that goes away if embedded models are allowed to run
+/// ([`Surroundings::embedded`]).
 pub const ALLOW_EMBEDDED: Hint = Hint::new(&["embedded_plugins"]);
 
 /// Validates a scene file and the files it names.
@@ -275,7 +278,7 @@ fn folder(path: &Path) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).to_owned()
 }
 
-/// Opens the files of a scene; `None` if one is missing, with findings for each.
+/// Opens the files of a scene. Adds a finding for each missing file, and then returns `None`.
 fn load(
     mut file: SceneFile,
     place: &Place<'_>,
@@ -285,7 +288,8 @@ fn load(
 ) -> Option<Scene> {
     let assets = open_assets(&file, place, around, findings);
     let trace = open_trace(&file, place, findings);
-    // Before the response is opened, because another adapter drops the scene's response.
+    // The override comes before the response is opened, because choosing another adapter drops the
+    // scene's response.
     match around.devices {
         Some(_) => device.0.apply(&mut file.device),
         None => file.device = DeviceChoice::default(),
@@ -296,7 +300,8 @@ fn load(
         Some(devices) => check_device(&file.device, device, devices, held, findings),
         None => Some(Settings::default()),
     };
-    // Only now, so that a missing asset does not hide the findings of the device.
+    // Missing assets end the function only here, so that they do not hide the findings of the
+    // device.
     let assets = assets?;
     check_quantities(&assets, findings);
     // An invalid motion already has a finding.

@@ -19,7 +19,7 @@ use crate::requirements::{Requirements, Span};
 use crate::stages::{Context, EFFECTS, Level, Stage, StagePlace};
 
 const BLOCK: usize = 64;
-/// Samples in one timed run. It is short enough that some runs are not interrupted.
+/// Number of samples in one timed run. A run is so short that some runs are not interrupted.
 const STRETCH: usize = 2_048;
 const ROUNDS: usize = 400;
 /// Number of samples that a resampler requests at a time, at the models' rates.
@@ -61,8 +61,8 @@ impl Costs {
     }
 }
 
-/// Returns the minimum time over many runs, nanoseconds per sample. Interruptions cause the longer
-/// times.
+/// Returns the minimum time over many runs, nanoseconds per sample. The minimum is used because
+/// interruptions lengthen the other runs.
 fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     let mut block = [0.0f32; BLOCK];
     let mut stretch = || {
@@ -121,7 +121,7 @@ fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     Ok(model.fit(&request)?.parameters)
 }
 
-/// Derives the cost of a filter from the work and the time, per sample, of a short and a long one.
+/// Derives the cost of a filter from the work and the time of a short and a long filter.
 fn filter_cost([(few, short_ns), (many, long_ns)]: [(Part, f64); 2]) -> FilterCost {
     let per_sample = |part: Part| part.macs / part.samples;
     let [short_ns, long_ns] = [short_ns / few.samples, long_ns / many.samples];
@@ -164,8 +164,8 @@ fn conversion(rates_hz: [[f64; 3]; 2]) -> Result<FilterCost, UnusableRates> {
 /// Time of each stage.
 type Times = BTreeMap<String, f64>;
 
-/// Returns the time per sample of each stage except filters, at its own rate, nanoseconds: first
-/// where the stage is needed, then where it changes nothing.
+/// Returns the time per sample of each stage except filters, at the stage's own rate, nanoseconds.
+/// The first map holds the times where a stage is needed, the second where it changes nothing.
 fn stages() -> Result<(Times, Times), UnusableRates> {
     let (required, played) = (example_required(), example_surface());
     let (mut needed, mut neutral) = (BTreeMap::new(), BTreeMap::new());
@@ -201,8 +201,8 @@ fn signal() -> impl FnMut(&mut [f32]) {
     }
 }
 
-/// Returns the time per sample of a stage that renders blocks of `pulled` samples. `moves` says
-/// whether the motion changes at every control block, which lasts about two such blocks.
+/// Returns the time per sample of a stage that renders blocks of `pulled` samples. If `moves`, the
+/// motion changes at every control block. A control block has the length of two such blocks.
 fn measure_stage(stage: &mut dyn Stage, pulled: usize, moves: bool) -> f64 {
     let mut source = signal();
     let context = |turn: bool| Context {
@@ -258,7 +258,7 @@ fn example_required() -> Requirements {
     }
 }
 
-/// One condition, with a finger's law.
+/// Returns a single condition with the scaling law assumed for a finger.
 fn example_conditions() -> Conditions {
     let condition =
         Condition { speed_mm_s: Some(80.0), force_n: Some(0.4), ..Condition::default() };

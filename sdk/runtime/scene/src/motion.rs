@@ -6,7 +6,7 @@ use htex_play::exploration::{HOLD_S, MIN_SLIDING_MM_S};
 use crate::file::{self, Constant, Region, Surface};
 use crate::trace::Trace;
 
-/// Returns whether the finger is inside a region; `None` covers everything.
+/// Returns whether the finger is inside a region. A region that is `None` covers everything.
 fn is_in(motion: &Motion, region: Option<&Region>) -> bool {
     match (region, motion.place_mm) {
         (None, _) => true,
@@ -18,25 +18,26 @@ fn is_in(motion: &Motion, region: Option<&Region>) -> bool {
     }
 }
 
-/// Filters the readings of a finger. It replaces impossible readings by the last good motion, for
-/// at most [`HOLD_S`]. Every motion of a scene passes through this filter, so that one bad reading
-/// is not felt.
+/// Filters the readings of a finger. Replaces impossible readings by the last valid motion, for at
+/// most [`HOLD_S`]. Every motion of a scene passes through this filter, so that a single invalid
+/// reading is not felt.
 #[derive(Debug)]
 pub(crate) struct Readings {
     last: Motion,
-    /// How many control blocks a motion is held at most, and for how many it has been held.
+    /// Maximum number of control blocks for which a motion is held.
     most: u64,
     held: u64,
 }
 
 impl Readings {
-    /// Makes a filter for one reading in each control block, whose duration is given in seconds.
+    /// Makes a filter for one reading in each control block. `control_s` is the duration of a
+    /// control block, seconds.
     pub(crate) fn new(control_s: f64) -> Self {
         Self { last: Motion::AWAY, most: (HOLD_S / control_s) as u64, held: 0 }
     }
 
-    /// Takes a reading that lasts for a number of control blocks. Returns that reading, or the last
-    /// good one in its place, or no contact.
+    /// Takes a reading that lasts for a number of control blocks. Returns this reading if it is
+    /// valid, otherwise the last valid motion, or no contact if that motion has been held too long.
     pub(crate) fn filter(&mut self, finger: Motion, blocks: u64) -> Motion {
         if finger.is_reading() {
             (self.last, self.held) = (finger, 0);
@@ -45,17 +46,18 @@ impl Readings {
         self.held += blocks;
         let known = if self.held <= self.most { self.last } else { Motion::AWAY };
         let is_placed = |at: &[f64; 2]| at.iter().all(|x| x.is_finite());
-        // The place may be good although speed or force is not.
+        // The place may be valid although the speed or the force is not.
         known.with_place_mm(finger.place_mm.filter(is_placed).or(self.last.place_mm))
     }
 
-    /// Whether the last reading was good.
+    /// Whether the last reading was valid.
     pub(crate) fn is_good(&self) -> bool {
         self.held == 0
     }
 }
 
-/// Index of the surface under the finger: the one on the highest layer.
+/// Returns the index of the surface that the finger touches: of the surfaces under it, the one on
+/// the highest layer.
 pub(crate) fn topmost(surfaces: &[Surface], finger: &Motion) -> Option<usize> {
     let under = |i: &usize| is_in(finger, surfaces[*i].region.as_ref());
     // Surfaces on one layer never overlap (`REGION_OVERLAP`), so there are no ties.
@@ -79,8 +81,8 @@ impl Course {
         }
     }
 
-    /// Returns the finger at `t_s` seconds; without contact if the motion is live. Does not
-    /// allocate.
+    /// Returns the motion of the finger at `t_s` seconds. If the motion is live, returns a finger
+    /// without contact. Does not allocate.
     pub(crate) fn motion(&self, t_s: f64) -> Motion {
         match self {
             Self::Constant(constant) => {
@@ -107,10 +109,11 @@ impl Course {
     }
 }
 
-/// Direction of the first stroke, at the first contact in motion.
+/// Returns the direction of the first stroke, taken where the finger first slides.
 fn first_way(trace: &Trace) -> [f64; 2] {
     let moving = trace.t_s.iter().map(|t| trace.point_at(*t));
     let mut sliding = moving.filter(|point| point.speed_mm_s >= MIN_SLIDING_MM_S);
-    // Only the sign of its product with other velocities counts, so it is not normalised.
+    // Only the sign of the direction's product with other velocities matters, so it is not
+    // normalised.
     sliding.next().map_or([1.0, 0.0], |point| [point.vx_mm_s, point.vy_mm_s])
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 const LONGEST_ENDING: usize = 8;
 
 /// Returns the default output file of a scene or an asset: its name with the extension of the
-/// format, in the current folder. The extension is `wav` if the format is `auto` or not a plain
-/// word. The result is always a single file name in the current folder, and never a hidden file.
+/// format. The extension is `wav` if the format is `auto` or not a plain word. The result is always
+/// a plain file name, so the file is in the current folder. It never names a hidden file.
 ///
 /// ```
 /// # use htex_scene::output_name;

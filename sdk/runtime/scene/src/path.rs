@@ -2,8 +2,8 @@
 //! position increases in the direction of the first stroke and decreases against it, so a place has
 //! the same position on forward and back strokes.
 //!
-//! For a trace it is the integral of the smoothed velocity, because the positions that trackers
-//! record change in steps.
+//! For a trace, the position is the integral of the smoothed velocity, because the positions that
+//! trackers record change in steps.
 
 use htex_play::Motion;
 
@@ -47,7 +47,7 @@ impl Path {
         }
     }
 
-    /// Updates the path of a live scene: the finger is here at a time in seconds.
+    /// Updates the path of a live scene with the finger's motion at `t_s` seconds.
     pub(crate) fn moved(&mut self, finger: &Motion, t_s: f64) {
         if let Self::Live(path) = self {
             path.moved(finger, t_s);
@@ -55,8 +55,8 @@ impl Path {
     }
 }
 
-/// The path of a trace: the integral of its smoothed velocity. The trace's own positions show the
-/// tracker's steps.
+/// The path of a trace: the integral of its smoothed velocity. The recorded positions are not used,
+/// because they change in the tracker's steps.
 #[derive(Debug)]
 pub(crate) struct TracePath {
     t_s: Vec<f64>,
@@ -82,7 +82,7 @@ impl TracePath {
     }
 
     /// Returns the speed, interpolated linearly between rows, and its integral. Before the first
-    /// row and after the last one the finger is at rest.
+    /// row and after the last row, the finger is at rest.
     fn point_at(&self, t_s: f64) -> PathPoint {
         let above = self.t_s.partition_point(|t| *t <= t_s);
         let row = above.saturating_sub(1);
@@ -104,8 +104,8 @@ impl TracePath {
     }
 }
 
-/// The path of a live finger between updates. If both places are known, it is the distance between
-/// them; otherwise it is the integral of the speed.
+/// The path of a live finger. From one update to the next, the position changes by the distance
+/// between the two places if both are known, otherwise by the integral of the speed.
 #[derive(Debug, Default)]
 pub(crate) struct LivePath {
     t_s: f64,
@@ -126,9 +126,10 @@ impl LivePath {
         let integrated = self.point_at(t_s).position_mm;
         self.position_mm = match self.place_mm.zip(finger.place_mm) {
             Some(([x0, y0], [x1, y1])) => {
-                // The places do not tell a forward stroke from a back stroke.
+                // The sign comes from the speed, because the places do not tell a forward stroke
+                // from a back stroke.
                 let way = libm::hypot(x1 - x0, y1 - y0).copysign(finger.speed_mm_s);
-                // Replaces the integral of the speed since the last update, which is only an
+                // This replaces the integral of the speed since the last update, which was only an
                 // extrapolation.
                 self.position_mm + way
             }

@@ -14,7 +14,8 @@ use crate::representation::{self, Choice};
 use crate::requirements::Requirements;
 use crate::stages::{EFFECTS, Entry, HEADROOM, Need, StagePlace, resampling_work};
 
-/// A plan: the stages that run, the effects that are left out, and the reason for each.
+/// A plan for playing a scene: the stages that run, the effects that are left out, and the reason
+/// for each decision.
 #[derive(Debug, Serialize)]
 pub struct Plan {
     /// The stages in processing order.
@@ -23,7 +24,7 @@ pub struct Plan {
     pub left_out: Vec<OmittedEffect>,
     /// The representation of each surface that the finger touches.
     pub representation: Vec<ModelChoice>,
-    /// Time that the renderer takes apart from the stages, nanoseconds per sample.
+    /// Time that the renderer itself takes, without the stages, nanoseconds per sample.
     pub renderer_ns: f64,
     /// Total cost of the stages and the renderer, nanoseconds per sample.
     pub ns_per_sample_total: f64,
@@ -33,7 +34,7 @@ pub struct Plan {
     pub rate_hz: f64,
     /// Frames in a control block, the interval at which the motion is read.
     pub block_frames: usize,
-    /// Length in frames; `None` if endless.
+    /// Length of the scene, frames. `None` if it is endless.
     pub frames: Option<u64>,
     /// Where the costs come from.
     pub costs: String,
@@ -56,14 +57,14 @@ pub struct Plan {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlannedStage {
     pub name: &'static str,
-    /// The stage's surface; `None`: all surfaces.
+    /// The surface that the stage belongs to. `None` for all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Why it is included.
+    /// Why the stage is included.
     pub reason: String,
-    /// Rate of its output, hertz.
+    /// Sample rate of the stage's output, hertz.
     pub rate_hz: f64,
-    /// Run time, nanoseconds per sample of the device, averaged over the scene.
+    /// Estimated run time, nanoseconds per sample of the device, averaged over the scene.
     pub ns_per_sample: f64,
 }
 
@@ -72,10 +73,10 @@ pub struct PlannedStage {
 pub struct OmittedEffect {
     /// Name of the effect.
     pub name: &'static str,
-    /// The effect's surface; `None`: all surfaces.
+    /// The surface that the effect belongs to. `None` for all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Why it is left out.
+    /// Why the effect is left out.
     pub reason: String,
 }
 
@@ -85,11 +86,11 @@ pub struct ModelChoice {
     /// Index of the surface.
     pub surface: usize,
     pub model: String,
-    /// Why it was chosen.
+    /// Why the representation was chosen.
     pub why: String,
 }
 
-/// A surface with its own effects. The flag says whether an effect is neutral.
+/// A surface with its own effects. The flag of an effect says whether it is neutral.
 #[derive(Debug)]
 pub(crate) struct PlannedSurface {
     pub(crate) played: PlayedSurface,
@@ -110,7 +111,7 @@ pub(crate) struct Mix {
 /// See [`SceneError`].
 pub fn plan(scene: &Scene, device: &Capabilities, costs: &Costs) -> Result<Plan, SceneError> {
     let mut required = Requirements::gather(scene, device)?;
-    // No cost depends on the reference level, which is known only after this choice.
+    // The reference level is known only after this choice, but no cost depends on it.
     let choices = {
         let cost = |surfaces: &[PlayedSurface]| {
             let mut draft = Draft::new(scene, &required, costs);
@@ -151,12 +152,12 @@ pub fn plan(scene: &Scene, device: &Capabilities, costs: &Costs) -> Result<Plan,
     })
 }
 
-/// Largest percentage of samples that the drive may clip. Noise 7 dB above the reference reaches
-/// it.
+/// Maximum percentage of samples that the drive may clip. Noise 7 dB above the reference level
+/// reaches this percentage.
 const MOST_CLAMPED_PERCENT: f64 = 5.0;
 
-/// Rejects a texture that is far too strong for the drive. At the reference level, noise is clipped
-/// only once in 75,000 samples.
+/// Rejects a texture that is far too strong for the drive. At the reference level, about one in
+/// 150,000 samples of noise is clipped.
 fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneError> {
     let over = loudest_rms / required.level_rms;
     // Without a reference level the gain is 0, and nothing is clipped.
@@ -200,7 +201,7 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
     if constant {
         notes.push("nothing changes over the scene: the constant path is used".to_owned());
     }
-    // The two levels differ only with the levels `own`.
+    // The two levels can differ only if `levels` is `own`.
     if required.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != required.level_rms {
         let db = 20.0 * libm::log10(loudest_rms / required.level_rms);
         notes.push(format!(
@@ -226,7 +227,7 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
     notes
 }
 
-/// Cost of a stage per frame of the device, nanoseconds: where it is needed, and where it changes
+/// Cost of a stage per frame of the device, nanoseconds: if the stage is needed, and if it changes
 /// nothing.
 struct Ns {
     needed: f64,
@@ -301,8 +302,8 @@ impl<'a> Draft<'a> {
     /// Adds the stages of one surface, at its model's rate.
     fn surface(&mut self, played: &PlayedSurface) -> Result<(), SceneError> {
         let surface = Some(played.surface);
-        // A voice is rendered only while its surface is touched, and a constant ratio reads it
-        // faster.
+        // A voice is rendered only while its surface is touched. A constant frequency ratio reads
+        // it at another speed.
         let per_frame = played.share * played.rate_hz * played.fixed_ratio / self.required.rate_hz;
         let model_ns = self.costs.model(&played.model) * per_frame;
         self.push("synthesis", surface, always(played), played.rate_hz, model_ns);
@@ -326,7 +327,7 @@ impl<'a> Draft<'a> {
             let need = need(self.required, played);
             let decided = self.decide(entry, surface, need, played.mix_rate_hz, ns)?;
             effects.extend(decided.map(|neutral| (entry.effect, neutral)));
-            // The same place as in `Track::new`.
+            // The level stage has the same place in `Track::new`.
             if entry.effect == Effect::FrequencyScaling {
                 let level_ns = self.costs.stage("level") * per_frame;
                 let reason = "the model's samples have unit RMS; the asset gives the level";
@@ -369,7 +370,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Returns the output rate of a mix's stage, and its cost per frame of the device.
+    /// Returns the output rate of a stage of a mix, and the stage's cost per frame of the device.
     fn mix_cost(&self, entry: &Entry, played: &PlayedSurface) -> Result<(f64, Ns), SceneError> {
         let costs = self.costs;
         let neutral = costs.neutral(entry.name);
@@ -391,7 +392,8 @@ impl<'a> Draft<'a> {
         })
     }
 
-    /// Includes an effect and returns whether it is neutral, or leaves the effect out.
+    /// Decides whether to include an effect. Returns whether the included effect is neutral, or
+    /// `None` if the effect is left out.
     fn decide(
         &mut self,
         entry: &'static Entry,
@@ -434,7 +436,8 @@ impl<'a> Draft<'a> {
                 !self.required.device.quantity.is_physical() || self.required.quantity_gain != 1.0
             }
             Effect::SquareRoot => !self.required.device.quantity.is_physical(),
-            // A voltage must start and end at zero, stay within the drive, and not charge anybody.
+            // A voltage must start and end at zero, stay within the drive, and not charge the
+            // person who touches the display.
             Effect::Contact | Effect::Limiter | Effect::Carrier => {
                 self.required.device.quantity == Quantity::DisplayVoltage
             }

@@ -1,4 +1,4 @@
-//! A surface as one of its representations plays it: its rates, its constant factors and its level.
+//! A surface that a chosen representation plays: its rates, its constant factors and its level.
 
 use std::sync::Arc;
 
@@ -22,16 +22,16 @@ const FILTERED_OVERSAMPLING: f64 = 2.5;
 pub(crate) struct PlayedSurface {
     pub(crate) surface: usize,
     pub(crate) model: String,
-    /// The error by which the budget chooses the representation, in the budget's measure, decibels;
-    /// `None` if not measured.
+    /// The error by which the representation is chosen, decibels, in the measure that the budget
+    /// names. `None` if it was not measured.
     pub(crate) error_db: Option<f64>,
-    /// Largest error over the measured conditions, decibels. The budget limits it.
+    /// Largest error over the measured conditions, decibels. The budget limits this error.
     pub(crate) largest_error_db: Option<f64>,
     /// Number of known conditions.
     pub(crate) known: usize,
-    /// Known speeds and forces, and the law that applies outside them.
+    /// Known speeds and forces, and the scaling law that applies outside them.
     pub(crate) conditions: Arc<Conditions>,
-    /// The frequency and level factors that occur.
+    /// The frequency factors and level factors that occur.
     pub(crate) frequency: Span,
     pub(crate) level: Span,
     /// Whether the model follows the motion itself.
@@ -40,11 +40,11 @@ pub(crate) struct PlayedSurface {
     pub(crate) force_n: Span,
     pub(crate) always_touched: bool,
     pub(crate) share: f64,
-    /// Motion the voice starts with; `None`: the default condition.
+    /// Motion with which the voice starts. `None` for the default condition.
     pub(crate) start: Option<htex_play::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,
-    /// Whether the model always has this rate and nothing changes it before the conversion.
+    /// Whether the model always has this rate, and no stage changes the rate before the conversion.
     pub(crate) own_rate: bool,
     /// Rate after speed scaling, relative to the rate of the model.
     pub(crate) oversampling: f64,
@@ -125,9 +125,9 @@ impl PlayedSurface {
         Ok(played)
     }
 
-    /// Makes the surface's voice. If the model can render at any rate, the rate is chosen so that
-    /// no conversion is needed after speed scaling or, before a compensation, so that its filter is
-    /// short.
+    /// Makes the surface's voice. If the model can render at any rate, the rate is chosen such that
+    /// no conversion is needed after frequency scaling. If there is a compensation, the rate is
+    /// chosen such that the compensation's filter is short.
     pub(crate) fn source(
         &self,
         scene: &Scene,
@@ -147,7 +147,8 @@ impl PlayedSurface {
         )
     }
 
-    /// Finds the factors of all motions on the surface, for the effects that are on.
+    /// Finds the frequency and level factors of all motions on the surface, for the effects that
+    /// are not off.
     fn find_factors(&mut self, scene: &Scene, touch: &Touch) {
         let is_on = |effect| scene.file.effects.get(&effect) != Some(&Switch::Off);
         let range = self.conditions.range();
@@ -168,8 +169,8 @@ impl PlayedSurface {
         }
     }
 
-    /// Applies the frequency factor to the rates: a constant factor to the resampler, a changing
-    /// one to the warp.
+    /// Applies the frequency factor to the rates. The resampler applies a constant factor; a warp
+    /// applies a changing factor.
     fn scale_frequencies(&mut self) {
         if self.frequency.is_point() {
             self.fixed_ratio *= self.frequency.only();
@@ -181,18 +182,19 @@ impl PlayedSurface {
         self.top_hz *= fastest.max(1.0);
     }
 
-    /// Increases the oversampling for a changing speed until the rate is an integer fraction of the
-    /// device's. Converting by an integer factor takes a fraction of the time of other conversions.
+    /// If the speed changes, increases the oversampling until the rate is an integer fraction of
+    /// the device's rate. A conversion by an integer factor takes much less time than other
+    /// conversions.
     fn divide_rate(&mut self, device_hz: f64) {
-        // At least one part is required, because the rate of the voice must not exceed the
-        // device's.
+        // At least one part is required, because the rate must not exceed the device's rate.
         let parts = (device_hz / (self.rate_hz * self.fixed_ratio * self.oversampling)).floor();
         if self.oversampling > 1.0 && parts >= 1.0 {
             self.oversampling = device_hz / parts / (self.rate_hz * self.fixed_ratio);
         }
     }
 
-    /// Applies a constant level factor to the gain. Returns the largest factor if it changes.
+    /// Applies a constant level factor to the gain, and returns 1. Returns the largest factor if
+    /// the factor changes.
     fn scale_level(&mut self) -> f64 {
         if self.level.is_point() {
             self.fixed_gain = self.level.only();

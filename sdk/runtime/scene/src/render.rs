@@ -17,7 +17,7 @@ use crate::track::{FingerOnPath, Track};
 const PIECE: usize = 256;
 
 /// Plays a scene. [`Renderer::render`] is real-time safe: it does not allocate, lock or wait.
-/// [`Scene::renderer`] makes one for a program that takes the samples itself.
+/// [`Scene::renderer`] makes a renderer for a program that takes the samples itself.
 pub struct Renderer {
     surfaces: Vec<Surface>,
     course: Course,
@@ -39,7 +39,7 @@ pub struct Renderer {
     peak: f32,
 }
 
-/// The requirements that the renderer needs while it plays.
+/// The parts of the requirements that the renderer needs while it plays.
 struct Timing {
     rate_hz: f64,
     control: usize,
@@ -140,16 +140,18 @@ impl Renderer {
         self.timing.rate_hz
     }
 
-    /// Sets the motion of the finger in a live scene; its speed is negative on the back stroke.
-    /// Without a place, the finger is on every surface without a region. A speed above 1000 mm/s, a
-    /// force above 20 N or a number out of range counts as a failed reading: the last good motion
-    /// is held for at most 100 ms, then there is no contact until the next good one.
+    /// Sets the motion of the finger in a live scene. The speed is negative on the back stroke. If
+    /// the motion has no place, the finger can touch only surfaces without a region.
+    ///
+    /// A speed above 1000 mm/s, a force above 20 N or a number out of range counts as a failed
+    /// reading. The renderer then holds the last valid motion for at most 100 ms. After that, the
+    /// finger has no contact until the next valid motion.
     ///
     /// # Errors
     /// [`SceneError::Motion`] if a number is not finite or the force is negative. This also counts
     /// as a failed reading.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), SceneError> {
-        // A bad reading is stored too, so that `Readings` sees that it failed.
+        // An invalid reading is also stored, so that `Readings` sees the failure.
         self.live = motion;
         if motion.is_reading() {
             self.path.moved(&motion, self.seconds());
@@ -174,26 +176,27 @@ impl Renderer {
         self.timing.frames = Some(self.timing.frames.map_or(end, |frames| frames.min(end)));
     }
 
-    /// Frames until the end; `None` if endless.
+    /// Returns the number of frames until the end, or `None` if the scene is endless.
     pub fn frames_left(&self) -> Option<u64> {
         self.timing.frames.map(|frames| frames.saturating_sub(self.frame))
     }
 
-    /// Fills `out` with the next samples, in the unit of the device, and returns their number,
-    /// which is smaller at the end of the scene; the rest is zero. The samples do not depend on the
-    /// length of `out`.
+    /// Fills `out` with the next samples, in the unit of the device, and returns their number. At
+    /// the end of the scene, this number is smaller than the length of `out`, and the rest of `out`
+    /// is zero. The samples do not depend on the length of `out`.
     ///
     /// # Errors
     /// The first failure of a model since the last call. `out` is filled nevertheless: the surface
-    /// of that model is silent and the others continue, and so may the caller.
+    /// of the failed model is silent, and the other surfaces continue. The caller may continue to
+    /// render.
     pub fn render(&mut self, out: &mut [f32]) -> Result<usize, SceneError> {
         let frames = if self.follows { self.render_blocks(out) } else { self.render_ahead(out) };
         self.failure().map_or(Ok(frames), Err)
     }
 
-    /// Renders many samples at once even if few are requested. When several renderers run in turn,
-    /// each then loads the memory of its chain once for many blocks. Only for scenes that do not
-    /// change.
+    /// Renders many samples at once, even if few are requested. Only for scenes that do not change.
+    /// When several renderers run in turn, each renderer then loads the memory of its chain only
+    /// once for many blocks.
     fn render_ahead(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         loop {
@@ -228,7 +231,7 @@ impl Renderer {
         self.ahead.end(samples);
     }
 
-    /// Updates the stages before every control block.
+    /// Renders samples, and updates the stages before every control block.
     fn render_blocks(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         while done < out.len() {
@@ -257,8 +260,8 @@ impl Renderer {
         self.peak = peak;
     }
 
-    /// Returns the finger at the current frame, after failed readings were replaced, and its
-    /// position along the path.
+    /// Returns the finger's motion at the current frame and its position along the path. Failed
+    /// readings are already replaced.
     fn finger(&mut self) -> (Motion, FingerOnPath) {
         let t_s = self.seconds();
         let reading = match self.course {
@@ -267,7 +270,7 @@ impl Renderer {
         };
         let finger = self.readings.filter(reading, 1);
         let mut point = self.path.point_at(t_s);
-        // When the hold is over, the path would otherwise continue at its last speed.
+        // After the hold, the path must not continue at its last speed.
         if !self.readings.is_good() && !finger.slides() {
             point.speed_mm_s = 0.0;
         }
@@ -296,7 +299,7 @@ impl Renderer {
     pub fn stages_run(&self) -> Vec<StageRun> {
         let frames = self.timed.then_some(self.frame);
         let mut tracks: Vec<&Track> = self.mixes.iter().flat_map(|mix| &mix.tracks).collect();
-        // Mixes group the surfaces by rate, and the plan lists them by number.
+        // Mixes group the surfaces by rate, but the plan lists them by number.
         tracks.sort_by_key(|track| track.surface);
         let tracks = tracks.into_iter().flat_map(|track| track.runs(frames));
         let mixes = self.mixes.iter().flat_map(|mix| &mix.chain.slots);
@@ -304,8 +307,9 @@ impl Renderer {
         tracks.chain(behind).collect()
     }
 
-    /// Returns the largest absolute sample so far, in the unit of the device. In constant motion,
-    /// up to 1,024 samples are rendered ahead; this value and the counts below include them.
+    /// Returns the largest absolute sample so far, in the unit of the device. If the motion is
+    /// constant, up to 1,024 samples are rendered ahead. This value and the counts of limited and
+    /// rooted samples include them.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }
@@ -315,7 +319,8 @@ impl Renderer {
         self.statistics().limited
     }
 
-    /// Returns the number of samples with a negative radicand, which was set to zero.
+    /// Returns the number of samples whose radicand was negative and was set to zero. Only an
+    /// electrovibration display needs this square root.
     pub fn rooted_samples(&self) -> u64 {
         self.statistics().rooted
     }

@@ -8,9 +8,9 @@ use crate::load::Scene;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// Safety factor for the measured times of the stages in a plan. In blocks of 64, the fastest chain
-/// takes 1.3 times the sum of its stages (the example `chains`), because of the calls between
-/// stages and the peak measurement.
+/// Safety factor for the measured times of the stages in a plan. In blocks of 64 samples, the
+/// fastest chain takes 1.3 times as long as its stages together (the example `chains`). The rest is
+/// calls between stages and the measurement of the peak.
 const RESERVE: f64 = 1.5;
 
 /// A representation and the reason for its choice.
@@ -20,7 +20,7 @@ pub(crate) struct Choice {
     pub(crate) why: String,
 }
 
-/// Computes the time of a set of representations, nanoseconds per sample, or returns why they
+/// Computes the time that a choice of representations takes, nanoseconds per sample. Fails if they
 /// cannot be planned.
 type Cost<'a> = &'a dyn Fn(&[PlayedSurface]) -> Result<f64, SceneError>;
 
@@ -51,9 +51,9 @@ pub(crate) fn choose(
     Ok(options.into_iter().zip(&all).map(why).collect())
 }
 
-/// Returns the reference level for levels that are not normalised, in the assets' unit. It is the
-/// scene's own if set; otherwise it is the level of the strongest representation among the touched
-/// surfaces, whichever representation plays them.
+/// Returns the reference level for levels that are not normalised, in the assets' unit. If the
+/// scene does not set it, it is the level of the strongest representation of all touched surfaces.
+/// This does not depend on which representations play.
 pub(crate) fn reference_rms(scene: &Scene, required: &Requirements) -> f64 {
     if let Some(given_n) = scene.file.device.reference_rms {
         return given_n;
@@ -137,7 +137,7 @@ impl Candidates {
     }
 }
 
-/// Returns the candidates below the smallest error bound for which the fastest choice meets the
+/// Chooses the representations with the smallest error bound for which the fastest choice meets the
 /// time limit.
 fn nearest_within(
     all: &[Candidates],
@@ -148,7 +148,7 @@ fn nearest_within(
     let errors = all.iter().flat_map(|c| &c.options).map(|p| p.error_db);
     let mut bounds: Vec<Option<f64>> = errors.collect();
     bounds.sort_by(|a, b| by_error(*a, *b));
-    // Below this bound, some surface has no representation.
+    // Below this bound, at least one surface has no representation.
     let unnamed = all.iter().filter(|c| !c.named);
     let least =
         unnamed.map(|c| c.options[0].error_db).max_by(|a, b| by_error(*a, *b)).unwrap_or(Some(0.0));
@@ -161,7 +161,7 @@ fn nearest_within(
         }
         quickest_ns = Some(quickest_ns.map_or(takes_ns, |least_ns| least_ns.min(takes_ns)));
     }
-    // Without a touched surface there are no bounds, and nothing to choose.
+    // If no surface is touched, there are no bounds and nothing to choose.
     let Some(quickest_ns) = quickest_ns else {
         return Ok(Vec::new());
     };
@@ -171,8 +171,8 @@ fn nearest_within(
     })
 }
 
-/// Returns the fastest representation of each surface with an error of at most `bound`; `None`
-/// accepts any error.
+/// Returns the fastest representation of each surface among those with an error of at most `bound`.
+/// A `bound` of `None` accepts any error.
 ///
 /// # Errors
 /// If none of a surface's representations can be planned.

@@ -1,5 +1,5 @@
-//! The requirements of a scene, gathered from the scene, its assets and its device before anything
-//! is built.
+//! The requirements of a scene. They are gathered from the scene, its assets and its device before
+//! any stage is built.
 
 use htex_device::{Capabilities, Quantity};
 use htex_play::Motion;
@@ -14,11 +14,11 @@ use crate::response::Inverse;
 
 /// Relative difference of speeds and forces that counts as rounding.
 const SAME: f64 = 1e-6;
-/// Largest number of control blocks examined before a scene plays: nearly an hour of motion. A
-/// longer scene is sampled at larger intervals.
+/// Maximum number of control blocks that are examined before a scene plays: nearly an hour of
+/// motion. A longer scene is examined at larger intervals.
 const MOST_LOOKS: u64 = 1 << 20;
 /// Duration of a control block, seconds.
-// These are 64 frames at the 20 kHz of the paper.
+// This is 64 frames at the paper's rate of 20 kHz.
 const CONTROL_S: f64 = 0.0032;
 /// Level of a preview by ear, dB relative to full scale.
 const PREVIEW_DBFS: f64 = -18.0;
@@ -40,17 +40,17 @@ impl Span {
         self.high = self.high.max(x);
     }
 
-    /// Whether it contains at most one value, within rounding.
+    /// Whether the span contains at most one value, within rounding.
     pub(crate) fn is_point(&self) -> bool {
         self.low >= self.high - SAME * self.high.abs()
     }
 
-    /// Returns the value of a span with a single value; 1 if the span is empty.
+    /// Returns the value of a span with a single value, or 1 if the span is empty.
     pub(crate) fn only(&self) -> f64 {
         if self.low <= self.high { self.low } else { 1.0 }
     }
 
-    /// Whether its only value is 1, within rounding, or it is empty.
+    /// Whether the span is empty or its only value is 1, within rounding.
     pub(crate) fn is_one(&self) -> bool {
         let near = |x: f64| (x - 1.0).abs() <= SAME;
         self.low > self.high || (near(self.low) && near(self.high))
@@ -97,14 +97,14 @@ pub(crate) struct Requirements {
 /// How a surface is touched over the scene.
 #[derive(Debug, Clone)]
 pub(crate) struct Touch {
-    /// Fraction of the time, 0 to 1.
+    /// Fraction of the time during which the finger slides over the surface, 0 to 1.
     pub(crate) share: f64,
     pub(crate) always: bool,
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
     /// The finger at the first contact.
     pub(crate) first: Option<Motion>,
-    /// The motions in contact, each different from the previous one.
+    /// The motions at which the finger slides. Each motion differs from the previous one.
     pub(crate) motions: Vec<Motion>,
 }
 

@@ -13,13 +13,13 @@ pub use htex_recording::SetupResponse as Response;
 /// input). The unit does not matter, because only the shape is compensated.
 ///
 /// # Errors
-/// As [`read_response`], and if no magnitude is above 0.
+/// The errors of [`read_response`]. Also if no magnitude is above 0.
 pub(crate) fn open(path: &Path) -> Result<Response, ReadError> {
     let file = path.file_name().unwrap_or(path.as_os_str());
     not_zero(read_response(path)?, &file.to_string_lossy())
 }
 
-/// As [`open`], for a file in memory. Messages name `file`.
+/// Reads a response like [`open`], from a file in memory. Messages name `file`.
 pub(crate) fn from_bytes(file: &str, bytes: &[u8]) -> Result<Response, ReadError> {
     not_zero(response_from_bytes(file, bytes)?, file)
 }
@@ -37,20 +37,22 @@ fn not_zero(response: Response, file: &str) -> Result<Response, ReadError> {
     Ok(response)
 }
 
-/// The inverse of a response. Only its shape counts: it is normalised to its largest magnitude in
-/// the textures' band, where the gain is near 1. At other frequencies the gain is higher.
+/// The inverse of a response. Only the response's shape matters: the response is normalised to its
+/// largest magnitude in the textures' band. At this magnitude the gain is near 1. Where the
+/// response is weaker, the gain is higher, up to a limit.
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     response: Response,
     band: Band,
-    /// Largest magnitude in the band; 0 if there is none.
+    /// Largest magnitude of the response in the band. 0 if the response is 0 there.
     largest: f64,
-    /// Depth of the compensation as a magnitude, relative to the largest one.
+    /// Depth of the compensation as a magnitude, relative to the largest magnitude.
     floor: f64,
 }
 
 impl Inverse {
-    /// `pitch` is the factor that multiplies the frequencies of all textures.
+    /// Makes the inverse of a response for these textures. `pitch` is the factor that multiplies
+    /// all frequencies of the textures.
     pub(crate) fn new(response: &Response, assets: &[Texture], pitch: f64, depth_db: f64) -> Self {
         let band = played_band(assets, pitch);
         Self {
@@ -62,8 +64,8 @@ impl Inverse {
     }
 
     /// Returns the gain at a frequency: |H| / (|H|² + floor²), where H is relative to its largest
-    /// magnitude in the band. It is near 1/|H| and at most 1/(2 floor), and 0 where the response is
-    /// 0.
+    /// magnitude in the band. The gain is near 1/|H| and at most 1/(2 floor). Where the response is
+    /// 0, the gain is 0.
     pub(crate) fn gain_at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.value_at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;
@@ -77,7 +79,7 @@ impl Inverse {
         self.largest > 0.0
     }
 
-    /// Returns which part of the band is amplified, and by how much.
+    /// Returns which parts of the band the compensation amplifies, and by how much.
     pub(crate) fn raised(&self) -> Option<RaisedRanges> {
         let grid = self.band.grid_hz();
         raised(&grid, grid.iter().map(|&hz| self.gain_at(hz)))

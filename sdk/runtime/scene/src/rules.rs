@@ -1,8 +1,9 @@
 //! All rules for scenes, in one table.
 //!
-//! A scene is refused in cases where an asset only gets a warning: a misspelt key has no effect in
-//! an asset, but changes what is felt in a scene. A scene may come from anyone, so it must not name
-//! a file to write outside its folder, and no driver.
+//! Some rules are stricter for a scene than for an asset. A misspelt key has no effect in an asset,
+//! so it only gets a warning. In a scene it would change what is felt, so the scene is refused. A
+//! scene may come from anyone, so it must name neither a driver nor a file to write outside its
+//! folder.
 
 htex_base::finding::rule_table! {
     SCENE_FILE_TOO_LARGE Error:

@@ -1,7 +1,7 @@
-//! A recorded motion, interpolated at any time.
+//! A recorded motion (trace), which can be interpolated at any time.
 //!
-//! The speed is the second difference of the position's integral. It is exact for a steady motion
-//! with any spacing of the rows, and insensitive to the steps of a 60 Hz tracker.
+//! The speed is the second difference of the position's integral. For a steady motion, it is exact
+//! with any spacing of the rows. It is insensitive to the steps of a 60 Hz tracker.
 
 use std::path::Path;
 
@@ -23,8 +23,8 @@ pub struct Trace {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons, not negative.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, not negative. It is taken from the trace if that has a speed column,
-    /// otherwise computed from the velocity.
+    /// Sliding speed, mm/s, not negative. If the trace has a speed column, the speed is taken from
+    /// it. Otherwise it is computed from the velocity.
     pub speed_mm_s: Vec<f64>,
     /// Velocity along x and y, mm/s, computed from the positions.
     pub velocity_mm_s: Vec<[f64; 2]>,
@@ -54,27 +54,27 @@ impl Trace {
     /// known, `speed_mm_s`.
     ///
     /// # Errors
-    /// As [`read_trace`].
+    /// The errors of [`read_trace`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_trace(path)?))
     }
 
-    /// As [`Self::open`], for a file in memory. Messages name `file`.
+    /// Reads a trace like [`Self::open`], from a file in memory. Messages name `file`.
     ///
     /// # Errors
-    /// As [`read_trace`].
+    /// The errors of [`read_trace`].
     pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
         Ok(Self::new(trace_from_bytes(file, bytes)?))
     }
 
     /// Makes a trace from columns.
     ///
-    /// The velocity is computed by [`velocity`]. It is exact when it is constant, and insensitive
-    /// to the steps of a 60 Hz tracker. Negative forces, which a sensor's offset causes, become 0.
-    /// Impossible rows (above 1000 mm/s or 20 N) are replaced by the last good row for at most 100
-    /// ms, and have no contact after that. This happens here because values between rows are
-    /// interpolated, and half of a bad value may look good.
-    /// one may look good.
+    /// [`velocity`] computes the velocity. A constant velocity is exact, and the steps of a 60 Hz
+    /// tracker have little influence. Negative forces, which a sensor's offset causes, become 0.
+    ///
+    /// Impossible rows (above 1000 mm/s or 20 N) are replaced by the last valid row for at most 100
+    /// ms. After that, they have no contact. They are replaced here, before interpolation, because
+    /// a value interpolated halfway to an impossible row may look valid.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();
@@ -90,7 +90,8 @@ impl Trace {
         let good = readings(&t_s, |row| {
             speed_mm_s[row] <= MOST_SPEED_MM_S && force_n[row] <= MOST_FORCE_N
         });
-        // Judged apart, because a recorded speed may be good where the positions jump.
+        // The velocity is checked separately, because a recorded speed may be valid where the
+        // positions jump.
         let steady = readings(&t_s, |row| moved[row] <= MOST_SPEED_MM_S);
         Self {
             t_s,
@@ -104,8 +105,8 @@ impl Trace {
     }
 
     /// Returns the motion at `t_s` seconds, interpolated linearly between rows. Before the first
-    /// row and after the last one the finger rests there without contact: speed and force are 0.
-    /// Does not allocate.
+    /// row and after the last row, the finger rests at that row's place without contact: speed and
+    /// force are 0. Does not allocate.
     pub fn point_at(&self, t_s: f64) -> TracePoint {
         let last = self.t_s.len().saturating_sub(1);
         let above = self.t_s.partition_point(|t| *t <= t_s);
@@ -142,8 +143,8 @@ impl Trace {
     }
 }
 
-/// For each row, returns the row whose reading is used: the row itself if its reading is good,
-/// otherwise the last good row within [`HOLD_S`].
+/// For each row, returns the row whose reading is used. This is the row itself if its reading is
+/// valid, otherwise the last valid row if it is at most [`HOLD_S`] earlier.
 fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
     let mut last = None;
     let row = |row: usize| {
@@ -155,7 +156,7 @@ fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> 
     (0..t_s.len()).map(row).collect()
 }
 
-/// Returns the values of these rows; zero for `None`.
+/// Returns the values of these rows. For a row that is `None`, the value is zero.
 fn taken<T: Copy + Default>(rows: &[Option<usize>], values: &[T]) -> Vec<T> {
     let value = |row: &Option<usize>| row.and_then(|row| values.get(row).copied());
     rows.iter().map(|row| value(row).unwrap_or_default()).collect()

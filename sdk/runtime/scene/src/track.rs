@@ -1,4 +1,4 @@
-//! One surface of a running scene: its voice, and the stages before surfaces are mixed.
+//! One surface of a running scene: its voice, and the stages that run before surfaces are mixed.
 
 use htex_play::Motion;
 
@@ -18,7 +18,7 @@ pub(crate) struct Track {
     pub(crate) asset: std::path::PathBuf,
     pub(crate) synthesis: Synthesis,
     synthesis_run: Count,
-    /// The flag says whether it is neutral.
+    /// The flag says whether the interpolation is neutral.
     interpolation: Option<(Count, bool)>,
     chain: Chain,
     crossfade: Option<(Crossfade, Count)>,
@@ -30,7 +30,7 @@ pub(crate) struct Track {
 
 /// The clock of a voice that receives the position of the finger.
 struct Follower {
-    /// Ratio of the voice's time to the scene's.
+    /// Ratio of the voice's time to the scene's time.
     pitch: f64,
     /// Rate of the frames, hertz.
     rate_hz: f64,
@@ -75,14 +75,14 @@ impl Track {
                 chain.slots.push(Slot::new(entry.name, Some(played.surface), stage));
             }
         }
-        // The level stage comes after the stages that change the rate, and before those that change
-        // the level.
+        // The level stage comes after the stages that change the rate, and before the stages that
+        // change the level.
         let scaled = planned.effects.contains_key(&Effect::FrequencyScaling);
         let level = Level::new(played, synthesis.level_rms());
         let level = Slot::new("level", Some(played.surface), Box::new(level));
         chain.slots.insert(usize::from(scaled), level);
         let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
-            // A neutral cross-fade stays at full weight; a needed one starts silent.
+            // A neutral cross-fade stays at full weight. A cross-fade that is needed starts silent.
             let fade = Crossfade::new(played.mix_rate_hz, *neutral);
             (fade, Count::default())
         });
@@ -126,9 +126,9 @@ impl Track {
         self.chain.follow(&Context { level_rms: self.synthesis.level_rms(), ..*context });
     }
 
-    /// Passes motion, position and place to a model that follows the motion itself, while its
-    /// surface is audible. Position and time are in the voice's time, so the pitch multiplies both.
-    /// A place on the surface stays unchanged.
+    /// While the surface is audible, passes motion, position and place to a model that follows the
+    /// motion itself. Position and time are in the voice's time, so both are multiplied by the
+    /// pitch. The place on the surface stays unchanged.
     pub(crate) fn set_finger(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;

@@ -1,4 +1,4 @@
-//! Parsing and validation of a scene file, without the files it names.
+//! Parses and validates a scene file, without the files that it names.
 
 use htex_base::finding::{Findings, escape};
 use htex_format::{Document, DocumentRules};
@@ -27,8 +27,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a scene and checks everything that needs neither its files nor its device. Returns `None`,
-/// with a finding that states the reason, if the scene cannot be used. Never panics.
+/// Reads a scene, and checks everything that can be checked without its files and its device. If
+/// the scene cannot be used, adds a finding with the reason and returns `None`. Never panics.
 pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<SceneFile> {
     if bytes.len() as u64 > limits.file_bytes {
         let message = format!("the scene has more than {} bytes", limits.file_bytes);
@@ -56,7 +56,7 @@ fn is_effect(name: &str) -> bool {
     Effect::ALL.iter().any(|effect| effect.name() == name)
 }
 
-/// Removes effects that only a newer version knows from a scene.
+/// Removes effects from a scene that only a newer version of the format has.
 fn remove_unknown_effects(scene: &mut Value) {
     let effects = scene.get_mut("effects").and_then(Value::as_object_mut);
     if let Some(effects) = effects {
@@ -64,7 +64,7 @@ fn remove_unknown_effects(scene: &mut Value) {
     }
 }
 
-/// Checks the names of effects; `None` if a name is unknown.
+/// Checks the names of effects. Returns `None` if a name is unknown.
 fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
     let effects = scene.get("effects").and_then(Value::as_object);
     let mut all_known = Some(());

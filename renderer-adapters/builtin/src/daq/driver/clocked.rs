@@ -1,4 +1,4 @@
-//! The common part of output and input tasks: the handle, the clock, start and stop.
+//! What output tasks and input tasks have in common: the handle, the clock, start and stop.
 #![allow(unsafe_code)] // The driver's functions are C.
 
 use super::Driver;
@@ -10,7 +10,7 @@ pub(super) const VOLTS: i32 = 10348;
 const RISING: i32 = 10280;
 const CONTINUOUS: i32 = 10123;
 
-/// A task, without channels at first. Dropping it stops and clears it.
+/// A driver task. It has no channels at first. Dropping the task stops and clears it.
 pub(crate) struct Clocked {
     driver: &'static Driver,
     pub(super) handle: Handle,
@@ -29,7 +29,7 @@ impl Clocked {
         &self.driver.table
     }
 
-    /// Makes the card's own clock take or deliver samples without end, through a buffer of
+    /// Makes the card's own clock take or deliver samples continuously, through a buffer of
     /// `frames`.
     pub(super) fn set_card_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         let source = c_text("");
@@ -45,13 +45,14 @@ impl Clocked {
         self.check(unsafe { (self.table().start_task)(self.handle) })
     }
 
-    /// Stops the task. Returns the error that the task had.
+    /// Stops the task. If the task had failed, returns its error.
     pub(crate) fn stop(&self) -> Result<(), Fault> {
         // SAFETY: the handle is this task's.
         self.check(unsafe { (self.table().stop_task)(self.handle) })
     }
 
-    /// Returns a handle that can stop this task from another thread while one of its calls hangs.
+    /// Returns a handle with which another thread can stop this task while a call of the task
+    /// hangs.
     pub(crate) fn stopper(&self) -> Stopper {
         Stopper { driver: self.driver, handle: self.handle }
     }
@@ -72,7 +73,7 @@ pub(crate) struct Stopper {
 unsafe impl Send for Stopper {}
 
 impl Stopper {
-    /// Stops the task. It outputs nothing more, but its last voltage stays.
+    /// Stops the task. The task outputs nothing more, but its last voltage stays at the output.
     pub(crate) fn stop(&self) {
         // SAFETY: a handle of this driver, which checks the handles that it is given; whoever
         // clears the task drops this before.

@@ -57,7 +57,7 @@ impl InputTask {
         Ok(Self { task, width })
     }
 
-    /// Makes the card's own clock sample into a buffer of `frames`.
+    /// Makes the card sample at its own clock into a buffer of `frames`.
     pub(crate) fn set_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         self.set_card_clock(rate_hz, frames)?;
         // SAFETY: numbers only.
@@ -72,8 +72,8 @@ impl InputTask {
         Ok(frames as usize)
     }
 
-    /// Reads up to `frames` frames, which must be available, and returns their number. `samples`
-    /// must have space for them.
+    /// Reads up to `frames` frames, and returns their number. The frames must be available, and
+    /// `samples` must have space for them.
     pub(crate) fn read(&self, frames: usize, samples: &mut [f64]) -> Result<usize, Fault> {
         let frames = frames.min(samples.len() / self.width);
         let count = i32::try_from(frames).unwrap_or(i32::MAX);

@@ -34,17 +34,17 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// Loads the library at `path`, or the installed one if `path` is empty.
+    /// Loads the library at `path`, or the installed library if `path` is empty.
     pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
         LOADED.get_or_load(path, || Ok(Self { table: LIBRARY.load(path, Table::from_library)? }))
     }
 
-    /// Lists every analog output with the product it belongs to.
+    /// Lists every analog output with the product name of its card.
     pub(crate) fn outputs(&self) -> Result<Vec<(String, String)>, Fault> {
         self.channels(|card| self.table.card_text(self.table.get_outputs, card))
     }
 
-    /// Lists every analog input with the product it belongs to.
+    /// Lists every analog input with the product name of its card.
     pub(crate) fn inputs(&self) -> Result<Vec<(String, String)>, Fault> {
         self.channels(|card| self.table.card_text(self.table.get_inputs, card))
     }
@@ -61,8 +61,8 @@ impl Driver {
         Ok(all)
     }
 
-    /// Returns the lowest rate of a card's analog inputs (at least 1 Hz) and the highest total rate
-    /// of all channels together, hertz.
+    /// Returns the lowest rate of a card's analog inputs (at least 1 Hz), and the highest rate of
+    /// all channels added together, hertz.
     pub(crate) fn input_rates(&self, card: &str) -> Result<(f64, f64), Fault> {
         let number = |function| self.table.card_number(function, card);
         Ok((

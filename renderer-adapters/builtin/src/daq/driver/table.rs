@@ -48,7 +48,7 @@ driver_table! {
 }
 
 impl Table {
-    /// Checks the result of a call. Warnings are ignored. Errors carry the driver's message.
+    /// Checks the result of a call. Ignores warnings. An error contains the driver's message.
     pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
         if code >= 0 {
             return Ok(());
@@ -101,7 +101,7 @@ impl Table {
     }
 }
 
-/// Returns the text that a function writes into a buffer; `None` if the call fails.
+/// Returns the text that a function writes into a buffer, or `None` if the call fails.
 fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
     let mut bytes = vec![0u8; ROOM];
     let code = call(bytes.as_mut_ptr().cast(), ROOM as u32);
@@ -109,8 +109,7 @@ fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
     (code >= 0).then(|| String::from_utf8_lossy(&bytes[..end]).into_owned())
 }
 
-/// Converts a text to a string that ends in zero. A text with a zero inside becomes empty; settings
-/// do not allow one.
+/// Converts a text to a string that ends in zero. A text that contains a zero becomes empty.
 pub(super) fn c_text(text: &str) -> CString {
     CString::new(text).unwrap_or_default()
 }

@@ -11,20 +11,20 @@ use crate::daq::fault::Fault;
 
 // Constants from `NIDAQmx.h`.
 const DO_NOT_ALLOW_REGENERATION: i32 = 10158;
-// A task has one channel, for which both groupings are the same.
+// A task has one channel, so both groupings have the same effect.
 const GROUP_BY_CHANNEL: u32 = 0;
-/// Status when the buffer is full. The samples that fitted were taken.
+/// Status if the buffer is full. The driver has then taken the samples that fitted.
 const NOT_YET: i32 = -200292;
 
-/// A task on one analog output. Dropping it stops and clears it; the output then holds its last
-/// voltage.
+/// A task on one analog output. Dropping the task stops and clears it. The output then holds its
+/// last voltage.
 pub(crate) struct Task {
     task: Clocked,
 }
 
 impl Task {
-    /// Creates a task that outputs samples at once, within ±`limit_v`. Voltages are at the card's
-    /// output.
+    /// Creates a task without a clock, which outputs samples at once. Voltages are at the card's
+    /// output, within ±`limit_v`.
     pub(crate) fn new(driver: &'static Driver, output: &str, limit_v: f64) -> Result<Self, Fault> {
         let task = Clocked::new(driver)?;
         let (output, name) = (c_text(output), c_text(""));
@@ -44,20 +44,20 @@ impl Task {
         Ok(Self { task })
     }
 
-    /// Makes a clock take each sample once from a buffer of `frames`.
+    /// Makes the card's clock take each sample once from a buffer of `frames`.
     pub(crate) fn set_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         self.set_card_clock(rate_hz, frames)?;
         // SAFETY: numbers only.
         self.check(unsafe { (self.table().set_buffer)(self.handle, frames) })?;
-        // Otherwise the card plays the old samples of its buffer again when the host is late.
+        // Otherwise the card would repeat the old samples in its buffer when the host is late.
         // SAFETY: numbers only.
         self.check(unsafe {
             (self.table().set_regeneration)(self.handle, DO_NOT_ALLOW_REGENERATION)
         })
     }
 
-    /// Takes the samples (volts) that fit now and returns their number. `start` starts a task that
-    /// has no clock.
+    /// Takes the samples (volts) that fit now, and returns their number. If `start` is true, a task
+    /// without a clock starts.
     pub(crate) fn write(&self, samples: &[f64], start: bool) -> Result<usize, Fault> {
         let count = i32::try_from(samples.len()).unwrap_or(i32::MAX);
         let (now_s, mut written) = (0.0, 0i32);
@@ -88,7 +88,7 @@ impl Task {
         Ok(space as usize)
     }
 
-    /// Returns the number of frames output since the start.
+    /// Returns the number of frames that were output since the start.
     pub(crate) fn generated(&self) -> Result<u64, Fault> {
         let mut frames = 0u64;
         // SAFETY: a place for one number.
@@ -96,7 +96,7 @@ impl Task {
         Ok(frames)
     }
 
-    /// Whether the task stopped by itself. Returns the error that stopped it, if any.
+    /// Whether the task stopped by itself. If an error stopped it, returns the error.
     pub(crate) fn is_done(&self) -> Result<bool, Fault> {
         let mut done = 0u32;
         // SAFETY: a place for one truth value.

@@ -60,7 +60,8 @@ impl Card {
         }
     }
 
-    /// Returns settings of a user who allows direct voltage, because many tests write one.
+    /// Returns settings of a user who allows direct voltage, because many tests write a direct
+    /// voltage.
     pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver, ("dc_limit_v", "150")], given].concat();

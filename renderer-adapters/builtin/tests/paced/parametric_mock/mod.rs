@@ -1,5 +1,5 @@
-//! The mock runtime (`runtime.c`) and vibrator (`vibrator.c`). Each test has its own copy, and
-//! thereby its own state.
+//! The mock runtime (`runtime.c`) and the mock vibrator (`vibrator.c`). Each test has its own copy,
+//! and so its own state.
 
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, c_char};
@@ -15,7 +15,7 @@ use tempfile::TempDir;
 pub(crate) const LONG: Duration = Duration::from_secs(5);
 pub(crate) const RATE_HZ: f64 = 8_000.0;
 
-/// Compiles a source to a library; `None` without a compiler.
+/// Compiles a source to a library. Returns `None` if there is no compiler.
 fn built(source: &str) -> Option<PathBuf> {
     static BUILT: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -39,7 +39,7 @@ fn built(source: &str) -> Option<PathBuf> {
     built.get(source).cloned()
 }
 
-/// Returns the declarations that `docs/devices.md` asks of an application.
+/// Returns the C declarations from `docs/devices.md` that an application has to implement.
 fn declared() -> String {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/devices.md");
     let blocks = xtask::markdown::blocks(&std::fs::read_to_string(page).unwrap());
@@ -136,7 +136,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Parses a recorded line; `None` if it is not a frame.
+    /// Parses a recorded line. Returns `None` if it is not a frame.
     pub(crate) fn of(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split(' ').collect();
         if words[0] != "points" {

@@ -67,12 +67,13 @@ impl Fault {
         Self::AllHelpers(Helpers::Slow),
     ];
 
-    /// Whether it keeps the player from acting for so long that the output waits for the player.
+    /// Whether the fault prevents the player from acting for so long that the output has to wait
+    /// for the player.
     pub fn is_of_player(self) -> bool {
         matches!(self, Self::PlayerKilled | Self::PlayerStopped(_))
     }
 
-    /// Whether it may prevent every attempt of the player from writing zero within 0.5 s.
+    /// Whether the fault may prevent every attempt of the player from writing zero within 0.5 s.
     pub fn prevents_zero(self) -> bool {
         matches!(
             self,
@@ -85,8 +86,8 @@ impl Fault {
         )
     }
 
-    /// Returns the world with this fault; `None` if the world has nothing that the fault can
-    /// affect.
+    /// Returns the world with this fault, or `None` if the fault cannot affect anything in this
+    /// world.
     pub fn in_world(self, world: &World) -> Option<World> {
         let mut world = world.clone();
         let guardian_runs = world.guardian == Process::Running;

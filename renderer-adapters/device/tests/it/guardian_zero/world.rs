@@ -1,10 +1,10 @@
 //! A model of everything around the player's decisions: the app, the guardian with its two threads,
 //! the helpers, and the card.
 //!
-//! Time advances in steps of 50 ms. All times of the program are multiples of it. The player is the
-//! program's own code ([`htex_device::guardian::decision`]). Of the other processes, the model has
-//! only what matters for the output: which of them may be in a driver call that does not return,
-//! which holds the session's lock, and which can still write zero.
+//! Time advances in steps of 50 ms. All times of the program are multiples of 50 ms. The player is
+//! the program's own code ([`htex_device::guardian::decision`]). The model of the other processes
+//! has only what matters for the output: which process may be in a driver call that does not
+//! return, which holds the session's lock, and which can still write zero.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use htex_device::guardian::decision::{Action, By, Event, Player, Waits};
 
 /// Duration of a step of the model.
 pub const STEP: Duration = Duration::from_millis(50);
-/// A buffer of 200 ms and a ramp of 50 ms.
+/// The waits for a buffer of 200 ms and a ramp of 50 ms.
 pub const WAITS: Waits = Waits { to_zero: Duration::from_millis(250) };
 /// Duration of the samples on the card after a write (the buffer), steps.
 const BUFFER: u32 = 4;
@@ -26,7 +26,8 @@ const WATCH: u32 = 1;
 const HANG: u32 = 6;
 /// Time from the start of a helper until it has opened the device, steps.
 const HELPER: u32 = 2;
-/// The time at which each step begins. The player's clock is set back to it after each step.
+/// The time at which each step begins. After each step, the player's clock is set back to this
+/// time.
 const NOW: Duration = Duration::from_secs(60);
 
 /// Number of steps over which the rules look back.
@@ -167,7 +168,7 @@ pub struct World {
     pub known_for: Option<u32>,
     /// Steps for which a voltage has stayed.
     pub stood: u32,
-    /// Those of these steps during which the player ran without a pause.
+    /// Number of steps, of those in `stood`, during which the player ran without a pause.
     pub stood_before_player: u32,
 }
 
@@ -292,8 +293,8 @@ impl World {
         self.watch();
     }
 
-    /// Advances both threads. Returns whether one of them holds the lock in a call that does not
-    /// return, and whether that is the main thread.
+    /// Advances both threads. If a thread holds the lock in a call that does not return, returns
+    /// whether it is the main thread.
     fn thread_steps(&mut self) -> Option<bool> {
         if self.driver == Driver::Hangs {
             if let Thread::Serving(request, _) = self.main {

@@ -3,8 +3,8 @@
 //! `cargo run --release -p htex --features audio --example live -- cloth.htex vinyl.htex`
 //!
 //! Right and left: faster and slower. Up and down: more and less force. Space: lift the finger, or
-//! put it down. Tab: fade to the next texture. Q: quit. `--wav FILE` writes four seconds of a
-//! stroke over all textures to a file, and needs neither a sound card nor the feature `audio`.
+//! put it down. Tab: fade to the next texture. Q: quit. `--wav FILE` writes a stroke of four
+//! seconds over all textures to a file. It needs neither a sound card nor the feature `audio`.
 
 mod player;
 #[cfg(feature = "audio")]

@@ -1,4 +1,5 @@
-//! Plays a voice in the audio thread, and fades to another one. Another thread sends it commands.
+//! Plays a voice in the audio thread, and fades to another voice. Another thread sends the
+//! commands.
 
 use std::error::Error;
 use std::path::Path;
@@ -6,15 +7,16 @@ use std::path::Path;
 use htex::{Motion, Texture, Voice, VoiceOptions};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// RMS of a texture at its default condition, relative to full scale.
+/// RMS at which each texture plays its default condition, relative to full scale.
 const LEVEL: f64 = 0.1;
 /// Duration of a fade, seconds.
 const FADE_S: f32 = 0.02;
-/// Largest number of voices that sound at the same time: one, and those that fade out.
+/// Maximum number of voices that sound at the same time: the current voice and the voices fading
+/// out.
 const MOST_TRACKS: usize = 4;
 const BLOCK: usize = 64;
 
-/// What the other thread asks for.
+/// A command from the other thread.
 pub(crate) enum Command {
     Move(Motion),
     Fade(Box<Voice>),
@@ -75,7 +77,7 @@ impl Player {
                 let _ = voice.render(samples);
                 for (sum, sample) in block.iter_mut().zip(samples) {
                     *progress = (*progress + *step).clamp(0.0, 1.0);
-                    // Equal power: textures of one level have this level at any time.
+                    // Equal power: a fade between two textures of the same level keeps this level.
                     *sum += *sample * (std::f32::consts::FRAC_PI_2 * *progress).sin();
                 }
             }
@@ -110,7 +112,7 @@ impl Player {
     }
 }
 
-/// Makes a voice of a texture, at the same level for all textures.
+/// Opens a texture and makes a voice of it. The gain gives all textures the same level.
 pub(crate) fn open(texture: &str, rate_hz: f64) -> Result<Box<Voice>, htex::Error> {
     let texture = Texture::open(texture)?;
     let options = VoiceOptions::default()

@@ -10,7 +10,7 @@ fn texture(name: &str) -> String {
     format!("{}/../../../examples/scenes/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Both textures sound at one level, and the fade between them neither clicks nor drops.
+/// Both textures sound at the same level, and the fade between them neither clicks nor drops.
 #[test]
 fn a_stroke_over_two_textures_is_written() {
     let folder = tempfile::tempdir().unwrap();

@@ -9,8 +9,8 @@ use htex::{Error, Registry, Texture, VoiceOptions};
 /// An id that no built-in model has.
 const ELSEWHERE: &str = "org.example.elsewhere";
 
-/// An asset with an AR and an sBeta representation. The named one gets another id, the smallest
-/// error, and an embedded module.
+/// An asset with an AR and an sBeta representation. The first one gets the id [`ELSEWHERE`], the
+/// smallest error, and an embedded module.
 fn asset() -> Asset {
     let options = SimulationOptions::new(Surface::Sandpaper).with_duration_s(3.0);
     let take = Take {

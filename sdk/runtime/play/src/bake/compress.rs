@@ -1,25 +1,28 @@
-//! Compression of filters: a few filters, of which the filters of all conditions are weighted sums.
+//! Compression of filters: the filter of each condition becomes a weighted sum of a few common
+//! filters.
 //!
 //! The filters of the conditions are projected on the leading eigenvectors of the matrix of their
-//! inner products. These are products of the filters' responses, weighted by the mean of their
-//! inverse power, so that an error counts as much in a faint band as in a loud one. The sum of
-//! projected filters is the projection of their sum, so motions between conditions need no other
+//! inner products. An inner product is the product of two filters' responses, weighted by the mean
+//! inverse power at each frequency. So an error counts as much in a faint band as in a loud one.
+//! Projection is linear, so a motion between conditions can mix the projected filters with the same
 //! formula. Weights and coefficients are stored as 16-bit integers with a scale.
 
 use std::ops::RangeInclusive;
 
 use crate::bake::filter::Design;
 
-/// Power relative to the strongest frequency, below which the weight of a frequency no longer
-/// increases: 20 dB. Of 50, 40, 30, 20 and 10 dB, this value needs the fewest filters.
+/// Floor of the power in the weights, relative to the strongest frequency: 20 dB below it. A
+/// frequency with less power gets no larger weight. Of the floors 50, 40, 30, 20 and 10 dB, this
+/// one needs the fewest filters.
 const FLOOR: f64 = 1e-2;
-/// The search for independent filters ends when only this part of the energy is left.
+/// The search for independent filters ends when at most this part of the energy is left.
 const NOTHING: f64 = 1e-14;
 /// Maximum number of sweeps of rotations. Ten are enough for matrices of this size.
 const SWEEPS: usize = 30;
 const LARGEST: f64 = 32_767.0;
 
-/// Filters, and the weights with which conditions mix them. The most important filter comes first.
+/// Common filters, and the weights with which the conditions mix them. The most important filter
+/// comes first.
 pub(crate) struct Factors {
     /// The weights of each filter, one for each condition.
     weights: Vec<Vec<f64>>,
@@ -30,7 +33,7 @@ pub(crate) struct Factors {
 #[derive(Clone)]
 pub(crate) struct StoredFilters {
     pub(crate) scales: Vec<f32>,
-    /// The weights: for each condition, one for each filter.
+    /// The weights of all filters for the first condition, then for the next condition, and so on.
     pub(crate) weights: Vec<i16>,
     pub(crate) filters: Vec<Vec<i16>>,
 }
@@ -51,9 +54,9 @@ impl Factors {
         };
         let responses = weighted(conditions.iter().map(respond).collect());
         let columns = independent(&responses, most);
-        // The product of the columns with their transpose has the same eigenvalues, but one row for
-        // each condition. The eigenvectors of the large matrix follow from the eigenvectors of this
-        // smaller one.
+        // The product of the columns with their transpose is a large matrix, with one row for each
+        // condition. The product in the other order is small and has the same eigenvalues. The
+        // large matrix's eigenvectors follow from those of the small matrix.
         let (values, vectors) = eigen(products(&columns));
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
@@ -113,15 +116,16 @@ impl StoredFilters {
     }
 }
 
-/// Multiplies responses by the square root of the sum, over all conditions, of their inverse power
-/// at each frequency. The product of two results is then relative to the power there.
+/// Weights the responses at each frequency by the square root of a sum: the inverse power of all
+/// conditions at this frequency. The product of two weighted responses is then relative to the
+/// power at this frequency.
 fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let frequencies = responses.first().map_or(0, Vec::len);
     let mut inverse = vec![0.0; frequencies];
     for response in &responses {
         let most = response.iter().fold(0.0, |most: f64, r| most.max(r * r));
         let pairs = inverse.iter_mut().zip(response);
-        // The second floor is for a frequency at which the whole response is zero.
+        // The second floor avoids a division by zero if the whole response is zero.
         pairs.for_each(|(sum, r)| *sum += 1.0 / (r * r).max(FLOOR * most).max(1e-30));
     }
     for response in &mut responses {
@@ -131,8 +135,8 @@ fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     responses
 }
 
-/// Returns at most `most` columns of a matrix whose product with its transpose equals the products
-/// of the vectors (pivoted Cholesky factors).
+/// Computes the pivoted Cholesky factor of the matrix of the vectors' inner products. Returns its
+/// columns, at most `most`.
 fn independent(vectors: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
     let mut left: Vec<f64> = vectors.iter().map(|v| dot(v, v)).collect();
     let all: f64 = left.iter().sum();
@@ -150,7 +154,7 @@ fn independent(vectors: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
         let column: Vec<f64> = (0..vectors.len()).map(at).collect();
         let pairs = left.iter_mut().zip(&column);
         pairs.for_each(|(left, c)| *left -= c * c);
-        // Rounding may leave a small rest, and the same pivot would be chosen again.
+        // Otherwise a rounding error could remain here, and the same pivot would be chosen again.
         left[pivot] = 0.0;
         columns.push(column);
     }
@@ -195,8 +199,8 @@ fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
                 }
                 rotated = true;
                 let theta = (a[q][q] - a[p][p]) / (2.0 * apq);
-                // Of the two rotations that zero the element, the smaller one makes the sweeps
-                // converge. `signum` is 1 at 0, so equal diagonal elements are rotated too.
+                // Two rotations set the element to zero. The sweeps converge with the smaller
+                // rotation. `signum` is 1 at 0, so this also rotates equal diagonal elements.
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;

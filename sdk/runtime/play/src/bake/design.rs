@@ -25,17 +25,19 @@ const TOLERANCE_DB: f64 = 0.1;
 /// If the tolerance cannot be met, filters may be left out as long as they add at most this error
 /// at a condition, dB.
 const LEFT_OUT_DB: f64 = 0.01;
-/// As [`LEFT_OUT_DB`], for a block that would otherwise take more than [`WANTED_BYTES`].
+/// The same limit as [`LEFT_OUT_DB`], for a block that would otherwise take more than
+/// [`WANTED_BYTES`].
 const MORE_LEFT_OUT_DB: f64 = 0.1;
-/// Target size of a block, bytes. To reach it, accuracy is reduced if it is not within the
-/// tolerance anyway.
+/// Target size of a block, bytes. To reach this size, the accuracy is reduced, but only if it
+/// cannot meet the tolerance anyway.
 const WANTED_BYTES: usize = 16 * 1024;
-/// Largest number of conditions after conditions were inserted between the wanted ones.
+/// Maximum number of conditions, including the conditions inserted between the requested
+/// conditions.
 const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter, in the order in which they are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
-/// Magnitude that one of a million samples of noise exceeds, relative to the level. Determines the
-/// full scale of a block.
+/// Magnitude that about one in a million samples of noise exceeds, relative to the level. It
+/// determines the full scale of a block.
 const CREST: f64 = 5.0;
 
 #[derive(Debug, Clone)]
@@ -45,21 +47,21 @@ pub struct BakeResult {
     /// Number of 32-bit values that the player in C needs for the block, in addition to the struct
     /// `htex_player`.
     pub numbers: usize,
-    /// The conditions of the block: the requested ones, and conditions inserted between them for
-    /// accuracy.
+    /// The conditions of the block: the requested conditions, and conditions inserted between them
+    /// for accuracy.
     pub grid: Grid,
     /// The id of the model that was baked.
     pub model: String,
-    /// The rights of the asset. Source code contains them as comments; a block has no place for
-    /// them.
+    /// Author and licence of the asset. The generated source code states them in comments, because
+    /// a block cannot contain them.
     pub rights: Rights,
     /// Physical quantity of the samples, which determines their unit.
     pub quantity: Quantity,
-    /// The law that the texture follows beyond the grid.
+    /// The scaling law that the texture follows when the motion is beyond the grid.
     pub law: Law,
-    /// Largest level to which the law may raise a level of the grid.
+    /// Ceiling of the level beyond the grid: the scaling law does not raise the level above it.
     pub ceiling: f64,
-    /// A magnitude that samples at the motions of the grid rarely exceed.
+    /// A magnitude that samples rarely exceed while the motion is within the grid.
     pub full_scale: f64,
     /// Rate at which noise or sinusoids are computed, hertz.
     pub internal_rate_hz: f64,
@@ -72,12 +74,13 @@ pub struct BakeResult {
     /// Largest error of the nine bands at the conditions, dB. Only bands within 40 dB of the
     /// strongest one count.
     pub at_conditions_db: f64,
-    /// The same midway between conditions. There the model interpolates parameters, but the player
-    /// mixes filters or sinusoids.
+    /// Largest error of the nine bands midway between conditions, dB. At these motions, the model
+    /// interpolates parameters, but the player mixes filters or sinusoids.
     pub between_db: f64,
-    /// The same at half the lowest speed and at twice the highest one. There the law changes the
-    /// frequencies of the texture, which a filter cannot follow. `None` if the law does not change
-    /// frequencies, and for sinusoids, which follow it.
+    /// Largest error of the nine bands at half the lowest and twice the highest speed of the grid,
+    /// dB. At these speeds, the scaling law changes the frequencies of the texture, but a filter
+    /// cannot change its frequencies. `None` if the law does not change frequencies, and for
+    /// sinusoids, because sinusoids follow the law.
     pub beyond_db: Option<f64>,
     /// Lowest and highest recorded speed, mm/s, if the asset states them.
     pub recorded_speeds_mm_s: Option<(f64, f64)>,
@@ -87,8 +90,8 @@ pub struct BakeResult {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BakeLimits {
-    /// Largest error of the nine bands between conditions, dB. Conditions are inserted until it is
-    /// reached.
+    /// Largest allowed error of the nine bands midway between conditions, dB. Conditions are
+    /// inserted until the error is within this limit, or until there are 64 conditions.
     pub within_db: f64,
     /// Largest number of coefficients of a noise filter, which bounds the time per sample.
     pub longest: usize,
@@ -111,7 +114,7 @@ impl BakeLimits {
         Self { longest, ..self }
     }
 
-    /// Returns how many of the lengths may be tried.
+    /// Returns how many filter lengths may be tried.
     fn lengths(self) -> usize {
         let longest = self.longest.max(Self::FEWEST);
         HALVES.iter().take_while(|half| 2 * **half < longest).count()
@@ -124,10 +127,12 @@ impl From<f64> for BakeLimits {
     }
 }
 
-/// Bakes a representation at the conditions of a grid, to a block that plays at `rate_hz`.
+/// Bakes a representation: converts it to a block for a microcontroller, with the conditions of
+/// `grid` and the sample rate `rate_hz`.
 ///
-/// `limits` may be a number of decibels. Conditions are inserted midway between neighbours until
-/// the error there is within the limits, or until the block has 64 conditions.
+/// `limits` may also be a number: the limit of the error midway between conditions, in decibels.
+/// Conditions are inserted midway between neighbours until the error at all midpoints is within the
+/// limits, or until the block has 64 conditions.
 ///
 /// # Errors
 /// If the asset cannot be played, or if a condition or the rate is out of range.
@@ -148,7 +153,7 @@ pub fn bake(
         // More conditions do not help if the filters themselves are less accurate.
         let reachable_db = within_db.max(1.1 * designed.shape.at_conditions_db);
         let refined = grid.refined(&designed.between, reachable_db);
-        // An axis that is full stays as it is, so a refinement may change nothing.
+        // A full axis is not changed, so the refined grid may be the same.
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
         if between_db <= within_db || is_last {
             return designed.baked(&texture, grid, within_db);
@@ -157,14 +162,14 @@ pub fn bake(
     }
 }
 
-/// What stays the same while conditions are inserted.
+/// State that is kept while conditions are inserted.
 struct Designs {
     designer: Option<Rc<Designer>>,
     /// Number of lengths that may be tried.
     lengths: usize,
     /// Index of the length of the filters.
     length: usize,
-    /// Whether no length is within the tolerance, so that the most accurate one is used.
+    /// Whether no length meets the tolerance, so that the most accurate length is used.
     is_best: bool,
 }
 
@@ -173,7 +178,7 @@ impl Designs {
         Self { designer: None, lengths, length: 0, is_best: false }
     }
 
-    /// Returns the designer for a design; makes a new one if the design has changed.
+    /// Returns the designer for a design. Makes a new designer if the design has changed.
     fn designer(&mut self, design: Design, texture: &Moments<'_>) -> Rc<Designer> {
         match &self.designer {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),
@@ -187,8 +192,8 @@ impl Designs {
         }
     }
 
-    /// Returns the shortest filters within the tolerance, or the most accurate ones if there are
-    /// none.
+    /// Returns the shortest filters that meet the tolerance, or the most accurate filters if none
+    /// meet it.
     fn shape(
         &mut self,
         designer: &Rc<Designer>,
@@ -211,13 +216,14 @@ impl Designs {
             Shape::within(spectra, texture, moments, within_db)
         };
         let mut best: Option<(usize, Shape)> = None;
-        // The grid only grows, and with it the largest error at its conditions. A length that
-        // failed for fewer conditions fails for more, so the search never goes back.
+        // The grid only grows, and the largest error at its conditions grows with it. A length that
+        // failed with fewer conditions also fails with more, so the search never returns to a
+        // shorter length.
         let lengths =
             if self.is_best { self.length..self.length + 1 } else { self.length..self.lengths };
         for length in lengths {
-            // A longer filter is of use only if it is more accurate, so its first worse condition
-            // ends it.
+            // A longer filter is useful only if it is more accurate, so its first worse condition
+            // ends the attempt.
             let least_db = best.as_ref().map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
             let Some(shape) = with(length, least_db)? else {
                 continue;
@@ -265,8 +271,8 @@ impl GridDesign {
             let spectra = Spectra::Tones(tones, random);
             Shape::within(spectra, texture, &moments, f64::INFINITY)?
         } else {
-            // The slowest condition has the closest bins, and they decide how fine the design has
-            // to be.
+            // The bins are closest at the slowest condition. They determine how fine the design
+            // must be.
             let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
             let designer = designs.designer(design, texture);
             Some(designs.shape(&designer, texture, &moments)?)
@@ -353,9 +359,9 @@ impl GridDesign {
         })
     }
 
-    /// Finds the smallest number of filters that are within the tolerance at the conditions and
-    /// within `within_db` between them, or nearly as accurate as all filters. Replaces the shape
-    /// and the errors by theirs.
+    /// Finds the smallest number of filters that meet the tolerance at the conditions and
+    /// `within_db` between them, or that are nearly as accurate as all filters. Stores the shape
+    /// and the errors of these filters.
     fn compress(
         &mut self,
         texture: &Moments<'_>,
@@ -395,11 +401,12 @@ impl GridDesign {
                 }
             }
         }
-        // The last number of filters has no limit, and a filter is never zero.
+        // This is never reached: the last number of filters has no limit, and a filter is never
+        // zero.
         Err(Error::Refused(htex_player::OpenError::Values))
     }
 
-    /// Returns the length of a block with `count` filters that are as long as the stored ones.
+    /// Returns the length of a block with `count` filters as long as the stored filters, bytes.
     fn bytes(&self, grid: &Grid, stored: &StoredFilters, count: usize) -> usize {
         let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
         let conditions = self.moments.len();
@@ -409,14 +416,14 @@ impl GridDesign {
         HEADER + 4 * words + (2 * integers).next_multiple_of(4) + CHECKSUM
     }
 
-    /// Returns the largest level to which the law may raise a level of the grid, in the scale of
-    /// the stored levels.
+    /// Returns the ceiling of the level beyond the grid, in the scale of the stored levels. The
+    /// scaling law does not raise the level above it.
     fn ceiling(&self, texture: &Moments<'_>) -> f64 {
         let stated = self.moments.iter().map(|m| m.level_rms);
         let pairs = self.shape.levels.iter().zip(stated);
         let loudest = pairs.max_by(|a, b| a.0.total_cmp(b.0));
-        // Stored levels include the part beyond the edges of the band, so the ceiling grows with
-        // them.
+        // Stored levels include the part of the spectrum beyond the edges of the band, so the
+        // ceiling is raised by the same factor.
         let raised = loudest.map_or(1.0, |(stored, stated)| stored / stated);
         texture.ceiling_rms() * raised
     }

@@ -8,7 +8,7 @@ use crate::bake::Grid;
 use crate::bake::compress::StoredFilters;
 use crate::bake::interpolator::Interpolator;
 
-/// Duration of a change of motion, seconds.
+/// Duration of the glide to another motion, seconds.
 const GLIDE_S: f64 = 0.020;
 
 /// The content of a block, apart from its grid and its interpolator.

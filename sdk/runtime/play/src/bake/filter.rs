@@ -7,7 +7,8 @@ use htex_host::Band;
 
 use crate::bake::reading::Bands;
 
-/// Number of rounds in which the spectrum of the filter is compared with the wanted one.
+/// Number of rounds in which the filter's spectrum is compared with the wanted spectrum and
+/// corrected.
 const ROUNDS: usize = 80;
 /// The rounds end when the relative correction of every bin is below this.
 const SMALL: f64 = 0.003;
@@ -17,8 +18,8 @@ const CORRECTION: (f64, f64) = (0.05, 20.0);
 const WINDOW: f64 = 2.0;
 /// Largest distance between frequencies at which filters are designed, in bins.
 const SPACING: f64 = 0.25;
-/// Smallest and largest number of these frequencies, powers of two: at least four per coefficient
-/// of the longest filter.
+/// Smallest and largest number of these frequencies. Both are powers of two. The longest filter has
+/// more than three of these frequencies per coefficient.
 const STEPS: (usize, usize) = (2048, 8192);
 
 /// The frequencies at which the filters for one rate are designed and measured, evenly spaced from
@@ -65,7 +66,7 @@ impl Design {
             if !(rms > 0.0 && rms.is_finite()) {
                 break;
             }
-            // Only the shape is compared here. The level is stored apart from the filter.
+            // Only the shape is compared here, because the level is stored separately.
             let unit: Vec<f64> = read.iter().map(|m| m / rms).collect();
             let error_db = wanted.bands.distance_db(wanted.stated, &unit);
             if error_db < best.0 {
@@ -133,7 +134,7 @@ pub(crate) fn energy(side: &[f64]) -> f64 {
     2.0 * sum - side.first().map_or(0.0, |centre| centre * centre)
 }
 
-/// What a filter has to achieve.
+/// The spectrum that a filter must have.
 pub(crate) struct Target<'a> {
     /// Magnitude at the frequencies of the design.
     pub(crate) magnitude: Vec<f64>,
@@ -143,13 +144,13 @@ pub(crate) struct Target<'a> {
     pub(crate) bands: &'a Bands,
 }
 
-/// The bins of a spectrum, at frequencies multiplied by a ratio, as a Hann window measures them
-/// from the response of a filter.
+/// Computes the bins that a Hann window would measure from noise with a filter's response. The
+/// frequencies of the bins are multiplied by a ratio.
 pub(crate) struct Bins {
     first_hz: f64,
     spacing_hz: f64,
     /// For each bin: the first of the design's frequencies that the window reaches, and the weights
-    /// of the power from there on.
+    /// of the power at this and the following frequencies.
     reaches: Vec<(usize, Vec<f64>)>,
 }
 
@@ -167,7 +168,7 @@ impl Bins {
             let lobe = range.map(|i| hann_main_lobe((design.hz(i) - hz) / spacing_hz).powi(2));
             let mut weights: Vec<f64> = lobe.collect();
             // At 0 Hz and at half the rate the lobe is cut off, so the weights are normalised by
-            // what is left.
+            // the sum of the remaining part.
             let scale = density / weights.iter().sum::<f64>();
             weights.iter_mut().for_each(|weight| *weight *= scale);
             (first, weights)
@@ -213,7 +214,8 @@ fn window(half: usize) -> Vec<f64> {
 /// Returns the modified Bessel function of the first kind and order 0, computed by its series.
 pub(crate) fn bessel(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
-    // The largest argument is below 7, for the interpolator's window. Its terms vanish well before.
+    // The largest argument, of the interpolator's window, is below 7. Its terms vanish long before
+    // the last round.
     for k in 1..64 {
         let factor = 0.5 * x / f64::from(k);
         term *= factor * factor;

@@ -5,7 +5,8 @@ use htex_player::layout::{
     LEAST_FORCE_N, MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_ON_AXIS, MOST_SPEED_MM_S,
 };
 
-/// The baked conditions: speeds and forces. A block has a condition for each combination.
+/// The conditions of a baked block: speeds and forces. The block has a condition for each
+/// combination of a speed and a force.
 ///
 /// ```
 /// use htex_play::bake::Grid;
@@ -37,7 +38,7 @@ impl Grid {
     /// Makes a grid from a list of conditions.
     ///
     /// # Errors
-    /// As [`Self::new`], and if a combination of the speeds and forces is missing.
+    /// The errors of [`Self::new`]. Also if a combination of the speeds and forces is missing.
     pub fn from_conditions(at: &[Motion]) -> Result<Self, Error> {
         let grid = Self::new(
             at.iter().map(|m| m.speed_mm_s).collect(),
@@ -59,12 +60,12 @@ impl Grid {
         }
     }
 
-    /// Makes the grid of one condition, the default condition of a representation
-    /// ([`Representation::default_condition`]). If the condition does not state a speed or a force,
-    /// it is 80 mm/s or 0.4 N.
+    /// Makes a grid of a single condition: the default condition of a representation
+    /// ([`Representation::default_condition`]). If the condition does not state a speed, 80 mm/s is
+    /// used. If it does not state a force, 0.4 N is used.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The errors of [`Self::new`].
     pub fn for_default_condition(representation: Representation<'_>) -> Result<Self, Error> {
         Self::from_conditions(&[representation.motion(None, None)])
     }
@@ -79,15 +80,16 @@ impl Grid {
         &self.forces_n
     }
 
-    /// Returns all conditions in the order of a block, in which speeds vary first.
+    /// Returns all conditions in the order of a block, in which the speed varies fastest.
     pub fn motions(&self) -> impl Iterator<Item = Motion> + '_ {
         let at = |force: f64| move |&speed: &f64| Motion::new(speed, force);
         let forces = self.forces_n.iter();
         forces.flat_map(move |&force| self.speeds_mm_s.iter().map(at(force)))
     }
 
-    /// Adds the speeds and forces of those motions whose errors exceed `within_db`. An axis stays
-    /// unchanged if it would get more than 32 values.
+    /// Adds speeds and forces to the grid, and returns the new grid. They are the speeds and forces
+    /// of the motions whose error exceeds `within_db`. An axis stays unchanged if it would get more
+    /// than 32 values.
     pub(crate) fn refined(&self, errors: &[(Motion, f64)], within_db: f64) -> Self {
         let worst = || errors.iter().filter(|(_, error)| *error > within_db);
         let axis = |own: &[f64], more: Vec<f64>| {
@@ -98,7 +100,8 @@ impl Grid {
             all.dedup();
             if all.len() <= MOST_ON_AXIS { all } else { own.to_vec() }
         };
-        // Edges of a cell are refined first, because this can also refine the centre of the cell.
+        // The midpoints of a cell's edges are added first, because they may also reduce the error
+        // at the centre of the cell.
         let on = |axis: &[f64], x: f64| axis.contains(&x);
         let speeds = worst().filter(|(m, _)| on(&self.forces_n, m.force_n));
         let forces = worst().filter(|(m, _)| on(&self.speeds_mm_s, m.speed_mm_s));
@@ -109,8 +112,8 @@ impl Grid {
         if refined != *self {
             return refined;
         }
-        // Only centres of cells are left. With their speeds on the axis they become centres of
-        // edges, to which the next round can add a force.
+        // Only centres of cells are left. Adding their speeds makes them midpoints of edges, for
+        // which the next round can add a force.
         Self {
             speeds_mm_s: axis(&self.speeds_mm_s, worst().map(|(m, _)| m.speed_mm_s).collect()),
             forces_n: self.forces_n.clone(),

@@ -28,8 +28,8 @@ pub(crate) struct Interpolator {
 }
 
 impl Interpolator {
-    /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`. Chooses the lowest
-    /// internal rate that is sufficient.
+    /// Makes an interpolator with the output rate `rate_hz`, for frequencies up to `top_hz`.
+    /// Chooses the lowest internal rate that is sufficient.
     pub(crate) fn new(rate_hz: f64, top_hz: f64) -> Result<Self, Error> {
         // The block stores the rate in single precision, so everything is computed for that rate.
         let rate_hz = f64::from(rate_hz as f32);
@@ -57,7 +57,7 @@ impl Interpolator {
     }
 }
 
-/// Kaiser's estimate of the filter's length, in inputs. A multiple of four.
+/// Returns Kaiser's estimate of the filter's length, in inputs, rounded up to a multiple of four.
 fn row(internal_hz: f64, top_hz: f64) -> usize {
     // The first image of the band begins at the internal rate minus the highest frequency.
     let transition = 2.0 * PI * (internal_hz - 2.0 * top_hz) / internal_hz;
@@ -65,7 +65,8 @@ fn row(internal_hz: f64, top_hz: f64) -> usize {
     (length.ceil() as usize).next_multiple_of(4).min(MOST_ROW)
 }
 
-/// The coefficients of a phase, which is given as the position after an input. Their sum is 1.
+/// Returns the coefficients of a phase. `phase` is the position after an input, from 0 to 1. The
+/// sum of the coefficients is 1.
 fn coefficients(row: usize, phase: f64) -> Vec<f64> {
     // Kaiser's formula for attenuations above 50 dB.
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);

@@ -9,17 +9,17 @@
 //! # Ok::<(), htex_play::Error>(())
 //! ```
 //!
-//! A block for noise contains filters and not models. White noise through a symmetrical filter at a
-//! low rate can have the spectrum of every noise model, and is always stable. A weighted sum of two
-//! filters has the weighted sum of their magnitudes, so the player does not need the formula of any
-//! model.
+//! A block for noise contains filters instead of a model. White noise through a symmetrical filter
+//! at a low rate can have the spectrum of any noise model, and such a filter is always stable. A
+//! weighted sum of two filters has the weighted sum of their responses, so the player does not need
+//! the formula of any model.
 //!
 //! Because mixing is linear, a block stores only a few filters, and each condition mixes them. The
 //! model `bands` on the grid of `tests/it/bake_sizes.rs` takes 16 kB; with one filter in single
 //! precision for each of its 60 conditions it would take 77 kB. A lattice would be cheaper for AR.
-//! But between conditions its spectra would differ from the model's, which interpolates line
-//! spectral frequencies. Where the mixed filters differ from the model by more than `--within`,
-//! conditions are inserted.
+//! But the AR model interpolates line spectral frequencies, so a lattice would have other spectra
+//! between conditions. Where the mixed filters differ from the model by more than the limit in
+//! [`BakeLimits`], conditions are inserted.
 #![forbid(unsafe_code)]
 
 mod compress;

@@ -1,4 +1,5 @@
-//! The texture of a representation at any motion. Motions have the same effects as on a voice.
+//! Computes the spectrum and level of a representation at any motion. A motion has the same effects
+//! as on a voice.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ pub(crate) struct Moments<'a> {
     model: LoadedModel,
     conditions: Conditions,
     bands: Bands,
-    /// Moments that were computed, by the bits of speed and force.
+    /// The moments computed so far. The key is the bits of speed and force.
     known: RefCell<BTreeMap<[u64; 2], Rc<Moment>>>,
 }
 
@@ -82,8 +83,8 @@ impl<'a> Moments<'a> {
         &self.bands
     }
 
-    /// Returns the exponents that are played. An exponent is 0 if the asset does not state the
-    /// speed or the force that it belongs to.
+    /// Returns the exponents of the scaling law that applies. An exponent of the speed is 0 if the
+    /// asset does not state its speeds, and likewise for the force.
     pub(crate) fn law(&self) -> Law {
         let range = self.conditions.range();
         let law = range.law;
@@ -96,7 +97,7 @@ impl<'a> Moments<'a> {
         }
     }
 
-    /// Returns the largest level to which the law may raise recorded levels.
+    /// Returns the ceiling of the level: the scaling law does not raise the level above it.
     pub(crate) fn ceiling_rms(&self) -> f64 {
         let levels = self.representation.data().at.iter().map(|at| at.level_rms);
         CEILING * levels.fold(0.0, f64::max)
@@ -128,7 +129,7 @@ impl<'a> Moments<'a> {
         Ok(moment)
     }
 
-    /// Returns the magnitude at unit RMS at frequencies of the recording, hertz, i.e. before they
+    /// Returns the magnitude at unit RMS. `hz` are frequencies of the recording, i.e. before they
     /// are multiplied by the moment's ratio.
     pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, Error> {
         Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)

@@ -1,4 +1,4 @@
-//! The filters of the conditions. Each is designed only once.
+//! Designs the filters of the conditions, each only once.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -18,9 +18,9 @@ pub(crate) type Filter = Rc<Vec<f64>>;
 pub(crate) struct Designer {
     band: Band,
     design: RefCell<Design>,
-    /// Bins, by the bits of the ratio of their frequencies.
+    /// Bins. The key is the bits of the ratio of their frequencies.
     bins: RefCell<BTreeMap<u64, Rc<Bins>>>,
-    /// Filters, by their length and by everything that determines the spectrum.
+    /// Filters. The key is their length and all values that determine the spectrum.
     filters: RefCell<BTreeMap<(usize, Vec<u64>), Filter>>,
 }
 
@@ -73,16 +73,17 @@ impl Designer {
         Ok(filter)
     }
 
-    /// Returns the magnitude at the bins of unit noise that passes a filter; the frequencies of the
-    /// bins are multiplied by `ratio`.
+    /// Returns the magnitude of filtered white noise of unit variance at the bins. The frequencies
+    /// of the bins are multiplied by `ratio`.
     pub(crate) fn read(&self, side: &[f64], ratio: f64) -> Vec<f64> {
-        // A statement of its own, so that the borrow ends before `bins` needs the design.
+        // This is a separate statement, so that the borrow ends before `bins` needs the design.
         let response = self.design.borrow_mut().response(side);
         self.bins(ratio).read(&response)
     }
 
-    /// Factors the filters of the conditions into at most `most` filters. `slowest` and `fastest`
-    /// are the smallest and the largest factor of the band's frequencies.
+    /// Finds at most `most` common filters, so that each condition's filter is a weighted sum of
+    /// them. `slowest` and `fastest` are the smallest and the largest factor of the band's
+    /// frequencies.
     pub(crate) fn factors(
         &self,
         conditions: &[&[f64]],

@@ -3,7 +3,7 @@
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
 use htex_host::Band;
 
-/// Bands whose energy is this far below the strongest band are not compared: 40 dB.
+/// Bands with less than this part of the strongest band's energy (40 dB below it) are not compared.
 const FAINT: f64 = 1e-4;
 
 /// The nine bands in which spectra are compared.
@@ -15,7 +15,7 @@ impl Bands {
     }
 
     /// Returns the largest error of the nine bands, dB. Only bands within 40 dB of the strongest
-    /// one count.
+    /// band count.
     pub(crate) fn distance_db(&self, reference: &[f64], read: &[f64]) -> f64 {
         let [reference, read] = [reference, read].map(|magnitude| self.0.energies(magnitude));
         let strongest = reference.iter().copied().fold(0.0, f64::max);

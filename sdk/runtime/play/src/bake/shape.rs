@@ -11,14 +11,15 @@ use crate::bake::moments::{Moment, Moments};
 use crate::bake::noise::{Designer, Filter};
 use crate::bake::tones::{self, Tone};
 
-/// Factor by which speeds are lower and higher than the grid, for the error beyond it.
+/// The error beyond the grid is computed at the lowest speed divided by this factor, and at the
+/// highest speed times this factor.
 const BEYOND: f64 = 2.0;
 
 /// The spectra and levels of the conditions of a grid.
 pub(crate) struct Shape {
     pub(crate) spectra: Spectra,
-    /// The level of each condition as it is stored: the level of the whole spectrum, including the
-    /// part beyond the edges of the band.
+    /// The level of each condition, as the block stores it: the level of the whole spectrum,
+    /// including the part beyond the edges of the band.
     pub(crate) levels: Vec<f64>,
     /// Largest error of the nine bands at the conditions, dB.
     pub(crate) at_conditions_db: f64,
@@ -32,8 +33,8 @@ pub(crate) enum Spectra {
 }
 
 impl Spectra {
-    /// Returns the magnitude on the band's grid, at unit power, of conditions that are mixed in
-    /// equal parts, as the player mixes them.
+    /// Mixes conditions in equal parts, as the player does, and returns the magnitude on the band's
+    /// frequency grid, at unit power.
     fn read(&self, mixed: &[usize], texture: &Moments<'_>, ratio: f64) -> Vec<f64> {
         let part = 1.0 / mixed.len() as f64;
         match self {
@@ -115,8 +116,8 @@ impl Shape {
     }
 
     /// Returns the largest error of the nine bands, dB, at half the lowest speed of the grid and at
-    /// twice the highest one. There the level follows the law of the texture, but the player keeps
-    /// the spectrum of the nearest condition.
+    /// twice the highest one. At these speeds, the level follows the texture's scaling law, but the
+    /// player keeps the spectrum of the nearest condition.
     pub(crate) fn beyond_db(&self, texture: &Moments<'_>, grid: &Grid) -> Result<f64, Error> {
         let law = texture.law();
         let last = grid.speeds_mm_s().len() - 1;
@@ -132,8 +133,8 @@ impl Shape {
         Ok(largest)
     }
 
-    /// Returns the error of the nine bands, dB, at a motion for which conditions are mixed in equal
-    /// parts.
+    /// Returns the error of the nine bands, dB, at a motion for which the player mixes conditions
+    /// in equal parts.
     fn error_db(
         &self,
         texture: &Moments<'_>,

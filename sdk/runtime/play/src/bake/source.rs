@@ -1,4 +1,4 @@
-//! Blocks as source code in C and Rust.
+//! Writes blocks as source code in C and Rust.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use crate::bake::BakeResult;
 /// Number of bytes per line.
 const IN_LINE: usize = 16;
 
-/// Begins names that would otherwise begin with a digit or be a keyword.
+/// Prefix of names that would otherwise begin with a digit or be a reserved word.
 const PREFIX: &str = "texture_";
 
 /// Reserved words, which an array in C or C++ cannot have as its name.
@@ -109,8 +109,8 @@ const RESERVED: &[&str] = &[
     "xor_eq",
 ];
 
-/// Returns the name of an array in C and C++ for the stem of a file name ([`is_c_name`]). Characters
-/// that are not allowed become underscores, never two in a row.
+/// Converts the stem of a file name to a valid name of an array in C and C++ ([`is_c_name`]).
+/// Characters that are not allowed become underscores, but never two underscores in a row.
 ///
 /// ```
 /// assert_eq!(htex_play::bake::c_name("my--texture"), "my_texture");
@@ -122,7 +122,7 @@ pub fn c_name(stem: &str) -> String {
     if is_c_name(&name) { name } else { format!("{PREFIX}{name}") }
 }
 
-/// Returns the name of a constant in Rust for the stem of a file name.
+/// Converts the stem of a file name to the name of a constant in Rust.
 ///
 /// ```
 /// assert_eq!(htex_play::bake::rust_name("my-texture"), "MY_TEXTURE");
@@ -131,8 +131,8 @@ pub fn rust_name(stem: &str) -> String {
     identifier(stem).to_ascii_uppercase()
 }
 
-/// Returns whether an array in C and C++ may have this name: a letter, then letters, digits and
-/// underscores, and not a keyword.
+/// Returns whether an array in C and C++ may have this name. A name is a letter, followed by
+/// letters, digits and single underscores. It must not be a reserved word, such as a keyword.
 ///
 /// ```
 /// assert!(htex_play::bake::is_c_name("felt2"));
@@ -165,9 +165,9 @@ pub fn is_rust_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(is_capital)
 }
 
-/// Returns a C header that defines a block as an array of bytes with this name. The macro
-/// `NAME_NUMBERS`, with the name in capitals, is the number of values that its player needs.
-/// Comments state the author and the licence.
+/// Returns a C header that defines a block as an array of bytes with this name. It also defines the
+/// macro `NAME_NUMBERS`, with `NAME` in capitals: the number of values that a player of this block
+/// needs. Comments state the author and the licence.
 pub fn c_header(name: &str, baked: &BakeResult) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();
@@ -206,8 +206,8 @@ fn lines(bytes: &[u8]) -> String {
     text
 }
 
-/// Returns an identifier for C and Rust. Characters that are not allowed become underscores, never
-/// two in a row.
+/// Returns an identifier for C and Rust. Characters that are not allowed become underscores, but
+/// never two underscores in a row.
 fn identifier(stem: &str) -> String {
     let mut name = String::new();
     for c in stem.chars() {

@@ -1,4 +1,4 @@
-//! The sinusoids of a model whose sound is a sum of sines.
+//! Finds the sinusoids of a model that renders a sum of sinusoids.
 
 use std::rc::Rc;
 
@@ -16,9 +16,10 @@ const SAME_HZ: f64 = 0.01;
 /// A frequency in hertz, and an amplitude in any scale.
 pub(crate) type Tone = (f64, f64);
 
-/// Returns the sinusoids of all conditions, the same number for each, and whether their phases are
-/// random. If conditions have the same number of sinusoids, these are matched by index, as in the
-/// model. Otherwise they are matched by frequency, and a missing sinusoid gets zero amplitude.
+/// Returns the sinusoids of each condition, and whether their phases are random. All conditions get
+/// the same number of sinusoids. If they already have the same number, the sinusoids are matched by
+/// index, as in the model. Otherwise they are matched by frequency, and a missing sinusoid gets
+/// zero amplitude.
 pub(crate) fn tones_of(
     moments: &[Rc<Moment>],
     band: Band,
@@ -38,8 +39,8 @@ pub(crate) fn tones_of(
     }
 }
 
-/// Returns the magnitude on the band's grid of sinusoids whose frequencies are divided by `ratio`,
-/// as a Hann window measures it.
+/// Returns the magnitude of a sum of sinusoids on the band's frequency grid, as a Hann window
+/// measures it. The frequencies of the sinusoids are first divided by `ratio`.
 pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
     let at = |hz: f64| {
         let seen = tones.iter().map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
@@ -53,7 +54,7 @@ pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
 fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
     let (&count, rest) = moment.parameters.split_first()?;
     let (frequencies, rest) = rest.split_at_checked(count as usize)?;
-    // Each list comes after its length, and both have the same one.
+    // Each list comes after its length, and both lists have the same length.
     let (amplitudes, rest) = rest.get(1..)?.split_at_checked(count as usize)?;
     let tone = |(&hz, &amplitude): (&f64, &f64)| {
         if band.contains(hz) { (hz * moment.ratio, amplitude) } else { (hz * moment.ratio, 0.0) }

@@ -7,8 +7,8 @@ use super::ON_SIDE;
 /// Largest coordinate, so that all computed numbers stay finite.
 const FAR: f64 = 1e100;
 
-/// Maps speeds or forces to coordinates, relative to the largest recorded one. Coordinates ascend
-/// with the value, and are constant across values that count as equal.
+/// Maps speeds or forces to coordinates, relative to the largest recorded value. Coordinates ascend
+/// with the value. Values that count as equal have the same coordinate.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     groups: Vec<Group>,
@@ -24,8 +24,8 @@ struct Group {
 }
 
 impl Axis {
-    /// Makes an axis from one or more recorded values, none negative. If `merged` is true, values
-    /// that are equal within the tolerance share a coordinate.
+    /// Makes an axis from one or more recorded values, which must not be negative. If `merged` is
+    /// true, values that are equal within the tolerance share a coordinate.
     pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
         htex_dsp::order::sort_by(&mut values, f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
@@ -47,9 +47,8 @@ impl Axis {
         Self { groups, scale }
     }
 
-    /// Returns the speed or force at a coordinate. Where several values share the coordinate, it
-    /// returns the one nearest to `x`; beyond the recorded values, it returns the last recorded
-    /// one.
+    /// Returns the speed or force at a coordinate. If several values share the coordinate, returns
+    /// the value nearest to `x`. Beyond the recorded values, returns the last recorded value.
     pub(super) fn value(&self, place: f64, x: f64) -> f64 {
         let is_at = |group: &&Group| (group.place - place).abs() <= ON_SIDE;
         if let Some(group) = self.groups.iter().find(is_at) {

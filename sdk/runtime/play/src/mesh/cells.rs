@@ -1,11 +1,11 @@
-//! Chooses one triangulation where there are several: when conditions lie on one circle, as the
-//! corners of a grid's cell do.
+//! Chooses one triangulation where several are possible. This happens if conditions lie on one
+//! circle, like the four corners of a cell in a grid.
 //!
 //! Four points on a circle have two Delaunay triangulations. The edge between two triangles is
 //! undecided if the two angles opposite to it sum to half a turn. Triangles joined by undecided
-//! edges form one cell, and the cell is divided into a fan from its first condition. The angles
-//! depend neither on the order of the conditions nor on which of the triangulations was found, so
-//! the result does not either.
+//! edges form one cell, which is divided into a fan from its first condition. The result depends
+//! neither on the order of the conditions nor on which triangulation was found first, because the
+//! angles do not depend on them.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,7 @@ use htex_dsp::order;
 
 use super::area;
 
-/// Largest deviation of the sum of two opposite angles from half a turn, radians, that counts as
-/// rounding.
+/// The sum of two opposite angles counts as half a turn if it deviates by at most this, radians.
 const ON_CIRCLE: f64 = 1e-9;
 
 /// Corners of a triangle, counterclockwise.
@@ -24,7 +23,7 @@ type Corners = [usize; 3];
 /// ascending order of their first coordinate, then their second.
 ///
 /// A cell keeps its triangles if a fan would turn one of them over. This occurs only on the hull,
-/// where rounding bends a line, and such triangles are not used for interpolation.
+/// where rounding bends a line. Such triangles are not used for interpolation.
 pub(super) fn fanned(triangles: &[Corners], places: &[[f64; 2]]) -> Vec<Corners> {
     let mut fanned = Vec::with_capacity(triangles.len());
     for cell in cells(triangles, places).into_values() {
@@ -72,8 +71,8 @@ fn edges([a, b, c]: Corners) -> [[usize; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-/// Returns each edge that two triangles share. Each of the two entries holds the edge in its
-/// triangle's direction, and the index of the triangle.
+/// Returns each edge that two triangles share, as two entries, one for each triangle. An entry
+/// holds the edge in the direction of its triangle, and the index of the triangle.
 fn neighbours(triangles: &[Corners]) -> Vec<[([usize; 2], usize); 2]> {
     let directed = |(i, corners): (usize, &Corners)| edges(*corners).map(|edge| (edge, i));
     let mut all: Vec<_> = triangles.iter().enumerate().flat_map(directed).collect();
@@ -94,13 +93,13 @@ fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
     };
     let (sin_a, cos_a) = angle(opposite[0], edge);
     let (sin_b, cos_b) = angle(opposite[1], [edge[1], edge[0]]);
-    // Sine and cosine of the sum of the angles, both times the same lengths, which cancel below.
-    // The cosine is negative near half a turn.
+    // Sine and cosine of the sum of the angles, both multiplied by the same lengths, which cancel
+    // below. The cosine is negative near half a turn.
     let (sin, cos) = (sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b);
     sin.abs() <= -ON_CIRCLE * cos
 }
 
-/// Returns the fan of a cell; `None` if one of its triangles would be turned over.
+/// Returns the fan of a cell, or `None` if one of the fan's triangles would be turned over.
 fn fan(cell: impl Iterator<Item = Corners>, places: &[[f64; 2]]) -> Option<Vec<Corners>> {
     let all: Vec<[usize; 2]> = cell.flat_map(edges).collect();
     let mut inner: Vec<[usize; 2]> = all.iter().map(|[a, b]| [*b, *a]).collect();

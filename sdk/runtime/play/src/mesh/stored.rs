@@ -1,5 +1,5 @@
-//! A mesh from the triangles that an asset stores, after [`htex_format::check_triangles`] accepted
-//! them.
+//! Makes a mesh from the triangles that an asset stores. [`htex_format::check_triangles`] must have
+//! accepted them.
 
 use std::collections::BTreeSet;
 

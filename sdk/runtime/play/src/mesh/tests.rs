@@ -51,7 +51,7 @@ fn a_triangle_beside_two_edges_belongs_to_the_first() {
     }
 }
 
-/// Conditions that are equal within the tolerance are each still reproduced.
+/// If conditions are equal within the tolerance, each condition is still reproduced.
 #[test]
 fn conditions_that_are_the_same_stay_apart() {
     let points = [[40.0, 0.4], [80.0, 0.4], [80.1, 0.41], [80.0, 0.405]];
@@ -88,7 +88,8 @@ fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     ]
 }
 
-/// On a line that is not parallel to an axis, rounding moves conditions to either side.
+/// On a line that is not parallel to an axis, rounding moves conditions to one or the other side of
+/// the line.
 #[test]
 fn conditions_on_a_slanted_line_are_each_met() {
     for steep in [-0.019, 0.011, 1.1] {
@@ -101,7 +102,8 @@ fn conditions_on_a_slanted_line_are_each_met() {
 }
 
 /// The time for many conditions grows nearly in proportion to their number. Without the chosen
-/// order each of these takes from 5 s to a minute, and with it a few tenths of a second.
+/// order, each arrangement takes from 5 s to a minute. With this order, each takes a few tenths of
+/// a second.
 #[test]
 fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
     let count = 40_000;
@@ -113,7 +115,7 @@ fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
     }
 }
 
-/// Each point that is inserted into a line is compared with all points on it.
+/// A point that is inserted into a line is compared with all points on the line.
 #[test]
 fn of_many_places_three_that_span_a_triangle_go_first() {
     for (what, places) in many(2_000) {
@@ -131,9 +133,9 @@ fn of_many_places_three_that_span_a_triangle_go_first() {
     }
 }
 
-/// A square, four corners of a slanted square, and eight conditions on a circle. Each has several
-/// Delaunay triangulations; the mesh uses the fan from the condition with the least speed, then the
-/// least force.
+/// A square, four corners of a slanted square, and eight conditions on a circle. Each arrangement
+/// has several Delaunay triangulations. The mesh uses the fan from the condition with the lowest
+/// speed and, among these, the lowest force.
 #[test]
 fn conditions_on_a_circle_are_fanned_from_the_lowest() {
     let square: &[[f64; 2]] = &[[150.0, 0.8], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
@@ -161,7 +163,7 @@ fn halves(mesh: &Mesh, [speed, force]: [f64; 2], conditions: [usize; 2]) {
 }
 
 /// The mesh uses the stored diagonal instead of the Delaunay diagonal, and merges no equal values.
-/// Outside, the nearest point of an outer edge plays.
+/// A motion outside plays as at the nearest point of an outer edge.
 #[test]
 fn stored_triangles_replace_those_that_are_found() {
     let square = [[40.0, 0.4], [40.0, 1.2], [160.0, 1.2], [160.0, 0.4]];
@@ -181,7 +183,7 @@ fn stored_triangles_replace_those_that_are_found() {
     assert!(Mesh::with_triangles(&square, &[[0, 1, 3]]).is_err());
 }
 
-/// Speeds or forces, each a few tenths above the previous one.
+/// Makes speeds or forces, each a few tenths above the previous value.
 fn axis(
     count: impl Into<proptest::collection::SizeRange>,
     from: f64,
@@ -193,7 +195,7 @@ fn axis(
     })
 }
 
-/// Conditions as a protocol intends them: lines parallel to an axis, other lines, and grids.
+/// Makes conditions as a protocol plans them: lines parallel to an axis, other lines, and grids.
 fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let across =
         (axis(2..=6usize, 10.0), 0.1..0.4, 0.5..1.0f64).prop_map(|(speeds, low, steep)| {
@@ -207,8 +209,8 @@ fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop_oneof![1 => across, 3 => grid]
 }
 
-/// Conditions that a moving hand reached, within 1 % of the intended ones, and their levels: powers
-/// of speed and force, within 0.5 dB.
+/// Makes conditions that a moving hand reached, within 1 % of the planned conditions. Their levels
+/// are powers of speed and force, within 0.5 dB.
 fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     let scattered = meant().prop_flat_map(|points| {
         let near = |[v, f]: [f64; 2]| [v * 0.99..v * 1.01, f * 0.99..f * 1.01];
@@ -226,8 +228,8 @@ fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     })
 }
 
-/// Intended or measured conditions, some of them repeated within the tolerance, in their own order
-/// and in another.
+/// Makes planned or measured conditions, some of them repeated within the tolerance. Also makes
+/// another order of the same conditions.
 fn in_two_orders() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<usize>)> {
     let points = prop_oneof![meant(), measured().prop_map(|(points, _)| points)];
     points.prop_flat_map(|points| {
@@ -271,8 +273,8 @@ proptest! {
         }
     }
 
-    /// For all measured lines and grids: the mesh reproduces each condition, gives it most of the
-    /// weight close to it, and has continuous weights.
+    /// For all measured lines and grids, the mesh reproduces each condition. Close to a condition,
+    /// this condition has most of the weight. The weights are continuous.
     #[test]
     fn measured_conditions_are_met_and_nothing_jumps(
         (points, levels) in measured(), places in motions(),
@@ -301,7 +303,8 @@ proptest! {
     }
 
     /// The triangles that a mesh finds are valid as stored triangles, and give the same weights in
-    /// any stored order. At each condition only its own weight is not zero, and no weight jumps.
+    /// any stored order. At each condition, only this condition's weight is not zero. No weight
+    /// jumps.
     #[test]
     fn found_triangles_can_be_stored((points, order) in in_two_orders(), places in motions(), turn in any::<bool>()) {
         let (axes, coordinates) = triangulation::placed(&points, false);

@@ -73,8 +73,8 @@ fn are_apart(places: &[[f64; 2]]) -> bool {
 }
 
 type Triangles = (Vec<Face>, Vec<[usize; 2]>);
-/// A triangulation with a hierarchy of hints, which makes the time to locate a point logarithmic in
-/// the number of points.
+/// A triangulation with a hierarchy of hints. The hints make the time to locate a point logarithmic
+/// in the number of points.
 type Delaunay = DelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
 /// Largest distance from a line that counts as rounding, relative to the largest speed and force.
@@ -82,12 +82,12 @@ const ROUNDING: f64 = 1e-9;
 /// Largest number of points that are inserted in ascending order.
 const FEW: usize = 1000;
 
-/// Returns the order in which to insert the points; `None` if all lie on the given line.
+/// Returns the order in which to insert the points, or `None` if all points lie on the given line.
 ///
-/// Inserting a point into a line takes time proportional to the number of points on it. For many
-/// points, three that span a triangle are therefore inserted first, and the others follow in
-/// pseudo-random order: an insertion then changes six triangles on average. In other orders it may
-/// change all of them.
+/// Inserting a point into a line takes time proportional to the number of points on it. Therefore,
+/// if there are many points, three points that span a triangle come first, and the others follow in
+/// pseudo-random order. An insertion then changes six triangles on average. In another order it may
+/// change all triangles.
 pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
     let distance = |i: usize| line.distance2(places[i]);
     let farthest = (0..places.len()).max_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
@@ -112,7 +112,7 @@ fn scattered(i: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Returns the triangles and the edges of the hull; `None` if the points do not span a triangle.
+/// Returns the triangles and the edges of the hull, or `None` if the points do not span a triangle.
 fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     let mut mesh = Delaunay::new();
     let mut index = Vec::new();
@@ -139,8 +139,8 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     (!faces.is_empty()).then_some((faces, edges))
 }
 
-/// Returns the line between the two extreme points, with the conditions on it; `None` if all points
-/// are equal.
+/// Returns the line between the two extreme points, with the conditions on it. Returns `None` if
+/// all points are equal.
 pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     let spread = |axis: usize| {
         let [low, high] = places
@@ -172,8 +172,8 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     Some(side)
 }
 
-/// Assigns the narrow triangles at a side to that side, one after another, together with their
-/// conditions.
+/// Finds the narrow triangles along a side, one after another, and assigns them and their
+/// conditions to this side.
 fn take_slivers(
     index: usize,
     side: &mut Side,
@@ -182,7 +182,8 @@ fn take_slivers(
     places: &[[f64; 2]],
 ) {
     let ends = side.conditions.iter().copied().zip(side.feet.iter().copied());
-    // The conditions that follow along the side, the next one last.
+    // The conditions that still follow along the side, in reverse order: the next condition is the
+    // last element.
     let mut ahead: Vec<(usize, f64)> = ends.rev().collect();
     let mut behind: Vec<(usize, f64)> = ahead.pop().into_iter().collect();
     while let (Some(from), Some(to)) = (behind.last(), ahead.last()) {

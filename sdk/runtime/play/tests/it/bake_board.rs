@@ -1,5 +1,5 @@
-//! Blocks of all models give the same samples on an emulated Cortex-M4F, in Rust and in C, as on
-//! the host.
+//! Blocks of all models give the same samples on the host and on an emulated Cortex-M4F, in Rust
+//! and in C.
 
 use crate::bake_common as common;
 use crate::compilers;
@@ -21,7 +21,8 @@ use xtask::needs::{ARM_GCC, BARE_TARGET, CC, Need, QEMU_ARM};
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// Largest size of the C program with the player in flash memory, bytes.
 const MOST_FLASH: u64 = 20 * 1024;
-/// Largest number of instructions per sample at 8 kHz: a tenth of a processor with 168 MHz.
+/// Largest number of instructions per sample at 8 kHz: a tenth of the time of a processor with 168
+/// MHz.
 const MOST_INSTRUCTIONS: u64 = 2100;
 
 fn has_target() -> bool {
@@ -114,7 +115,8 @@ fn a_cortex_m4f_returns_the_bits_of_the_host() {
     }
 }
 
-/// The linker keeps everything that a program may reach. It kept no panic, so none can be reached.
+/// The linker keeps all code that a program may reach. It kept no panic, so the program cannot
+/// panic.
 #[test]
 fn no_panic_is_reachable_on_the_board() {
     if !all_met(&[(&BARE_TARGET, has_target()), (&ARM_GCC, has("arm-none-eabi-gcc"))]) {
@@ -140,8 +142,8 @@ fn a_damaged_block_is_an_error_on_the_board() {
     assert!(output.contains("error: the checksum"), "{output}");
 }
 
-/// Motions within and beyond the conditions, of a finger at rest, and implausible ones, for blocks
-/// of all models.
+/// Returns cases for blocks of all models: motions within and beyond the conditions, a finger at
+/// rest, and implausible motions.
 fn cases() -> Vec<Case> {
     let motions =
         [(80.0, 0.4), (55.5, 0.25), (0.0, 0.0), (101.25, 0.5), (1e6, 100.0), (-60.0, 0.3)];

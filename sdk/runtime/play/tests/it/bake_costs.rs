@@ -1,5 +1,5 @@
-//! The instructions and the memory that a block takes on a Cortex-M4F, for all models and all
-//! surfaces of the simulator, as `docs/microcontroller.md` states them.
+//! Tests that `docs/microcontroller.md` states the instructions and the memory that a block takes
+//! on a Cortex-M4F, for all models and all surfaces of the simulator.
 
 use crate::bake_common as common;
 use crate::compilers;
@@ -17,11 +17,11 @@ use xtask::needs::{ARM_GCC, QEMU_ARM};
 
 const PAGE: &str = "docs/microcontroller.md";
 const RATE_HZ: f64 = 8_000.0;
-/// The surface for which the page states all costs.
+/// The surface for which `docs/microcontroller.md` states all costs.
 const TOLD: Surface = Surface::CoarseFabric;
 /// Largest number of instructions per sample.
 const MOST: u32 = 700;
-/// Largest number of instructions for a motion that is set again.
+/// Largest number of instructions to set the same motion again.
 const MOST_AGAIN: u32 = 80;
 /// Relative difference that other versions of the compiler may have.
 const TOLERANCE: f64 = 0.05;
@@ -54,7 +54,7 @@ impl Cost {
 
 type Row = (&'static str, BakeResult, Cost);
 
-/// Costs of the blocks of all models of a surface, on the grid of the page.
+/// Returns the costs of the blocks of all models for a surface, on the grid that the page states.
 fn costs(surface: Surface) -> Vec<Row> {
     let name = format!("cost-{surface}");
     let ram = "-Wl,--defsym=ram=128K";

@@ -1,5 +1,5 @@
-//! The C examples and the layouts for the build systems of microcontrollers, with the example
-//! block.
+//! Builds the C examples, and the folders for the build systems of microcontrollers, with the
+//! example block.
 
 use crate::bake_common as common;
 use crate::compilers;
@@ -103,8 +103,8 @@ fn the_sketch_plays_with_a_stub_of_arduino() {
     assert_eq!(output, lines.collect::<String>());
 }
 
-/// The lines of `docs/microcontroller.md` compile and play. Their includes are put before a
-/// function, the rest into it.
+/// The code lines of `docs/microcontroller.md` compile and play. The test puts their includes
+/// before a function, and the other lines into it.
 #[test]
 fn the_lines_of_the_page_play() {
     if !CC.met(has("cc")) {

@@ -19,7 +19,7 @@ const RATE_HZ: f64 = 8_000.0;
 const SECONDS: f64 = 400.0;
 /// Largest error of a band, dB. Measured over 400 s, the lowest bands of a voice scatter by 0.1 dB.
 const WITHIN_DB: f64 = 0.3;
-/// Bands whose energy is this far below the strongest band are not compared: 40 dB.
+/// Bands with less than this part of the strongest band's energy (40 dB below it) are not compared.
 const FAINT: f64 = 1e-4;
 
 fn energies(samples: Vec<f32>) -> Vec<f64> {
@@ -50,7 +50,7 @@ fn of_player(block: &[u8], motion: Motion) -> Vec<f64> {
     energies(samples)
 }
 
-/// Largest error among the bands within 40 dB of the strongest one, dB.
+/// Returns the largest error among the bands within 40 dB of the strongest band, dB.
 fn largest_db(host: &[f64], player: &[f64]) -> f64 {
     let strongest = host.iter().copied().fold(0.0, f64::max);
     let errors = band_error_db(host, player).into_iter().zip(host);

@@ -7,7 +7,7 @@ const RATES_HZ: [f64; 8] =
     [2_000.0, 2_050.0, 2_200.0, 2_400.0, 2_500.0, 4_000.0, 8_000.0, 44_100.0];
 const SECONDS: f64 = 20.0;
 
-/// An AR texture with a resonance at a frequency, two bins wide.
+/// Makes an AR texture with a resonance at `hz`, two bins wide.
 fn resonance(hz: f64) -> Texture {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../examples/scenes/vinyl.htex");
     let mut data = Texture::open(file).unwrap().data().clone();
@@ -49,8 +49,8 @@ fn a_filter_has_one_level_at_all_rates() {
 /// Sample rates at which noise has components at other frequencies than at 2 kHz.
 const LOW_RATES_HZ: [f64; 7] = [2_000.0, 2_001.0, 2_050.0, 2_100.0, 2_200.0, 2_300.0, 2_399.0];
 
-/// A spectrum with most of its power at the lower edge of the band. The bins of the band read the
-/// same level; the total differs a little, most for MFCC.
+/// The spectrum has most of its power at the lower edge of the band. The bins of the band read the
+/// same level. The total level differs a little, most for MFCC.
 #[test]
 fn steep_noise_has_one_level_at_low_rates() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../examples/scenes/vinyl.htex");

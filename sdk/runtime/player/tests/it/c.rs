@@ -1,6 +1,6 @@
-//! The player in C renders the same bits as this crate's player, and refuses the same blocks: on
-//! this machine, on emulated boards, and for hostile blocks, where it neither reads nor writes
-//! beyond its memory.
+//! The player in C renders the same bits as this crate's player, and refuses the same blocks, on
+//! this machine and on emulated boards. With hostile blocks, it neither reads nor writes beyond its
+//! memory.
 
 use crate::common::cases;
 use crate::common::compilers;
@@ -12,7 +12,7 @@ use htex_player::Block;
 use stream::{Case, Step};
 use xtask::needs::{ARM_GCC, CC, CLANG, QEMU_ARM, QEMU_RISCV, RISCV_GCC, SANITIZERS, XTENSA_GCC};
 
-/// The blocks of `spec/baked-conformance`, and what is done with them.
+/// Returns the blocks of `spec/baked-conformance`, and the calls that the test makes with them.
 fn conformance() -> Vec<Case> {
     let both = cases::blocks_and_steps().into_iter().flat_map(|(block, steps)| {
         [false, true].map(|are_integers| Case {
@@ -61,8 +61,8 @@ fn clang_makes_the_bits_of_the_specification() {
     }
 }
 
-/// With this option clang ignores what a source file says about fusing, and the file cannot detect
-/// the option.
+/// With this option, clang ignores what a source file says about fusing operations, and the file
+/// cannot detect the option.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn a_player_that_was_compiled_to_fuse_opens_no_block() {

@@ -1,4 +1,5 @@
-//! `spec/baked-conformance`: blocks, and what a player renders for them or why it refuses them.
+//! Tests the blocks of `spec/baked-conformance`: a player renders the listed samples, or refuses a
+//! block for the listed reason.
 
 use crate::common::cases;
 

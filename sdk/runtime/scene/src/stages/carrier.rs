@@ -20,7 +20,7 @@ fn need(required: &Requirements) -> Need {
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let carrier_hz = required.device.carrier_hz.filter(|_| !neutral).unwrap_or(0.0);
     let cycles = carrier_hz / required.rate_hz;
-    // A phase in 64-bit fixed point does not drift.
+    // The phase is in 64-bit fixed point, so it does not drift.
     let step = (cycles.fract() * 2f64.powi(64)) as u64;
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * cycles);
     Box::new(Carrier { step, turn: [cos, sin], phase: 0, at: [1.0, 0.0], left: RENEW })

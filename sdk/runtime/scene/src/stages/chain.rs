@@ -1,7 +1,7 @@
-//! A chain of stages, with counts and times for each.
+//! A chain of stages, with counts and times for each stage.
 //!
-//! Stages pull: a stage requests the samples it needs from its source. A rate converter is
-//! therefore a stage like any other, and the samples are the same for all block sizes.
+//! A stage requests the samples it needs from its source. So a rate converter is a stage like any
+//! other, and the samples are the same for all block sizes.
 
 use std::time::Instant;
 
@@ -22,12 +22,12 @@ pub(crate) struct Slot {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageRun {
     pub name: &'static str,
-    /// The stage's surface; `None`: all surfaces.
+    /// The surface that the stage belongs to. `None` for all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Number of blocks it processed.
+    /// Number of blocks that the stage processed.
     pub blocks: u64,
-    /// Run time, nanoseconds per sample of the device; `None` if not measured.
+    /// Run time, nanoseconds per sample of the device. `None` if not measured.
     pub ns_per_sample: Option<f64>,
 }
 
@@ -64,7 +64,8 @@ impl Slot {
         self.stage.count(statistics);
     }
 
-    /// Returns statistics after rendering; with times if `timed_frames` gives the number of frames.
+    /// Returns the stage's statistics after rendering. They include the time if `timed_frames`
+    /// gives the number of frames.
     pub(crate) fn run(&self, timed_frames: Option<u64>) -> StageRun {
         StageRun {
             name: self.name,
@@ -75,7 +76,7 @@ impl Slot {
     }
 }
 
-/// A chain of stages. The last one produces the output.
+/// A chain of stages. The last stage produces the output.
 #[derive(Default)]
 pub(crate) struct Chain {
     pub(crate) slots: Vec<Slot>,

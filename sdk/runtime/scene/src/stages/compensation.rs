@@ -1,6 +1,6 @@
 //! Compensates the response of finger and display, so that the friction on the finger has the
-//! texture's spectrum. The gain is 1/|H| where |H| is large; the depth below the maximum in the
-//! band limits it.
+//! texture's spectrum. The gain is 1/|H| where |H| is large. The depth of the compensation limits
+//! it where |H| is small.
 
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;
@@ -10,7 +10,8 @@ use crate::file::Effect;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// Frequency resolution of the filter, hertz: its length is four periods of this frequency.
+/// Frequency resolution of the filter, hertz. The filter is as long as four periods of this
+/// frequency.
 const RESOLUTION_HZ: f64 = 20.0;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -43,7 +44,8 @@ fn build(
 ) -> Result<Box<dyn Stage>, UnusableRates> {
     let fir = match &required.compensation {
         Some(inverse) if !neutral => {
-            // The filter runs before the resampler, which reads `fixed_ratio` times as fast.
+            // The filter runs before the resampler, which reads the samples `fixed_ratio` times as
+            // fast.
             let rate_hz = played.mix_rate_hz * played.fixed_ratio;
             Fir::with_magnitude(taps(played), rate_hz, |hz| inverse.gain_at(hz))
         }

@@ -1,5 +1,5 @@
-//! Silence without contact or slip and, on a device that people touch or hear, at the start and end
-//! of a scene.
+//! Silences the output while the finger has no contact or does not slide. On a device that people
+//! touch or hear, also fades at the start and the end of a scene.
 
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;

@@ -1,5 +1,5 @@
-//! Cross-fades between surfaces, and fades at their edges. They have equal power, because textures
-//! are uncorrelated. A surface that is not touched is not rendered.
+//! Cross-fades between surfaces, and fades at their edges. The fades have equal power, because the
+//! textures are uncorrelated. A surface that is not touched is not rendered.
 
 use htex_dsp::glide::Glide;
 
@@ -46,7 +46,7 @@ impl Crossfade {
     }
 
     pub(crate) fn apply(&mut self, block: &mut [f32]) {
-        // Most of the time nothing fades, and no roots are needed.
+        // Most of the time nothing fades, so no square roots are needed.
         if self.weight.rests_at(1.0) {
             return;
         }

@@ -1,5 +1,5 @@
-//! Triangular dither of one step in either direction. It makes the rounding error of integer files
-//! independent of the signal.
+//! Adds triangular dither of up to one step in either direction. The dither makes the rounding
+//! error of integer files independent of the signal.
 
 use htex_device::Quantity;
 use rand_core::{Rng, SeedableRng};
@@ -33,8 +33,8 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     Box::new(Dither {
         step: step as f32,
         limit: limit.map_or(f32::INFINITY, |limit| limit as f32),
-        // The constant is `dither` in ASCII. Voices use the scene's seed too, and must not share
-        // the numbers.
+        // The constant is `dither` in ASCII. Voices also use the scene's seed, and must not get the
+        // same random numbers.
         random: Xoshiro256PlusPlus::seed_from_u64(required.seed ^ 0x6469_7468_6572),
     })
 }
@@ -53,7 +53,7 @@ impl Stage for Dither {
             // 24 bits fit a 32-bit float exactly, so the result never rounds up to 1.
             let uniform = |bits: u64| (bits & 0xff_ffff) as f32 / 16_777_216.0;
             let noise = uniform(bits) - uniform(bits >> 32);
-            // The limiter came before, and the noise could exceed the limit again.
+            // The limiter comes before this stage, so the noise could exceed the limit again.
             *sample = (*sample + self.step * noise).clamp(-self.limit, self.limit);
         }
     }

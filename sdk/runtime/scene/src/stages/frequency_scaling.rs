@@ -1,4 +1,5 @@
-//! Scales frequencies with the scanning speed, by the asset's law, outside the recorded speeds.
+//! Outside the recorded speeds, scales frequencies with the scanning speed, by the asset's scaling
+//! law.
 
 use std::sync::Arc;
 
@@ -61,14 +62,14 @@ struct FrequencyScaling {
     scales: bool,
     warp: Warp,
     ratio: f64,
-    /// Output samples per source sample. Oversampling keeps the higher frequencies of a faster
-    /// finger below the Nyquist frequency.
+    /// Output samples per source sample. With a faster finger, frequencies rise; oversampling keeps
+    /// them below the Nyquist frequency.
     oversampling: f64,
 }
 
 impl Stage for FrequencyScaling {
     fn follow(&mut self, context: &Context) {
-        // A resting finger has no speed that could set the ratio, so the last one stays.
+        // A resting finger has no speed that could set the ratio, so the last ratio stays.
         if self.scales && context.finger.slides() {
             self.ratio =
                 self.conditions.scaling(context.finger.without_direction(), CEILING).frequency;

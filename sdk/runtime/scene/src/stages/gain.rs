@@ -1,5 +1,5 @@
-//! Converts the textures' unit to the device's: by a stated gain, to the level of a preview, or to
-//! the radicand of a drive.
+//! Converts samples from the textures' unit to the device's: by a stated gain, to the level of a
+//! preview by ear, or to the radicand of a drive voltage.
 
 use htex_device::Quantity;
 
@@ -7,8 +7,8 @@ use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-/// Assumed peak of a stream, as a multiple of its RMS. Normally distributed noise exceeds it once
-/// in 150,000 samples on either side; ten equal sinusoids never do.
+/// Assumed peak of a stream, as a multiple of its RMS. The magnitude of normally distributed noise
+/// exceeds it about once in 150,000 samples. The sum of ten equal sinusoids never exceeds it.
 pub(crate) const HEADROOM: f64 = 4.5;
 
 /// A stream with an RMS below this value, in the textures' unit, counts as silent, because its gain
@@ -18,11 +18,12 @@ const LEAST_RMS: f64 = 1e-20;
 pub(crate) const ENTRY: Entry =
     Entry { effect: Effect::Gain, name: "gain", place: StagePlace::Device { need, build } };
 
-/// Mapping of a force to an electrovibration drive: V = sqrt(gain · force + shift), from V = V_g
-/// sqrt(y + 1), where y is the force over [`HEADROOM`] times its RMS and V_g = drive / sqrt(2).
+/// Mapping of a force to the drive voltage of an electrovibration display: V = sqrt(gain · force +
+/// shift). This follows from V = V_g sqrt(y + 1), where V_g = drive / sqrt(2), and y is the force
+/// divided by [`HEADROOM`] times its RMS.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drive {
-    /// V² per textures' unit.
+    /// V² per unit of the textures.
     pub(crate) gain: f64,
     /// Shift, V².
     pub(crate) shift: f64,
@@ -35,8 +36,8 @@ impl Drive {
     }
 }
 
-/// Returns the gain that maps the scene's reference level to `level`; 0 if there is no reference
-/// level.
+/// Returns the gain that maps the scene's reference level to `level`. Returns 0 if there is no
+/// reference level.
 fn brings_level_to(level: f64, required: &Requirements) -> f64 {
     if required.level_rms > LEAST_RMS { level / required.level_rms } else { 0.0 }
 }

@@ -1,5 +1,5 @@
-//! Interpolation of parameters and level between exploration conditions as speed and force change.
-//! It retunes the voice; no samples pass through this stage.
+//! Interpolation of parameters and level between recorded conditions as speed and force change.
+//! This stage retunes the voice, so no samples pass through it.
 
 use htex_play::Interval;
 

@@ -1,4 +1,5 @@
-//! Conversion from unit RMS to the asset's unit, by the asset's level and the surface's gain.
+//! Multiplies samples of unit RMS by the asset's level and the surface's gain. The result is in the
+//! asset's unit.
 
 use htex_dsp::glide::Glide;
 

@@ -1,4 +1,5 @@
-//! Scales the level with speed and normal force, by the asset's law, outside the recorded motions.
+//! Outside the recorded motions, scales the level with speed and normal force, by the asset's
+//! scaling law.
 
 use std::sync::Arc;
 

@@ -24,13 +24,13 @@ fn need(required: &Requirements) -> Need {
 /// Returns the largest absolute value that a sample may have.
 fn limit(required: &Requirements) -> Option<f64> {
     match (required.device.quantity, required.device.limit) {
-        // The highest step of the device within the limit, so that rounding never exceeds the
+        // Use the highest step of the device within the limit, so that rounding never exceeds the
         // limit.
         (Quantity::DisplayVoltage, Some(limit)) => {
             let most = limit.min(required.drive_v);
             let step = required.device.step.unwrap_or(0.0);
-            // If rounding puts the quotient just below a whole number, a step is lost, on the safe
-            // side.
+            // If rounding puts the quotient just below a whole number, one step is lost, which is
+            // safe.
             let steps = (most / step).floor();
             Some(if step > 0.0 && steps > 0.0 { steps * step } else { most })
         }
@@ -43,7 +43,7 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     Box::new(Limiter { limit: limit.map_or(f32::INFINITY, at_most), held: 0 })
 }
 
-/// Returns the largest 32-bit float that is not above a number.
+/// Returns the largest 32-bit float that is not above `limit`.
 fn at_most(limit: f64) -> f32 {
     // `as` rounds to the nearest float, which may be above the limit.
     let near = limit as f32;

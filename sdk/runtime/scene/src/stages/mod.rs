@@ -2,10 +2,11 @@
 //!
 //! A constant effect needs no stage: a constant frequency factor becomes part of the resampler's
 //! ratio, and a constant level factor part of the level. Linear effects of a texture run at the
-//! model's rate, before the only resampling; of them, only frequency scaling reads at a changing
-//! ratio. An effect that a scene forces on although it is not needed is neutral, either bit for bit
-//! or to 1e-6 of full scale (`sdk/runtime/scene/tests/it/equivalence.rs`), so leaving it out is only an
-//! optimisation.
+//! model's rate, before the resampling. Only frequency scaling reads its input at a changing ratio.
+//!
+//! A scene may force an effect on that is not needed. Such an effect is neutral: it changes no bit
+//! of the samples, or it changes them by at most 1e-6 of full scale
+//! (`sdk/runtime/scene/tests/it/equivalence.rs`). So leaving it out is only an optimisation.
 
 mod carrier;
 mod chain;
@@ -41,7 +42,7 @@ use crate::file::Effect;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// A stage of a chain. It pulls: it requests the input it needs from its source.
+/// A stage of a chain. It requests the input that it needs from its source.
 pub(crate) trait Stage: Send {
     /// Receives the motion before each control block.
     fn follow(&mut self, _now: &Context) {}
@@ -57,13 +58,13 @@ pub(crate) trait Stage: Send {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context {
     pub(crate) finger: Motion,
-    /// RMS of the current surface, newtons.
+    /// RMS of the current surface, in the assets' unit.
     pub(crate) level_rms: f64,
     /// Frames until the end of the scene; `None` if endless.
     pub(crate) ends_in: Option<u64>,
 }
 
-/// Reason for leaving out the scaling of frequencies and of the level.
+/// The reason for leaving out frequency scaling and level scaling.
 pub(crate) const FOLLOWS: &str = "the model follows the motion itself";
 
 /// Counts of corrected samples.
@@ -92,8 +93,9 @@ impl Need {
     }
 }
 
-/// Where in the chain an effect is applied, with the functions that decide whether it is needed and
-/// that build it. `neutral` means that the effect is not needed and must not change any sample.
+/// The place of an effect in the chain. It holds the function that decides whether the effect is
+/// needed, and the function that builds its stage. `neutral` means that the effect is not needed
+/// and must not change any sample.
 #[derive(Debug)]
 pub(crate) enum StagePlace {
     /// Once per surface, at the model's rate, before surfaces are mixed.
@@ -102,8 +104,8 @@ pub(crate) enum StagePlace {
         /// `None` if the effect has no stage of its own in the chain.
         build: Option<BuildFor>,
     },
-    /// Once per mix of surfaces with the same rate. One of the surfaces decides whether it is
-    /// needed.
+    /// Once per mix of surfaces with the same rate. One of the surfaces decides whether the effect
+    /// is needed.
     Mix { need: fn(&Requirements, &PlayedSurface) -> Need, build: BuildMix },
     /// Once, after mixing, at the device's rate.
     Device {

@@ -32,14 +32,14 @@ fn need(required: &Requirements, played: &PlayedSurface) -> Need {
     }
 }
 
-/// Returns input rate, output rate and highest frequency of a surface's converter, hertz. A
-/// constant speed is included in the ratio.
+/// Returns the input rate, the output rate and the highest frequency of a surface's converter,
+/// hertz. They include the surface's constant frequency ratio.
 fn rates(required: &Requirements, played: &PlayedSurface) -> (f64, f64, f64) {
     let ratio = played.fixed_ratio;
     (played.mix_rate_hz * ratio, required.rate_hz, played.top_hz * ratio)
 }
 
-/// Returns the work per sample of the device; `None` if no conversion is needed.
+/// Returns the work per sample of the device, or `None` if no conversion is needed.
 pub(crate) fn work(
     required: &Requirements,
     played: &PlayedSurface,

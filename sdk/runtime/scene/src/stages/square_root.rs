@@ -1,11 +1,11 @@
 //! Shift and square root. The friction that an electrovibration display adds is proportional to the
-//! square of its voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration
-//! rendering, prints min|y|, which allows negative radicands.)
+//! square of its voltage, so the voltage is V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper,
+//! under "Electrovibration rendering", prints min|y| instead, which allows negative radicands.)
 //!
 //! The minimum of a stream is not known in advance, so the shift is [`HEADROOM`] times the RMS of
 //! the scene's loudest surface. Radicands that are still negative are set to zero and counted.
 //!
-//! The shift does not follow the minimum, because its changes would be felt.
+//! The shift does not follow the actual minimum, because changes of the shift would be felt.
 
 use htex_device::Quantity;
 
@@ -36,7 +36,7 @@ fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     }
 }
 
-/// A signal power of 1 and a shift of 0.
+/// A stage that passes samples unchanged.
 struct PassThrough;
 
 impl Stage for PassThrough {

@@ -15,8 +15,8 @@ impl Synthesis {
         Self { source, failed: None }
     }
 
-    /// Retunes the voice to a motion and returns the level there. If the model fails, the voice
-    /// continues unchanged and the failure is stored.
+    /// Retunes the voice to a motion and returns the level at this motion. If the model fails, the
+    /// voice continues unchanged and the failure is stored.
     pub(crate) fn set_motion(&mut self, motion: Motion) -> f64 {
         match self.source.set_motion(motion) {
             Ok(level_rms) => level_rms,
@@ -28,8 +28,8 @@ impl Synthesis {
     }
 
     /// Tells a model that follows the motion itself where the finger is, `at_s` seconds after the
-    /// first sample. If the model refuses the motion, it plays on as before and the failure is
-    /// stored.
+    /// first sample. If the model refuses the motion, the voice continues unchanged and the failure
+    /// is stored.
     pub(crate) fn follow_finger(&mut self, motion: Motion, at_s: f64) {
         if let Err(error) = self.source.follow(motion, at_s) {
             self.failed.get_or_insert(error);

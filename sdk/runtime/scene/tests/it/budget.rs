@@ -1,4 +1,4 @@
-//! Budgets move the choice of representation along the asset's measured front.
+//! Tests how budgets of time and error change which representation is chosen.
 
 use crate::common;
 
@@ -11,8 +11,8 @@ use htex_scene::{Costs, Plan, SceneError, plan};
 /// Safety factor of a plan.
 const RESERVE: f64 = 1.5;
 
-/// The error of each representation, and the time budget that a plan with only this representation
-/// needs.
+/// Returns the error of each representation, and the time budget that a plan with only this
+/// representation needs.
 fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
     let manifest = single().manifest();
     let one = |r: &htex_format::Representation| {
@@ -95,8 +95,8 @@ fn a_larger_error_budget_never_takes_more_time() {
     }
 }
 
-/// Without a budget, a scene plays the same representation as a voice does, even if conditions were
-/// computed or none was measured.
+/// Without a budget, a scene plays the same representation as a voice. This also holds if
+/// conditions were computed, or if no condition was measured.
 #[test]
 fn a_scene_chooses_as_a_voice_does() {
     let computed = |asset: &Texture| {

@@ -1,4 +1,4 @@
-//! A response is compensated in the band of the textures, and only its shape counts.
+//! A response is compensated in the band of the textures, and only the response's shape matters.
 
 use crate::common;
 

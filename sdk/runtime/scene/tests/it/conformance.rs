@@ -16,9 +16,9 @@ use xtask::generated::{file, file_with, folder};
 
 const FOLDER: &str = "spec/scene-conformance";
 
-/// Rules that no conformance file breaks. They need a scene of a megabyte, a device with hardware
-/// settings (tested in `cli/tests/live/drive.rs`; the file device has none), or a device that is
-/// not connected.
+/// Rules that no conformance file breaks. Breaking them needs a scene of a megabyte, a device with
+/// hardware settings, or a device that is not connected. The file device has no hardware settings;
+/// `cli/tests/live/drive.rs` tests them with another device.
 const WITHOUT_FILE: [&str; 3] = ["SCENE_FILE_TOO_LARGE", "DEVICE_HARDWARE", "DEVICE_ABSENT"];
 
 /// The specification's folder, relative to this package's folder, in which the tests run.

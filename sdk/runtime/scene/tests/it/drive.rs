@@ -15,7 +15,8 @@ use htex_scene::{Renderer, Response, Scene};
 
 const RATE_HZ: f64 = 50_000.0;
 const DRIVE_V: f64 = 100.0;
-/// Seven periods of twice the carrier frequency are 25 samples at 50 kHz.
+/// Number of samples over which the drive is averaged. At 50 kHz, they are seven periods of twice
+/// the carrier frequency.
 const PERIODS: usize = 25;
 
 /// The paper's rig at 50 kHz, without quantisation.
@@ -29,7 +30,8 @@ fn driven(scene: &mut Scene) -> (Vec<f32>, Renderer) {
     (rendered(&mut renderer), renderer)
 }
 
-/// Twice the square of the drive, averaged over whole periods: proportional to the friction, V².
+/// Returns twice the square of the drive, averaged over whole periods, V². It is proportional to
+/// the friction.
 fn demodulated(drive: &[f32]) -> Vec<f64> {
     let squares: Vec<f64> = drive.iter().map(|v| 2.0 * f64::from(*v).powi(2)).collect();
     let mean = |w: &[f64]| w.iter().sum::<f64>() / PERIODS as f64;

@@ -1,4 +1,4 @@
-//! A voice of the crate `htex` plays a motion as a scene does.
+//! A voice of the crate `htex` plays a motion in the same way as a scene.
 
 use crate::common;
 
@@ -214,8 +214,8 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     assert_eq!(fast.excess(), 0.0);
 }
 
-/// Forces within the tolerance of one setting count as one. Each plays as recorded, and other
-/// forces are scaled.
+/// Forces that are equal within the tolerance count as one force. Each of these forces plays as
+/// recorded. Other forces are scaled.
 #[test]
 fn forces_within_tolerance_count_as_one() {
     let condition = |speed: f64, force: f64| Condition {
@@ -279,7 +279,7 @@ fn a_failed_reading_is_held_and_then_silent() {
     assert!(play(failed, 1_000).iter().all(|x| *x == 0.0));
 }
 
-/// Samples of a live scene, with one bad reading if given.
+/// Returns the samples of a live scene, with one invalid reading if `bad` is given.
 fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) -> Vec<f32> {
     let scene = scene(grid(), SceneMotion::Live, 1.0);
     let mut renderer = Renderer::new(&scene, &planned(&scene, device)).unwrap();
@@ -300,7 +300,7 @@ fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) ->
     out
 }
 
-/// One bad reading of force, speed or place changes nothing that is felt, on any device.
+/// A single invalid reading of force, speed or place does not change what is felt, on any device.
 #[test]
 fn one_bad_reading_changes_no_sample() {
     let place = Some([30.0, 0.0]);
@@ -340,8 +340,8 @@ fn a_reading_that_is_no_number_is_held_and_then_silent() {
     }
 }
 
-/// By its law, a texture of 0.4 N would be 34 dB stronger at 20 N. The ceiling limits it to four
-/// times as strong, or to the requested ceiling.
+/// By its scaling law, a texture recorded at 0.4 N would be 34 dB stronger at 20 N. The ceiling
+/// limits it to four times the recorded level, or to the requested ceiling.
 #[test]
 fn no_voice_is_louder_than_its_ceiling() {
     let strong = |ceiling: f64| {

@@ -1,5 +1,5 @@
-//! For each effect, two scenes that differ only in whether they need it. The stage is in one plan
-//! and not in the other.
+//! For each effect, tests two scenes that differ only in whether they need the effect. Its stage
+//! must be in one plan and not in the other.
 
 use crate::common;
 
@@ -19,7 +19,8 @@ fn strokes(asset: &htex_play::Texture, swing: f64) -> Scene {
     traced(asset, trace(0.5, x, |_| 0.4), 0.5)
 }
 
-/// Two surfaces of 30 mm side by side, and a stroke from x = 0 at `reach_mm` per second.
+/// Returns a scene with two surfaces of 30 mm side by side, and a stroke from x = 0 at `reach_mm`
+/// per second.
 fn two(reach_mm: f64) -> Scene {
     let mut scene = traced(single(), trace(0.5, move |t| reach_mm * t, |_| 0.4), 0.5);
     let at = |from: f64| Surface {
@@ -35,7 +36,7 @@ fn plain() -> Scene {
     scene(single(), constant(80.0, 0.4), 0.5)
 }
 
-/// A scene that does not need the effect, and one that does.
+/// Returns a scene that does not need the effect, and a scene that needs it.
 fn pair(effect: Effect) -> (SceneOnDevice, SceneOnDevice) {
     let forces = |change: f64| {
         let force = move |t: f64| 0.4 + change * (5.0 * t).sin();

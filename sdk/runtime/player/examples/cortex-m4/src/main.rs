@@ -1,5 +1,5 @@
-//! Plays the block at [`BLOCK`] with the script of the tests. Prints a hash of the samples and the
-//! number of instructions per sample.
+//! Plays the block at [`BLOCK`] with the tests' script of motions. Prints a hash of the samples and
+//! the number of instructions per sample.
 //!
 //! `docs/microcontroller.md` has the commands. `sdk/runtime/play/tests/it/bake_board.rs` compares the hash
 //! with the host's.

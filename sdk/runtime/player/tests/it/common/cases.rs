@@ -1,5 +1,5 @@
-//! The blocks of `spec/baked-conformance`, what is done with them, and what a player renders for
-//! them or why it refuses them.
+//! The blocks of `spec/baked-conformance`, the calls to make with them, and the samples that a
+//! player renders or the reason why it refuses a block.
 
 use htex_player::{Block, OpenError, Player};
 use serde_json::{Value, json};
@@ -40,14 +40,14 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
     valid.chain(refused).flat_map(both).collect()
 }
 
-/// All blocks, including those that are refused, and what is done with each.
+/// Returns all blocks, including the invalid blocks, and the calls to make with each block.
 pub fn blocks_and_steps() -> Vec<(Vec<u8>, Vec<Step>)> {
     let played = sound().into_iter().map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
     let refused = hostile().into_iter().map(|(_, bytes)| (bytes, Vec::new()));
     played.chain(refused).collect()
 }
 
-/// The rule that bytes violate, as the specification names it.
+/// Returns the rule that a block violates, as the specification names it.
 fn rule(bytes: &[u8]) -> Option<&'static str> {
     Some(match Block::open(bytes).err()? {
         OpenError::TooShort => "too_short",
@@ -61,8 +61,8 @@ fn rule(bytes: &[u8]) -> Option<&'static str> {
     })
 }
 
-/// Motions on the grid, between its points, beyond it and at rest; implausible readings and numbers
-/// that are not finite; and changes during changes.
+/// Returns calls with motions on the grid, between its points, beyond it and at rest, with
+/// implausible readings and numbers that are not finite, and with new motions during a glide.
 fn steps(rate_hz: f32) -> Vec<Step> {
     let held = (0.1 * rate_hz) as usize;
     vec![
@@ -101,7 +101,8 @@ fn steps(rate_hz: f32) -> Vec<Step> {
     ]
 }
 
-/// What two players with the same seed render: one to floating-point numbers, one to integers.
+/// Returns the samples of two players with the same seed. One renders floating-point numbers, the
+/// other integers.
 fn played(name: &str, bytes: &[u8], steps: &[Step]) -> Value {
     let block = Block::open(bytes).unwrap();
     let full_scale = block.full_scale();
@@ -293,7 +294,7 @@ fn tones_random() -> Plan {
     }
 }
 
-/// Sinusoids that the law would raise above the highest frequency, with a level that it would raise
+/// Sinusoids that the law would raise above the highest frequency. It would also raise their level
 /// above the ceiling.
 fn tones_law() -> Plan {
     Plan { law: [4.0, -4.0, 4.0], ceiling: 3.0, highest: 0.4, ..tones_fixed() }

@@ -81,7 +81,7 @@ pub struct Board {
     pub script: &'static str,
     pub emulator: &'static str,
     pub machine: &'static str,
-    /// Address at which the linker script expects what QEMU loads.
+    /// Address at which the linker script expects the bytes that QEMU loads.
     pub loaded: &'static str,
 }
 
@@ -94,7 +94,7 @@ pub const CORTEX_M4F: Board = Board {
     loaded: "0x20000",
 };
 
-/// A board without a floating-point unit and without loads at any alignment; 16 kB of RAM.
+/// A board with 16 kB of RAM, without a floating-point unit and without unaligned loads.
 pub const CORTEX_M0: Board =
     Board { options: "-mcpu=cortex-m0 -mthumb", machine: "microbit", ..CORTEX_M4F };
 

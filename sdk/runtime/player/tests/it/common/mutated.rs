@@ -21,7 +21,8 @@ pub const MOTIONS: [(f32, f32); 11] = [
     (999.0, 1e-6),
 ];
 
-/// Changed bytes with a matching checksum, so that they reach the checks after it, and the player.
+/// Changed blocks with a matching checksum, so that they reach the checks after the checksum, and
+/// the player.
 pub fn changed() -> impl Strategy<Value = Vec<u8>> {
     let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6);
     (any::<bool>(), changes, 0usize..4).prop_map(|(is_tones, changes, cut)| {
@@ -89,7 +90,8 @@ pub fn damaged() -> Vec<Vec<u8>> {
     all
 }
 
-/// The same `count` blocks of each kind of change every time, with the motions above.
+/// Returns `count` blocks for each kind of change, with the motions above. The blocks are the same
+/// every time.
 pub fn cases(count: usize) -> Vec<Case> {
     let mut runner = TestRunner::deterministic();
     let mut blocks = extreme();

@@ -3,7 +3,7 @@
 use htex_player::Player;
 
 pub const SEED: u32 = 7;
-/// Motions: mm/s and newtons, within and beyond the conditions, and of a finger at rest.
+/// Motions (mm/s and newtons) within and beyond the conditions, and of a finger at rest.
 const MOTIONS: [(f32, f32); 6] =
     [(80.0, 0.4), (55.5, 0.25), (0.0, 0.0), (101.25, 0.5), (1e6, 100.0), (-60.0, 0.3)];
 /// Lengths of the buffers.

@@ -3,7 +3,7 @@
 
 use htex_player::{Block, OpenError, Player};
 
-/// A block and what is done with it.
+/// A block, and the calls to make with it.
 pub struct Case {
     pub block: Vec<u8>,
     pub seed: u32,
@@ -42,8 +42,8 @@ pub fn encoded(cases: &[Case]) -> Vec<u8> {
     bytes
 }
 
-/// Results of a player for each case: the status of opening; then the rate and the full scale, the
-/// status and the level at each motion, and all samples.
+/// Returns a player's results for each case: the status of opening, the rate and the full scale,
+/// the status and the level at each motion, and all samples.
 pub fn expected(cases: &[Case]) -> Vec<Vec<u8>> {
     cases.iter().map(played).collect()
 }

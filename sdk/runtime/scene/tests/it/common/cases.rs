@@ -1,5 +1,5 @@
-//! The conformance scenes and the files that they name: valid scenes, and at least one scene for
-//! each rule that it breaks.
+//! The conformance scenes and the files that they name. There are valid scenes, and for each rule
+//! at least one scene that breaks it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -125,7 +125,8 @@ pub(crate) fn plain() -> Value {
     })
 }
 
-/// [`plain`] with the values at some pointers replaced. Missing parents are created as objects.
+/// Returns the scene [`plain`] with other values at some JSON pointers. Missing parents are created
+/// as objects.
 fn with(changes: &[(&str, Value)]) -> String {
     let mut scene = plain();
     for (pointer, value) in changes {
@@ -148,7 +149,8 @@ fn without(key: &str) -> String {
     serde_json::to_string_pretty(&scene).unwrap() + "\n"
 }
 
-/// Two surfaces side by side. `second` is the range of the second one along x.
+/// Returns a scene with two surfaces side by side. `second` is the range of the second surface
+/// along x.
 fn two(second: [f64; 2]) -> Value {
     let region = |x_mm: [f64; 2]| json!({ "x_mm": x_mm, "y_mm": [0, 50] });
     json!([

@@ -268,7 +268,7 @@ export interface Rights {
   riff: Uint8Array;
 }
 
-/** A baked texture: a block of data for players on microcontrollers; see `docs/microcontroller.md`. */
+/** A baked texture: a block of data for microcontrollers; see `docs/microcontroller.md`. */
 export interface Baked {
   bytes: Uint8Array;
   model: string;

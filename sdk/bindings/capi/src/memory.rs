@@ -20,8 +20,8 @@ pub fn allocate(bytes: usize) -> *mut u8 {
 
 /// Frees memory from [`allocate`]. The number of bytes must be the same.
 ///
-/// # Safety The pointer comes from [`allocate`] with the same number of bytes and was not freed, or
-/// is NULL.
+/// # Safety
+/// The pointer comes from [`allocate`] with the same number of bytes and was not freed, or is NULL.
 pub unsafe fn free(at: *mut u8, bytes: usize) {
     if let Some(layout) = layout(bytes).filter(|_| !at.is_null()) {
         // SAFETY: as here.

@@ -55,8 +55,9 @@ const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_
 /// Returns an array of motions from C. The program may have been compiled against a version of the
 /// struct that is shorter or longer than this one.
 ///
-/// # Safety As in [`slice`], where each motion has the size that the first one states. The motions
-/// must stay valid as long as the iterator.
+/// # Safety
+/// As in [`slice`], where each motion has the size that the first one states. The motions must stay
+/// valid as long as the iterator.
 pub(crate) unsafe fn motions(
     pointer: *const htex_motion,
     len: usize,

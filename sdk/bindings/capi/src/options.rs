@@ -117,8 +117,9 @@ pub struct htex_voice_options {
 
 /// Reads the first `size` bytes of a struct of options, with zeros for the rest.
 ///
-/// # Safety The pointer is NULL, or points to a struct `T` that begins with its size, as a `u32`,
-/// and has this many bytes.
+/// # Safety
+/// The pointer is NULL, or points to a struct `T` that begins with its size, as a `u32`, and has
+/// this many bytes.
 pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, Failure> {
     if pointer.is_null() {
         return Ok(zeros);
@@ -231,7 +232,8 @@ fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
 
 /// Reads the options of a voice: the model's name, and the rest.
 ///
-/// # Safety As in [`options`]. The text must stay valid as long as the result.
+/// # Safety
+/// As in [`options`]. The text must stay valid as long as the result.
 pub(crate) unsafe fn voice_options<'a>(
     pointer: *const htex_voice_options,
 ) -> Result<(Option<&'a str>, VoiceOptions), Failure> {

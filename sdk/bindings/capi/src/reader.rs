@@ -68,7 +68,8 @@ unsafe impl Send for Reader {}
 unsafe impl Sync for Reader {}
 
 impl Reader {
-    /// # Safety The pointer is NULL, or points to a reader of the caller.
+    /// # Safety
+    /// The pointer is NULL, or points to a reader of the caller.
     pub(crate) unsafe fn from_raw(reader: *const htex_reader) -> Result<Self, Failure> {
         // SAFETY: as here.
         let reader = unsafe { slice(reader, 1) }?[0];
@@ -144,7 +145,8 @@ pub(crate) struct Files {
 
 #[cfg(feature = "scene")]
 impl Files {
-    /// # Safety The pointer is NULL, or points to a `htex_files` of the caller.
+    /// # Safety
+    /// The pointer is NULL, or points to a `htex_files` of the caller.
     pub(crate) unsafe fn from_raw(files: *const htex_files) -> Result<Self, Failure> {
         // SAFETY: as here.
         let files = unsafe { slice(files, 1) }?[0];

@@ -102,7 +102,8 @@ impl Path {
 
 /// Returns the number of samples in a path that is given by these series.
 ///
-/// # Errors When a block has no samples, or the series differ in length.
+/// # Errors
+/// When a block has no samples, or the series differ in length.
 pub(crate) fn count(given: &[Option<&Series>], block: usize) -> PyResult<usize> {
     if block == 0 {
         return Err(option("block is 0; a motion lasts at least one sample"));

@@ -1,5 +1,4 @@
-//! What the user states about the signals of a file, by name: the command's flags and the keys of
-//! recipes.
+//! Settings for the signals of a file. They are flags of the command and keys of recipes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -323,7 +323,8 @@ pub unsafe extern "C" fn htex_index_assemble(
 
 /// Writes the start and end of a range.
 ///
-/// # Safety As in the module `pointers`: `out` is NULL or points to two numbers.
+/// # Safety
+/// As in the module `pointers`: `out` is NULL or points to two numbers.
 unsafe fn write_range(range: &Range<u64>, out: *mut f64) -> Result<(), Failure> {
     // SAFETY: as here.
     let out = unsafe { slice_mut(out, 2) }?;

@@ -79,7 +79,8 @@ pub(super) unsafe fn list_json(
 
 /// Finds a device by its name, and parses its settings.
 ///
-/// # Safety As in the module `pointers`, for both texts.
+/// # Safety
+/// As in the module `pointers`, for both texts.
 unsafe fn device_and_settings(
     devices: &Devices,
     name: *const c_char,

@@ -38,7 +38,8 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
 /// Calls the function with this name, and passes it a JSON document and the bytes of files. A call
 /// that fails also writes a result.
 ///
-/// # Safety The pointers must be valid during the call. `out` is written.
+/// # Safety
+/// The pointers must be valid during the call. `out` is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_author_call(
     name: *const c_char,

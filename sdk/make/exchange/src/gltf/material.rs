@@ -1,4 +1,4 @@
-//! The properties of the glTF extension.
+//! The properties of the glTF extension `HTEX_texture`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -38,11 +38,12 @@ pub enum MediaType {
 }
 
 impl Material {
-    /// Checks what the types do not express; `pointer` leads to the extension.
+    /// Checks the rules that the types do not express. `pointer` is the JSON pointer to the
+    /// extension.
     pub(super) fn check(&self, pointer: &str) -> Result<(), Fault> {
         let sizes = self.tex_coord_size_mm.iter().flatten();
         for (i, size_mm) in sizes.enumerate() {
-            // Written this way so that NaN is refused too.
+            // Written this way so that NaN is also refused.
             if !(*size_mm > 0.0 && size_mm.is_finite()) {
                 return Err(Fault::new(
                     format!("{pointer}/texCoordSizeMm/{i}"),

@@ -1,4 +1,5 @@
-//! What a model file contains in addition to the texture, stored as an extension of the asset.
+//! Stores the contents of a model file that the texture itself does not use, as an extension of the
+//! asset.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -4,8 +4,8 @@
 //! A take is recorded into a part file. Each second is appended and flushed to disk. So a program
 //! that is killed loses at most the current second, and [`recover`] converts the rest to a
 //! recording. A complete take is judged ([`judge`]). If the mean, minimum or maximum of speed or
-//! force differs from its target by more than the tolerance, the take is set aside and recorded
-//! again (10 % in the paper, Supplementary, "Texture recording"). The same happens if the finger
+//! force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
+//! "Texture recording"), the take is set aside and recorded again. The same happens if the finger
 //! slides on its target for too short a time, or if there are too few sweeps ([`Requirements`]).
 //! The results are recordings that `htex fit` reads, each with a JSON file.
 //!

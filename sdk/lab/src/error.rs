@@ -48,14 +48,14 @@ pub enum LabError {
         after_s: f64,
         /// Length of the take, seconds.
         seconds: f64,
-        /// The file with what was recorded.
+        /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
     /// The source stopped with an error during a take.
     #[error("{error}{}", with_place(.kept))]
     Interrupted {
         error: Box<LabError>,
-        /// The file with what was recorded.
+        /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
     /// The source delivers no samples.
@@ -64,7 +64,7 @@ pub enum LabError {
     /// The user ended the session.
     #[error("the session was ended{}", with_place(.kept))]
     Left {
-        /// The file with what was recorded.
+        /// The file that contains what was recorded, if anything was.
         kept: Option<PathBuf>,
     },
     /// No take kept to its target.

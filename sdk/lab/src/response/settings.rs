@@ -21,8 +21,9 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "h1"))]
     pub estimator: Estimator,
 
-    /// Length of the part of the recording that is transformed, s. The frequency grid of the
-    /// response is its inverse; with multiples of 0.2, it contains the 5 Hz grid of texture spectra
+    /// Length of a window, s: the part of the recording that is transformed at a time. The response
+    /// has a value every 1/length Hz; lengths that are multiples of 0.2 s include the 5 Hz grid of
+    /// texture spectra
     #[cfg_attr(feature = "clap", arg(long = "window", value_name = "S", default_value_t = 1.0))]
     pub window_s: f64,
 
@@ -39,12 +40,13 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 
-    /// The same for the output
+    /// Magnitude of the output at which its sensor or amplifier is overloaded. Without it, the same
+    /// rule applies as for the input
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub output_limit: Option<f64>,
 
-    /// The input is a drive without pauses (noise, a sweep): use windows with half overlap and a
-    /// Hann window
+    /// The input is a continuous drive, such as noise or a sweep: use Hann windows with half
+    /// overlap
     #[cfg_attr(feature = "clap", arg(
         long,
         conflicts_with_all = ["pre_trigger_s", "trigger", "double", "force_window_s", "exponential_s"]
@@ -56,7 +58,7 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long = "pre-trigger", value_name = "S"))]
     pub pre_trigger_s: Option<f64>,
 
-    /// Hits: level at which one starts, relative to the largest input of the recording [default:
+    /// Hits: level at which a hit starts, relative to the largest input of the recording [default:
     /// 0.1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub trigger: Option<f64>,
@@ -70,7 +72,7 @@ pub struct ResponseSettings {
     pub force_window_s: Option<f64>,
 
     /// Hits: time constant of an exponential window on both channels, s, for responses that outlast
-    /// the window. It raises their damping by its inverse
+    /// the window. The window raises their damping by the inverse of this time constant
     #[cfg_attr(feature = "clap", arg(long = "exponential", value_name = "S"))]
     pub exponential_s: Option<f64>,
 }

@@ -28,11 +28,11 @@ F = TypeVar("F", bound=Callable[..., Any])
 class Reading(ReadingSettings, total=False):
     """Keywords that state how recordings are read."""
 
-    speed_mm_s: Annotated[float | None, "Scanning speed, mm/s, where the recording does not say, or instead of what it says"]
-    force_n: Annotated[float | None, "Normal force, newtons, where the recording does not say, or instead of what it says"]
+    speed_mm_s: Annotated[float | None, "Scanning speed, mm/s, if the recording does not state it, or to replace what it states"]
+    force_n: Annotated[float | None, "Normal force, newtons, if the recording does not state it, or to replace what it states"]
     response: Annotated[
         str | os.PathLike[str] | Response | None,
-        "Response of the recording setup to divide out: one that was measured, or a CSV file with columns frequency_hz, magnitude and, "
+        "Response of the recording setup, by which spectra are divided: one that was measured, or a CSV file with columns frequency_hz, magnitude and, "
         "if known, phase_rad",
     ]
     strict: Annotated[bool | None, "Refuse recordings with findings that are errors or warnings"]

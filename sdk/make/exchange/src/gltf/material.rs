@@ -9,21 +9,22 @@ use crate::error::Fault;
 /// The extension's name in a glTF file.
 pub const EXTENSION: &str = "HTEX_texture";
 
-/// The extension `HTEX_texture` of a glTF 2.0 material: what a finger feels when it slides over
-/// surfaces of this material. Properties that are not described here are allowed, including
-/// `extensions` and `extras`.
+/// The extension `HTEX_texture` of a glTF 2.0 material. It states what a finger feels when it
+/// slides over surfaces of this material. Properties that are not described here are allowed,
+/// including `extensions` and `extras`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Material {
-    /// Index of the buffer view whose bytes are a `.htex` file.
+    /// Index of the buffer view that contains a `.htex` file.
     pub buffer_view: u32,
     /// Media type of these bytes.
     pub mime_type: MediaType,
-    /// Number n of the texture coordinates `TEXCOORD_n`, which say where on the surface a point is.
+    /// The number n of the set of texture coordinates, `TEXCOORD_n`. They state where on the
+    /// surface a point lies.
     #[serde(default)]
     pub tex_coord: u32,
-    /// Size on the surface, in millimetres, of one unit of the first and of the second texture
-    /// coordinate. Without it, distances follow from the geometry.
+    /// Length on the surface, in millimetres, of one unit of the first and of the second texture
+    /// coordinate. Without it, distances on the surface follow from the geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,

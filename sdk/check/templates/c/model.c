@@ -384,9 +384,9 @@ int64_t htex_model_extension(const uint8_t *id, size_t id_len)
 
 #if FOLLOWS_MOTION
 
-/* How the voice follows the motion. In this template, the level is proportional to the speed,
- * up to 4, and at 100 mm/s the texture plays as recorded. A model may also use position and place, for
- * example for a pattern that is fixed to the surface. */
+/* How the voice follows the motion. In this template, the level is proportional to the speed, up
+ * to a factor of 4, and at 100 mm/s the texture plays as recorded. A model may also use position
+ * and place, for example for a pattern that is fixed to the surface. */
 int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm, double x_mm,
                           double y_mm)
 {

@@ -23,7 +23,7 @@ pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Fai
 /// Does the same as [`slice`], for values that are written.
 ///
 /// # Safety
-/// As the module says, and nothing else uses the values during the call.
+/// As the module states. In addition, nothing else uses the values during the call.
 pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [T], Failure> {
     if len == 0 {
         return Ok(&mut []);

@@ -36,8 +36,8 @@ impl Growth {
 /// Checks that memory does not grow while something plays and while it is opened and closed.
 ///
 /// # Errors
-/// A failed finding if memory grows by more than 2 MiB in either case, and the errors of `measure`.
-/// A skipped finding if resident memory cannot be read.
+/// A finding with the outcome `Failed` if memory grows by more than 2 MiB in either case. A finding
+/// with the outcome `Skipped` if resident memory cannot be read. Also the errors of `measure`.
 pub(crate) fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> CheckResult {
     if resident_bytes().is_none() {
         return Err(Finding::skipped("resident memory is read on Linux only"));
@@ -75,7 +75,8 @@ fn resident_bytes() -> Option<f64> {
 /// Checks that made-up extensions are absent. `has` queries one extension.
 ///
 /// # Errors
-/// A failed finding that names an extension that `has` reports, and the errors of `has`.
+/// A finding with the outcome `Failed` that names an extension which `has` reports. Also the errors
+/// of `has`.
 pub(crate) fn made_up_extensions<E: Into<Finding>>(
     has: impl Fn(&str) -> Result<bool, E>,
 ) -> CheckResult {

@@ -64,22 +64,22 @@ impl Finding {
         Self { outcome, message: message.into(), numbers: BTreeMap::new() }
     }
 
-    /// Creates a finding that the guarantee holds.
+    /// Creates a finding which states that the guarantee holds.
     pub fn passed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Passed, message)
     }
 
-    /// Creates a finding that the guarantee holds, but something needs attention.
+    /// Creates a finding which states that the guarantee holds, but that something needs attention.
     pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Outcome::Warning, message)
     }
 
-    /// Creates a finding that the check does not apply.
+    /// Creates a finding which states that the check does not apply.
     pub fn skipped(message: impl Into<String>) -> Self {
         Self::new(Outcome::Skipped, message)
     }
 
-    /// Creates a finding that the guarantee is violated.
+    /// Creates a finding which states that the guarantee is violated.
     pub fn failed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Failed, message)
     }

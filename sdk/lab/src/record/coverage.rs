@@ -15,8 +15,8 @@ use crate::record::guide::Guidance;
 /// Half the length of the moving averages that judge a take, seconds. The whole length is 50 ms.
 const HALF_MEAN_S: f64 = 0.025;
 /// Lowest speed at which the finger counts as moving on its target, as a fraction of the target
-/// speed. The speed of a hand's stroke rises and falls all the time, because a hand minimises jerk
-/// (T. Flash, N. Hogan 1985, Journal of Neuroscience 5) and turns between strokes. At most 0.31 of
+/// speed. A hand turns between strokes, and within a stroke it minimises jerk (T. Flash, N. Hogan
+/// 1985, Journal of Neuroscience 5). So its speed rises and falls all the time. At most 0.31 of
 /// such a stroke is within 10 % of a target speed, but 0.57 of it is above half the target speed.
 const LOWEST_SPEED: f64 = 0.5;
 /// Relative difference that counts as rounding.

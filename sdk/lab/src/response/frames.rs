@@ -110,7 +110,8 @@ impl Weights {
     }
 }
 
-/// Returns 1 up to `end_s`, then half a cosine that falls to 0 over a quarter of that time.
+/// Returns the weight of the force window at a time after the trigger. It is 1 up to `end_s`, and
+/// then falls to 0 over a quarter of this time, as half a cosine.
 fn force(after_s: f64, end_s: f64) -> f64 {
     let faded = ((after_s - end_s) / (0.25 * end_s)).clamp(0.0, 1.0);
     0.5 + 0.5 * libm::cos(PI * faded)

@@ -67,7 +67,8 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub double: Option<f64>,
 
-    /// Hits: time after the trigger at which the input fades to zero, s; removes noise between hits
+    /// Hits: time after the trigger, s, from which on the input is faded to zero; this removes
+    /// noise between hits
     #[cfg_attr(feature = "clap", arg(long = "force-window", value_name = "S"))]
     pub force_window_s: Option<f64>,
 

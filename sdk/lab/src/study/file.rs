@@ -141,11 +141,11 @@ pub enum Order {
     /// are in random order. With this order, the experimenter must exchange the real texture least
     /// often.
     BlockedByTexture,
-    /// Each repetition is a row of a Latin square. Over as many rows as there are conditions, each
-    /// condition occurs once at each place.
+    /// Each repetition is a row of a Latin square. In as many rows as there are conditions, each
+    /// condition occurs once at each position.
     LatinSquare,
-    /// Each repetition is a row of a Williams square: a Latin square in which, over all rows, each
-    /// condition also follows every other one equally often (Williams 1949).
+    /// Each repetition is a row of a Williams square (Williams 1949). It is a Latin square in
+    /// which, over all rows, each condition also follows every other condition equally often.
     WilliamsSquare,
 }
 

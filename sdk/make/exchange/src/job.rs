@@ -27,8 +27,8 @@ pub struct Job<'a> {
 pub struct WrittenSignal {
     pub(crate) bytes: Vec<u8>,
     pub(crate) heard: Heard,
-    /// The signal with which the file drives the actuator, from reading the file back. It has the
-    /// sample rate of `heard`.
+    /// The signal with which the file drives the actuator. It comes from reading the file back. It
+    /// has the sample rate of `heard`.
     pub(crate) drive: Vec<f64>,
     pub(crate) limited: f64,
     pub(crate) notes: Vec<String>,
